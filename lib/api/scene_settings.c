@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "medium/water.h"
-#include "swath/recording.h"
+#include "swath/geometry_notes.h"
 #include "swath/xtf_file.h"
 
 /* Takes a structure into a local copy, checks it, and only then changes the scene. */

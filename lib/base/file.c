@@ -1,4 +1,5 @@
-#define _POSIX_C_SOURCE 200809L
+#define _POSIX_C_SOURCE   200809L
+#define _FILE_OFFSET_BITS 64
 #include "base/file.h"
 
 #include <dirent.h>
@@ -6,17 +7,27 @@
 #include <fcntl.h>
 #include <inttypes.h>
 #include <signal.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/types.h>
 #include <time.h>
 #include <unistd.h>
 
-#include "base/memory.h"
-
 #define PATH_BYTES_MAX ((size_t)1 << 16)
-#define READ_STEP      ((size_t)64 * 1024)
+#define NAMES_MAX      ((size_t)1 << 20) /* in a folder */
+
+sonject_status input_failure(struct report *report, const char *path, const char *format, ...)
+{
+    char what[REPORT_LINE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    return report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", path, what);
+}
 
 sonject_status file_failure(struct report *report, const char *path, const char *action, int error)
 {
@@ -35,9 +46,8 @@ bool file_error_is_of_system(int error)
 
 static sonject_status refuse_endless(struct report *report, const char *path)
 {
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: is not a regular file but a pipe or a device: copy it to a file",
-                          path);
+    return input_failure(report, path,
+                         "is not a regular file but a pipe or a device: copy it to a file");
 }
 
 sonject_status file_refuse(struct report *report, const char *path, int error)
@@ -202,96 +212,108 @@ void file_discard(const char *part)
     errno = kept;
 }
 
-static int write_all(int descriptor, const char *bytes, size_t count)
+sonject_status file_write_parts(struct report *report, const char *path, const void *head,
+                                size_t head_bytes, const void *bytes, size_t count)
 {
-    while (count > 0) {
-        const ssize_t written = write(descriptor, bytes, count);
-        if (written < 0 && errno == EINTR)
-            continue;
-        if (written < 0)
-            return errno;
-        bytes += written;
-        count -= (size_t)written;
+    char *part = file_part_name(path);
+    CHECK_MEMORY(report, part, "a file name");
+    errno = 0;
+    FILE *file = fopen(part, "wb");
+    bool is_written = file && fwrite(head, 1, head_bytes, file) == head_bytes &&
+                      fwrite(bytes, 1, count, file) == count;
+    int error = errno;
+    if (file && fclose(file) != 0 && is_written) {
+        is_written = false;
+        error = errno;
     }
-    return 0;
+    if (!is_written)
+        file_discard(part);
+    const sonject_status status = is_written
+                                      ? file_publish(report, part, path)
+                                      : file_failure(report, path, "write", error ? error : EIO);
+    free(part);
+    return status;
 }
 
 sonject_status file_write_whole(struct report *report, const char *path, const void *bytes,
                                 size_t count)
 {
-    char *part = file_part_name(path);
-    if (!part)
-        return report_out_of_memory(report, "a file name");
-    sonject_status status;
-    const int descriptor = open(part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor < 0) {
-        status = file_failure(report, path, "write", errno);
-    } else {
-        int error = write_all(descriptor, bytes, count);
-        if (close(descriptor) != 0 && error == 0)
-            error = errno;
-        if (error == 0) {
-            status = file_publish(report, part, path);
-        } else {
-            file_discard(part);
-            status = file_failure(report, path, "write", error);
-        }
-    }
-    free(part);
-    return status;
-}
-
-/* Reads until the end or until more than limit bytes have come; *bytes is to be freed either way.
- * 0, or the errno of what failed. */
-static int read_all(int descriptor, size_t limit, char **bytes, size_t *count)
-{
-    size_t capacity = 0;
-    for (;;) {
-        if (capacity - *count < 2) {
-            capacity = capacity < READ_STEP ? READ_STEP : capacity + capacity / 2;
-            char *larger = capacity > *count ? realloc(*bytes, capacity) : NULL;
-            if (!larger)
-                return ENOMEM;
-            *bytes = larger;
-        }
-        const ssize_t got = read(descriptor, *bytes + *count, capacity - *count - 1);
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got < 0)
-            return errno;
-        *count += (size_t)got;
-        (*bytes)[*count] = '\0';
-        if (got == 0 || *count > limit)
-            return 0;
-    }
+    return file_write_parts(report, path, "", 0, bytes, count);
 }
 
 sonject_status file_read_whole(struct report *report, const char *path, size_t limit, char **bytes,
                                size_t *count)
 {
+    uint64_t size = 0;
     *bytes = NULL;
     *count = 0;
-    const int descriptor = file_open(path);
-    if (descriptor < 0)
+    FILE *file = byte_file_open(path, &size);
+    if (!file)
         return errno == ESPIPE
                    ? refuse_endless(report, path)
                    : file_failure(report, path, errno == EISDIR ? "read" : "open", errno);
-    const int error = read_all(descriptor, limit, bytes, count);
-    close(descriptor);
     sonject_status status = SONJECT_OK;
-    if (error == ENOMEM)
+    if (size > limit)
+        status = input_failure(report, path, "larger than %zu bytes", limit);
+    else if (!(*bytes = allocate_array((size_t)size + 1, 1)))
         status = report_out_of_memory(report, path);
-    else if (error != 0)
-        status = file_failure(report, path, "read", error);
-    else if (*count > limit)
-        status =
-            report_failure(report, SONJECT_ERROR_INPUT, "%s: larger than %zu bytes", path, limit);
+    else if ((*count = fread(*bytes, 1, (size_t)size, file)) < size && ferror(file))
+        status = file_failure(report, path, "read", errno);
+    fclose(file);
     if (status != SONJECT_OK) {
         free(*bytes);
         *bytes = NULL;
         *count = 0;
     }
     return status;
+}
+
+sonject_status growing_text_write(struct report *report, struct growing_text *text,
+                                  const char *path)
+{
+    char *whole = growing_text_end(text);
+    CHECK_MEMORY(report, whole, path);
+    const sonject_status status = file_write_whole(report, path, whole, strlen(whole));
+    free(whole);
+    return status;
+}
+
+FILE *byte_file_open(const char *path, uint64_t *bytes)
+{
+    struct stat facts;
+    const int descriptor = file_open(path);
+    FILE *file = descriptor >= 0 ? fdopen(descriptor, "rb") : NULL;
+    if (!file || fstat(descriptor, &facts) != 0) {
+        const int error = errno;
+        if (file)
+            fclose(file);
+        else if (descriptor >= 0)
+            close(descriptor);
+        errno = error;
+        return NULL;
+    }
+    *bytes = (uint64_t)facts.st_size;
+    return file;
+}
+
+bool byte_file_read(FILE *file, uint64_t place, void *bytes, size_t count)
+{
+    return place <= INT64_MAX && fseeko(file, (off_t)place, SEEK_SET) == 0 &&
+           fread(bytes, 1, count, file) == count;
+}
+
+bool byte_file_copy(FILE *from, uint64_t place, uint64_t count, FILE *to)
+{
+    unsigned char buffer[16384];
+    if (place > INT64_MAX || fseeko(from, (off_t)place, SEEK_SET) != 0)
+        return false;
+    while (count > 0) {
+        const size_t some = count < sizeof buffer ? (size_t)count : sizeof buffer;
+        if (fread(buffer, 1, some, from) != some || fwrite(buffer, 1, some, to) != some)
+            return false;
+        count -= some;
+    }
+    return true;
 }
 
 static int make_one_folder(const char *path)
@@ -392,4 +414,63 @@ char *path_folder(const char *path)
     else if (folder)
         folder[slash == path ? 1 : slash - path] = '\0';
     return folder;
+}
+
+void folder_names_clear(struct folder_names *list)
+{
+    for (size_t i = 0; i < list->count; i++)
+        free(list->names[i]);
+    free(list->names);
+    memset(list, 0, sizeof *list);
+}
+
+static bool add_name(struct folder_names *list, const char *name)
+{
+    if ((list->count & (list->count + 1)) == 0) { /* 0, 1, 3, 7...: room for twice as many */
+        char **more = list->count < NAMES_MAX
+                          ? realloc(list->names, (2 * list->count + 1) * sizeof *more)
+                          : NULL;
+        if (!more)
+            return false;
+        list->names = more;
+    }
+    list->names[list->count] = copy_text(name);
+    if (!list->names[list->count])
+        return false;
+    list->count++;
+    return true;
+}
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+static bool is_wanted(const char *name, const char *prefix)
+{
+    return strcmp(name, ".") != 0 && strcmp(name, "..") != 0 &&
+           strncmp(name, prefix, strlen(prefix)) == 0;
+}
+
+sonject_status folder_names_read(struct folder_names *list, struct report *report, const char *path,
+                                 const char *prefix)
+{
+    memset(list, 0, sizeof *list);
+    DIR *folder = opendir(path);
+    if (!folder)
+        return errno == ENOENT || errno == ENOTDIR ? SONJECT_OK
+                                                   : file_failure(report, path, "read", errno);
+    sonject_status status = SONJECT_OK;
+    struct dirent *entry;
+    while (status == SONJECT_OK && (errno = 0, entry = readdir(folder)) != NULL)
+        if (is_wanted(entry->d_name, prefix) && !add_name(list, entry->d_name))
+            status = report_out_of_memory(report, path);
+    if (status == SONJECT_OK && errno != 0)
+        status = file_failure(report, path, "read", errno);
+    closedir(folder);
+    if (status != SONJECT_OK)
+        folder_names_clear(list);
+    else if (list->count > 0)
+        qsort(list->names, list->count, sizeof *list->names, compare_names);
+    return status;
 }

@@ -1,11 +1,14 @@
-/* Files that appear whole or not at all. */
+/* Files that appear whole or not at all, files read by place, folders, and where the library's own
+ * modules lie. */
 #ifndef SONJECT_BASE_FILE_H
 #define SONJECT_BASE_FILE_H
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
+#include "base/memory.h"
 #include "base/report.h"
 
 #ifdef __cplusplus
@@ -15,6 +18,12 @@ extern "C" {
 /* The message "path: cannot <action>: <reason>" for an errno. Returns STORAGE, or MEMORY for
  * ENOMEM. */
 sonject_status file_failure(struct report *report, const char *path, const char *action, int error);
+
+/* The message "path: ..." for what a file holds, or another mistake of whoever gave it. Returns
+ * INPUT.
+ */
+sonject_status input_failure(struct report *report, const char *path, const char *format, ...)
+    REPORT_FORMAT(3);
 
 /* True for what the system fails in, of whatever file: a disk's error, too many open files. */
 bool file_error_is_of_system(int error);
@@ -47,9 +56,17 @@ sonject_status file_publish(struct report *report, const char *part, const char 
 /* Removes a part if it is there; never fails. */
 void file_discard(const char *part);
 
-/* Writes bytes to path: a part, then published. Errors: STORAGE, MEMORY. */
+/* Writes a head and bytes to path: a part, then published. Errors: STORAGE, MEMORY. */
+sonject_status file_write_parts(struct report *report, const char *path, const void *head,
+                                size_t head_bytes, const void *bytes, size_t count);
+
 sonject_status file_write_whole(struct report *report, const char *path, const void *bytes,
                                 size_t count);
+
+/* Writes a growing text to a file, whole or not at all, and releases it. Errors: STORAGE, MEMORY
+ * (also where it was out before). */
+sonject_status growing_text_write(struct report *report, struct growing_text *text,
+                                  const char *path);
 
 /* Reads a whole file of at most limit bytes into *bytes (one terminating 0 byte beyond *count), to
  * be given to free(). Errors: STORAGE (cannot open, read), INPUT (larger than limit, a pipe or a
@@ -61,6 +78,15 @@ sonject_status file_read_whole(struct report *report, const char *path, size_t l
 sonject_status folder_make(struct report *report, const char *path);
 
 bool file_exists(const char *path);
+
+/* Opens for reading; NULL with errno, as file_open, if that fails. */
+FILE *byte_file_open(const char *path, uint64_t *bytes);
+
+/* False if the file does not hold as much. */
+bool byte_file_read(FILE *file, uint64_t place, void *bytes, size_t count);
+
+/* Copies count bytes of from to where to stands; false if reading or writing fails. */
+bool byte_file_copy(FILE *from, uint64_t place, uint64_t count, FILE *to);
 
 /* What tells a file from others and from what it was before it was written anew. */
 struct file_identity {
@@ -74,6 +100,19 @@ struct file_identity {
 sonject_status file_identify(struct report *report, const char *path,
                              struct file_identity *identity);
 
+/* The names in a folder. */
+struct folder_names {
+    char **names; /* owned; sorted */
+    size_t count;
+};
+
+/* Lists what begins with prefix, "." and ".." left out; nothing where there is no such folder. On
+ * success to be given to folder_names_clear; on failure nothing is held. Errors: STORAGE, MEMORY
+ * (of more than a million names, too). */
+sonject_status folder_names_read(struct folder_names *list, struct report *report, const char *path,
+                                 const char *prefix);
+void folder_names_clear(struct folder_names *list);
+
 /* folder + "/" + name, to be given to free(); an absolute name is copied as it is; folder "" gives
  * name. NULL when memory is out. */
 char *path_join(const char *folder, const char *name);
@@ -86,6 +125,12 @@ char *path_absolute(const char *path);
 
 /* The folder part of path ("" if none), to be given to free(). */
 char *path_folder(const char *path);
+
+/* The path of the file of that name: in the folder sonject beside the library (beside the program,
+ * where the library is part of it); right beside it, as in Python's package and where it was built;
+ * or where sonject was installed. Tests are told where (MODULE_FOLDER). To be given to free(); NULL
+ * when memory is out. */
+char *module_path(const char *name);
 
 #ifdef __cplusplus
 }

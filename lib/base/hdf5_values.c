@@ -3,11 +3,8 @@
 
 #include <fcntl.h>
 #include <pthread.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include "base/memory.h"
 
 #define TEXT_BYTES_MAX ((size_t)65535)
 
@@ -101,56 +98,5 @@ bool hdf5_write_text(hid_t object, const char *name, const char *text)
     const bool is_done = type >= 0 && write_scalar(object, name, type, type, text);
     if (type >= 0)
         H5Tclose(type);
-    return is_done;
-}
-
-/* An attribute of one value of a class; negative if there is none. */
-static hid_t open_scalar(hid_t object, const char *name, H5T_class_t of_class)
-{
-    if (H5Aexists(object, name) <= 0)
-        return -1;
-    const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
-    const hid_t type = attribute < 0 ? -1 : H5Aget_type(attribute);
-    const hid_t space = attribute < 0 ? -1 : H5Aget_space(attribute);
-    const bool is_one = type >= 0 && space >= 0 && H5Tget_class(type) == of_class &&
-                        H5Sget_simple_extent_npoints(space) == 1;
-    if (type >= 0)
-        H5Tclose(type);
-    if (space >= 0)
-        H5Sclose(space);
-    if (is_one)
-        return attribute;
-    if (attribute >= 0)
-        H5Aclose(attribute);
-    return -1;
-}
-
-/* Bytes of a text type of fixed size; 0 if it is none, or larger than limit. */
-static size_t text_bytes(hid_t type, size_t limit)
-{
-    if (type < 0 || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
-        return 0;
-    const size_t bytes = H5Tget_size(type);
-    return bytes <= limit ? bytes : 0;
-}
-
-bool hdf5_read_text(hid_t object, const char *name, char **text)
-{
-    *text = NULL;
-    const hid_t attribute = open_scalar(object, name, H5T_STRING);
-    if (attribute < 0)
-        return false;
-    const hid_t type = H5Aget_type(attribute);
-    const size_t bytes = text_bytes(type, TEXT_BYTES_MAX);
-    if (bytes > 0)
-        *text = allocate_array(bytes + 1, 1);
-    const bool is_done = *text && H5Aread(attribute, type, *text) >= 0;
-    if (!is_done) {
-        free(*text);
-        *text = NULL;
-    }
-    if (type >= 0)
-        H5Tclose(type);
-    H5Aclose(attribute);
     return is_done;
 }

@@ -1,5 +1,6 @@
 /* Values in HDF5 files: each call says whether it succeeded, and believes nothing of what it reads.
- * The library keeps its state in one place, so calls come between hdf5_enter and hdf5_leave. */
+ * The library keeps its state in one place, so calls come between hdf5_enter and hdf5_leave, which
+ * do nothing in builds without it. */
 #ifndef SONJECT_BASE_HDF5_VALUES_H
 #define SONJECT_BASE_HDF5_VALUES_H
 
@@ -7,6 +8,19 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#ifndef HAS_HDF5
+struct hdf5_session {
+    int none;
+};
+static inline void hdf5_enter(struct hdf5_session *session)
+{
+    (void)session;
+}
+static inline void hdf5_leave(const struct hdf5_session *session)
+{
+    (void)session;
+}
+#else
 #include <hdf5.h>
 
 /* Waits until no other thread is between them, and keeps the library from printing. The first call
@@ -31,7 +45,6 @@ bool hdf5_write_integer(hid_t object, const char *name, int64_t value);
 bool hdf5_write_number(hid_t object, const char *name, double value);
 bool hdf5_write_text(hid_t object, const char *name, const char *text);
 
-/* *text is to be given to free(); at most 65535 bytes. */
-bool hdf5_read_text(hid_t object, const char *name, char **text);
+#endif
 
 #endif

@@ -1,9 +1,15 @@
-/* Allocation that cannot overflow. */
+/* Allocation that cannot overflow, and texts that grow as they are written. */
 #ifndef SONJECT_BASE_MEMORY_H
 #define SONJECT_BASE_MEMORY_H
 
 #include <stdbool.h>
 #include <stddef.h>
+
+#include "base/report.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 /* *product = a * b; false if that overflows (then *product is unchanged). */
 bool size_multiply(size_t a, size_t b, size_t *product);
@@ -17,5 +23,21 @@ bool memory_is_short(void);
 
 /* A copy of the terminated text, to be given to free(); NULL when memory is out. */
 char *copy_text(const char *text);
+
+/* A text that grows; starts as all zeros. */
+struct growing_text {
+    char *characters; /* for free(); NULL while nothing is written */
+    size_t length, capacity;
+    bool failed; /* memory was out: the rest is not written */
+};
+
+void growing_text_add(struct growing_text *text, const char *format, ...) REPORT_FORMAT(2);
+
+/* The text, for free(); NULL where memory was out. */
+char *growing_text_end(struct growing_text *text);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

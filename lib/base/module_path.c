@@ -1,12 +1,11 @@
 #define _GNU_SOURCE /* dladdr, readlink */
-#include "base/module_path.h"
+#include "base/file.h"
 
 #include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "base/file.h"
 #include "base/memory.h"
 
 #ifdef MODULE_FOLDER

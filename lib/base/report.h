@@ -1,15 +1,25 @@
-/* The message of the last failure, and the log. Every function that can fail takes a report. */
+/* The message of the last failure, the log, and checks of values. Every function that can fail
+ * takes a report. */
 #ifndef SONJECT_BASE_REPORT_H
 #define SONJECT_BASE_REPORT_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include <sonject/context.h>
 #include <sonject/status.h>
+#include <sonject/version.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* The library's version, as sonject_version gives it. */
+#define TEXT_OF_(token) #token
+#define TEXT_OF(token)  TEXT_OF_(token)
+#define VERSION_TEXT                                                                               \
+    TEXT_OF(SONJECT_VERSION_MAJOR)                                                                 \
+    "." TEXT_OF(SONJECT_VERSION_MINOR) "." TEXT_OF(SONJECT_VERSION_PATCH)
 
 #define REPORT_LINE     1024 /* bytes of one */
 #define REPORT_CAPACITY 8192
@@ -81,6 +91,48 @@ bool report_is_cancelled(const struct report *report);
 
 /* Sends a line to the log, if there is one. */
 void report_news(struct report *report, const char *format, ...) REPORT_FORMAT(2);
+
+/* Of lengths that a sonar can meet. */
+#define LENGTH_MIN_M 1e-6
+#define LENGTH_MAX_M 1e6
+
+/* Is told of every failure of a check, for what is to tell them all. Keys are the names of values
+ * as scene files write them, borrowed. others: keys, separated by blanks, without whose being right
+ * the failure says nothing. */
+struct check_listener {
+    void (*hear)(struct check_listener *listener, const char *key, const char *others,
+                 const char *what);
+};
+
+/* A check that goes on. The report keeps the first failure. Either may be NULL. */
+struct check {
+    struct report *report;
+    struct check_listener *listener;
+    sonject_status status;
+};
+
+/* The message "<key> <what>"; check->status becomes INPUT. */
+void check_failure(struct check *check, const char *key, const char *format, ...) REPORT_FORMAT(3);
+
+/* The same where the value is wrong only beside those of others. */
+void check_relation(struct check *check, const char *key, const char *others, const char *format,
+                    ...) REPORT_FORMAT(4);
+
+/* unit: as it stands behind a number, " m"; "" for none. */
+void check_within(struct check *check, const char *key, double value, double minimum,
+                  double maximum, const char *unit);
+void check_finite(struct check *check, const char *key, double value);
+
+/* Choices are numbered from 0. */
+void check_choice(struct check *check, const char *key, uint32_t value, uint32_t count);
+
+/* Lengths in m: above 0, from 0, and of any sign. */
+void check_positive_length(struct check *check, const char *key, double value_m);
+void check_length(struct check *check, const char *key, double value_m);
+void check_coordinate(struct check *check, const char *key, double value_m);
+
+/* Wall-clock seconds since some fixed moment; for differences. */
+double clock_seconds(void);
 
 #ifdef __cplusplus
 }

@@ -12,52 +12,41 @@
 /* Far beyond any exponent that matters, and far from overflow when lengths of texts are added. */
 #define EXPONENT_LIMIT INT64_C(1000000000000000)
 
-struct decimal {
-    bool is_negative;
-    bool has_more; /* a digit other than 0 was dropped */
-    int count;
-    int64_t exponent; /* of the last digit kept */
-    char digits[DIGITS_KEPT];
-};
-
 static bool is_digit(char c)
 {
     return c >= '0' && c <= '9';
 }
 
-static void take_digit(struct decimal *decimal, char digit, bool is_fraction)
+/* Digits with at most one '.', copied without it and without leading zeros; *exponent gets the
+ * power of ten of the last one. Returns what follows; NULL if there is no digit. */
+static const char *take_digits(const char *text, char digits[DIGITS_KEPT + 2], int64_t *exponent)
 {
-    if (decimal->count == 0 && digit == '0') {
-        decimal->exponent -= is_fraction;
-        return;
-    }
-    if (decimal->count < DIGITS_KEPT) {
-        decimal->digits[decimal->count++] = digit;
-        decimal->exponent -= is_fraction;
-        return;
-    }
-    decimal->has_more |= digit != '0';
-    decimal->exponent += !is_fraction;
-}
-
-/* Digits with at most one '.', at least one digit; NULL if there are none. */
-static const char *take_mantissa(struct decimal *decimal, const char *text)
-{
-    bool is_fraction = false;
+    size_t count = 0;
     bool has_digit = false;
-    for (;; text++) {
-        if (is_digit(*text)) {
-            take_digit(decimal, *text, is_fraction);
-            has_digit = true;
-        } else if (*text == '.' && !is_fraction) {
+    bool is_fraction = false;
+    bool has_more = false; /* a digit other than 0 was dropped */
+    for (; is_digit(*text) || (*text == '.' && !is_fraction); text++) {
+        if (*text == '.') {
             is_fraction = true;
-        } else {
-            return has_digit ? text : NULL;
+            continue;
         }
+        const bool is_dropped = count == DIGITS_KEPT;
+        has_digit = true;
+        has_more = has_more || (is_dropped && *text != '0');
+        *exponent += is_dropped ? !is_fraction : -is_fraction;
+        if (!is_dropped && (count > 0 || *text != '0'))
+            digits[count++] = *text;
     }
+    if (has_more) {
+        digits[count++] = '1';
+        --*exponent;
+    }
+    digits[count] = '\0';
+    return has_digit ? text : NULL;
 }
 
-static const char *take_exponent(struct decimal *decimal, const char *text)
+/* Adds a written exponent, if there is one. Returns what follows. */
+static const char *take_exponent(const char *text, int64_t *exponent)
 {
     const char *digit = text + 1;
     if (*text != 'e' && *text != 'E')
@@ -66,28 +55,12 @@ static const char *take_exponent(struct decimal *decimal, const char *text)
     digit += *digit == '-' || *digit == '+';
     if (!is_digit(*digit))
         return text;
-    int64_t exponent = 0;
+    int64_t written = 0;
     for (; is_digit(*digit); digit++)
-        if (exponent < EXPONENT_LIMIT)
-            exponent = 10 * exponent + (*digit - '0');
-    decimal->exponent += is_negative ? -exponent : exponent;
+        if (written < EXPONENT_LIMIT)
+            written = 10 * written + (*digit - '0');
+    *exponent += is_negative ? -written : written;
     return digit;
-}
-
-/* Written without a decimal separator, so that strtod reads the same under every locale. */
-static double decimal_value(const struct decimal *decimal)
-{
-    char text[DIGITS_KEPT + 40];
-    if (decimal->count == 0)
-        return decimal->is_negative ? -0.0 : 0.0;
-    int64_t exponent = decimal->exponent - decimal->has_more;
-    if (exponent > 100000)
-        exponent = 100000;
-    if (exponent < -100000)
-        exponent = -100000;
-    snprintf(text, sizeof text, "%s%.*s%se%d", decimal->is_negative ? "-" : "", decimal->count,
-             decimal->digits, decimal->has_more ? "1" : "", (int)exponent);
-    return strtod(text, NULL);
 }
 
 static char lower(char c)
@@ -106,21 +79,27 @@ static const char *skip_infinity(const char *text)
 
 bool text_to_shifted_number(const char *text, int shift, double *number, const char **rest)
 {
-    struct decimal decimal = {0};
-    decimal.is_negative = *text == '-';
+    char digits[DIGITS_KEPT + 2];
+    char whole[DIGITS_KEPT + 40];
+    int64_t exponent = shift;
+    const bool is_negative = *text == '-';
     text += *text == '-' || *text == '+';
     const char *end = skip_infinity(text);
     if (end) {
-        *number = decimal.is_negative ? -HUGE_VAL : HUGE_VAL;
+        *number = is_negative ? -HUGE_VAL : HUGE_VAL;
         *rest = end;
         return true;
     }
-    end = take_mantissa(&decimal, text);
+    end = take_digits(text, digits, &exponent);
     if (!end)
         return false;
-    *rest = take_exponent(&decimal, end);
-    decimal.exponent += shift;
-    *number = decimal_value(&decimal);
+    *rest = take_exponent(end, &exponent);
+    /* without a decimal separator, so that strtod reads the same under every locale */
+    snprintf(whole, sizeof whole, "%s%se%d", is_negative ? "-" : "", *digits ? digits : "0",
+             (int)(exponent > 100000    ? 100000
+                   : exponent < -100000 ? -100000
+                                        : exponent));
+    *number = strtod(whole, NULL);
     return true;
 }
 

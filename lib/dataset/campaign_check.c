@@ -5,7 +5,6 @@
 
 #include <sonject/version.h>
 
-#include "base/file_list.h"
 #include "base/json_document.h"
 #include "base/text.h"
 #include "dataset/campaign.h"

@@ -3,10 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
+#include "base/report.h"
 #include "dataset/data_set.h"
 
 /* A run over images, and how far it is. */

@@ -14,8 +14,6 @@
 #include <sonject/version.h>
 
 #include "base/file.h"
-#include "base/file_list.h"
-#include "base/folder.h"
 #include "base/json_document.h"
 #include "base/text.h"
 #include "dataset/earlier_result.h"

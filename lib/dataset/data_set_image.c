@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "base/file_list.h"
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "base/text.h"

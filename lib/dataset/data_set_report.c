@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "base/growing_text.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "dataset/data_set.h"

@@ -4,9 +4,8 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "base/file_list.h"
-#include "base/growing_text.h"
 #include "base/json_document.h"
+#include "base/memory.h"
 #include "dataset/run.h"
 
 #define DIFFERENCES_NAMED 4

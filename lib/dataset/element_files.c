@@ -11,7 +11,6 @@
 #include <sonject/version.h>
 
 #include "base/file.h"
-#include "base/file_list.h"
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "dataset/earlier_result.h"

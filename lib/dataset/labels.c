@@ -9,7 +9,6 @@
 
 #include <sonject/version.h>
 
-#include "base/growing_text.h"
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "base/text.h"

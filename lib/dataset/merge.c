@@ -6,8 +6,6 @@
 #include <sonject/version.h>
 
 #include "base/file.h"
-#include "base/folder.h"
-#include "base/growing_text.h"
 #include "base/memory.h"
 #include "dataset/earlier_result.h"
 #include "dataset/run.h"

@@ -7,11 +7,10 @@
 
 #include <sonject/version.h>
 
-#include "base/clock.h"
 #include "base/file.h"
-#include "base/file_list.h"
 #include "base/json_document.h"
 #include "base/memory.h"
+#include "base/report.h"
 #include "dataset/earlier_result.h"
 #include "inject/checkpoints.h"
 #include "inject/impulse_export.h"

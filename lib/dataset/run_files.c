@@ -11,14 +11,13 @@
 #include <sonject/version.h>
 
 #include "base/file.h"
-#include "base/file_list.h"
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "dataset/earlier_result.h"
 #include "dataset/labels.h"
 #include "image/plot.h"
 #include "swath/geometry_notes.h"
-#include "swath/png_palette.h"
+#include "swath/image_head.h"
 #include "swath/raster_file.h"
 
 #define DEGREES_PER_RADIAN 57.29577951308232

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/growing_text.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "inject/injection_setup.h"
 #include "inject/swath.h"

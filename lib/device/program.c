@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/memory.h"
+#include "base/report.h"
 #include "device/opencl.h"
 
 #define OPTIONS_CAPACITY 192

@@ -6,10 +6,9 @@
 
 #include <sonject/version.h>
 
-#include "base/clock.h"
 #include "base/file.h"
-#include "base/growing_text.h"
 #include "base/memory.h"
+#include "base/report.h"
 #include "inject/scene_hash.h"
 #include "trace/checkpoint.h"
 

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/memory.h"
+#include "base/report.h"
 #include "inject/chain_echoes.h"
 #include "inject/object_echoes.h"
 #include "inject/seabed_echoes.h"

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/memory.h"
+#include "base/report.h"
 #include "image/statistics.h"
 #include "inject/compose.h"
 #include "inject/echoes.h"

@@ -8,7 +8,7 @@
 #include "inject/injection.h"
 #include "scene/scene.h"
 #include "swath/swath_file.h"
-#include "swath/track.h"
+#include "swath/xtf_file.h"
 
 /* Owned parts are freed by swath_close. */
 struct swath {

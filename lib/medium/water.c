@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/ranges.h"
+#include "base/report.h"
 
 #define DENSITY_MIN         1e-6 /* so that ratios neither overflow nor vanish */
 #define DENSITY_MAX         1e6

@@ -1,7 +1,7 @@
 /* Water in level layers, what it absorbs, and how sound crosses it. Sound that the tracer follows
  * stays in the straight water: the lowest layer, which reaches from the seabed over all targets and
- * has one sound speed. A way leads from the sonar, or from its image in level mirrors, to there. Pure
- * functions; x along-track plays no part, since layers are level. */
+ * has one sound speed. A way leads from the sonar, or from its image in level mirrors, to there.
+ * Pure functions; x along-track plays no part, since layers are level. */
 #ifndef SONJECT_MEDIUM_WATER_H
 #define SONJECT_MEDIUM_WATER_H
 
@@ -11,7 +11,6 @@
 
 #include <sonject/medium.h>
 
-#include "base/ranges.h"
 #include "base/report.h"
 
 #define WATER_LAYERS_MAX 4096

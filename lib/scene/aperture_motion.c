@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/ranges.h"
+#include "base/report.h"
 #include "kernels/random.h"
 #include "scene/scene.h"
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/ranges.h"
+#include "base/report.h"
 
 #define GRID_SIZE_MAX (UINT32_C(1) << 24)
 #define OVERSHOOT     1.3 /* of irregular ripples where crests meet, over regular ones */

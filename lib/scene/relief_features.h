@@ -9,7 +9,7 @@
 #include <sonject/object.h>
 #include <sonject/relief.h>
 
-#include "base/ranges.h"
+#include "base/report.h"
 
 #define RELIEF_FEATURES_MAX  256
 #define RELIEF_HEIGHT_MAX_M  100.0

@@ -9,7 +9,7 @@
 #include <sonject/elements.h>
 #include <sonject/scene.h>
 
-#include "base/ranges.h"
+#include "base/report.h"
 #include "medium/water.h"
 #include "mesh/mesh.h"
 #include "scene/aperture_motion.h"

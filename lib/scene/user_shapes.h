@@ -7,7 +7,7 @@
 
 #include <sonject/user_shape.h>
 
-#include "base/ranges.h"
+#include "base/report.h"
 #include "user/snippet.h"
 
 #define USER_SNIPPETS_MAX 64

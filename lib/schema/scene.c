@@ -5,7 +5,7 @@
 #include "scene/element_plan.h"
 #include "schema/keys.h"
 #include "schema/scene_file.h"
-#include "swath/recording.h"
+#include "swath/geometry_notes.h"
 #include "swath/xtf_file.h"
 
 #define SIDE_MAX         (UINT32_C(1) << 20)

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/growing_text.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "schema/keys.h"

@@ -8,7 +8,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/ranges.h"
+#include "base/report.h"
 #include "base/text.h"
 
 #define COLUMNS_MAX 64

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/growing_text.h"
+#include "base/memory.h"
 #include "base/report.h"
 
 #define TREE_BYTES_MAX (1024 * 1024)

@@ -4,11 +4,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/memory.h"
+#include "swath/raster_file.h"
 
 #define COLUMNS_MAX 1e8
+#define PIXELS_MAX  ((uint64_t)1 << 31)
 
-const char *conversion_type_name(const struct raster_layout *layout)
+/* The image on its way. */
+struct conversion {
+    struct raster_layout layout;
+    void *pixels; /* owned */
+    struct noted_geometry geometry;
+    bool is_resampled;
+};
+
+/* "complex float32" and the like. */
+static const char *type_name(const struct raster_layout *layout)
 {
     return layout->channels == 2          ? "complex float32"
            : layout->type == PIXEL_UINT8  ? "uint8"
@@ -16,18 +28,18 @@ const char *conversion_type_name(const struct raster_layout *layout)
                                           : "float32";
 }
 
-sonject_status conversion_take_geometry(struct report *report, struct conversion *conversion,
-                                        const struct swath_file *file,
-                                        const sonject_convert_params *params)
+/* What the file, and before it the parameters, say of where the pixels lie. */
+static sonject_status take_geometry(struct report *report, struct conversion *conversion,
+                                    const struct swath_file *file,
+                                    const sonject_convert_params *params)
 {
     struct noted_geometry *geometry = &conversion->geometry;
     geometry_notes_read(file, geometry);
     if (params->has_geometry) {
         if (geometry->axis == RANGE_GROUND)
-            return report_failure(report, SONJECT_ERROR_INPUT,
-                                  "%s: says that it is in ground range, and a first slant range is "
-                                  "given: take the geometry out",
-                                  params->input);
+            return input_failure(report, params->input,
+                                 "says that it is in ground range, and a first slant range is "
+                                 "given: take the geometry out");
         geometry->axis = RANGE_SLANT;
         geometry->row_spacing_m = params->geometry.row_spacing_m;
         geometry->column_spacing_m = params->geometry.column_spacing_m;
@@ -47,16 +59,15 @@ static void replace(struct conversion *conversion, void *pixels)
     conversion->pixels = pixels;
 }
 
-sonject_status conversion_to_magnitude(struct report *report, struct conversion *conversion,
-                                       const char *input)
+static sonject_status to_magnitude(struct report *report, struct conversion *conversion,
+                                   const char *input)
 {
     struct raster_layout *layout = &conversion->layout;
     const size_t count = (size_t)(layout->rows * layout->columns);
     const float *parts = conversion->pixels;
     if (layout->channels != 2 || layout->type != PIXEL_FLOAT32)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: is not complex, so it has no other magnitude: take that out",
-                              input);
+        return input_failure(report, input,
+                             "is not complex, so it has no other magnitude: take that out");
     float *magnitudes = allocate_array(count, sizeof *magnitudes);
     CHECK_MEMORY(report, magnitudes, "the magnitudes");
     for (size_t i = 0; i < count; i++)
@@ -90,8 +101,8 @@ static bool put_sample(enum pixel_type type, void *pixels, size_t i, double numb
     return true;
 }
 
-sonject_status conversion_to_type(struct report *report, struct conversion *conversion,
-                                  const sonject_convert_params *params)
+static sonject_status to_type(struct report *report, struct conversion *conversion,
+                              const sonject_convert_params *params)
 {
     struct raster_layout *layout = &conversion->layout;
     const enum pixel_type type = params->samples == SONJECT_SAMPLES_UINT8    ? PIXEL_UINT8
@@ -99,14 +110,12 @@ sonject_status conversion_to_type(struct report *report, struct conversion *conv
                                                                              : PIXEL_FLOAT32;
     const size_t count = (size_t)(layout->rows * layout->columns) * layout->channels;
     if (layout->channels == 2 && type != PIXEL_FLOAT32)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: is complex, which whole numbers do not hold: ask for its "
-                              "magnitude too",
-                              params->input);
+        return input_failure(
+            report, params->input,
+            "is complex, which whole numbers do not hold: ask for its magnitude too");
     if (type == layout->type && params->scale == 1.0)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: already has %s samples: take the type out", params->input,
-                              conversion_type_name(layout));
+        return input_failure(report, params->input, "already has %s samples: take the type out",
+                             type_name(layout));
     void *fresh = allocate_array(count, pixel_bytes(type));
     CHECK_MEMORY(report, fresh, "the samples");
     for (size_t i = 0; i < count; i++) {
@@ -115,11 +124,11 @@ sonject_status conversion_to_type(struct report *report, struct conversion *conv
             continue;
         free(fresh);
         const uint64_t pixel = i / layout->channels;
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: the sample at row %llu, column %llu would become %g, which the "
-                              "new type does not hold: choose another scale",
-                              params->input, (unsigned long long)(pixel / layout->columns),
-                              (unsigned long long)(pixel % layout->columns), number);
+        return input_failure(report, params->input,
+                             "the sample at row %llu, column %llu would become %g, which the new "
+                             "type does not hold: choose another scale",
+                             (unsigned long long)(pixel / layout->columns),
+                             (unsigned long long)(pixel % layout->columns), number);
     }
     replace(conversion, fresh);
     layout->type = type;
@@ -132,19 +141,17 @@ static sonject_status check_axis(struct report *report, const struct noted_geome
     const bool to_ground = params->range_axis == SONJECT_CONVERT_AXIS_GROUND;
     if (geometry->axis == RANGE_UNKNOWN || isnan(geometry->first_range_m) ||
         !(geometry->column_spacing_m > 0.0))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: does not say where its columns lie: give row spacing, column "
-                              "spacing and first slant range",
-                              params->input);
+        return input_failure(report, params->input,
+                             "does not say where its columns lie: give row spacing, column spacing "
+                             "and first slant range");
     if ((geometry->axis == RANGE_GROUND) == to_ground)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: is in %s range already: take the range axis out", params->input,
-                              to_ground ? "ground" : "slant");
+        return input_failure(report, params->input,
+                             "is in %s range already: take the range axis out",
+                             to_ground ? "ground" : "slant");
     if (!(geometry->altitude_m > 0.0))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: does not say the sonar's altitude, which ground range needs: "
-                              "give it",
-                              params->input);
+        return input_failure(
+            report, params->input,
+            "does not say the sonar's altitude, which ground range needs: give it");
     return SONJECT_OK;
 }
 
@@ -155,8 +162,9 @@ static double other_range(double altitude, bool to_slant, double range)
                     : sqrt(fmax(0.0, (range - altitude) * (range + altitude)));
 }
 
-sonject_status conversion_resample(struct report *report, struct conversion *conversion,
-                                   const sonject_convert_params *params)
+/* Columns at equal steps of the other range axis, each from the nearest one. */
+static sonject_status resample(struct report *report, struct conversion *conversion,
+                               const sonject_convert_params *params)
 {
     struct raster_layout *layout = &conversion->layout;
     const bool to_slant = params->range_axis == SONJECT_CONVERT_AXIS_SLANT;
@@ -165,16 +173,14 @@ sonject_status conversion_resample(struct report *report, struct conversion *con
     const double spacing = geometry->column_spacing_m;
     const double last = geometry->first_range_m + spacing * (double)(layout->columns - 1);
     if (!to_slant && last <= geometry->altitude_m)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: no column lies beyond the altitude of %g m", params->input,
-                              geometry->altitude_m);
+        return input_failure(report, params->input, "no column lies beyond the altitude of %g m",
+                             geometry->altitude_m);
     const double start = other_range(geometry->altitude_m, to_slant, geometry->first_range_m);
     const double width =
         floor((other_range(geometry->altitude_m, to_slant, last) - start) / spacing) + 1.0;
     if (!(width >= 1.0 && width <= COLUMNS_MAX))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: %g columns would come of it: correct the geometry",
-                              params->input, width);
+        return input_failure(report, params->input,
+                             "%g columns would come of it: correct the geometry", width);
     const size_t pixel = layout->channels * pixel_bytes(layout->type);
     const size_t columns = (size_t)width;
     const size_t before = (size_t)layout->columns;
@@ -197,4 +203,105 @@ sonject_status conversion_resample(struct report *report, struct conversion *con
     geometry->axis = to_slant ? RANGE_SLANT : RANGE_GROUND;
     conversion->is_resampled = true;
     return SONJECT_OK;
+}
+
+/* What is asked for but has nothing to do. */
+static sonject_status check_uses(struct report *report, const sonject_convert_params *params)
+{
+    const bool keeps_geometry = !params->into && raster_format_keeps_attributes(params->output);
+    if ((params->has_geometry || params->altitude_m > 0.0) && !keeps_geometry &&
+        params->range_axis == SONJECT_CONVERT_AXIS_KEPT)
+        return input_failure(report, params->output,
+                             "keeps no geometry or altitude: take them out, or write .tif");
+    return SONJECT_OK;
+}
+
+static sonject_status read_input(struct report *report, const sonject_convert_params *params,
+                                 struct conversion *conversion)
+{
+    struct swath_file *file = NULL;
+    size_t bytes = 0;
+    sonject_status status;
+    CHECK(swath_file_open_beside(report, params->input, params->into, params->channel,
+                                 params->array, &file));
+    struct raster_layout *layout = &conversion->layout;
+    swath_file_layout(file, layout);
+    const struct region whole = {0, 0, layout->rows, layout->columns};
+    if (layout->rows > PIXELS_MAX / layout->columns || !region_bytes(layout, &whole, &bytes))
+        status = input_failure(
+            report, params->input, "%llu x %llu pixels are more than the 2^31 that are converted",
+            (unsigned long long)layout->rows, (unsigned long long)layout->columns);
+    else if (!(conversion->pixels = allocate_array(bytes, 1)))
+        status = report_out_of_memory(report, params->input);
+    else
+        status = swath_file_read(report, file, &whole, conversion->pixels);
+    THEN(status, take_geometry(report, conversion, file, params));
+    swath_file_close(&file);
+    return status;
+}
+
+static sonject_status write_into(struct report *report, const sonject_convert_params *params,
+                                 const struct conversion *conversion)
+{
+    struct swath_file *file = NULL;
+    struct raster_layout layout;
+    sonject_status status;
+    CHECK(swath_file_open_beside(report, params->into, params->input, params->channel,
+                                 params->array, &file));
+    swath_file_layout(file, &layout);
+    const struct raster_layout *ours = &conversion->layout;
+    const struct region whole = {0, 0, layout.rows, layout.columns};
+    if (swath_file_new_extension(file))
+        status =
+            input_failure(report, params->into,
+                          "files of this kind are not changed in place: write a new .tif instead");
+    else if (layout.rows != ours->rows || layout.columns != ours->columns ||
+             layout.channels != ours->channels || layout.type != ours->type)
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "%s holds %llu x %llu %s samples, the input %llu x %llu %s ones: "
+                                "both must be alike",
+                                params->into, (unsigned long long)layout.rows,
+                                (unsigned long long)layout.columns, type_name(&layout),
+                                (unsigned long long)ours->rows, (unsigned long long)ours->columns,
+                                type_name(ours));
+    else
+        status = swath_file_copy_with_patch(report, file, params->output, &whole,
+                                            conversion->pixels, NULL, NULL);
+    swath_file_close(&file);
+    return status;
+}
+
+static sonject_status write_new(struct report *report, const sonject_convert_params *params,
+                                const struct conversion *conversion)
+{
+    struct raster_attribute attributes[GEOMETRY_NOTES_MAX + 1];
+    struct geometry_notes notes;
+    geometry_notes_make(&notes, &conversion->geometry);
+    size_t count = notes.count;
+    memcpy(attributes, notes.attributes, sizeof notes.attributes);
+    if (conversion->is_resampled)
+        attributes[count++] = (struct raster_attribute){"sonject:resampled", "nearest column"};
+    const sonject_status status = raster_format_write(report, params->output, &conversion->layout,
+                                                      attributes, count, conversion->pixels);
+    if (status == SONJECT_OK && count > 0 && !raster_format_keeps_attributes(params->output))
+        report_news(report, "%s keeps no geometry: .tif, .png and .h5 do", params->output);
+    return status;
+}
+
+sonject_status convert_file(struct report *report, const sonject_convert_params *params)
+{
+    struct conversion conversion;
+    memset(&conversion, 0, sizeof conversion);
+    sonject_status status = check_uses(report, params);
+    THEN(status, read_input(report, params, &conversion));
+    if (params->magnitude)
+        THEN(status, to_magnitude(report, &conversion, params->input));
+    if (params->range_axis != SONJECT_CONVERT_AXIS_KEPT)
+        THEN(status, resample(report, &conversion, params));
+    if (params->samples != SONJECT_SAMPLES_KEPT)
+        THEN(status, to_type(report, &conversion, params));
+    THEN(status, params->into ? write_into(report, params, &conversion)
+                              : write_new(report, params, &conversion));
+    free(conversion.pixels);
+    return status;
 }

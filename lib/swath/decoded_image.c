@@ -1,76 +1,138 @@
-#include "swath/decoded_image.h"
-
+/* Images that the decoder reads and changes, and the two formats of them: those of OpenImageIO and
+ * libtiff, and HDF5. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-#include "base/byte_file.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "swath/image_library.h"
 #include "swath/raster_file.h"
 #include "swath/swath_format.h"
 
-#define SIDE_MAX ((uint64_t)1 << 31)
+#define SIDE_MAX            ((uint64_t)1 << 31)
+#define ANNOUNCED_BYTES_MAX ((uint64_t)1 << 30)
+#define INFLATION_MAX       1100 /* bytes that one byte of deflated data can stand for, and some */
 
-static sonject_status check_reply(struct report *report, const struct decoder_file *file,
-                                  const struct decoder_reply *reply)
+/* A file that announces more than it can hold, however well it is packed, is refused. */
+static sonject_status check_reply(struct report *report, const struct decoded_image *image,
+                                  const struct raster_layout *layout)
 {
-    const struct raster_layout *layout = &reply->layout;
+    const uint64_t largest = UINT64_MAX / 2 / INFLATION_MAX;
+    const uint64_t most =
+        INFLATION_MAX * (image->bytes < largest ? image->bytes : largest) + ANNOUNCED_BYTES_MAX;
     if (layout->rows == 0 || layout->rows >= SIDE_MAX || layout->columns == 0 ||
         layout->columns >= SIDE_MAX || layout->channels < 1 || layout->channels > 2 ||
         layout->type < PIXEL_UINT8 || layout->type > PIXEL_FLOAT32)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: is damaged: copy it again",
-                              file->path);
-    return decoder_check_announced(report, file, layout->rows, layout->columns,
-                                   layout->channels * pixel_bytes(layout->type));
+        return input_failure(report, image->path, "is damaged: copy it again");
+    if (layout->rows <= most / layout->columns / (layout->channels * pixel_bytes(layout->type)))
+        return SONJECT_OK;
+    return input_failure(report, image->path,
+                         "announces %llu x %llu samples, more than its %llu bytes can hold: it is "
+                         "damaged or was never filled",
+                         (unsigned long long)layout->rows, (unsigned long long)layout->columns,
+                         (unsigned long long)image->bytes);
+}
+
+/* Asks for what an image is; where it lies is told from the root, for the child has a working
+ * folder of its own. */
+static sonject_status ask_to_open(struct report *report, struct decoded_image *image,
+                                  enum decoder_function function, const char *place,
+                                  struct decoder_reply *reply)
+{
+    char *whole = path_absolute(place);
+    struct growing_text texts = {0};
+    size_t count = 0;
+    image->description = allocate_array(DESCRIPTION_MAX, 1);
+    growing_text_add(&texts, "%s%c%s%c%s", image->path, 0, whole ? whole : "", 0,
+                     image->array ? image->array : "");
+    char *in = growing_text_end(&texts);
+    const struct decoder_request request = {.function = (uint32_t)function,
+                                            .bytes = texts.length + 1};
+    const sonject_status status =
+        in && whole && image->description
+            ? decoder_ask(report, image->decoder, image->path, &request, in, reply,
+                          image->description, DESCRIPTION_MAX - 1, &count)
+            : report_out_of_memory(report, image->path);
+    free(in);
+    free(whole);
+    image->handle = reply->handle;
+    image->start = image->decoder->starts;
+    return status;
+}
+
+static sonject_status open_at(struct report *report, struct decoded_image *image,
+                              enum decoder_function function, const char *path, const char *place,
+                              const char *array)
+{
+    struct decoder_reply reply = {0};
+    struct file_identity identity;
+    image->decoder = report->host ? report->host->decoder : &image->own;
+    image->path = copy_text(path);
+    image->array = array ? copy_text(array) : NULL;
+    CHECK_MEMORY(report, image->path && (image->array || !array), "a file");
+    CHECK(file_identify(report, place, &identity));
+    image->bytes = identity.bytes;
+    CHECK(decoder_start(report, image->decoder, path));
+    CHECK(ask_to_open(report, image, function, place, &reply));
+    CHECK(check_reply(report, image, &reply.layout));
+    image->layout = reply.layout;
+    image->largest = reply.largest;
+    image->is_turned = reply.is_turned != 0;
+    return SONJECT_OK;
+}
+
+static sonject_status open_image(struct report *report, enum decoder_function function,
+                                 const char *path, const char *place, const char *array,
+                                 struct decoded_image **image)
+{
+    *image = allocate_array(1, sizeof **image);
+    CHECK_MEMORY(report, *image, "a file");
+    const sonject_status status = open_at(report, *image, function, path, place, array);
+    if (status != SONJECT_OK)
+        decoded_image_close(image);
+    return status;
 }
 
 sonject_status decoded_image_open(struct report *report, const char *path, const char *array,
                                   struct decoded_image **image)
 {
+    return open_image(report, DECODER_OPEN_IMAGE, path, path, array, image);
+}
+
+/* out: NULL where no bytes come. Refused once the image's decoder has ended, and in a process that
+ * was forked from the one that opened it. */
+static sonject_status ask(struct report *report, const struct decoded_image *image,
+                          struct decoder_request *request, const void *in, void *out, size_t bytes)
+{
+    struct decoder *decoder = image->decoder;
     struct decoder_reply reply;
-    struct decoded_image *opened = *image = allocate_array(1, sizeof *opened);
-    CHECK_MEMORY(report, opened, "a file");
-    if (array)
-        opened->array = copy_text(array);
-    sonject_status status =
-        !array || opened->array ? SONJECT_OK : report_out_of_memory(report, "a file");
-    THEN(status,
-         decoder_open(report, DECODER_OPEN_IMAGE, path, NULL, array, &opened->file, &reply));
-    THEN(status, check_reply(report, &opened->file, &reply));
-    if (status != SONJECT_OK) {
-        decoded_image_close(image);
-        return status;
-    }
-    opened->layout = reply.layout;
-    opened->largest = reply.largest;
-    opened->is_turned = reply.is_turned != 0;
-    return SONJECT_OK;
+    size_t count = 0;
+    if (image->handle == 0 ||
+        (!decoder->is_in_process && (decoder->process == 0 || decoder->starts != image->start ||
+                                     decoder->owner != (long)getpid())))
+        return input_failure(report, image->path,
+                             "the program that reads it ended before: copy it again");
+    request->handle = image->handle;
+    CHECK(decoder_ask(report, decoder, image->path, request, in, &reply, out, bytes, &count));
+    return count == bytes ? SONJECT_OK : input_failure(report, image->path, "is cut short");
 }
 
 void decoded_image_close(struct decoded_image **image)
 {
+    struct report unheard = {{0}, NULL, NULL};
+    struct decoder_request request = {.function = DECODER_CLOSE};
     if (!image || !*image)
         return;
-    decoder_close(&(*image)->file);
+    if ((*image)->handle != 0)
+        (void)ask(&unheard, *image, &request, NULL, NULL, 0);
+    decoder_stop(&(*image)->own);
+    free((*image)->description);
+    free((*image)->path);
     free((*image)->array);
     free(*image);
     *image = NULL;
-}
-
-bool decoded_image_attribute(struct decoded_image *image, const char *name, char *value,
-                             size_t capacity)
-{
-    struct report unheard = {{0}, NULL, NULL};
-    struct decoder_request request = {
-        .function = DECODER_ATTRIBUTE, .bytes = strlen(name) + 1, .capacity = capacity};
-    struct decoder_reply reply;
-    struct decoder_bytes out = {value, capacity, 0};
-    if (decoder_ask(&unheard, &image->file, &request, name, &reply, &out) != SONJECT_OK ||
-        out.count == 0)
-        return false;
-    value[out.count - 1] = '\0';
-    return true;
 }
 
 /* A region's samples pass piece by piece, each of some rows, or of some columns where these lie
@@ -78,7 +140,6 @@ bool decoded_image_attribute(struct decoded_image *image, const char *name, char
 struct passage {
     struct report *report;
     const struct decoded_image *image;
-    struct decoder_file *file;
     const struct region *region;
     bool writes;
     unsigned char *pixels;
@@ -90,17 +151,16 @@ struct passage {
 static void move_piece(const struct passage *passage, const struct region *piece,
                        unsigned char *packed)
 {
+    const struct region *region = passage->region;
     const size_t pixel = passage->image->layout.channels * pixel_bytes(passage->image->layout.type);
     const size_t row = (size_t)piece->columns * pixel;
-    unsigned char *place =
-        passage->pixels + ((size_t)(piece->first_row - passage->region->first_row) *
-                               (size_t)passage->region->columns +
-                           (size_t)(piece->first_column - passage->region->first_column)) *
-                              pixel;
+    const uint64_t first = (piece->first_row - region->first_row) * region->columns +
+                           (piece->first_column - region->first_column);
+    unsigned char *place = passage->pixels + (size_t)first * pixel;
     for (uint64_t i = 0; i < piece->rows; i++) {
         memcpy(passage->writes ? packed : place, passage->writes ? place : packed, row);
         packed += row;
-        place += (size_t)passage->region->columns * pixel;
+        place += (size_t)region->columns * pixel;
     }
 }
 
@@ -110,18 +170,11 @@ static sonject_status pass_piece(const struct passage *passage, const struct reg
     struct decoder_request request = {.function = passage->writes ? DECODER_WRITE : DECODER_READ,
                                       .region = *piece,
                                       .bytes = passage->writes ? bytes : 0};
-    struct decoder_reply reply;
-    struct decoder_bytes out = {packed, bytes, 0};
-    if (passage->writes)
+    if (passage->writes) {
         move_piece(passage, piece, packed);
-    const sonject_status status =
-        decoder_ask(passage->report, passage->file, &request, passage->writes ? packed : NULL,
-                    &reply, passage->writes ? NULL : &out);
-    if (status != SONJECT_OK || passage->writes)
-        return status;
-    if (out.count != bytes)
-        return report_failure(passage->report, SONJECT_ERROR_INPUT, "%s: is cut short",
-                              passage->file->path);
+        return ask(passage->report, passage->image, &request, packed, NULL, 0);
+    }
+    CHECK(ask(passage->report, passage->image, &request, NULL, packed, bytes));
     move_piece(passage, piece, packed);
     return SONJECT_OK;
 }
@@ -132,16 +185,16 @@ static sonject_status pass(const struct passage *passage)
     const struct raster_layout *layout = &passage->image->layout;
     const bool is_turned = passage->image->is_turned;
     if (!region_is_inside(layout, region))
-        return report_failure(passage->report, SONJECT_ERROR_INPUT,
-                              "%s: the region is not inside the image", passage->image->file.path);
+        return input_failure(passage->report, passage->image->path,
+                             "the region is not inside the image");
     const size_t pixel = layout->channels * pixel_bytes(layout->type);
     const uint64_t lines = is_turned ? region->columns : region->rows;
     const size_t line = (size_t)(is_turned ? region->rows : region->columns) * pixel;
     const uint64_t some = line < DECODER_PIECE_BYTES ? DECODER_PIECE_BYTES / line : 1;
     const uint64_t at_once = some < lines ? some : lines;
     unsigned char *packed = allocate_array((size_t)at_once, line);
-    sonject_status status =
-        packed ? SONJECT_OK : report_out_of_memory(passage->report, "samples of an array");
+    CHECK_MEMORY(passage->report, packed, "samples of an array");
+    sonject_status status = SONJECT_OK;
     for (uint64_t first = 0; status == SONJECT_OK && first < lines; first += at_once) {
         const uint64_t count = lines - first < at_once ? lines - first : at_once;
         const struct region piece = {region->first_row + (is_turned ? 0 : first),
@@ -161,22 +214,20 @@ static sonject_status pass(const struct passage *passage)
 sonject_status decoded_image_read(struct report *report, struct decoded_image *image,
                                   const struct region *region, void *pixels)
 {
-    return pass(&(struct passage){report, image, &image->file, region, false, pixels, NULL, NULL});
+    return pass(&(struct passage){report, image, region, false, pixels, NULL, NULL});
 }
 
 static sonject_status patch_copy(struct report *report, const struct decoded_image *image,
                                  const struct swath_copy *copy)
 {
-    struct decoder_file file;
-    struct decoder_reply reply;
+    struct decoded_image *patched;
     struct decoder_request request = {.function = DECODER_FINISH};
-    CHECK(decoder_open(report, DECODER_OPEN_COPY, image->file.path, copy->part, image->array, &file,
-                       &reply));
+    CHECK(open_image(report, DECODER_OPEN_COPY, image->path, copy->part, image->array, &patched));
     sonject_status status =
-        pass(&(struct passage){report, image, &file, copy->region, true,
-                               (unsigned char *)copy->pixels, copy->progress, copy->user});
-    THEN(status, decoder_ask(report, &file, &request, NULL, &reply, NULL));
-    decoder_close(&file);
+        pass(&(struct passage){report, patched, copy->region, true, (unsigned char *)copy->pixels,
+                               copy->progress, copy->user});
+    THEN(status, ask(report, patched, &request, NULL, NULL, 0));
+    decoded_image_close(&patched);
     return status;
 }
 
@@ -198,8 +249,7 @@ static sonject_status check_copy(struct report *report, const struct decoded_ima
     decoded_image_close(&made);
     free(found);
     if (status == SONJECT_ERROR_INPUT)
-        return report_failure(report, status, "%s: damaged: its pixels cannot be replaced",
-                              image->file.path);
+        return input_failure(report, image->path, "damaged: its pixels cannot be replaced");
     return status == SONJECT_OK ? status : report_failure(report, status, "%s", unheard.message);
 }
 
@@ -214,8 +264,8 @@ static sonject_status copy_with_patch(struct report *report, const struct swath_
     quiet.progress = NULL;
     CHECK(swath_close_copy(report, copy, out,
                            swath_copy_bytes(report, file, &quiet, 0, file->bytes, out)));
-    if (file->bytes != file->decoded->file.bytes)
-        return swath_refuse(report, file, "changed while it was read");
+    if (file->bytes != file->decoded->bytes)
+        return input_failure(report, file->path, "changed while it was read");
     CHECK(patch_copy(report, file->decoded, copy));
     return check_copy(report, file->decoded, copy);
 }

@@ -14,11 +14,8 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/module_path.h"
 
-#define ANNOUNCED_BYTES_MAX ((uint64_t)1 << 30)
-#define WAITS_PER_SECOND    10
-#define INFLATION_MAX       1100 /* bytes that one byte of deflated data can stand for, and some */
+#define WAITS_PER_SECOND 10
 
 extern char **environ;
 
@@ -145,16 +142,13 @@ static sonject_status tell_end(struct report *report, struct decoder *decoder, c
                               " is of another version of sonject: install sonject anew",
                               path);
     if (is_late || (ended != -1 && WIFSIGNALED(ended) && WTERMSIG(ended) == SIGXCPU))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: reading it takes longer than it can if it is sound: copy it "
-                              "again",
-                              path);
+        return input_failure(report, path,
+                             "reading it takes longer than it can if it is sound: copy it again");
     char signal_name[32] = "";
     if (ended != -1 && WIFSIGNALED(ended))
         snprintf(signal_name, sizeof signal_name, " (signal %d)", WTERMSIG(ended));
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: is damaged: the program that reads it ended%s; copy it again", path,
-                          signal_name);
+    return input_failure(
+        report, path, "is damaged: the program that reads it ended%s; copy it again", signal_name);
 }
 
 static bool send_all(int descriptor, const void *bytes, size_t count)
@@ -200,175 +194,58 @@ static bool receive_all(const struct report *report, int descriptor, void *bytes
 
 static sonject_status ask_child(struct report *report, struct decoder *decoder, const char *path,
                                 const struct decoder_request *request, const void *in,
-                                struct decoder_reply *reply, struct decoder_bytes *out)
+                                struct decoder_reply *reply, void *out, size_t capacity)
 {
     char message[REPORT_CAPACITY] = "";
-    struct decoder_bytes told = {message, sizeof message - 1, 0};
     if (!send_all(decoder->socket, request, sizeof *request) ||
         !send_all(decoder->socket, in, (size_t)request->bytes) ||
         !receive_all(report, decoder->socket, reply, sizeof *reply))
         return tell_end(report, decoder, path);
-    struct decoder_bytes *to = reply->status == SONJECT_OK ? out : &told;
+    const bool is_good = reply->status == SONJECT_OK;
     errno = 0;
-    if (reply->bytes > to->capacity ||
-        !receive_all(report, decoder->socket, to->bytes, (size_t)reply->bytes))
+    if (reply->bytes > (is_good ? capacity : sizeof message - 1) ||
+        !receive_all(report, decoder->socket, is_good ? out : message, (size_t)reply->bytes))
         return tell_end(report, decoder, path);
-    to->count = (size_t)reply->bytes;
-    switch (reply->status) {
-    case SONJECT_OK:
-        return SONJECT_OK;
-    case SONJECT_ERROR_STORAGE:
-    case SONJECT_ERROR_MEMORY:
-    case SONJECT_ERROR_UNSUPPORTED:
-        return report_failure(report, (sonject_status)reply->status, "%s", message);
-    default:
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s", message);
-    }
+    const bool is_known = is_good || reply->status == SONJECT_ERROR_STORAGE ||
+                          reply->status == SONJECT_ERROR_MEMORY ||
+                          reply->status == SONJECT_ERROR_UNSUPPORTED;
+    const sonject_status status = is_known ? (sonject_status)reply->status : SONJECT_ERROR_INPUT;
+    return is_good ? status : report_failure(report, status, "%s", message);
 }
 
 static sonject_status ask_here(struct report *report, struct decoder *decoder, const char *path,
                                const struct decoder_request *request, const void *in,
-                               struct decoder_reply *reply, struct decoder_bytes *out)
+                               struct decoder_reply *reply, void *out, size_t capacity)
 {
     void *made = NULL;
     if (!decoder->state)
         decoder->state = decoder_state_make();
     CHECK_MEMORY(report, decoder->state, path);
     const sonject_status status = decoder_answer(report, decoder->state, request, in, reply, &made);
-    if (made && reply->bytes <= out->capacity) {
-        memcpy(out->bytes, made, (size_t)reply->bytes);
-        out->count = (size_t)reply->bytes;
-    }
+    if (reply->bytes > capacity)
+        reply->bytes = 0;
+    if (reply->bytes > 0)
+        memcpy(out, made, (size_t)reply->bytes);
     free(made);
     return status;
 }
 
-/* out: NULL where no bytes come. */
-static sonject_status ask(struct report *report, struct decoder *decoder, const char *path,
-                          const struct decoder_request *request, const void *in,
-                          struct decoder_reply *reply, struct decoder_bytes *out)
+sonject_status decoder_start(struct report *report, struct decoder *decoder, const char *path)
 {
-    struct decoder_bytes none = {NULL, 0, 0};
-    memset(reply, 0, sizeof *reply);
-    return (decoder->is_in_process ? ask_here : ask_child)(report, decoder, path, request, in,
-                                                           reply, out ? out : &none);
-}
-
-/* The three texts that a file is opened by, each with its 0. The child has a working folder of its
- * own. */
-static char *opening_texts(const char *path, const char *place, const char *array, size_t *bytes)
-{
-    char *whole = path_absolute(place);
-    char *texts = NULL;
-    if (whole) {
-        const size_t lengths[3] = {strlen(path) + 1, strlen(whole) + 1, strlen(array) + 1};
-        *bytes = lengths[0] + lengths[1] + lengths[2];
-        texts = allocate_array(*bytes, 1);
-        if (texts) {
-            memcpy(texts, path, lengths[0]);
-            memcpy(texts + lengths[0], whole, lengths[1]);
-            memcpy(texts + lengths[0] + lengths[1], array, lengths[2]);
-        }
-    }
-    free(whole);
-    return texts;
-}
-
-static sonject_status open_file(struct report *report, enum decoder_function function,
-                                const char *place, const char *array, struct decoder_file *file,
-                                struct decoder_reply *reply)
-{
-    struct decoder *decoder = file->decoder;
-    struct file_identity identity;
-    struct decoder_request request = {.function = (uint32_t)function};
-    sonject_status status = file_identify(report, place, &identity);
-    if (status != SONJECT_OK)
-        return status;
-    file->bytes = identity.bytes;
-    if (!decoder->is_in_process && decoder->owner != (long)getpid())
-        (void)end_process(decoder);
-    if (!decoder->is_in_process && decoder->process == 0)
-        status = start(report, decoder, file->path);
-    if (status != SONJECT_OK)
-        return status;
-    size_t bytes = 0;
-    char *texts = opening_texts(file->path, place, array ? array : "", &bytes);
-    request.bytes = bytes;
-    status = texts ? ask(report, decoder, file->path, &request, texts, reply, NULL)
-                   : report_out_of_memory(report, file->path);
-    free(texts);
-    file->handle = reply->handle;
-    file->start = decoder->starts;
-    return status;
-}
-
-sonject_status decoder_open(struct report *report, enum decoder_function function, const char *path,
-                            const char *place, const char *array, struct decoder_file *file,
-                            struct decoder_reply *reply)
-{
-    memset(file, 0, sizeof *file);
-    memset(reply, 0, sizeof *reply);
-    file->decoder = report->host ? report->host->decoder : &file->own;
-    file->path = copy_text(path);
-    const sonject_status status =
-        file->path ? open_file(report, function, place ? place : path, array, file, reply)
-                   : report_out_of_memory(report, "a file name");
-    if (status != SONJECT_OK) {
-        file->handle = 0;
-        decoder_close(file);
-    }
-    return status;
-}
-
-/* False once its decoder has ended, and in a process that was forked from the one that opened it.
- */
-static bool is_open(const struct decoder_file *file)
-{
-    const struct decoder *decoder = file->decoder;
-    return file->handle != 0 &&
-           (decoder->is_in_process || (decoder->process != 0 && decoder->starts == file->start &&
-                                       decoder->owner == (long)getpid()));
-}
-
-void decoder_close(struct decoder_file *file)
-{
-    struct report unheard = {{0}, NULL, NULL};
-    struct decoder_reply reply;
-    const struct decoder_request request = {.function = DECODER_CLOSE, .handle = file->handle};
-    if (!file->decoder)
-        return;
-    if (is_open(file))
-        (void)ask(&unheard, file->decoder, file->path, &request, NULL, &reply, NULL);
-    decoder_stop(&file->own);
-    free(file->path);
-    memset(file, 0, sizeof *file);
-}
-
-sonject_status decoder_ask(struct report *report, struct decoder_file *file,
-                           struct decoder_request *request, const void *in,
-                           struct decoder_reply *reply, struct decoder_bytes *out)
-{
-    request->handle = file->handle;
-    if (!is_open(file))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: the program that reads it ended before: copy it again",
-                              file->path);
-    return ask(report, file->decoder, file->path, request, in, reply, out);
-}
-
-sonject_status decoder_check_announced(struct report *report, const struct decoder_file *file,
-                                       uint64_t rows, uint64_t columns, size_t sample_bytes)
-{
-    const uint64_t most =
-        (file->bytes < UINT64_MAX / 2 / INFLATION_MAX ? INFLATION_MAX * file->bytes
-                                                      : UINT64_MAX / 2) +
-        ANNOUNCED_BYTES_MAX;
-    if (columns == 0 || rows <= most / columns / sample_bytes)
+    if (decoder->is_in_process)
         return SONJECT_OK;
-    return report_failure(
-        report, SONJECT_ERROR_INPUT,
-        "%s: announces %llu x %llu samples, more than its %llu bytes can hold: it "
-        "is damaged or was never filled",
-        file->path, (unsigned long long)rows, (unsigned long long)columns,
-        (unsigned long long)file->bytes);
+    if (decoder->owner != (long)getpid())
+        (void)end_process(decoder);
+    return decoder->process == 0 ? start(report, decoder, path) : SONJECT_OK;
+}
+
+sonject_status decoder_ask(struct report *report, struct decoder *decoder, const char *path,
+                           const struct decoder_request *request, const void *in,
+                           struct decoder_reply *reply, void *out, size_t capacity, size_t *count)
+{
+    memset(reply, 0, sizeof *reply);
+    const sonject_status status = (decoder->is_in_process ? ask_here : ask_child)(
+        report, decoder, path, request, in, reply, out, capacity);
+    *count = status == SONJECT_OK ? (size_t)reply->bytes : 0;
+    return status;
 }

@@ -11,6 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <sonject/context.h>
+
 #include "base/report.h"
 #include "image/raster.h"
 
@@ -22,16 +24,15 @@
 #define DECODER_FILES_MAX    256                 /* open at once */
 #define DECODER_PIECE_BYTES  ((size_t)16 << 20)  /* of samples in a request, or one line */
 
-/* What is asked. `in`: the request's bytes, texts that each end with a 0, or samples. `out`: the
- * reply's. Images are files of
- * OpenImageIO's, or an array of HDF5's. */
+/* What is asked. `in`: the request's bytes, `out`: the reply's. Images are files of OpenImageIO's
+ * or libtiff's, or an array of HDF5's. */
 enum decoder_function {
-    DECODER_OPEN_IMAGE, /* in: its name, where it lies, the array ("": the only one);
-                           -> handle, layout, largest, is_turned */
+    DECODER_OPEN_IMAGE, /* in: its name, where it lies, the array ("": the only one), each text with
+                           its 0; -> handle, layout, largest, is_turned; out: description, with its
+                           0; none: it has none */
     DECODER_OPEN_COPY,  /* the same, to be written to */
     DECODER_CLOSE,      /* handle; what was written to a copy may be lost */
-    DECODER_ATTRIBUTE,  /* handle of an image; in: its name -> out: text; none: it has none */
-    DECODER_READ,       /* handle of an image, region -> out: its samples, row after row */
+    DECODER_READ,       /* handle, region -> out: its samples, row after row */
     DECODER_WRITE,      /* handle of a copy, region; in: samples */
     DECODER_FINISH,     /* handle of a copy, which is then closed: all is to be in the file */
     DECODER_FUNCTIONS
@@ -40,8 +41,7 @@ enum decoder_function {
 struct decoder_request {
     uint32_t function, handle;
     struct region region;
-    uint64_t capacity; /* more bytes of a text are not wanted */
-    uint64_t bytes;    /* that follow */
+    uint64_t bytes; /* that follow */
 };
 
 struct decoder_reply {
@@ -79,39 +79,41 @@ struct decoder {
 /* Ends it, if there is one. What it had open is lost. */
 void decoder_stop(struct decoder *decoder);
 
-/* A file that a decoder has open. Stays where it is while it is open. */
-struct decoder_file {
+/* Starts the child if it is needed and does not run, as one of another process does not. path: the
+ * file that needs it, for messages. Errors: UNSUPPORTED (no program), STORAGE, MEMORY. */
+sonject_status decoder_start(struct report *report, struct decoder *decoder, const char *path);
+
+/* Asks. out: room for capacity bytes, of which *count came; more are refused. reply: all but the
+ * bytes. Errors: as decoder_answer's; INPUT (the file ended the decoder), STORAGE, MEMORY,
+ * CANCELLED. */
+sonject_status decoder_ask(struct report *report, struct decoder *decoder, const char *path,
+                           const struct decoder_request *request, const void *in,
+                           struct decoder_reply *reply, void *out, size_t capacity, size_t *count);
+
+/* An image that a decoder has open. */
+struct decoded_image {
     char *path;     /* as the caller named it; owned */
-    uint64_t bytes; /* how long it is */
+    char *array;    /* which of the file; NULL: the only one */
+    uint64_t bytes; /* how long the file is */
     struct decoder *decoder;
     struct decoder own; /* where the report has no host */
     uint32_t handle, start;
+    struct raster_layout layout;
+    uint32_t largest;  /* that it may hold; 0: its type's */
+    bool is_turned;    /* columns lie together in the file */
+    char *description; /* texts that are stored with it, each a line "name=value"; NULL: none */
 };
 
-/* Opens a file by one of the functions above. path: its name in messages; place: the file, NULL: of
- * that name. array: NULL for the only one. Errors: INPUT (not a regular file,
- * damaged, what opening refuses), STORAGE (the system's), MEMORY, UNSUPPORTED (no decoder). On
- * failure there is nothing to be closed. */
-sonject_status decoder_open(struct report *report, enum decoder_function function, const char *path,
-                            const char *place, const char *array, struct decoder_file *file,
-                            struct decoder_reply *reply);
-void decoder_close(struct decoder_file *file);
+/* path: its name in messages, and the file. array: as of swath_file_open_array. Errors: INPUT (not
+ * a regular file, damaged, more samples than the file can hold, what opening refuses), STORAGE (the
+ * system's), MEMORY, UNSUPPORTED (no decoder). On success *image is the caller's, for
+ * decoded_image_close; on failure NULL. */
+sonject_status decoded_image_open(struct report *report, const char *path, const char *array,
+                                  struct decoded_image **image);
+void decoded_image_close(struct decoded_image **image);
 
-/* Where a reply's bytes go. */
-struct decoder_bytes {
-    void *bytes;
-    size_t capacity; /* more of them are refused */
-    size_t count;    /* that came */
-};
-
-/* Asks about an open file. request->handle is set here. out: NULL where no bytes come. Errors: as
- * decoder_answer's; INPUT (the file ended the decoder, now or before), STORAGE, MEMORY. */
-sonject_status decoder_ask(struct report *report, struct decoder_file *file,
-                           struct decoder_request *request, const void *in,
-                           struct decoder_reply *reply, struct decoder_bytes *out);
-
-/* INPUT if a file announces more than it can hold, however well it is packed. */
-sonject_status decoder_check_announced(struct report *report, const struct decoder_file *file,
-                                       uint64_t rows, uint64_t columns, size_t sample_bytes);
+/* Samples of a region, row after row. Errors: INPUT, STORAGE, MEMORY. */
+sonject_status decoded_image_read(struct report *report, struct decoded_image *image,
+                                  const struct region *region, void *pixels);
 
 #endif

@@ -1,43 +1,58 @@
 #include "swath/geometry_notes.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/text.h"
-#include "scene/scene.h"
 
 #define DIGITS 9
 
-static void note_text(struct geometry_notes *notes, const char *name, const char *text)
+/* The numbers, in the order of the notes. */
+static const struct {
+    const char *name, *ground_name; /* the other one in ground range; NULL: the same */
+    size_t place;
+} numbers[] = {
+    {"sonject:frequency_hz", NULL, offsetof(struct noted_geometry, frequency_hz)},
+    {"sonject:bandwidth_hz", NULL, offsetof(struct noted_geometry, bandwidth_hz)},
+    {"sonject:altitude_m", NULL, offsetof(struct noted_geometry, altitude_m)},
+    {"sonject:row_spacing_m", NULL, offsetof(struct noted_geometry, row_spacing_m)},
+    {"sonject:column_spacing_m", NULL, offsetof(struct noted_geometry, column_spacing_m)},
+    {"sonject:first_along_track_m", NULL, offsetof(struct noted_geometry, first_along_track_m)},
+    {"sonject:first_slant_range_m", "sonject:first_ground_range_m",
+     offsetof(struct noted_geometry, first_range_m)},
+};
+#define NUMBERS (sizeof numbers / sizeof *numbers)
+
+static const char *number_name(size_t i, const struct noted_geometry *geometry)
+{
+    return geometry->axis == RANGE_GROUND && numbers[i].ground_name ? numbers[i].ground_name
+                                                                    : numbers[i].name;
+}
+
+static void note(struct geometry_notes *notes, const char *name, const char *text)
 {
     notes->attributes[notes->count].name = name;
     notes->attributes[notes->count++].value = text;
 }
 
-static void note_number(struct geometry_notes *notes, const char *name, double number)
-{
-    char *text = notes->texts[notes->count];
-    if (isfinite(number))
-        note_text(notes, name, text_of_number(text, sizeof notes->texts[0], number, DIGITS));
-}
-
 void geometry_notes_make(struct geometry_notes *notes, const struct noted_geometry *geometry)
 {
-    const bool is_ground = geometry->axis == RANGE_GROUND;
     memset(notes, 0, sizeof *notes);
-    note_number(notes, "sonject:frequency_hz", geometry->frequency_hz);
-    note_number(notes, "sonject:bandwidth_hz", geometry->bandwidth_hz);
-    note_number(notes, "sonject:altitude_m", geometry->altitude_m);
-    note_number(notes, "sonject:row_spacing_m", geometry->row_spacing_m);
-    note_number(notes, "sonject:column_spacing_m", geometry->column_spacing_m);
-    note_number(notes, "sonject:first_along_track_m", geometry->first_along_track_m);
-    note_number(notes, is_ground ? "sonject:first_ground_range_m" : "sonject:first_slant_range_m",
-                geometry->first_range_m);
+    for (size_t i = 0; i < NUMBERS; i++) {
+        char *text = notes->texts[notes->count];
+        double number;
+        memcpy(&number, (const char *)geometry + numbers[i].place, sizeof number);
+        if (isfinite(number))
+            note(notes, number_name(i, geometry),
+                 text_of_number(text, sizeof notes->texts[0], number, DIGITS));
+    }
     if (geometry->knows_side)
-        note_text(notes, "sonject:side",
-                  geometry->side == SONJECT_SIDE_STARBOARD ? "starboard" : "port");
+        note(notes, "sonject:side",
+             geometry->side == SONJECT_SIDE_STARBOARD ? "starboard" : "port");
     if (geometry->axis != RANGE_UNKNOWN)
-        note_text(notes, "sonject:range_axis", is_ground ? "ground" : "slant");
+        note(notes, "sonject:range_axis", geometry->axis == RANGE_GROUND ? "ground" : "slant");
 }
 
 void geometry_notes_init(struct geometry_notes *notes, const sonject_sonar_params *sonar,
@@ -59,18 +74,6 @@ void geometry_notes_init(struct geometry_notes *notes, const sonject_sonar_param
     geometry_notes_make(notes, &noted);
 }
 
-/* NaN where the file does not say it. */
-static double noted_number(const struct swath_file *file, const char *name)
-{
-    char text[64];
-    const char *rest;
-    double value;
-    return swath_file_attribute(file, name, text, sizeof text) &&
-                   text_to_number(text, &value, &rest) && *rest == '\0' && isfinite(value)
-               ? value
-               : NAN;
-}
-
 static void read_recording(const struct xtf_file *xtf, struct noted_geometry *geometry)
 {
     const struct xtf_geometry told = xtf_geometry_of(xtf, 0, xtf->rows);
@@ -86,20 +89,19 @@ static void read_recording(const struct xtf_file *xtf, struct noted_geometry *ge
 
 static void read_texts(const struct swath_file *file, struct noted_geometry *geometry)
 {
-    char side[16] = "";
-    geometry->row_spacing_m = noted_number(file, "sonject:row_spacing_m");
-    geometry->column_spacing_m = noted_number(file, "sonject:column_spacing_m");
-    geometry->first_along_track_m = noted_number(file, "sonject:first_along_track_m");
-    geometry->first_range_m =
-        noted_number(file, geometry->axis == RANGE_GROUND ? "sonject:first_ground_range_m"
-                                                          : "sonject:first_slant_range_m");
-    geometry->altitude_m = noted_number(file, "sonject:altitude_m");
-    geometry->frequency_hz = noted_number(file, "sonject:frequency_hz");
-    geometry->bandwidth_hz = noted_number(file, "sonject:bandwidth_hz");
-    if (!swath_file_attribute(file, "sonject:side", side, sizeof side))
-        side[0] = '\0';
-    const bool is_starboard = strcmp(side, "starboard") == 0;
-    geometry->knows_side = is_starboard || strcmp(side, "port") == 0;
+    char text[64];
+    for (size_t i = 0; i < NUMBERS; i++) {
+        const char *rest;
+        double number;
+        if (!swath_file_attribute(file, number_name(i, geometry), text, sizeof text) ||
+            !text_to_number(text, &number, &rest) || *rest || !isfinite(number))
+            number = NAN;
+        memcpy((char *)geometry + numbers[i].place, &number, sizeof number);
+    }
+    if (!swath_file_attribute(file, "sonject:side", text, sizeof text))
+        *text = '\0';
+    const bool is_starboard = strcmp(text, "starboard") == 0;
+    geometry->knows_side = is_starboard || strcmp(text, "port") == 0;
     geometry->side = is_starboard ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
 }
 
@@ -112,7 +114,8 @@ void geometry_notes_read(const struct swath_file *file, struct noted_geometry *g
         read_texts(file, geometry);
 }
 
-sonject_status geometry_check_told(const sonject_geometry_params *geometry, struct report *report)
+/* Whether lengths that a file tells are such as a sonar can meet. */
+static sonject_status check_told(const sonject_geometry_params *geometry, struct report *report)
 {
     struct check check = {report, NULL, SONJECT_OK};
     check_positive_length(&check, "row_spacing", geometry->row_spacing_m);
@@ -132,8 +135,129 @@ bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_pa
     told.first_slant_range_m = noted->first_range_m;
     told.side = noted->side;
     if (noted->axis != RANGE_SLANT || !noted->knows_side ||
-        geometry_check_told(&told, &unused) != SONJECT_OK)
+        check_told(&told, &unused) != SONJECT_OK)
         return false;
     *geometry = told;
     return true;
+}
+
+/* The rows of the scene's patch within the file; all zeros mean all rows. */
+static sonject_status patch_rows(struct report *report, const struct scene *scene,
+                                 const struct xtf_file *xtf, uint64_t *first, uint64_t *count)
+{
+    const uint64_t rows = xtf->rows;
+    *first = scene->patch.first_row;
+    *count = scene->patch.rows > 0 ? scene->patch.rows : rows;
+    if (*first >= rows || *count > rows - *first) {
+        if (scene->patch.rows > 0 || *first >= rows)
+            return input_failure(report, scene->input_path,
+                                 "has %llu pings: the patch's rows %llu to %llu are not among them",
+                                 (unsigned long long)rows, (unsigned long long)*first,
+                                 (unsigned long long)(*first + *count - 1));
+        *count = rows - *first;
+    }
+    return SONJECT_OK;
+}
+
+/* What is asked for, and where it goes. */
+struct wanted {
+    bool geometry, altitude;
+    const char **key; /* gets the scene's key that a failure is about */
+    sonject_geometry_params where;
+    double altitude_m;
+};
+
+static sonject_status take_recording(struct report *report, const struct scene *scene,
+                                     const struct xtf_file *xtf, struct wanted *wanted)
+{
+    uint64_t first, count;
+    *wanted->key = "patch";
+    CHECK(patch_rows(report, scene, xtf, &first, &count));
+    const struct xtf_geometry geometry = xtf_geometry_of(xtf, first, count);
+    *wanted->key = "input.geometry";
+    if (wanted->geometry && !(geometry.row_spacing_m > 0.0))
+        return input_failure(report, scene->input_path,
+                             "%s: give row_spacing, column_spacing (%g m here) and "
+                             "first_slant_range (%g m) instead of from_file",
+                             isnan(geometry.row_spacing_m)
+                                 ? "fewer than two of its pings have a position"
+                                 : "the patch's pings all have the same position",
+                             geometry.column_spacing_m, geometry.first_slant_range_m);
+    *wanted->key = "sonar.altitude";
+    if (wanted->altitude && !(geometry.altitude_m > 0.0))
+        return input_failure(report, scene->input_path,
+                             "has no altitudes: give the sonar's altitude instead of from_file");
+    wanted->where.row_spacing_m = geometry.row_spacing_m;
+    wanted->where.column_spacing_m = geometry.column_spacing_m;
+    wanted->where.first_slant_range_m = geometry.first_slant_range_m;
+    wanted->where.side = xtf->side == XTF_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
+    wanted->altitude_m = geometry.altitude_m;
+    return SONJECT_OK;
+}
+
+static sonject_status take_notes(struct report *report, const struct scene *scene,
+                                 const struct swath_file *file, struct wanted *wanted)
+{
+    struct noted_geometry noted;
+    geometry_notes_read(file, &noted);
+    *wanted->key = "input.geometry";
+    if (noted.axis == RANGE_GROUND)
+        return input_failure(report, scene->input_path,
+                             "is in ground range, and runs work in slant range: convert it first "
+                             "with sonject convert --range-axis slant");
+    if (wanted->geometry && !geometry_notes_tell(&noted, &wanted->where))
+        return input_failure(
+            report, scene->input_path,
+            "does not say where its pixels lie, as XTF files do and what sonject convert makes of "
+            "them: give row_spacing, column_spacing and first_slant_range instead of from_file");
+    *wanted->key = "sonar.altitude";
+    if (wanted->altitude && !(noted.altitude_m > 0.0))
+        return input_failure(report, scene->input_path,
+                             "does not say the sonar's altitude: give it instead of from_file");
+    wanted->altitude_m = noted.altitude_m;
+    return SONJECT_OK;
+}
+
+/* Files may say anything. */
+static sonject_status check_and_set(struct report *report, const struct wanted *wanted,
+                                    struct scene *scene)
+{
+    struct report why = {{0}, NULL, NULL};
+    struct check check = {&why, NULL, SONJECT_OK};
+    *wanted->key = "input.geometry";
+    if (wanted->geometry)
+        check.status = check_told(&wanted->where, &why);
+    if (check.status == SONJECT_OK)
+        *wanted->key = "sonar.altitude";
+    if (wanted->altitude)
+        check_positive_length(&check, "altitude", wanted->altitude_m);
+    if (check.status != SONJECT_OK)
+        return input_failure(report, scene->input_path,
+                             "its %s: give a right one instead of from_file", why.message);
+    if (wanted->geometry)
+        scene->geometry = wanted->where;
+    if (wanted->altitude)
+        scene->sonar.altitude_m = wanted->altitude_m;
+    scene->has_recorded_altitude = wanted->altitude;
+    return SONJECT_OK;
+}
+
+sonject_status recording_describe(struct report *report, bool takes_geometry, bool takes_altitude,
+                                  struct scene *scene, const char **key)
+{
+    struct swath_file *file;
+    struct wanted wanted = {takes_geometry, takes_altitude, key, scene->geometry, 0.0};
+    *key = "input";
+    if (!scene->input_path)
+        return report_failure(report, SONJECT_ERROR_INPUT, "from_file needs a file as input.path");
+    sonject_status status =
+        swath_file_open_array(report, scene->input_path, scene->channel, scene->array, &file);
+    if (status != SONJECT_OK)
+        return status;
+    const struct xtf_file *xtf = swath_file_xtf(file);
+    status = xtf ? take_recording(report, scene, xtf, &wanted)
+                 : take_notes(report, scene, file, &wanted);
+    THEN(status, check_and_set(report, &wanted, scene));
+    swath_file_close(&file);
+    return status;
 }

@@ -1,10 +1,12 @@
-/* The geometry that an image file says of itself, in texts that sonject writes and reads. */
+/* The geometry that a file says of itself: a recording, or an image in texts that sonject writes
+ * and reads. */
 #ifndef SONJECT_SWATH_GEOMETRY_NOTES_H
 #define SONJECT_SWATH_GEOMETRY_NOTES_H
 
 #include <sonject/image.h>
 #include <sonject/sonar.h>
 
+#include "scene/scene.h"
 #include "swath/raster_file.h"
 #include "swath/swath_file.h"
 
@@ -40,12 +42,16 @@ void geometry_notes_init(struct geometry_notes *notes, const sonject_sonar_param
  * checked but that numbers are finite. */
 void geometry_notes_read(const struct swath_file *file, struct noted_geometry *geometry);
 
-/* Whether lengths of a geometry that a file tells are such as a sonar can meet; what it says of others
- * is in the message ("row_spacing must be ..."). Errors: INPUT. */
-sonject_status geometry_check_told(const sonject_geometry_params *geometry, struct report *report);
-
 /* As parameters of a slant range image; false (and nothing changed) where they are not all known,
  * or are none that an image has. */
 bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_params *geometry);
+
+/* Takes the scene's geometry (takes_geometry) and the sonar's altitude (takes_altitude) from its
+ * input: an XTF file, of which spacing and altitude are the means over the patch's rows, or an
+ * image whose notes say them. Errors: INPUT (it does not say them: says
+ * what to give instead; ground range; as swath_file_open_array), UNSUPPORTED, STORAGE, MEMORY. On
+ * failure the scene is unchanged, and *key is the key of the scene that the message is about. */
+sonject_status recording_describe(struct report *report, bool takes_geometry, bool takes_altitude,
+                                  struct scene *scene, const char **key);
 
 #endif

@@ -1,46 +1,233 @@
+/* Two-dimensional data sets of HDF5 files: float64, float32, uint8, uint16 or int16, or complex, a
+ * compound of two equal floats r and i (h5py's) or real and imag (MATLAB's). Rows are the first
+ * index; in data sets of MATLAB (v7.3, told by the attribute MATLAB_class), which keeps its columns
+ * together, rows are MATLAB's, the second index. Refused are a damaged file, no such data set or
+ * several (lists them), other types, data in other files, filters that sonject does not know or
+ * that change numbers. Links are not followed. */
 #define _POSIX_C_SOURCE   200809L
 #define _FILE_OFFSET_BITS 64
-#include "swath/hdf5_array.h"
-
-#ifdef HAS_HDF5
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/byte_order.h"
 #include "base/file.h"
+#include "base/hdf5_values.h"
 #include "base/memory.h"
-#include "swath/hdf5_set.h"
-#include "swath/samples.h"
+#include "swath/image_library.h"
+#include "swath/raster_file.h"
+#include "swath/swath_format.h"
 
-#define RUN_BYTES ((size_t)16 << 20) /* of samples in memory at a time, beside the image */
+#define NAME_BYTES  256 /* of a data set's path, the final 0 among them */
+#define DEPTH_MAX   16
+#define OBJECTS_MAX 100000
+
+/* What a data set is. */
+struct data_set {
+    char name[NAME_BYTES];
+    hsize_t sides[2]; /* in the file's order */
+    bool is_read;     /* its numbers are of a type that sonject reads */
+    enum stored_type number;
+    bool is_complex;
+    bool is_turned;        /* MATLAB's: the file's order is columns, rows */
+    char part_names[2][8]; /* of a complex one's compound */
+};
 
 struct hdf5_array {
-    char *path;
-    struct hdf5_set set;
+    char *path; /* in messages */
+    struct data_set set;
     struct raster_layout layout;
     hid_t file, dataset;
     bool writes;
 };
 
-static hid_t open_file(const char *path, unsigned mode)
+/* Lets go of whatever an identifier stands for; negative ones are of what failed. */
+static void release(hid_t id)
 {
-    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    const hid_t file = access < 0 ? -1 : H5Fopen(path, mode, access);
-    if (access >= 0)
-        H5Pclose(access);
-    return file;
+    if (id >= 0)
+        H5Idec_ref(id);
 }
 
-static void set_layout(struct hdf5_array *array)
+/* False for numbers that sonject does not read. */
+static bool number_of(hid_t type, enum stored_type *number)
 {
-    const struct hdf5_set *set = &array->set;
-    array->layout.rows = set->sides[set->is_matlab ? 1 : 0];
-    array->layout.columns = set->sides[set->is_matlab ? 0 : 1];
-    array->layout.channels = set->is_complex ? 2 : 1;
-    array->layout.type = set->number == HDF5_UINT8   ? PIXEL_UINT8
-                         : set->number <= HDF5_INT16 ? PIXEL_UINT16
-                                                     : PIXEL_FLOAT32;
+    const size_t bytes = H5Tget_size(type);
+    const H5T_class_t kind = H5Tget_class(type);
+    const bool is_double = H5Tequal(type, H5T_IEEE_F64LE) + H5Tequal(type, H5T_IEEE_F64BE) > 0;
+    const bool is_single = H5Tequal(type, H5T_IEEE_F32LE) + H5Tequal(type, H5T_IEEE_F32BE) > 0;
+    if (kind == H5T_FLOAT) {
+        *number = is_double ? STORED_FLOAT64 : STORED_FLOAT32;
+        return is_double || is_single;
+    }
+    const bool is_signed = H5Tget_sign(type) == H5T_SGN_2;
+    *number = bytes == 1 ? STORED_UINT8 : is_signed ? STORED_INT16 : STORED_UINT16;
+    return kind == H5T_INTEGER && H5Tget_precision(type) == 8 * bytes &&
+           ((bytes == 1 && !is_signed) || bytes == 2);
+}
+
+/* Two floats of one type, r and i or real and imag. */
+static bool take_compound(hid_t type, struct data_set *set)
+{
+    static const char *const names[2][2] = {{"r", "real"}, {"i", "imag"}};
+    enum stored_type numbers[2] = {STORED_INT8, STORED_INT8};
+    set->is_complex = true;
+    for (unsigned k = 0; k < 2 && H5Tget_nmembers(type) == 2; k++) {
+        char *name = H5Tget_member_name(type, k);
+        const hid_t member = H5Tget_member_type(type, k);
+        if (name && member >= 0 &&
+            (strcmp(name, names[k][0]) == 0 || strcmp(name, names[k][1]) == 0) &&
+            number_of(member, &numbers[k]))
+            strcpy(set->part_names[k], name);
+        release(member);
+        if (name)
+            H5free_memory(name);
+    }
+    set->number = numbers[0];
+    return *set->part_names[0] && *set->part_names[1] && numbers[0] == numbers[1] &&
+           numbers[0] >= STORED_FLOAT32;
+}
+
+/* What the data set of that path is; false if it is not one of two dimensions. */
+static bool look_at(hid_t file, const char *name, struct data_set *set)
+{
+    memset(set, 0, sizeof *set);
+    if (strlen(name) >= sizeof set->name)
+        return false;
+    strcpy(set->name, name);
+    const hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT);
+    const hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
+    const hid_t type = dataset < 0 ? -1 : H5Dget_type(dataset);
+    const bool is_plane =
+        space >= 0 && type >= 0 && H5Sget_simple_extent_type(space) == H5S_SIMPLE &&
+        H5Sget_simple_extent_ndims(space) == 2 &&
+        H5Sget_simple_extent_dims(space, set->sides, NULL) == 2 && set->sides[0] > 0 &&
+        set->sides[1] > 0 && set->sides[0] < (hsize_t)1 << 31 && set->sides[1] < (hsize_t)1 << 31;
+    if (is_plane) {
+        set->is_read = H5Tget_class(type) == H5T_COMPOUND ? take_compound(type, set)
+                                                          : number_of(type, &set->number);
+        set->is_turned = H5Aexists(dataset, "MATLAB_class") > 0;
+    }
+    release(type);
+    release(space);
+    release(dataset);
+    return is_plane;
+}
+
+/* A walk through the groups, the innermost of which is at the end of the path. */
+struct walk {
+    hid_t file;
+    struct array_list list;
+    struct data_set *chosen;
+    char path[NAME_BYTES];
+    unsigned depth, objects;
+};
+
+static void visit_group(struct walk *walk, hid_t group);
+
+static void visit_link(struct walk *walk, hid_t group, const char *name)
+{
+    struct data_set set;
+    const size_t before = strlen(walk->path);
+    H5L_info_t link;
+    if (before + strlen(name) + 2 > sizeof walk->path || name[0] == '#' ||
+        H5Lget_info(group, name, &link, H5P_DEFAULT) < 0 || link.type != H5L_TYPE_HARD)
+        return; /* MATLAB keeps what its cells refer to under names that begin with # */
+    if (before > 0)
+        strcat(walk->path, "/");
+    strcat(walk->path, name);
+    const hid_t object = H5Oopen(group, name, H5P_DEFAULT);
+    const H5I_type_t kind = object >= 0 ? H5Iget_type(object) : H5I_BADID;
+    if (kind == H5I_GROUP && walk->depth < DEPTH_MAX) {
+        walk->depth++;
+        visit_group(walk, object);
+        walk->depth--;
+    } else if (kind == H5I_DATASET && look_at(walk->file, walk->path, &set)) {
+        const uint64_t rows = set.sides[set.is_turned];
+        const uint64_t columns = set.sides[!set.is_turned];
+        if (array_list_add(&walk->list, walk->path, rows, columns,
+                           set.is_read && rows > 1 && columns > 1))
+            *walk->chosen = set;
+    }
+    release(object);
+    walk->path[before] = '\0';
+}
+
+static void visit_group(struct walk *walk, hid_t group)
+{
+    H5G_info_t facts;
+    char name[NAME_BYTES];
+    if (H5Gget_info(group, &facts) < 0)
+        return;
+    for (hsize_t i = 0; i < facts.nlinks && walk->objects < OBJECTS_MAX; i++) {
+        const ssize_t length = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name,
+                                                  sizeof name, H5P_DEFAULT);
+        walk->objects++;
+        if (length > 0 && (size_t)length < sizeof name)
+            visit_link(walk, group, name);
+    }
+}
+
+/* Walks through the file's groups and keeps the data set that is wanted. */
+static sonject_status choose_set(struct report *report, struct hdf5_array *array,
+                                 const char *wanted)
+{
+    struct walk walk = {.file = array->file, .chosen = &array->set};
+    while (wanted && *wanted == '/')
+        wanted++;
+    walk.list.wanted = wanted;
+    const hid_t root = H5Gopen2(array->file, "/", H5P_DEFAULT);
+    if (root < 0)
+        return input_failure(report, array->path, "is damaged: HDF5 cannot read it; copy it again");
+    visit_group(&walk, root);
+    release(root);
+    CHECK(array_list_check(report, array->path, &walk.list));
+    if (array->set.is_read)
+        return SONJECT_OK;
+    return input_failure(report, array->path,
+                         "the array %s is of a type that sonject does not read: save it as "
+                         "float64, float32, uint8, uint16 or int16, complex ones as r and i, or "
+                         "real and imag, of float64 or float32",
+                         array->set.name);
+}
+
+static sonject_status check_filters(struct report *report, const char *path, hid_t creation)
+{
+    const int count = H5Pget_nfilters(creation);
+    for (int i = 0; i < count; i++) {
+        unsigned flags = 0;
+        unsigned settings = 0;
+        size_t values = 0;
+        char name[64] = "";
+        const H5Z_filter_t filter = H5Pget_filter2(creation, (unsigned)i, &flags, &values, NULL,
+                                                   sizeof name, name, &settings);
+        if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE &&
+            filter != H5Z_FILTER_FLETCHER32)
+            return input_failure(report, path,
+                                 "its array is stored with the filter %d (%s); sonject knows gzip, "
+                                 "shuffle and fletcher32: store it with these",
+                                 (int)filter, name);
+        if (H5Zfilter_avail(filter) <= 0)
+            return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                                  "%s: this build of HDF5 lacks the filter %d (%s)", path,
+                                  (int)filter, name);
+    }
+    return SONJECT_OK;
+}
+
+static sonject_status check_storage(struct report *report, const struct hdf5_array *array,
+                                    hid_t creation)
+{
+    const char *path = array->path;
+    const H5D_layout_t layout = creation < 0 ? H5D_LAYOUT_ERROR : H5Pget_layout(creation);
+    if (layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED && layout != H5D_COMPACT)
+        return input_failure(report, path,
+                             "its array is put together from other ones: store it itself");
+    if (H5Pget_external_count(creation) > 0)
+        return input_failure(report, path,
+                             "the samples of its array lie in other files: store them in this one");
+    if (layout == H5D_CONTIGUOUS && H5Dget_offset(array->dataset) == HADDR_UNDEF)
+        return input_failure(report, path, "its array was never filled: choose another file");
+    return layout == H5D_CHUNKED ? check_filters(report, path, creation) : SONJECT_OK;
 }
 
 /* The disk's failures, and the limits' of memory, are told from the file's by errno, which is to be
@@ -49,52 +236,73 @@ static sonject_status cannot_move(struct report *report, const struct hdf5_array
 {
     const int error = errno;
     if (error == ENOMEM)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: reading its array takes more memory than it can if it is sound "
-                              "and stored in chunks of some megabytes: store it anew",
-                              array->path);
+        return input_failure(report, array->path,
+                             "reading its array takes more memory than it can if it is sound and "
+                             "stored in chunks of some megabytes: store it anew");
     if (error == ENOSPC || error == EDQUOT || error == EFBIG || file_error_is_of_system(error))
         return file_failure(report, array->path, array->writes ? "copy" : "read", error);
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: its array is cut short or damaged: copy it again", array->path);
+    return input_failure(report, array->path, "its array is cut short or damaged: copy it again");
+}
+
+/* Those of sonject's that are one text. */
+static herr_t add_attribute(hid_t dataset, const char *name, const H5A_info_t *info, void *text)
+{
+    const hid_t attribute =
+        strncmp(name, "sonject:", 8) == 0 ? H5Aopen(dataset, name, H5P_DEFAULT) : -1;
+    const hid_t type = attribute < 0 ? -1 : H5Aget_type(attribute);
+    const bool is_text =
+        type >= 0 && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0;
+    const size_t bytes = is_text ? H5Tget_size(type) : 0;
+    char *value = bytes > 0 && bytes < DESCRIPTION_MAX && info->data_size == bytes
+                      ? allocate_array(bytes + 1, 1)
+                      : NULL;
+    if (value && H5Aread(attribute, type, value) >= 0)
+        growing_text_add(text, "%s=%s\n", name, value);
+    free(value);
+    release(type);
+    release(attribute);
+    return 0;
 }
 
 static sonject_status open_array(struct report *report, struct hdf5_array *array, const char *place,
-                                 const char *name)
+                                 const char *name, struct image_facts *facts)
 {
-    array->file = open_file(place, array->writes ? H5F_ACC_RDWR : H5F_ACC_RDONLY);
+    struct growing_text text = {0};
+    array->file = H5Fopen(place, array->writes ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT);
     if (array->file < 0)
-        return report_failure(
-            report, SONJECT_ERROR_INPUT,
-            "%s: HDF5 cannot open it: it is damaged or cut short (copy it again), or "
-            "open for writing elsewhere",
-            array->path);
-    CHECK(hdf5_set_choose(report, array->path, array->file, name, &array->set));
-    if (!hdf5_set_is_read(&array->set))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: the array %s is of a type that sonject does not read: save it "
-                              "as float64, float32, uint8, uint16 or int16, complex ones as r and "
-                              "i, or real and imag, of float64 or float32",
-                              array->path, array->set.name);
-    array->dataset = H5Dopen2(array->file, array->set.name, H5P_DEFAULT);
+        return input_failure(report, array->path,
+                             "HDF5 cannot open it: it is damaged or cut short (copy it again), or "
+                             "open for writing elsewhere");
+    CHECK(choose_set(report, array, name));
+    const struct data_set *set = &array->set;
+    array->dataset = H5Dopen2(array->file, set->name, H5P_DEFAULT);
     if (array->dataset < 0)
         return cannot_move(report, array);
-    set_layout(array);
-    return hdf5_set_check_storage(report, array->path, array->dataset);
+    const hid_t creation = H5Dget_create_plist(array->dataset);
+    const sonject_status status = check_storage(report, array, creation);
+    release(creation);
+    CHECK(status);
+    array->layout = (struct raster_layout){set->sides[set->is_turned], set->sides[!set->is_turned],
+                                           set->is_complex ? 2 : 1,
+                                           set->number == STORED_UINT8     ? PIXEL_UINT8
+                                           : set->number >= STORED_FLOAT32 ? PIXEL_FLOAT32
+                                                                           : PIXEL_UINT16};
+    facts->layout = array->layout;
+    facts->largest = set->number == STORED_INT16 ? INT16_MAX : 0;
+    facts->is_turned = set->is_turned;
+    H5Aiterate2(array->dataset, H5_INDEX_NAME, H5_ITER_INC, NULL, add_attribute, &text);
+    facts->description = growing_text_end(&text);
+    CHECK_MEMORY(report, facts->description, array->path);
+    return SONJECT_OK;
 }
 
-static void close_array(void *image)
+static void close_image(void *image)
 {
     struct hdf5_array *array = image;
-    struct hdf5_session session;
-    hdf5_enter(&session);
     if (array->writes && array->file >= 0)
         hdf5_abandon(array->file);
-    if (array->dataset >= 0)
-        H5Dclose(array->dataset);
-    if (array->file >= 0)
-        H5Fclose(array->file);
-    hdf5_leave(&session);
+    release(array->dataset);
+    release(array->file);
     free(array->path);
     free(array);
 }
@@ -103,50 +311,48 @@ static sonject_status open_image(struct report *report, const char *name, const 
                                  const char *array, bool writes, void **image,
                                  struct image_facts *facts)
 {
-    struct hdf5_session session;
     struct hdf5_array *opened = allocate_array(1, sizeof *opened);
-    *image = NULL;
-    if (opened)
-        opened->path = copy_text(name);
-    if (!opened || !opened->path) {
-        free(opened);
-        return report_out_of_memory(report, "a file");
-    }
+    CHECK_MEMORY(report, opened, "a file");
+    opened->path = copy_text(name);
     opened->file = opened->dataset = -1;
     opened->writes = writes;
-    hdf5_enter(&session);
-    const sonject_status status = open_array(report, opened, path, array);
-    hdf5_leave(&session);
-    if (status != SONJECT_OK) {
-        close_array(opened);
-        return status;
-    }
-    *image = opened;
-    facts->layout = opened->layout;
-    facts->largest = opened->set.number == HDF5_INT16 ? INT16_MAX : 0;
-    facts->is_turned = opened->set.is_matlab;
-    return SONJECT_OK;
+    const sonject_status status = opened->path ? open_array(report, opened, path, array, facts)
+                                               : report_out_of_memory(report, "a file");
+    if (status == SONJECT_OK)
+        *image = opened;
+    else
+        close_image(opened);
+    return status;
 }
 
-static char *read_attribute(void *image, const char *name)
+/* The type in memory: numbers, or pairs of them. For release. */
+static hid_t memory_type(const struct data_set *set)
 {
-    const struct hdf5_array *array = image;
-    struct hdf5_session session;
-    char *text = NULL;
-    hdf5_enter(&session);
-    const bool is_there = hdf5_read_text(array->dataset, name, &text);
-    hdf5_leave(&session);
-    return is_there ? text : NULL;
+    const hid_t plain = set->number == STORED_UINT8     ? H5T_NATIVE_UINT8
+                        : set->number == STORED_UINT16  ? H5T_NATIVE_UINT16
+                        : set->number == STORED_INT16   ? H5T_NATIVE_INT16
+                        : set->number == STORED_FLOAT64 ? H5T_NATIVE_DOUBLE
+                                                        : H5T_NATIVE_FLOAT;
+    const size_t bytes = H5Tget_size(plain);
+    if (!set->is_complex)
+        return H5Tcopy(plain);
+    const hid_t type = H5Tcreate(H5T_COMPOUND, 2 * bytes);
+    if (type >= 0 && H5Tinsert(type, set->part_names[0], 0, plain) >= 0 &&
+        H5Tinsert(type, set->part_names[1], bytes, plain) >= 0)
+        return type;
+    release(type);
+    return -1;
 }
 
-/* Reads or writes count lines of the file's first index, from first of the region on. */
-static bool move_run(const struct hdf5_array *array, const struct region *region, hid_t type,
-                     uint64_t first, uint64_t count, void *run, bool writes)
+/* Reads or writes a part of the image that lies in memory as in the file. */
+static bool move_run(const struct hdf5_array *array, const struct region *part, hid_t type,
+                     void *run, bool writes)
 {
-    const bool is_turned = array->set.is_matlab;
-    const hsize_t start[2] = {(is_turned ? region->first_column : region->first_row) + first,
-                              is_turned ? region->first_row : region->first_column};
-    const hsize_t counts[2] = {count, is_turned ? region->rows : region->columns};
+    const bool is_turned = array->set.is_turned;
+    const hsize_t start[2] = {is_turned ? part->first_column : part->first_row,
+                              is_turned ? part->first_row : part->first_column};
+    const hsize_t counts[2] = {is_turned ? part->columns : part->rows,
+                               is_turned ? part->rows : part->columns};
     const hid_t space = H5Dget_space(array->dataset);
     const hid_t memory = H5Screate_simple(2, counts, NULL);
     bool is_done = space >= 0 && memory >= 0 &&
@@ -154,163 +360,99 @@ static bool move_run(const struct hdf5_array *array, const struct region *region
     if (is_done)
         is_done = (writes ? H5Dwrite(array->dataset, type, memory, space, H5P_DEFAULT, run)
                           : H5Dread(array->dataset, type, memory, space, H5P_DEFAULT, run)) >= 0;
-    if (memory >= 0)
-        H5Sclose(memory);
-    if (space >= 0)
-        H5Sclose(space);
+    release(memory);
+    release(space);
     return is_done;
 }
 
-static sonject_status transfer_run(struct report *report, const struct hdf5_array *array,
-                                   const struct region *region, hid_t type, uint64_t first,
-                                   uint64_t count, unsigned char *run, void *pixels, bool writes)
+/* A region is no larger than a piece of those that the decoder is asked for. */
+static sonject_status exchange(struct report *report, const struct hdf5_array *array,
+                               const struct region *region, void *pixels, bool writes)
 {
-    static const enum stored_type types[] = {
-        [HDF5_UINT8] = STORED_UINT8,     [HDF5_UINT16] = STORED_UINT16,
-        [HDF5_INT16] = STORED_INT16,     [HDF5_FLOAT32] = STORED_FLOAT32,
-        [HDF5_FLOAT64] = STORED_FLOAT64,
-    };
-    const bool is_turned = array->set.is_matlab;
-    const enum stored_type stored = types[array->set.number];
+    const bool is_turned = array->set.is_turned;
+    const enum stored_type stored = array->set.number;
     const ptrdiff_t pixel = (ptrdiff_t)array->layout.channels;
     const ptrdiff_t line = pixel * (ptrdiff_t)(is_turned ? region->rows : region->columns);
+    const hid_t type = memory_type(&array->set);
+    unsigned char *run =
+        type < 0 ? NULL
+                 : allocate_array((size_t)(region->rows * region->columns), H5Tget_size(type));
     const struct stored_samples samples = {
-        .bytes = {run, run + stored_bytes(stored)},
+        .bytes = {run, run ? run + stored_bytes(stored) : NULL},
         .types = {stored, stored},
         .row_step = is_turned ? pixel : line,
         .column_step = is_turned ? line : pixel,
         .is_big_endian = machine_is_big_endian(),
     };
-    const struct region part = {
-        region->first_row + (is_turned ? 0 : first), region->first_column + (is_turned ? first : 0),
-        is_turned ? region->rows : count, is_turned ? count : region->columns};
-    errno = 0;
     const bool needs_old = !writes || stored == STORED_FLOAT64;
-    if (needs_old && !move_run(array, region, type, first, count, run, false))
-        return cannot_move(report, array);
-    CHECK(samples_exchange(report, array->path, &array->layout, &samples, &part, region, pixels,
-                           writes));
-    return !writes || move_run(array, region, type, first, count, run, true)
-               ? SONJECT_OK
-               : cannot_move(report, array);
-}
-
-static sonject_status transfer(struct report *report, const struct hdf5_array *array,
-                               const struct region *region, void *pixels, bool writes)
-{
-    struct hdf5_session session;
-    const bool is_turned = array->set.is_matlab;
-    const uint64_t lines = is_turned ? region->columns : region->rows;
-    const uint64_t across = is_turned ? region->rows : region->columns;
-    hdf5_enter(&session);
-    const hid_t type = hdf5_set_memory_type(&array->set);
-    const size_t line_bytes = type < 0 ? 0 : (size_t)across * H5Tget_size(type);
-    const uint64_t some = line_bytes > 0 && line_bytes < RUN_BYTES ? RUN_BYTES / line_bytes : 1;
-    const uint64_t at_once = some < lines ? some : lines;
-    void *run = line_bytes > 0 ? allocate_array((size_t)at_once, line_bytes) : NULL;
     sonject_status status = run ? SONJECT_OK : report_out_of_memory(report, "samples of an array");
-    for (uint64_t first = 0; status == SONJECT_OK && first < lines; first += at_once)
-        status =
-            transfer_run(report, array, region, type, first,
-                         lines - first < at_once ? lines - first : at_once, run, pixels, writes);
+    errno = 0;
+    if (run && needs_old && !move_run(array, region, type, run, false))
+        status = cannot_move(report, array);
+    THEN(status, samples_exchange(report, array->path, &array->layout, &samples, region, region,
+                                  pixels, writes));
+    if (status == SONJECT_OK && writes && !move_run(array, region, type, run, true))
+        status = cannot_move(report, array);
     free(run);
-    if (type >= 0)
-        H5Tclose(type);
-    hdf5_leave(&session);
+    release(type);
     return status;
 }
 
 static sonject_status read_samples(struct report *report, void *image, const struct region *region,
                                    void *pixels)
 {
-    return transfer(report, image, region, pixels, false);
+    return exchange(report, image, region, pixels, false);
 }
 
 static sonject_status change_samples(struct report *report, void *image,
                                      const struct region *region, const void *pixels)
 {
-    return transfer(report, image, region, (void *)pixels, true);
+    return exchange(report, image, region, (void *)pixels, true);
 }
 
-static sonject_status finish_array(struct report *report, void *image)
+static sonject_status finish_image(struct report *report, void *image)
 {
     struct hdf5_array *array = image;
-    struct hdf5_session session;
-    hdf5_enter(&session);
     errno = 0;
     bool is_done = H5Fflush(array->file, H5F_SCOPE_LOCAL) >= 0;
     if (!is_done)
         hdf5_abandon(array->file);
-    H5Dclose(array->dataset);
+    release(array->dataset);
     is_done = H5Fclose(array->file) >= 0 && is_done;
     array->dataset = array->file = -1;
-    const sonject_status status = is_done ? SONJECT_OK : cannot_move(report, array);
-    hdf5_leave(&session);
-    return status;
+    return is_done ? SONJECT_OK : cannot_move(report, array);
 }
 
-sonject_status hdf5_library_find(struct report *report, const char *path,
-                                 const struct image_library **library)
-{
-    static const struct image_library hdf5 = {open_image,   close_array,    read_attribute,
-                                              read_samples, change_samples, finish_array};
-    (void)report, (void)path;
-    *library = &hdf5;
-    return SONJECT_OK;
-}
-
-static hid_t create_set(hid_t file, const struct raster_layout *layout, hid_t type)
-{
-    const hsize_t sides[2] = {layout->rows, layout->columns};
-    const hid_t space = H5Screate_simple(2, sides, NULL);
-    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
-    hid_t set = -1;
-    if (space >= 0 && creation >= 0 && H5Pset_obj_track_times(creation, 0) >= 0)
-        set = H5Dcreate2(file, "image", type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
-    if (creation >= 0)
-        H5Pclose(creation);
-    if (space >= 0)
-        H5Sclose(space);
-    return set;
-}
+const struct image_library hdf5_library = {open_image, close_image, read_samples, change_samples,
+                                           finish_image};
 
 static bool fill_file(hid_t file, const struct raster_layout *layout,
                       const struct raster_attribute *notes, size_t note_count, const void *pixels)
 {
-    const struct hdf5_set described = {
-        .number = layout->type == PIXEL_UINT8    ? HDF5_UINT8
-                  : layout->type == PIXEL_UINT16 ? HDF5_UINT16
-                                                 : HDF5_FLOAT32,
+    const hsize_t sides[2] = {layout->rows, layout->columns};
+    const struct data_set described = {
+        .number = layout->type == PIXEL_UINT8    ? STORED_UINT8
+                  : layout->type == PIXEL_UINT16 ? STORED_UINT16
+                                                 : STORED_FLOAT32,
         .is_complex = layout->channels == 2,
         .part_names = {"r", "i"},
     };
-    const hid_t type = hdf5_set_memory_type(&described);
-    const hid_t set = type < 0 ? -1 : create_set(file, layout, type);
+    const hid_t type = memory_type(&described);
+    const hid_t space = H5Screate_simple(2, sides, NULL);
+    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+    hid_t set = -1;
+    if (type >= 0 && space >= 0 && creation >= 0 && H5Pset_obj_track_times(creation, 0) >= 0)
+        set = H5Dcreate2(file, "image", type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
     bool is_done = set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pixels) >= 0;
     for (size_t i = 0; is_done && i < note_count; i++)
         is_done = hdf5_write_text(set, notes[i].name, notes[i].value);
     is_done = is_done && H5Fflush(file, H5F_SCOPE_LOCAL) >= 0;
     if (!is_done)
         hdf5_abandon(file);
-    if (set >= 0)
-        H5Dclose(set);
-    if (type >= 0)
-        H5Tclose(type);
-    return is_done;
-}
-
-static bool write_part(const char *part, const struct raster_layout *layout,
-                       const struct raster_attribute *notes, size_t note_count, const void *pixels)
-{
-    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
-    const hid_t file = creation >= 0 && H5Pset_obj_track_times(creation, 0) >= 0
-                           ? H5Fcreate(part, H5F_ACC_TRUNC, creation, H5P_DEFAULT)
-                           : -1;
-    bool is_done = file >= 0 && fill_file(file, layout, notes, note_count, pixels);
-    if (file >= 0)
-        is_done = H5Fclose(file) >= 0 && is_done;
-    if (creation >= 0)
-        H5Pclose(creation);
+    release(set);
+    release(creation);
+    release(space);
+    release(type);
     return is_done;
 }
 
@@ -321,11 +463,17 @@ sonject_status hdf5_array_write(struct report *report, const char *path,
 {
     struct hdf5_session session;
     char *part = file_part_name(path);
-    if (!part)
-        return report_out_of_memory(report, "a file name");
+    CHECK_MEMORY(report, part, "a file name");
     hdf5_enter(&session);
     errno = 0;
-    const bool is_done = write_part(part, layout, notes, note_count, pixels);
+    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
+    const hid_t file = creation >= 0 && H5Pset_obj_track_times(creation, 0) >= 0
+                           ? H5Fcreate(part, H5F_ACC_TRUNC, creation, H5P_DEFAULT)
+                           : -1;
+    bool is_done = file >= 0 && fill_file(file, layout, notes, note_count, pixels);
+    if (file >= 0)
+        is_done = H5Fclose(file) >= 0 && is_done;
+    release(creation);
     const int error = errno;
     hdf5_leave(&session);
     sonject_status status = SONJECT_OK;
@@ -340,27 +488,3 @@ sonject_status hdf5_array_write(struct report *report, const char *path,
     free(part);
     return status;
 }
-
-#else
-static sonject_status refuse(struct report *report, const char *path)
-{
-    return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
-                          "%s: this build of sonject has no HDF5 files: build it with HDF5", path);
-}
-
-sonject_status hdf5_library_find(struct report *report, const char *path,
-                                 const struct image_library **library)
-{
-    *library = NULL;
-    return refuse(report, path);
-}
-
-sonject_status hdf5_array_write(struct report *report, const char *path,
-                                const struct raster_layout *layout,
-                                const struct raster_attribute *notes, size_t note_count,
-                                const void *pixels)
-{
-    (void)layout, (void)notes, (void)note_count, (void)pixels;
-    return refuse(report, path);
-}
-#endif

@@ -1,19 +1,27 @@
-/* What a library of others does with images for the decoder (swath/decoder.h): OpenImageIO, which
- * is in the module of image files, and HDF5. */
+/* Libraries of others that read, change and write images, as the decoder (swath/decoder.h) and
+ * those that write new images use them: OpenImageIO and libtiff, which are in a module, and HDF5.
+ *
+ * The module is a shared object of its own, which is loaded when the first image needs it, because
+ * OpenImageIO brings along some 250 libraries, whose loading takes longer than many a run. Static
+ * libraries have it in them. */
 #ifndef SONJECT_SWATH_IMAGE_LIBRARY_H
 #define SONJECT_SWATH_IMAGE_LIBRARY_H
 
-#include "base/report.h"
 #include "image/raster.h"
+#include "swath/image_head.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
+#define DESCRIPTION_MAX ((size_t)1 << 16) /* bytes of one that is kept, its final 0 among them */
+
 struct image_facts {
     struct raster_layout layout;
     uint32_t largest; /* that it may hold; 0: its type's */
     bool is_turned;   /* columns lie together in the file */
+    /* what is stored with the image: texts, each a line "name=value"; for free(); NULL: none */
+    char *description;
 };
 
 struct image_library {
@@ -23,17 +31,78 @@ struct image_library {
                            const char *array, bool writes, void **image, struct image_facts *facts);
     /* what was changed and not finished may be lost */
     void (*close)(void *image);
-    /* a text that is stored with the image, for free(); NULL if there is none of that name */
-    char *(*attribute)(void *image, const char *name);
     /* samples of a region, row after row; a float64 that stays the same as float32 keeps its bits
      */
     sonject_status (*read)(struct report *report, void *image, const struct region *region,
                            void *pixels);
+    /* NULL with finish: copies are new images */
     sonject_status (*change)(struct report *report, void *image, const struct region *region,
                              const void *pixels);
     /* brings all changes to the file */
     sonject_status (*finish)(struct report *report, void *image);
 };
+
+/* Data sets of HDF5 files (swath/hdf5_array.c). Calls come between hdf5_enter and hdf5_leave. */
+extern const struct image_library hdf5_library;
+
+/* TIFF files by libtiff (swath/tiff_file.c, a part of the module). Refused (INPUT) are files that
+ * are cut short, and those whose pixels are not stored as sonject can read and change them; pixels
+ * are not decoded then. Changed tiles or strips that no longer fit in their place go behind the end
+ * of the file; all tags, other pages and untouched blocks stay. */
+extern const struct image_library tiff_library;
+
+/* A file that is to be written. */
+struct image_encoding {
+    const char *path;
+    const char *name; /* of the finished file, for messages */
+    enum image_kind kind;
+    struct raster_layout layout;
+    const char *description; /* a text that the file keeps; "": none */
+    bool is_drawn;           /* a mask or a picture, not an image of measured pixels */
+    /* gives the pixels of rows first...end */
+    sonject_status (*give_rows)(void *user, uint64_t first, uint64_t end, void *pixels);
+    void *user;
+};
+
+/* As raster_module's encode, of TIFF. */
+sonject_status tiff_encode(struct report *report, const struct image_encoding *encoding);
+
+/* Rows of a new image that are in memory at a time. */
+uint64_t rows_at_once(const struct raster_layout *layout);
+
+/* By it a library knows a module that was built with it, for both share the structures of the
+ * calls. It keeps its place in all versions. */
+struct module_stamp {
+    uint32_t mark, bytes[3]; /* of structures */
+    char version[16];        /* of sonject */
+};
+#define MODULE_STAMP                                                                               \
+    {                                                                                              \
+        UINT32_C(0x736e6a31),                                                                      \
+            {sizeof(struct raster_module), sizeof(struct report), sizeof(struct image_encoding)},  \
+            VERSION_TEXT                                                                           \
+    }
+
+/* What the module offers. */
+struct raster_module {
+    struct module_stamp stamp;
+    /* TIFF alone is changed; the others' copies are new images. Refused is what they cannot read,
+     * more than 2^40 pixels, sides of 0, pixel types other than 8 and 16 bit unsigned and 16 and 32
+     * bit float, palettes, other than 1 or 2 channels. */
+    const struct image_library *tiff, *others;
+    /* Streams in strips of at most about 64 MB. What failed is left to the caller to remove.
+     * Errors: STORAGE, MEMORY, those of give_rows. */
+    sonject_status (*encode)(struct report *report, const struct image_encoding *encoding);
+};
+
+/* The one thing that the module shows. */
+SONJECT_API extern const struct raster_module raster_module_openimageio;
+
+/* The module, which the first call loads; any number of threads may call. It stays until the
+ * process ends. path: the image that needs it, for the message. Errors: UNSUPPORTED (there is no
+ * module, or one that was not built with this library: says where, and what to do), MEMORY. */
+sonject_status raster_module_find(struct report *report, const char *path,
+                                  const struct raster_module **module);
 
 #ifdef __cplusplus
 }

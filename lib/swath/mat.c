@@ -5,29 +5,48 @@
  * numbers MATLAB had packed into a smaller type than their own, is written anew. */
 #define _POSIX_C_SOURCE   200809L
 #define _FILE_OFFSET_BITS 64
-#include "swath/mat.h"
-
 #include <errno.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef HAS_ZLIB
 #include <zlib.h>
-#endif
 
-#include "base/byte_file.h"
 #include "base/byte_order.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "swath/swath_format.h"
 
+#define TAG_BYTES       8
 #define HEADER_BYTES    128
 #define HEAD_BYTES      512  /* that hold class, sides and name of a variable */
 #define DEFLATE_RATIO   1040 /* more than any deflated byte holds */
 #define NAME_MAX_BYTES  64   /* the final 0 among them */
 #define FLAG_COMPLEX    0x0800u
 #define SUBSYSTEM_PLACE 116 /* of the header: where further data of MATLAB's own objects begin */
+
+/* Types of elements and stored numbers, as the format numbers them. */
+enum mat_type {
+    MAT_INT8 = 1,
+    MAT_UINT8 = 2,
+    MAT_INT16 = 3,
+    MAT_UINT16 = 4,
+    MAT_INT32 = 5,
+    MAT_UINT32 = 6,
+    MAT_SINGLE = 7,
+    MAT_DOUBLE = 9,
+    MAT_MATRIX = 14,
+    MAT_COMPRESSED = 15
+};
+
+/* MATLAB's classes of variables. */
+enum mat_class {
+    MAT_CLASS_DOUBLE = 6,
+    MAT_CLASS_SINGLE = 7,
+    MAT_CLASS_UINT8 = 9,
+    MAT_CLASS_INT16 = 10,
+    MAT_CLASS_UINT16 = 11,
+    MAT_CLASS_LAST_NUMERIC = 15
+};
 
 /* Numbers of a variable: its real or imaginary part. */
 struct part {
@@ -53,71 +72,24 @@ struct mat_array {
     struct part parts[2];
 };
 
-#ifdef HAS_ZLIB
-bool mat_can_inflate(void)
-{
-    return true;
-}
-
-bool mat_inflate(const unsigned char *compressed, size_t compressed_bytes, unsigned char *bytes,
-                 size_t capacity, size_t *count)
+/* Inflates the beginning of a variable: at most capacity bytes, *count gets how many. False if it
+ * is damaged. Elements of the format have at most 2^32 bytes. */
+static bool inflate_start(const unsigned char *compressed, size_t compressed_bytes,
+                          unsigned char *bytes, size_t capacity, size_t *count)
 {
     z_stream stream;
-    size_t taken = 0;
     memset(&stream, 0, sizeof stream);
-    *count = 0;
+    stream.next_in = (Bytef *)compressed;
+    stream.avail_in = (uInt)compressed_bytes;
+    stream.next_out = bytes;
+    stream.avail_out = (uInt)capacity;
     if (inflateInit(&stream) != Z_OK)
         return false;
-    int answer = Z_OK;
-    while (answer == Z_OK && *count < capacity) {
-        if (stream.avail_in == 0) {
-            const size_t left = compressed_bytes - taken;
-            stream.next_in = (Bytef *)(compressed + taken);
-            stream.avail_in = left < INT_MAX ? (uInt)left : INT_MAX;
-            taken += stream.avail_in;
-        }
-        const size_t room = capacity - *count < INT_MAX ? capacity - *count : INT_MAX;
-        stream.next_out = bytes + *count;
-        stream.avail_out = (uInt)room;
-        answer = inflate(&stream, Z_NO_FLUSH);
-        *count += room - stream.avail_out;
-    }
+    const int answer = inflate(&stream, Z_NO_FLUSH);
+    *count = capacity - stream.avail_out;
     inflateEnd(&stream);
     return answer == Z_OK || answer == Z_STREAM_END || answer == Z_BUF_ERROR;
 }
-
-unsigned char *mat_deflate(const unsigned char *bytes, size_t count, size_t *compressed_bytes)
-{
-    uLongf room = count <= ULONG_MAX ? compressBound((uLong)count) : 0;
-    unsigned char *compressed = room > count ? malloc(room) : NULL;
-    if (!compressed ||
-        compress2(compressed, &room, bytes, (uLong)count, Z_DEFAULT_COMPRESSION) != Z_OK) {
-        free(compressed);
-        return NULL;
-    }
-    *compressed_bytes = room;
-    return compressed;
-}
-#else
-bool mat_can_inflate(void)
-{
-    return false;
-}
-
-bool mat_inflate(const unsigned char *compressed, size_t compressed_bytes, unsigned char *bytes,
-                 size_t capacity, size_t *count)
-{
-    (void)compressed, (void)compressed_bytes, (void)bytes, (void)capacity;
-    *count = 0;
-    return false;
-}
-
-unsigned char *mat_deflate(const unsigned char *bytes, size_t count, size_t *compressed_bytes)
-{
-    (void)bytes, (void)count, (void)compressed_bytes;
-    return NULL;
-}
-#endif
 
 /* False for what is no number of up to 64 bits. */
 static bool stored_type_of(uint32_t type, enum stored_type *stored)
@@ -155,9 +127,9 @@ static bool is_mat(struct swath_file *file, const unsigned char *head, size_t co
 
 static sonject_status damaged(struct report *report, const struct swath_file *file, uint64_t place)
 {
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: cut short or damaged at byte %llu: copy or export it again",
-                          file->path, (unsigned long long)place);
+    return input_failure(report, file->path,
+                         "cut short or damaged at byte %llu: copy or export it again",
+                         (unsigned long long)place);
 }
 
 /* Takes the element that begins at *place of the bytes: *part gets where its data lie, *place what
@@ -165,7 +137,7 @@ static sonject_status damaged(struct report *report, const struct swath_file *fi
 static bool take_element(const unsigned char *bytes, size_t count, bool is_big_endian,
                          size_t *place, struct part *part)
 {
-    if (*place > count || count - *place < MAT_TAG)
+    if (*place > count || count - *place < TAG_BYTES)
         return false;
     const unsigned char *tag = bytes + *place;
     const uint32_t first = (uint32_t)number_from_bytes(tag, 4, is_big_endian);
@@ -173,10 +145,10 @@ static bool take_element(const unsigned char *bytes, size_t count, bool is_big_e
     part->tag = *place;
     part->type = is_small ? first & 0xFFFF : first;
     part->bytes = is_small ? first >> 16 : (size_t)number_from_bytes(tag + 4, 4, is_big_endian);
-    part->data = *place + (is_small ? 4 : MAT_TAG);
+    part->data = *place + (is_small ? 4 : TAG_BYTES);
     if ((is_small && part->bytes > 4) || part->bytes > count - part->data)
         return false;
-    *place = is_small ? *place + MAT_TAG : part->data + (part->bytes + 7) / 8 * 8;
+    *place = is_small ? *place + TAG_BYTES : part->data + (part->bytes + 7) / 8 * 8;
     return true;
 }
 
@@ -186,8 +158,8 @@ static bool read_head(const unsigned char *bytes, size_t count, bool is_big_endi
                       struct variable *variable)
 {
     struct part flags, sides, name;
-    size_t place = MAT_TAG;
-    if (count < MAT_TAG || number_from_bytes(bytes, 4, is_big_endian) != MAT_MATRIX ||
+    size_t place = TAG_BYTES;
+    if (count < TAG_BYTES || number_from_bytes(bytes, 4, is_big_endian) != MAT_MATRIX ||
         !take_element(bytes, count, is_big_endian, &place, &flags) || flags.type != MAT_UINT32 ||
         flags.bytes != 8)
         return false;
@@ -214,18 +186,13 @@ static sonject_status look_at(struct report *report, const struct swath_file *fi
     unsigned char stored[HEAD_BYTES];
     unsigned char inflated[HEAD_BYTES];
     const unsigned char *head = stored;
-    const uint64_t from = variable->place + (variable->is_compressed ? MAT_TAG : 0);
+    const uint64_t from = variable->place + (variable->is_compressed ? TAG_BYTES : 0);
     const uint64_t there = variable->place + variable->bytes - from;
     size_t count = there < HEAD_BYTES ? (size_t)there : HEAD_BYTES;
     if (!byte_file_read(file->stream, from, stored, count))
         return damaged(report, file, from);
     if (variable->is_compressed) {
-        if (!mat_can_inflate())
-            return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
-                                  "%s: is compressed, which this build of sonject does not read: "
-                                  "build it with zlib, or save the file with -v6",
-                                  file->path);
-        if (!mat_inflate(stored, count, inflated, sizeof inflated, &count))
+        if (!inflate_start(stored, count, inflated, sizeof inflated, &count))
             return damaged(report, file, from);
         head = inflated;
     }
@@ -239,13 +206,14 @@ static sonject_status choose_variable(struct report *report, struct swath_file *
                                       const char *array)
 {
     struct array_list list = {array, 0, 0, ""};
-    unsigned char tag[MAT_TAG];
+    unsigned char tag[TAG_BYTES];
     for (uint64_t place = HEADER_BYTES; place < file->bytes;) {
         struct variable variable = {.place = place};
-        if (file->bytes - place < MAT_TAG || !byte_file_read(file->stream, place, tag, sizeof tag))
+        if (file->bytes - place < TAG_BYTES ||
+            !byte_file_read(file->stream, place, tag, sizeof tag))
             return damaged(report, file, place);
         const uint64_t type = number_from_bytes(tag, 4, file->mat->is_big_endian);
-        variable.bytes = MAT_TAG + number_from_bytes(tag + 4, 4, file->mat->is_big_endian);
+        variable.bytes = TAG_BYTES + number_from_bytes(tag + 4, 4, file->mat->is_big_endian);
         variable.is_compressed = type == MAT_COMPRESSED;
         if ((type != MAT_COMPRESSED && type != MAT_MATRIX) || variable.bytes > file->bytes - place)
             return damaged(report, file, place);
@@ -265,17 +233,17 @@ static sonject_status inflate_element(struct report *report, const struct swath_
                                       const unsigned char *stored, size_t count)
 {
     struct mat_array *mat = file->mat;
-    unsigned char tag[MAT_TAG];
+    unsigned char tag[TAG_BYTES];
     size_t got = 0;
-    if (!mat_inflate(stored, count, tag, sizeof tag, &got) || got != sizeof tag)
+    if (!inflate_start(stored, count, tag, sizeof tag, &got) || got != sizeof tag)
         return damaged(report, file, mat->variable.place);
-    const uint64_t bytes = MAT_TAG + number_from_bytes(tag + 4, 4, mat->is_big_endian);
-    if (bytes / DEFLATE_RATIO > count || bytes > SIZE_MAX)
+    const uint64_t bytes = TAG_BYTES + number_from_bytes(tag + 4, 4, mat->is_big_endian);
+    if (bytes / DEFLATE_RATIO > count || bytes > UINT32_MAX)
         return damaged(report, file, mat->variable.place);
     mat->element_bytes = (size_t)bytes;
     mat->element = allocate_array(mat->element_bytes, 1);
     CHECK_MEMORY(report, mat->element, "an array");
-    if (!mat_inflate(stored, count, mat->element, mat->element_bytes, &got) ||
+    if (!inflate_start(stored, count, mat->element, mat->element_bytes, &got) ||
         got != mat->element_bytes)
         return damaged(report, file, mat->variable.place);
     return SONJECT_OK;
@@ -292,7 +260,8 @@ static sonject_status load_element(struct report *report, const struct swath_fil
     if (!byte_file_read(file->stream, variable->place, stored, (size_t)variable->bytes)) {
         status = damaged(report, file, variable->place);
     } else if (variable->is_compressed) {
-        status = inflate_element(report, file, stored + MAT_TAG, (size_t)variable->bytes - MAT_TAG);
+        status =
+            inflate_element(report, file, stored + TAG_BYTES, (size_t)variable->bytes - TAG_BYTES);
     } else {
         mat->element = stored;
         mat->element_bytes = (size_t)variable->bytes;
@@ -334,11 +303,11 @@ static sonject_status open_mat(struct report *report, struct swath_file *file, i
     CHECK(choose_variable(report, file, array));
     const struct variable *variable = &mat->variable;
     if (own_type(variable) == 0)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: the array %s is of numbers that sonject does not read: save it "
-                              "as double, single, uint8, uint16 or int16, complex ones as double "
-                              "or single",
-                              file->path, variable->name);
+        return input_failure(
+            report, file->path,
+            "the array %s is of numbers that sonject does not read: save it as double, single, "
+            "uint8, uint16 or int16, complex ones as double or single",
+            variable->name);
     file->layout =
         (struct raster_layout){variable->rows, variable->columns, variable->is_complex ? 2 : 1,
                                variable->kind == MAT_CLASS_UINT8    ? PIXEL_UINT8
@@ -390,18 +359,18 @@ static unsigned char *unpack(const struct swath_file *file, struct part *parts, 
     const uint64_t count = file->layout.rows * file->layout.columns;
     enum stored_type own = STORED_UINT8;
     (void)stored_type_of(type, &own);
-    const uint64_t each = MAT_TAG + (count * stored_bytes(own) + 7) / 8 * 8;
+    const uint64_t each = TAG_BYTES + (count * stored_bytes(own) + 7) / 8 * 8;
     const uint64_t total = mat->parts[0].tag + each * file->layout.channels;
-    unsigned char *element = total - MAT_TAG <= UINT32_MAX && total <= SIZE_MAX
+    unsigned char *element = total - TAG_BYTES <= UINT32_MAX && total <= SIZE_MAX
                                  ? allocate_array((size_t)total, 1)
                                  : NULL;
     if (!element)
         return NULL;
     memcpy(element, mat->element, mat->parts[0].tag);
-    number_to_bytes(total - MAT_TAG, element + 4, 4, mat->is_big_endian);
+    number_to_bytes(total - TAG_BYTES, element + 4, 4, mat->is_big_endian);
     for (uint32_t k = 0; k < file->layout.channels; k++) {
         const size_t tag = mat->parts[0].tag + (size_t)each * k;
-        const struct part part = {type, tag, tag + MAT_TAG, (size_t)count * stored_bytes(own)};
+        const struct part part = {type, tag, tag + TAG_BYTES, (size_t)count * stored_bytes(own)};
         enum stored_type packed = own;
         (void)stored_type_of(mat->parts[k].type, &packed);
         number_to_bytes(type, element + tag, 4, mat->is_big_endian);
@@ -433,20 +402,18 @@ static sonject_status make_element(struct report *report, const struct swath_fil
     CHECK(exchange(report, file, parts, *element, copy->region, (void *)copy->pixels, true));
     if (!mat->variable.is_compressed)
         return SONJECT_OK;
-    size_t count = 0;
-    unsigned char *compressed = mat_deflate(*element, *bytes, &count);
-    unsigned char *tagged =
-        compressed && count <= UINT32_MAX ? allocate_array(count + MAT_TAG, 1) : NULL;
-    if (tagged) {
-        number_to_bytes(MAT_COMPRESSED, tagged, 4, mat->is_big_endian);
-        number_to_bytes(count, tagged + 4, 4, mat->is_big_endian);
-        memcpy(tagged + MAT_TAG, compressed, count);
-        free(*element);
-        *element = tagged;
-        *bytes = count + MAT_TAG;
-    }
-    free(compressed);
-    return tagged ? SONJECT_OK : report_out_of_memory(report, "a compressed array");
+    uLongf count = compressBound((uLong)*bytes);
+    unsigned char *tagged = allocate_array((size_t)count + TAG_BYTES, 1);
+    CHECK_MEMORY(report, tagged, "a compressed array");
+    const bool is_done = compress2(tagged + TAG_BYTES, &count, *element, (uLong)*bytes,
+                                   Z_DEFAULT_COMPRESSION) == Z_OK &&
+                         count <= UINT32_MAX;
+    number_to_bytes(MAT_COMPRESSED, tagged, 4, mat->is_big_endian);
+    number_to_bytes(count, tagged + 4, 4, mat->is_big_endian);
+    free(*element);
+    *element = tagged;
+    *bytes = (size_t)count + TAG_BYTES;
+    return is_done ? SONJECT_OK : report_out_of_memory(report, "a compressed array");
 }
 
 /* The header names the place of MATLAB's own data, which moves with the variable's size. */
@@ -478,7 +445,7 @@ static sonject_status write_copy(struct report *report, const struct swath_file 
     if (move_subsystem(file, out, bytes))
         return SONJECT_OK;
     return ferror(out) ? file_failure(report, copy->path, "write", errno)
-                       : swath_refuse(report, file, "cannot be read to its end");
+                       : input_failure(report, file->path, "cannot be read to its end");
 }
 
 static sonject_status copy_mat(struct report *report, const struct swath_file *file,

@@ -1,12 +1,10 @@
 /* NumPy arrays (.npy, versions 1 to 3): two-dimensional, in C or Fortran order, of u1, u2, i2, u4,
  * i4, f4, f8 (amplitudes), c8 or c16 (complex) in either byte order. Numbers of 32 and 64 bits are
  * shown as float32. */
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/byte_file.h"
 #include "base/byte_order.h"
 #include "base/file.h"
 #include "base/memory.h"
@@ -110,23 +108,22 @@ static sonject_status take_header(struct report *report, const char *header,
     const bool is_transposed = order && strncmp(order, "True", 4) == 0;
     if (!order || !(is_transposed || strncmp(order, "False", 5) == 0) ||
         !value_of(header, "descr") || !value_of(header, "shape"))
-        return swath_refuse(report, file,
-                            "is not a NumPy array: its header lacks descr, fortran_order "
-                            "or shape");
+        return input_failure(
+            report, file->path,
+            "is not a NumPy array: its header lacks descr, fortran_order or shape");
     if (!read_type(header, file))
-        return swath_refuse(
-            report, file,
-            "has elements of a type that sonject does not read: save it as "
-            "uint8, 16 or 32 bit integers, float32, float64, complex64 or complex128");
+        return input_failure(report, file->path,
+                             "has elements of a type that sonject does not read: save it as uint8, "
+                             "16 or 32 bit integers, float32, float64, complex64 or complex128");
     if (!read_shape(header, file))
-        return swath_refuse(report, file,
-                            "is not two-dimensional: rows are track positions, columns "
-                            "range cells");
+        return input_failure(
+            report, file->path,
+            "is not two-dimensional: rows are track positions, columns range cells");
     const struct region whole = {0, 0, file->layout.rows, file->layout.columns};
     const size_t size = file->lines.type == STORED_FLOAT64 ? 2 : 1; /* of what the image takes */
     if (!region_bytes(&file->layout, &whole, &bytes) || bytes > SIZE_MAX / size ||
         file->bytes - file->lines.first_place < bytes * size)
-        return swath_refuse(report, file, "is cut short: copy it again");
+        return input_failure(report, file->path, "is cut short: copy it again");
     file->lines.is_transposed = is_transposed;
     file->lines.line_bytes =
         bytes * size / (file->lines.is_transposed ? file->layout.columns : file->layout.rows);
@@ -137,24 +134,25 @@ static sonject_status read_header(struct report *report, struct swath_file *file
 {
     unsigned char start[12] = {0};
     if (!byte_file_read(file->stream, 0, start, 10))
-        return swath_refuse(report, file, "is cut short: copy it again");
+        return input_failure(report, file->path, "is cut short: copy it again");
     const bool is_first_version = start[6] == 1;
     if (start[6] < 1 || start[6] > 3)
-        return swath_refuse(report, file,
-                            "is of a version of NumPy's format that sonject does not know");
+        return input_failure(report, file->path,
+                             "is of a version of NumPy's format that sonject does not know");
     if (!is_first_version && !byte_file_read(file->stream, 0, start, 12))
-        return swath_refuse(report, file, "is cut short: copy it again");
+        return input_failure(report, file->path, "is cut short: copy it again");
     const uint64_t length = number_from_bytes(start + 8, is_first_version ? 2 : 4, false);
     const uint64_t place = is_first_version ? 10 : 12;
     if (length > HEADER_MAX || length > file->bytes - place)
-        return swath_refuse(report, file, "is damaged: its header is longer than the file");
+        return input_failure(report, file->path, "is damaged: its header is longer than the file");
     char *header = allocate_array((size_t)length + 1, 1);
     if (!header)
         return report_out_of_memory(report, "a header");
     file->lines.first_place = place + length;
-    const sonject_status status = byte_file_read(file->stream, place, header, (size_t)length)
-                                      ? take_header(report, header, file)
-                                      : swath_refuse(report, file, "is cut short: copy it again");
+    const sonject_status status =
+        byte_file_read(file->stream, place, header, (size_t)length)
+            ? take_header(report, header, file)
+            : input_failure(report, file->path, "is cut short: copy it again");
     free(header);
     return status;
 }
@@ -193,22 +191,5 @@ sonject_status npy_write(struct report *report, const char *path, enum pixel_typ
     count += snprintf(header + count, sizeof header - (size_t)count, "), }");
     header[count] = ' ';
     header[NPY_HEADER - 1] = '\n';
-    char *part = file_part_name(path);
-    CHECK_MEMORY(report, part, "a file name");
-    errno = 0;
-    FILE *file = fopen(part, "wb");
-    bool is_written = file && fwrite(header, 1, NPY_HEADER, file) == NPY_HEADER &&
-                      fwrite(numbers, 1, bytes, file) == bytes;
-    int error = errno;
-    if (file && fclose(file) != 0 && is_written) {
-        is_written = false;
-        error = errno;
-    }
-    if (!is_written)
-        file_discard(part);
-    const sonject_status status = is_written
-                                      ? file_publish(report, part, path)
-                                      : file_failure(report, path, "write", error ? error : EIO);
-    free(part);
-    return status;
+    return file_write_parts(report, path, header, NPY_HEADER, numbers, bytes);
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "image/plot.h"
 #include "image/raster.h"
@@ -31,9 +32,9 @@ static sonject_status add_row(struct report *report, const char *path, struct vi
     uint64_t clipped = 0;
     if (transfer_to_amplitude(transfer, layout->type, stored, (size_t)layout->columns * parts,
                               linear, &bad, &clipped) != SONJECT_OK)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: the pixel at row %llu, column %zu is not a finite number", path,
-                              (unsigned long long)row, bad / parts);
+        return input_failure(report, path,
+                             "the pixel at row %llu, column %zu is not a finite number",
+                             (unsigned long long)row, bad / parts);
     float *out = image->amplitude + (size_t)(row / image->block) * image->columns;
     for (size_t i = 0; i < (size_t)layout->columns * parts; i++)
         out[i / parts / (size_t)image->block] += linear[i] * linear[i];
@@ -95,13 +96,11 @@ static sonject_status to_ground_range(struct report *report, const char *path, e
                                       double altitude)
 {
     if (axis == RANGE_GROUND)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: is in ground range already: take the range axis out", path);
+        return input_failure(report, path, "is in ground range already: take the range axis out");
     if (axis == RANGE_UNKNOWN)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: does not say where its columns lie: give row spacing, column "
-                              "spacing and first slant range",
-                              path);
+        return input_failure(report, path,
+                             "does not say where its columns lie: give row spacing, column spacing "
+                             "and first slant range");
     if (!(altitude > 0.0))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "a ground range axis needs the altitude: give --altitude");

@@ -1,20 +1,18 @@
 #include "swath/raster_file.h"
 
+#include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
-#include "base/growing_text.h"
 #include "base/memory.h"
-#include "swath/png_palette.h"
-#include "swath/raster_module.h"
+#include "swath/image_library.h"
 #include "swath/swath_format.h"
 
-#define PIXELS_MAX      ((uint64_t)1 << 40)
-#define DESCRIPTION_MAX 8192    /* bytes of one that a copy keeps */
-#define PNG_SIDE_MAX    1000000 /* of libpng */
-#define JPEG_SIDE_MAX   65500   /* of libjpeg */
+#define PIXELS_MAX    ((uint64_t)1 << 40)
+#define PNG_SIDE_MAX  1000000 /* of libpng */
+#define JPEG_SIDE_MAX 65500   /* of libjpeg */
 
 /* Rows of an image that is written: those of source, or zeros, but for the region's pixels. */
 struct patched_rows {
@@ -36,11 +34,10 @@ static sonject_status give_rows(void *user, uint64_t first, uint64_t end, void *
     const size_t patch_bytes = (size_t)region->columns * pixel;
     const struct region strip = {first, 0, end - first, rows->layout.columns};
     const uint64_t region_end = region->first_row + region->rows;
-    if (rows->source) {
+    if (rows->source)
         CHECK(decoded_image_read(rows->report, rows->source, &strip, pixels));
-    } else {
+    else
         memset(pixels, 0, (size_t)(end - first) * row_bytes);
-    }
     for (uint64_t row = first > region->first_row ? first : region->first_row;
          row < end && row < region_end; row++)
         memcpy((unsigned char *)pixels + (size_t)(row - first) * row_bytes +
@@ -58,20 +55,10 @@ static sonject_status encode(struct patched_rows *rows, const char *part, const 
                              enum image_kind kind, const char *description, bool is_drawn)
 {
     const struct raster_module *module = NULL;
-    const struct raster_encoding encoding = {part,        name,     kind,      rows->layout,
-                                             description, is_drawn, give_rows, rows};
+    const struct image_encoding encoding = {part,        name,     kind,      rows->layout,
+                                            description, is_drawn, give_rows, rows};
     CHECK(raster_module_find(rows->report, name, &module));
     return module->encode(rows->report, &encoding);
-}
-
-/* The part file becomes path, or goes. */
-static sonject_status publish(struct report *report, sonject_status status, const char *part,
-                              const char *path)
-{
-    if (status == SONJECT_OK)
-        return file_publish(report, part, path);
-    file_discard(part);
-    return status;
 }
 
 sonject_status raster_file_copy_with_patch(struct report *report, struct decoded_image *source,
@@ -79,12 +66,9 @@ sonject_status raster_file_copy_with_patch(struct report *report, struct decoded
 {
     struct patched_rows rows = {report,       source,         source->layout, copy->region,
                                 copy->pixels, copy->progress, copy->user};
-    const enum image_kind new_kind =
-        kind == IMAGE_PNG || kind == IMAGE_JPEG ? IMAGE_PNG : IMAGE_TIFF;
-    char description[DESCRIPTION_MAX];
-    if (!decoded_image_attribute(source, "", description, sizeof description))
-        *description = '\0';
-    return encode(&rows, copy->part, copy->path, new_kind, description, false);
+    const bool is_png = kind == IMAGE_PNG || kind == IMAGE_JPEG;
+    return encode(&rows, copy->part, copy->path, is_png ? IMAGE_PNG : IMAGE_TIFF,
+                  source->description, false);
 }
 
 static sonject_status kind_to_write(struct report *report, const char *path,
@@ -116,24 +100,47 @@ static sonject_status kind_to_write(struct report *report, const char *path,
     return SONJECT_OK;
 }
 
+/* Writes at result the pixels of an 8 bit grey PNG as numbers of a palette's colours. */
+static sonject_status colour_png(struct report *report, const char *grey, const uint8_t *palette,
+                                 const char *result, const char *name)
+{
+    unsigned char header[PNG_HEADER_PLACE + PNG_HEADER_BYTES];
+    unsigned char head[PNG_HEAD_BYTES];
+    uint64_t bytes = 0;
+    errno = 0;
+    FILE *from = byte_file_open(grey, &bytes);
+    FILE *to = from ? fopen(result, "wb") : NULL;
+    bool is_good = to && bytes >= sizeof header && byte_file_read(from, 0, header, sizeof header);
+    if (is_good) {
+        png_colour_head(header, palette, head);
+        is_good = fwrite(head, 1, sizeof head, to) == sizeof head &&
+                  byte_file_copy(from, sizeof header, bytes - sizeof header, to);
+    }
+    if (to && fclose(to) != 0)
+        is_good = false;
+    const int error = errno != 0 ? errno : EIO;
+    if (from)
+        fclose(from);
+    return is_good ? SONJECT_OK : file_failure(report, name, "write", error);
+}
+
 static sonject_status write_rows(struct patched_rows *rows, const char *path,
                                  const char *description, bool is_drawn, const uint8_t *palette)
 {
     enum image_kind kind;
-    sonject_status status = kind_to_write(rows->report, path, &rows->layout, &kind);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(kind_to_write(rows->report, path, &rows->layout, &kind));
     char *part = file_part_name(path);
     char *coloured = part ? file_part_name(part) : NULL;
-    if (coloured) {
-        status = encode(rows, part, path, kind, description, is_drawn);
-        if (status == SONJECT_OK && palette)
-            status = png_colour(rows->report, part, palette, coloured, path);
-        status = publish(rows->report, status, palette ? coloured : part, path);
+    const char *last = palette ? coloured : part;
+    sonject_status status = coloured ? encode(rows, part, path, kind, description, is_drawn)
+                                     : report_out_of_memory(rows->report, "a file name");
+    if (palette)
+        THEN(status, colour_png(rows->report, part, palette, coloured, path));
+    THEN(status, file_publish(rows->report, last, path));
+    if (coloured)
+        file_discard(coloured);
+    if (part)
         file_discard(part);
-    } else {
-        status = report_out_of_memory(rows->report, "a file name");
-    }
     free(coloured);
     free(part);
     return status;
@@ -154,9 +161,8 @@ sonject_status raster_file_write(struct report *report, const char *path,
         growing_text_add(&text, "%s%s=%s", text.length > 0 ? "\n" : "", attributes[i].name,
                          attributes[i].value);
     char *description = growing_text_end(&text);
-    const sonject_status status =
-        description ? write_rows(&rows, path, description, layout->channels == 3, NULL)
-                    : report_out_of_memory(report, "a description");
+    CHECK_MEMORY(report, description, "a description");
+    const sonject_status status = write_rows(&rows, path, description, layout->channels == 3, NULL);
     free(description);
     return status;
 }
@@ -171,4 +177,93 @@ sonject_status raster_file_write_placed(struct report *report, const char *path,
                ? write_rows(&rows, path, "", true, palette)
                : report_failure(report, SONJECT_ERROR_STORAGE,
                                 "%s: the region is not inside the image", path);
+}
+
+static sonject_status write_npy(struct report *report, const char *path,
+                                const struct raster_layout *layout,
+                                const struct raster_attribute *attributes, size_t attribute_count,
+                                const void *pixels)
+{
+    (void)attributes, (void)attribute_count;
+    return npy_write(report, path, layout->type, layout->channels == 2,
+                     (const uint64_t[]){layout->rows, layout->columns}, 2, pixels);
+}
+
+static sonject_status write_image(struct report *report, const char *path,
+                                  const struct raster_layout *layout,
+                                  const struct raster_attribute *attributes, size_t attribute_count,
+                                  const void *pixels)
+{
+    static const char *const complex_names[] = {"real", "imag"};
+    return raster_file_write(report, path, layout, layout->channels == 2 ? complex_names : NULL,
+                             attributes, attribute_count, pixels);
+}
+
+#ifndef HAS_HDF5
+sonject_status hdf5_array_write(struct report *report, const char *path,
+                                const struct raster_layout *layout,
+                                const struct raster_attribute *notes, size_t note_count,
+                                const void *pixels)
+{
+    (void)layout, (void)notes, (void)note_count, (void)pixels;
+    return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                          "%s: this build of sonject has no HDF5 files: build it with HDF5", path);
+}
+#endif
+
+/* Formats that lose nothing. */
+static const struct whole_format {
+    const char *extension;
+    sonject_status (*write)(struct report *report, const char *path,
+                            const struct raster_layout *layout,
+                            const struct raster_attribute *attributes, size_t attribute_count,
+                            const void *pixels);
+    bool is_for_grey; /* of whole numbers alone */
+} whole_formats[] = {{".tif", write_image, false},     {".tiff", write_image, false},
+                     {".png", write_image, true},      {".npy", write_npy, false},
+                     {".h5", hdf5_array_write, false}, {".hdf5", hdf5_array_write, false}};
+
+/* NULL: none. */
+static const struct whole_format *format_of(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; dot && i < sizeof whole_formats / sizeof *whole_formats; i++)
+        if (strcmp(dot, whole_formats[i].extension) == 0)
+            return &whole_formats[i];
+    return NULL;
+}
+
+bool raster_format_keeps_attributes(const char *path)
+{
+    const struct whole_format *format = format_of(path);
+    return !format || format->write != write_npy;
+}
+
+sonject_status raster_format_check(struct report *report, const char *path,
+                                   const struct raster_layout *layout)
+{
+    const struct whole_format *format = format_of(path);
+    const bool is_float = layout->type == PIXEL_FLOAT32;
+    if (!format)
+        return input_failure(report, path,
+                             "images are written without loss as .tif, .png, .npy or .h5: choose "
+                             "one of these extensions");
+    if (format->is_for_grey ? layout->channels == 1 && !is_float
+                            : layout->channels == 1 || is_float)
+        return SONJECT_OK;
+    return input_failure(report, path,
+                         "this format does not hold %s samples: write .tif, .npy or .h5, or ask "
+                         "for another type and give its scale",
+                         layout->channels == 2 ? "complex"
+                         : is_float            ? "floating-point"
+                                               : "integer");
+}
+
+sonject_status raster_format_write(struct report *report, const char *path,
+                                   const struct raster_layout *layout,
+                                   const struct raster_attribute *attributes,
+                                   size_t attribute_count, const void *pixels)
+{
+    CHECK(raster_format_check(report, path, layout));
+    return format_of(path)->write(report, path, layout, attributes, attribute_count, pixels);
 }

@@ -1,11 +1,12 @@
-/* New image files, by OpenImageIO. What reads them is the decoder (swath/decoded_image.h). */
+/* New image files, by OpenImageIO, libtiff, HDF5, and as NumPy arrays. What reads them is the
+ * decoder (swath/decoder.h). */
 #ifndef SONJECT_SWATH_RASTER_FILE_H
 #define SONJECT_SWATH_RASTER_FILE_H
 
 #include "base/report.h"
 #include "image/raster.h"
-#include "swath/decoded_image.h"
-#include "swath/image_kind.h"
+#include "swath/decoder.h"
+#include "swath/image_head.h"
 
 /* A named text that is stored with an image, as a line "name=value" of its description. Neither
  * part may hold a newline. */
@@ -44,5 +45,29 @@ sonject_status raster_file_write_placed(struct report *report, const char *path,
 sonject_status npy_write(struct report *report, const char *path, enum pixel_type type,
                          bool is_complex, const uint64_t *sides, int side_count,
                          const void *numbers);
+
+/* Writes a new HDF5 file with the one data set "image", complex as r and i, whose attributes the
+ * notes become. Published whole or not at all. Errors: STORAGE, MEMORY. */
+sonject_status hdf5_array_write(struct report *report, const char *path,
+                                const struct raster_layout *layout,
+                                const struct raster_attribute *notes, size_t note_count,
+                                const void *pixels);
+
+/* New files of whole rasters, in formats that lose nothing. */
+
+/* True if files of that extension keep attributes. */
+bool raster_format_keeps_attributes(const char *path);
+
+/* Checks that the extension of path tells a format that holds such samples. Errors: INPUT (lists
+ * the formats). */
+sonject_status raster_format_check(struct report *report, const char *path,
+                                   const struct raster_layout *layout);
+
+/* Writes the raster: complex where it has 2 channels. Published whole or not at all. Errors: INPUT
+ * (as raster_format_check), STORAGE, MEMORY, UNSUPPORTED. */
+sonject_status raster_format_write(struct report *report, const char *path,
+                                   const struct raster_layout *layout,
+                                   const struct raster_attribute *attributes,
+                                   size_t attribute_count, const void *pixels);
 
 #endif

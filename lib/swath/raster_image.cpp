@@ -1,8 +1,12 @@
-
+/* Images by OpenImageIO: PNG, JPEG, OpenEXR, BMP, PGM and PFM that are read, PNG and JPEG that are
+ * written; and the module of these and of TIFF, which is libtiff's. No exception leaves the file.
+ */
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,17 +15,36 @@
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/strutil.h>
 
-#include <sonject/version.h>
-
-#include "base/byte_file.h"
-#include "swath/plain_head.h"
-#include "swath/png_palette.h"
-#include "swath/raster_failure.hpp"
-#include "swath/raster_streams.hpp"
-#include "swath/raster_writer.hpp"
+#include "base/file.h"
+#include "swath/image_library.h"
 
 namespace
 {
+
+constexpr uint64_t pixels_max = uint64_t(1) << 40;
+constexpr int png_filter_none = 8; /* of libpng */
+
+/* Coarser coding would show in the noise of every pixel of the swath, not only near the target. */
+constexpr const char *jpeg_quality = "jpeg:98";
+
+/* What keeps text attributes, as lines of "name=value": every format has it. */
+constexpr const char *description_name = "ImageDescription";
+
+/* Runs work and turns every exception into a status. */
+template <typename Work> sonject_status guarded(struct report *report, const char *path, Work work)
+{
+    try {
+        return work();
+    } catch (const std::bad_alloc &) {
+        return report_out_of_memory(report, path);
+    } catch (const std::length_error &) {
+        return report_out_of_memory(report, path);
+    } catch (const std::exception &unforeseen) {
+        return input_failure(report, path, "%s", unforeseen.what());
+    } catch (...) {
+        return input_failure(report, path, "cannot be processed");
+    }
+}
 
 struct raster_image {
     std::string name; /* in messages */
@@ -37,37 +60,17 @@ struct raster_image {
     bool is_half = false;                /* stored as 16-bit floating point */
     bool is_swapped = false;             /* the imaginary part is stored before the real one */
 
-    /* Reads whole rows (from a tiled image: those columns) into pixels. */
-    void read(struct report *report, const struct region &region, void *pixels)
+    size_t pixel_size() const
     {
-        const OIIO::TypeDesc type = is_half ? OIIO::TypeDesc::FLOAT : spec.format;
-        const int x = spec.x + int(region.first_column);
-        const int y = spec.y + int(region.first_row);
-        const int x_end = x + int(region.columns);
-        const int y_end = y + int(region.rows);
-        const bool is_read =
-            spec.tile_width > 0
-                ? input->read_tiles(0, 0, x, x_end, y, y_end, 0, 1, 0, spec.nchannels, type, pixels)
-                : input->read_scanlines(0, 0, y, y_end, 0, 0, spec.nchannels, type, pixels);
-        const std::string reason = input->geterror();
-        if (!is_read || !reason.empty())
-            throw raster::failure{report_failure(
-                report, SONJECT_ERROR_INPUT, "%s: cut short or damaged at rows %llu...%llu: %s",
-                name.c_str(), (unsigned long long)region.first_row,
-                (unsigned long long)(region.first_row + region.rows - 1), reason.c_str())};
-        if (is_swapped)
-            swap_parts(static_cast<float *>(pixels), region.rows * region.columns);
-    }
-
-    /* Between the file's order and real, imaginary. */
-    static void swap_parts(float *parts, uint64_t count)
-    {
-        for (uint64_t i = 0; i < count; i++)
-            std::swap(parts[2 * i], parts[2 * i + 1]);
+        return layout.channels * pixel_bytes(layout.type);
     }
 };
 
-using namespace raster;
+const char *format_name(enum image_kind kind)
+{
+    static const char *const names[] = {"tiff", "png", "jpeg", "openexr", "bmp", "pnm"};
+    return names[kind];
+}
 
 /* A coloured PNG as the grey one that it was made of. */
 void restore_numbers(struct raster_image &file)
@@ -78,25 +81,23 @@ void restore_numbers(struct raster_image &file)
     const bool is_read = source && byte_file_read(source, 0, file.numbers.data(), size_t(bytes));
     if (source)
         std::fclose(source);
-    if (!is_read || bytes < PNG_COLOURED_BYTES)
-        file.numbers.assign(PNG_COLOURED_BYTES, 0);
+    if (!is_read || bytes < PNG_HEAD_BYTES)
+        file.numbers.assign(PNG_HEAD_BYTES, 0);
     const auto start = file.numbers.begin();
-    file.numbers.erase(start + PNG_NUMBERS_PLACE + PNG_HEADER_BYTES, start + PNG_COLOURED_BYTES);
+    file.numbers.erase(start + PNG_NUMBERS_PLACE + PNG_HEADER_BYTES, start + PNG_HEAD_BYTES);
     file.numbers.erase(start + PNG_HEADER_PLACE, start + PNG_NUMBERS_PLACE);
     file.view =
         std::make_unique<OIIO::Filesystem::IOMemReader>(file.numbers.data(), file.numbers.size());
 }
 
-void open_input(struct report *report, struct raster_image &file)
+sonject_status open_input(struct report *report, struct raster_image &file)
 {
-    const char *path = file.name.c_str();
+    const char *name = file.name.c_str();
     OIIO::ImageSpec configuration;
     file.input = OIIO::ImageInput::create(format_name(file.kind));
-    if (!file.input) {
-        const std::string reason = OIIO::geterror();
-        throw failure{
-            report_failure(report, SONJECT_ERROR_UNSUPPORTED, "%s: %s", path, reason.c_str())};
-    }
+    if (!file.input)
+        return report_failure(report, SONJECT_ERROR_UNSUPPORTED, "%s: %s", name,
+                              OIIO::geterror().c_str());
     file.input->threads(1);
     /* pixels as they are stored, not multiplied by anything */
     configuration.attribute("oiio:UnassociatedAlpha", 1);
@@ -105,9 +106,9 @@ void open_input(struct report *report, struct raster_image &file)
         configuration.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     const bool is_open = file.input->open(file.path, file.spec, configuration);
     const std::string reason = file.input->geterror(); /* of warnings too */
-    if (!is_open || !reason.empty())
-        throw failure{report_failure(report, SONJECT_ERROR_INPUT, "%s: cannot be read: %s", path,
-                                     reason.c_str())};
+    return is_open && reason.empty()
+               ? SONJECT_OK
+               : input_failure(report, name, "cannot be read: %s", reason.c_str());
 }
 
 /* "real" of "real" and of "layer.real"; the letters' case does not matter. */
@@ -118,7 +119,7 @@ std::string part_of_channel(const std::string &name)
 
 /* What OpenEXR itself takes. The format has no checksums: a window that a damaged byte changed is
  * told by the other one. Channels are sorted by their names, so only these tell which is which. */
-void check_openexr(struct report *report, struct raster_image &file)
+sonject_status check_openexr(struct report *report, struct raster_image &file)
 {
     const OIIO::ImageSpec &spec = file.spec;
     const char *fault = nullptr;
@@ -139,169 +140,125 @@ void check_openexr(struct report *report, struct raster_image &file)
         if (!file.is_swapped && !(first == "real" && second == "imag"))
             fault = "has two channels: name them real and imag";
     }
-    if (fault)
-        throw failure{
-            report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", file.name.c_str(), fault)};
+    return fault ? input_failure(report, file.name.c_str(), "%s", fault) : SONJECT_OK;
 }
 
-void take_layout(struct report *report, struct raster_image &file)
+sonject_status take_layout(struct report *report, struct raster_image &file)
 {
     const OIIO::ImageSpec &spec = file.spec;
-    const char *path = file.name.c_str();
+    const char *name = file.name.c_str();
     if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 ||
         uint64_t(spec.width) > pixels_max / uint64_t(spec.height))
-        throw failure{report_failure(report, SONJECT_ERROR_INPUT,
-                                     "%s: %d x %d x %d pixels are not an image that sonject reads",
-                                     path, spec.width, spec.height, spec.depth)};
+        return input_failure(report, name,
+                             "%d x %d x %d pixels are not an image that sonject reads", spec.width,
+                             spec.height, spec.depth);
     if (spec.nchannels != 1 && spec.nchannels != 2)
-        throw failure{report_failure(report, SONJECT_ERROR_INPUT,
-                                     "%s: has %d channels; sonject reads 1 (amplitude) or 2 (real, "
-                                     "imaginary); convert it to one channel first",
-                                     path, spec.nchannels)};
+        return input_failure(report, name,
+                             "has %d channels; sonject reads 1 (amplitude) or 2 (real, imaginary); "
+                             "convert it to one channel first",
+                             spec.nchannels);
     if (spec.nchannels == 2 && spec.alpha_channel >= 0)
-        throw failure{report_failure(report, SONJECT_ERROR_INPUT,
-                                     "%s: has 2 channels, grey and transparency; convert it to one "
-                                     "channel first",
-                                     path)};
-    file.layout.rows = uint64_t(spec.height);
-    file.layout.columns = uint64_t(spec.width);
-    file.layout.channels = uint32_t(spec.nchannels);
-    if (spec.format == OIIO::TypeDesc::UINT8)
-        file.layout.type = PIXEL_UINT8;
-    else if (spec.format == OIIO::TypeDesc::UINT16)
-        file.layout.type = PIXEL_UINT16;
-    else if (spec.format == OIIO::TypeDesc::FLOAT || file.is_half)
-        file.layout.type = PIXEL_FLOAT32;
-    else
-        throw failure{report_failure(report, SONJECT_ERROR_INPUT,
-                                     "%s: has pixels of type %s; sonject reads 8 and 16 bit "
-                                     "unsigned and 32 bit float: convert it to one of these",
-                                     path, spec.format.c_str())};
+        return input_failure(report, name,
+                             "has 2 channels, grey and transparency; convert it to one channel "
+                             "first");
+    file.layout = {uint64_t(spec.height), uint64_t(spec.width), uint32_t(spec.nchannels),
+                   spec.format == OIIO::TypeDesc::UINT8    ? PIXEL_UINT8
+                   : spec.format == OIIO::TypeDesc::UINT16 ? PIXEL_UINT16
+                                                           : PIXEL_FLOAT32};
+    if (file.layout.type == PIXEL_FLOAT32 && spec.format != OIIO::TypeDesc::FLOAT && !file.is_half)
+        return input_failure(report, name,
+                             "has pixels of type %s; sonject reads 8 and 16 bit unsigned and 32 "
+                             "bit float: convert it to one of these",
+                             spec.format.c_str());
+    return SONJECT_OK;
 }
 
-/* Rows that are decoded together. From within a strip libtiff does not start where channels are
- * stored apart. */
-uint64_t rows_of_strip(const struct raster_image &file)
+/* Whole rows, of tiled images whole rows of tiles, into file.rows. */
+sonject_status decode_rows(struct report *report, struct raster_image &file, uint64_t first,
+                           uint64_t end)
 {
-    const bool is_compressed = file.spec.get_string_attribute("compression") != "none";
-    const int rows = file.spec.get_int_attribute("tiff:RowsPerStrip", 1);
-    return file.kind == IMAGE_TIFF && is_compressed && rows > 1 ? uint64_t(rows) : 1;
+    const OIIO::ImageSpec &spec = file.spec;
+    const OIIO::TypeDesc type = file.is_half ? OIIO::TypeDesc::FLOAT : spec.format;
+    const int y = spec.y + int(first);
+    const int y_end = spec.y + int(end);
+    if (first == file.first_row && end == file.end_row)
+        return SONJECT_OK;
+    file.end_row = file.first_row;
+    file.rows.resize(size_t((end - first) * file.layout.columns * file.pixel_size()));
+    const bool is_read =
+        spec.tile_width > 0 ? file.input->read_tiles(0, 0, spec.x, spec.x + spec.width, y, y_end, 0,
+                                                     1, 0, spec.nchannels, type, file.rows.data())
+                            : file.input->read_scanlines(0, 0, y, y_end, 0, 0, spec.nchannels, type,
+                                                         file.rows.data());
+    const std::string reason = file.input->geterror();
+    if (!is_read || !reason.empty())
+        return input_failure(
+            report, file.name.c_str(), "cut short or damaged at rows %llu...%llu: %s",
+            (unsigned long long)first, (unsigned long long)(end - 1), reason.c_str());
+    float *parts = reinterpret_cast<float *>(file.rows.data());
+    for (uint64_t i = 0; file.is_swapped && i < (end - first) * file.layout.columns; i++)
+        std::swap(parts[2 * i], parts[2 * i + 1]);
+    file.first_row = first;
+    file.end_row = end;
+    return SONJECT_OK;
 }
 
-/* Rows of an image without tiles: whole ones, of which the region's columns are kept. */
-void read_by_rows(struct report *report, struct raster_image &file, const struct region &region,
-                  unsigned char *pixels)
+sonject_status read_region(struct report *report, struct raster_image &file,
+                           const struct region &region, unsigned char *pixels)
 {
-    const uint64_t pixel = file.layout.channels * pixel_bytes(file.layout.type);
-    const uint64_t unit = rows_of_strip(file);
-    const uint64_t some = rows_at_once(file.layout) / unit * unit;
+    const uint64_t unit = file.spec.tile_height > 0 ? uint64_t(file.spec.tile_height) : 1;
+    const uint64_t some = rows_at_once(&file.layout) / unit * unit;
     const uint64_t at_once = some > 0 ? some : unit;
     const uint64_t region_end = region.first_row + region.rows;
     const uint64_t wanted_end = (region_end - 1) / unit * unit + unit;
     const uint64_t end = wanted_end < file.layout.rows ? wanted_end : file.layout.rows;
-    const uint64_t start = region.first_row / unit * unit;
-    const uint64_t kept = region.columns * pixel;
-    std::vector<unsigned char> &rows = file.rows;
-    for (uint64_t first = start; first < end; first += at_once) {
+    const size_t pixel = file.pixel_size();
+    for (uint64_t first = region.first_row / unit * unit; first < end; first += at_once) {
         const uint64_t last = end - first < at_once ? end : first + at_once;
-        if (first != file.first_row || last != file.end_row) {
-            file.end_row = 0;
-            rows.resize(size_t((last - first) * row_bytes(file.layout)));
-            file.read(report, {first, 0, last - first, file.layout.columns}, rows.data());
-            file.first_row = first;
-            file.end_row = last;
-        }
+        CHECK(decode_rows(report, file, first, last));
         for (uint64_t row = first; row < last; row++)
             if (row >= region.first_row && row < region_end)
-                std::memcpy(pixels + (row - region.first_row) * kept,
-                            rows.data() + (row - first) * row_bytes(file.layout) +
-                                region.first_column * pixel,
-                            kept);
+                std::memcpy(pixels + (row - region.first_row) * region.columns * pixel,
+                            file.rows.data() +
+                                ((row - first) * file.layout.columns + region.first_column) * pixel,
+                            region.columns * pixel);
     }
+    return SONJECT_OK;
 }
 
-/* One tile after the other. */
-void read_by_tiles(struct report *report, struct raster_image &file, const struct region &region,
-                   unsigned char *pixels)
+sonject_status open_file(struct report *report, struct raster_image &file)
 {
-    const uint64_t pixel = file.layout.channels * pixel_bytes(file.layout.type);
-    const uint64_t height = uint64_t(file.spec.tile_height);
-    const uint64_t width = uint64_t(file.spec.tile_width);
-    const uint64_t row_end = region.first_row + region.rows;
-    const uint64_t column_end = region.first_column + region.columns;
-    std::vector<unsigned char> tile(size_t(height * width * pixel));
-    for (uint64_t row = region.first_row / height * height; row < row_end; row += height)
-        for (uint64_t column = region.first_column / width * width; column < column_end;
-             column += width) {
-            const uint64_t rows = file.layout.rows - row < height ? file.layout.rows - row : height;
-            const uint64_t columns =
-                file.layout.columns - column < width ? file.layout.columns - column : width;
-            file.read(report, {row, column, rows, columns}, tile.data());
-            const uint64_t first = row > region.first_row ? row : region.first_row;
-            const uint64_t last = row + rows < row_end ? row + rows : row_end;
-            const uint64_t left = column > region.first_column ? column : region.first_column;
-            const uint64_t right = column + columns < column_end ? column + columns : column_end;
-            for (uint64_t i = first; i < last; i++)
-                std::memcpy(pixels + ((i - region.first_row) * region.columns +
-                                      (left - region.first_column)) *
-                                         pixel,
-                            tile.data() + ((i - row) * columns + (left - column)) * pixel,
-                            (right - left) * pixel);
-        }
-}
-
-void read_region(struct report *report, struct raster_image &file, const struct region &region,
-                 void *pixels)
-{
-    if (file.spec.tile_width > 0)
-        read_by_tiles(report, file, region, static_cast<unsigned char *>(pixels));
-    else
-        read_by_rows(report, file, region, static_cast<unsigned char *>(pixels));
-}
-
-/* Of PNG and JPEG the decoder alone tells that they are cut short: at once,
- * not after hours of work. */
-void decode_to_the_end(struct report *report, struct raster_image &file)
-{
-    file.rows.resize(size_t(row_bytes(file.layout)));
-    file.read(report, {file.layout.rows - 1, 0, 1, file.layout.columns}, file.rows.data());
-}
-
-std::unique_ptr<struct raster_image> open_file(struct report *report, const char *name,
-                                               const char *path)
-{
-    std::unique_ptr<struct raster_image> file(new struct raster_image);
-    file->name = name;
-    file->path = path;
+    const char *name = file.name.c_str();
+    const char *path = file.path.c_str();
     unsigned char head[16];
     uint64_t bytes = 0;
     FILE *stream = byte_file_open(path, &bytes);
     const size_t count = stream ? std::fread(head, 1, sizeof head, stream) : 0;
     const int error = stream && !std::ferror(stream) ? 0 : errno;
+    bool is_coloured = false;
     if (stream)
         std::fclose(stream);
     if (error != 0)
-        throw failure{file_refuse(report, name, error)};
-    if (!image_kind_of_beginning(head, count, &file->kind))
-        throw failure{image_kind_refuse(report, name, head, count)};
-    bool is_coloured = false;
-    if (file->kind == IMAGE_TIFF)
-        require(tiff_check(report, name, path));
-    if (file->kind == IMAGE_PNG)
-        require(png_check(report, name, path, &is_coloured));
-    if (file->kind == IMAGE_BMP)
-        require(bmp_check(report, path));
-    if (file->kind == IMAGE_PNM)
-        require(pnm_check(report, path));
+        return file_refuse(report, name, error);
+    if (!image_kind_of_beginning(head, count, &file.kind))
+        return image_kind_refuse(report, name, head, count);
+    if (file.kind == IMAGE_PNG)
+        CHECK(png_check(report, name, path, &is_coloured));
+    if (file.kind == IMAGE_BMP)
+        CHECK(bmp_check(report, name, path));
+    if (file.kind == IMAGE_PNM)
+        CHECK(pnm_check(report, name, path));
     if (is_coloured)
-        restore_numbers(*file);
-    open_input(report, *file);
-    if (file->kind == IMAGE_OPENEXR)
-        check_openexr(report, *file);
-    take_layout(report, *file);
-    if (file->kind == IMAGE_PNG || file->kind == IMAGE_JPEG)
-        decode_to_the_end(report, *file);
-    return file;
+        restore_numbers(file);
+    CHECK(open_input(report, file));
+    if (file.kind == IMAGE_OPENEXR)
+        CHECK(check_openexr(report, file));
+    CHECK(take_layout(report, file));
+    /* Of PNG and JPEG the decoder alone tells that they are cut short: at once, not after hours of
+     * work. */
+    if (file.kind == IMAGE_PNG || file.kind == IMAGE_JPEG)
+        CHECK(decode_rows(report, file, file.layout.rows - 1, file.layout.rows));
+    return SONJECT_OK;
 }
 
 void raster_close(void *image)
@@ -318,85 +275,170 @@ void raster_close(void *image)
 sonject_status raster_open(struct report *report, const char *name, const char *path, const char *,
                            bool, void **image, struct image_facts *facts)
 {
-    *image = nullptr;
     return guarded(report, name, [&] {
-        auto file = open_file(report, name, path);
-        *facts = {file->layout, 0, false};
+        std::unique_ptr<struct raster_image> file(new struct raster_image);
+        file->name = name;
+        file->path = path;
+        CHECK(open_file(report, *file));
+        const std::string text(file->spec.get_string_attribute(description_name));
+        facts->layout = file->layout;
+        facts->description = copy_text(text.c_str());
+        CHECK_MEMORY(report, facts->description, name);
         *image = file.release();
+        return SONJECT_OK;
     });
-}
-
-char *raster_attribute(void *image, const char *name)
-{
-    try {
-        const std::string description(
-            static_cast<struct raster_image *>(image)->spec.get_string_attribute(description_name));
-        if (!*name)
-            return strdup(description.c_str());
-        const std::string lines = "\n" + description + "\n";
-        const std::string start = "\n" + std::string(name) + "=";
-        const size_t line = lines.find(start);
-        if (line == std::string::npos)
-            return nullptr;
-        const size_t first = line + start.size();
-        return strdup(lines.substr(first, lines.find('\n', first) - first).c_str());
-    } catch (...) {
-        return nullptr;
-    }
 }
 
 sonject_status raster_read(struct report *report, void *image, const struct region *region,
                            void *pixels)
 {
     auto &file = *static_cast<struct raster_image *>(image);
-    return guarded(report, file.name.c_str(), [&] { read_region(report, file, *region, pixels); });
-}
-
-sonject_status raster_change(struct report *report, void *image, const struct region *region,
-                             const void *pixels)
-{
-    const auto &file = *static_cast<const struct raster_image *>(image);
-    if (file.kind != IMAGE_TIFF)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: is no TIFF", file.name.c_str());
-    return tiff_change(report, file.name.c_str(), file.path.c_str(), region, pixels);
-}
-
-sonject_status raster_finish(struct report *, void *)
-{
-    return SONJECT_OK;
-}
-
-sonject_status raster_encode(struct report *report, const struct raster_encoding *encoding)
-{
-    return guarded(report, encoding->name, [&] {
-        const struct raster_layout &layout = encoding->layout;
-        const uint64_t at_once = rows_at_once(layout);
-        std::unique_ptr<image_writer> output;
-        std::vector<unsigned char> strip(
-            size_t((at_once < layout.rows ? at_once : layout.rows) * row_bytes(layout)));
-        for (uint64_t row = 0; row < layout.rows; row += at_once) {
-            const uint64_t end = layout.rows - row < at_once ? layout.rows : row + at_once;
-            require(encoding->give_rows(encoding->user, row, end, strip.data()));
-            if (!output)
-                output = std::make_unique<image_writer>(report, *encoding);
-            output->write_rows(row, end, strip.data());
-        }
-        output->finish();
+    return guarded(report, file.name.c_str(), [&] {
+        return read_region(report, file, *region, static_cast<unsigned char *>(pixels));
     });
 }
 
+/* Where encoders write to. They must not learn of a failure, for they would print it or end the
+ * process: the bytes are dropped, and whoever drives the encoder asks for the error. */
+class file_sink final : public OIIO::Filesystem::IOProxy
+{
+  public:
+    explicit file_sink(const char *path)
+        : IOProxy(path, Write), file(std::fopen(path, "wb")), error(file ? 0 : errno)
+    {
+    }
+    ~file_sink() override
+    {
+        finish();
+    }
+    /* not "file": OpenImageIO would take this for a proxy of its own and look for a FILE in it */
+    const char *proxytype() const override
+    {
+        return "sink";
+    }
+    int64_t tell() override
+    {
+        return position;
+    }
+    bool seek(int64_t offset) override
+    {
+        position = offset;
+        check(error != 0 || fseeko(file, offset, SEEK_SET) == 0);
+        return true;
+    }
+    size_t write(const void *bytes, size_t count) override
+    {
+        check(error != 0 || std::fwrite(bytes, 1, count, file) == count);
+        position += int64_t(count);
+        end = position > end ? position : end;
+        return count;
+    }
+    size_t size() const override
+    {
+        return size_t(end);
+    }
+    /* 0, or the errno of the first failure. */
+    int error_so_far() const
+    {
+        return error;
+    }
+    int finish()
+    {
+        check(!file || std::fclose(file) == 0);
+        file = nullptr;
+        return error;
+    }
+
+  private:
+    void check(bool is_good)
+    {
+        if (!is_good && error == 0)
+            error = errno != 0 ? errno : EIO;
+    }
+
+    std::FILE *file;
+    int error;
+    int64_t position = 0;
+    int64_t end = 0;
+};
+
+/* A new image in the making. */
+struct raster_output {
+    std::unique_ptr<file_sink> sink;
+    std::unique_ptr<OIIO::ImageOutput> encoder;
+};
+
+bool open_encoder(struct raster_output &output, const struct image_encoding &encoding)
+{
+    static const OIIO::TypeDesc types[] = {OIIO::TypeDesc::UINT8, OIIO::TypeDesc::UINT16,
+                                           OIIO::TypeDesc::FLOAT};
+    const struct raster_layout &layout = encoding.layout;
+    OIIO::ImageSpec spec(int(layout.columns), int(layout.rows), int(layout.channels),
+                         types[layout.type - PIXEL_UINT8]);
+    output.sink = std::make_unique<file_sink>(encoding.path);
+    if (output.sink->error_so_far() != 0)
+        return false;
+    OIIO::Filesystem::IOProxy *proxy = output.sink.get();
+    spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    if (encoding.kind == IMAGE_JPEG)
+        spec.attribute("Compression", jpeg_quality);
+    if (*encoding.description)
+        spec.attribute(description_name, encoding.description);
+    /* few values, or noise by way of a colour map: filters and searching for longer matches cost
+     * much time, and make files no smaller */
+    if (encoding.is_drawn) {
+        spec.attribute("png:filter", png_filter_none);
+        spec.attribute("png:compressionLevel", 1);
+    }
+    output.encoder = OIIO::ImageOutput::create(format_name(encoding.kind));
+    if (!output.encoder)
+        return false;
+    output.encoder->threads(1);
+    return output.encoder->open(encoding.path, spec);
+}
+
+sonject_status cannot_write(struct report *report, const char *name, struct raster_output &output)
+{
+    const std::string reason = output.encoder ? output.encoder->geterror() : OIIO::geterror();
+    const int error = output.sink->finish();
+    return error != 0 ? file_failure(report, name, "write", error)
+                      : report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot write: %s", name,
+                                       reason.c_str());
+}
+
+sonject_status write_rows(struct report *report, const struct image_encoding &encoding)
+{
+    const struct raster_layout &layout = encoding.layout;
+    const uint64_t at_once = rows_at_once(&layout);
+    struct raster_output output;
+    std::vector<unsigned char> strip(
+        size_t(at_once * layout.columns * layout.channels * pixel_bytes(layout.type)));
+    for (uint64_t row = 0; row < layout.rows; row += at_once) {
+        const uint64_t end = layout.rows - row < at_once ? layout.rows : row + at_once;
+        CHECK(encoding.give_rows(encoding.user, row, end, strip.data()));
+        /* after the first rows: libpng prints a complaint about a PNG that is given up without any
+         */
+        if ((!output.encoder && !open_encoder(output, encoding)) ||
+            !output.encoder->write_scanlines(int(row), int(end), 0, output.encoder->spec().format,
+                                             strip.data()) ||
+            output.encoder->has_error() || output.sink->error_so_far() != 0)
+            return cannot_write(report, encoding.name, output);
+    }
+    return output.encoder->close() && !output.encoder->has_error() && output.sink->finish() == 0
+               ? SONJECT_OK
+               : cannot_write(report, encoding.name, output);
+}
+
+sonject_status encode(struct report *report, const struct image_encoding *encoding)
+{
+    if (encoding->kind == IMAGE_TIFF)
+        return tiff_encode(report, encoding);
+    return guarded(report, encoding->name, [&] { return write_rows(report, *encoding); });
+}
+
+const struct image_library openimageio = {raster_open, raster_close, raster_read, nullptr, nullptr};
+
 } // namespace
 
-#define TEXT_OF(number)   #number
-#define DIGITS_OF(number) TEXT_OF(number)
-
-const struct raster_module raster_module_openimageio = {
-    RASTER_MODULE_MARK,
-    sizeof(struct raster_module),
-    sizeof(struct report),
-    sizeof(struct raster_encoding),
-    DIGITS_OF(SONJECT_VERSION_MAJOR) "." DIGITS_OF(SONJECT_VERSION_MINOR) "." DIGITS_OF(
-        SONJECT_VERSION_PATCH),
-    {raster_open, raster_close, raster_attribute, raster_read, raster_change, raster_finish},
-    raster_encode,
-};
+const struct raster_module raster_module_openimageio = {MODULE_STAMP, &tiff_library, &openimageio,
+                                                        encode};

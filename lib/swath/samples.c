@@ -1,4 +1,4 @@
-#include "swath/samples.h"
+#include "swath/swath_format.h"
 
 #include <float.h>
 #include <math.h>
@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/byte_order.h"
+#include "base/file.h"
 #include "base/text.h"
 
 size_t stored_bytes(enum stored_type type)
@@ -173,9 +174,8 @@ static sonject_status refuse_sample(struct report *report, const char *path,
                  largest_of(stored, type));
     else if (number < 0.0 && is_whole(type))
         snprintf(why, sizeof why, "negative: sonject reads magnitudes, so convert the file first");
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: the sample at row %llu, column %llu is %s", path,
-                          (unsigned long long)row, (unsigned long long)column, why);
+    return input_failure(report, path, "the sample at row %llu, column %llu is %s",
+                         (unsigned long long)row, (unsigned long long)column, why);
 }
 
 sonject_status samples_exchange(struct report *report, const char *path,
@@ -230,16 +230,14 @@ sonject_status array_list_check(struct report *report, const char *path,
     if (list->matches == 1)
         return SONJECT_OK;
     if (list->count == 0 && !list->wanted)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: holds no two-dimensional array of numbers of float64, float32, "
-                              "uint8, uint16 or int16, or of complex ones of float64 or float32",
-                              path);
+        return input_failure(report, path,
+                             "holds no two-dimensional array of numbers of float64, float32, "
+                             "uint8, uint16 or int16, or of complex ones of float64 or float32");
     if (list->wanted)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: %s array '%s'; %s%s", path,
-                              list->matches > 1 ? "holds more than one" : "holds no",
-                              text_excerpt(excerpt, sizeof excerpt, list->wanted),
-                              list->count > 0 ? "choose one of " : "nor another image", list->text);
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: holds several arrays: say which is the image (array): %s", path,
-                          list->text);
+        return input_failure(report, path, "%s array '%s'; %s%s",
+                             list->matches > 1 ? "holds more than one" : "holds no",
+                             text_excerpt(excerpt, sizeof excerpt, list->wanted),
+                             list->count > 0 ? "choose one of " : "nor another image", list->text);
+    return input_failure(report, path, "holds several arrays: say which is the image (array): %s",
+                         list->text);
 }

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/byte_file.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "swath/swath_format.h"
@@ -16,11 +15,6 @@
 /* Recognised in this order. */
 static const struct swath_format *const formats[] = {&xtf_format, &npy_format, &mat_format,
                                                      &image_format, &hdf5_format};
-
-sonject_status swath_refuse(struct report *report, const struct swath_file *file, const char *what)
-{
-    return report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", file->path, what);
-}
 
 void swath_file_close(struct swath_file **file)
 {
@@ -66,11 +60,11 @@ static sonject_status open_recognised(struct report *report, struct swath_file *
     if (!format->has_names && beside && beside->has_names)
         array = NULL;
     if (channel != SONJECT_CHANNEL_ONLY && !format->has_channels)
-        return swath_refuse(report, file,
-                            "is no XTF file, so it has no channels: take the channel out");
+        return input_failure(report, file->path,
+                             "is no XTF file, so it has no channels: take the channel out");
     if (array && !format->has_names)
-        return swath_refuse(
-            report, file,
+        return input_failure(
+            report, file->path,
             "is neither HDF5 nor MATLAB, so its arrays have no names: take the array out");
     return format->open(report, file, channel, array);
 }
@@ -143,7 +137,20 @@ const struct xtf_file *swath_file_xtf(const struct swath_file *file)
 bool swath_file_attribute(const struct swath_file *file, const char *name, char *value,
                           size_t capacity)
 {
-    return file->decoded && decoded_image_attribute(file->decoded, name, value, capacity);
+    const size_t length = strlen(name);
+    const char *line = file->decoded ? file->decoded->description : NULL;
+    for (; line; line = strchr(line, '\n'), line = line ? line + 1 : NULL) {
+        if (strncmp(line, name, length) != 0 || line[length] != '=')
+            continue;
+        const char *text = line + length + 1;
+        const size_t count = strcspn(text, "\n");
+        if (count < capacity) {
+            memcpy(value, text, count);
+            value[count] = '\0';
+        }
+        return count < capacity;
+    }
+    return false;
 }
 
 static sonject_status check_region(struct report *report, const struct swath_file *file,
@@ -151,7 +158,7 @@ static sonject_status check_region(struct report *report, const struct swath_fil
 {
     return region_is_inside(&file->layout, region)
                ? SONJECT_OK
-               : swath_refuse(report, file, "the region is not inside the image");
+               : input_failure(report, file->path, "the region is not inside the image");
 }
 
 sonject_status swath_file_read(struct report *report, struct swath_file *file,
@@ -191,7 +198,7 @@ sonject_status swath_copy_bytes(struct report *report, const struct swath_file *
         errno = 0;
         if (!byte_file_copy(file->stream, place, some, out))
             return ferror(out) ? file_failure(report, copy->path, "write", errno)
-                               : swath_refuse(report, file, "is cut short: copy it again");
+                               : input_failure(report, file->path, "is cut short: copy it again");
         if (copy->progress &&
             copy->progress(copy->user, (double)place / (double)file->bytes, "write") != 0)
             return report_failure(report, SONJECT_CANCELLED, "cancelled");
@@ -244,7 +251,7 @@ static sonject_status exchange_lines(struct report *report, const struct swath_f
                                     region->first_column + (turned ? i : 0),
                                     turned ? region->rows : 1, turned ? 1 : region->columns};
         if (!byte_file_read(file->stream, place, line, bytes))
-            status = swath_refuse(report, file, "is cut short: copy it again");
+            status = input_failure(report, file->path, "is cut short: copy it again");
         else
             status = samples_exchange(report, file->path, &file->layout, &stored, &part, region,
                                       pixels, out != NULL);

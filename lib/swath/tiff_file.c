@@ -1,4 +1,4 @@
-#include "swath/tiff_file.h"
+#include "swath/image_library.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -6,30 +6,46 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/byte_file.h"
+#include <tiffio.h>
+
 #include "base/file.h"
-#include "base/memory.h"
 
 #define BLOCKS_MAX      ((uint32_t)1 << 25)
-#define BLOCK_BYTES_MAX ((uint64_t)256 << 20) /* of a tile or strip, decoded */
+#define BLOCK_BYTES_MAX ((uint64_t)256 << 20)               /* of a tile or strip, decoded */
+#define NEW_STRIP_BYTES ((uint64_t)1 << 18)                 /* of a new image */
+#define CLASSIC_MAX     (UINT32_MAX - ((uint64_t)64 << 20)) /* with some for its directory */
+#define ROWS_BYTES      ((uint64_t)64 << 20)                /* that are written at a time */
+
+/* What libtiff said first of what went wrong; all 0 before. */
+struct fault {
+    char message[256];
+    int error; /* errno then; 0: not the system's fault */
+};
+
+/* A block that was read last: pieces of an image come one after the other. */
+struct kept_block {
+    unsigned char *pixels; /* owned */
+    uint32_t number;
+    bool is_there;
+};
 
 /* Blocks are tiles or strips; strips are as wide as the image, and the last one may be short. */
-struct tiff_blocks {
-    struct report *report;
-    const char *name; /* in messages */
+struct tiff_image {
+    char *name, *path; /* name: in messages; owned */
     TIFF *file;
-    struct tiff_fault fault;
+    struct fault fault;
     uint32_t rows, columns; /* of the image */
     uint16_t channels, bits, compression;
     uint16_t planes; /* each with blocks of its own: of one channel, or of all */
     bool is_tiled;
     uint32_t block_rows, block_columns;
     uint32_t count;
+    struct kept_block kept[2]; /* of each plane */
 };
 
 static int hear(TIFF *file, void *user, const char *module, const char *format, va_list values)
 {
-    struct tiff_fault *fault = user;
+    struct fault *fault = user;
     (void)file;
     (void)module;
     if (!*fault->message) {
@@ -46,7 +62,8 @@ static int hear_warning(TIFF *file, void *user, const char *module, const char *
     return strstr(format, "IO error") ? hear(file, user, module, format, values) : 1;
 }
 
-TIFF *tiff_open(const char *path, const char *mode, struct tiff_fault *fault)
+/* Prints nothing. fault stays where it is while the file is open. */
+static TIFF *open_tiff(const char *path, const char *mode, struct fault *fault)
 {
     memset(fault, 0, sizeof *fault);
     TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
@@ -61,146 +78,138 @@ TIFF *tiff_open(const char *path, const char *mode, struct tiff_fault *fault)
     return file;
 }
 
-static sonject_status damaged(const struct tiff_blocks *blocks, const char *how)
+static sonject_status damaged(struct report *report, const struct tiff_image *image,
+                              const char *how)
 {
-    return report_failure(blocks->report, SONJECT_ERROR_INPUT, "%s: damaged TIFF: %s", blocks->name,
-                          how);
-}
-
-static sonject_status refuse(const struct tiff_blocks *blocks, const char *what)
-{
-    return report_failure(blocks->report, SONJECT_ERROR_INPUT, "%s: %s", blocks->name, what);
+    return input_failure(report, image->name, "damaged TIFF: %s", how);
 }
 
 /* Of what libtiff could not do. */
-static sonject_status tell_fault(const struct tiff_blocks *blocks)
+static sonject_status tell_fault(struct report *report, const struct tiff_image *image)
 {
-    errno = blocks->fault.error; /* the disk's failures are told by it */
-    return damaged(blocks, *blocks->fault.message ? blocks->fault.message : "cannot be read");
+    errno = image->fault.error; /* the disk's failures are told by it */
+    return damaged(report, image, *image->fault.message ? image->fault.message : "cannot be read");
 }
 
-static sonject_status check_type(const struct tiff_blocks *blocks)
+static sonject_status check_type(struct report *report, const struct tiff_image *image)
 {
     uint16_t format = SAMPLEFORMAT_UINT;
-    TIFFGetFieldDefaulted(blocks->file, TIFFTAG_SAMPLEFORMAT, &format);
+    TIFFGetFieldDefaulted(image->file, TIFFTAG_SAMPLEFORMAT, &format);
     if (format == SAMPLEFORMAT_COMPLEXINT || format == SAMPLEFORMAT_COMPLEXIEEEFP)
-        return refuse(blocks, "stores complex numbers as one channel; convert it to two 32-bit "
-                              "float channels (real, imaginary)");
+        return input_failure(report, image->name,
+                             "stores complex numbers as one channel; convert it to two 32-bit "
+                             "float channels (real, imaginary)");
     const bool is_unsigned = format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID;
-    if (((blocks->bits == 8 || blocks->bits == 16) && is_unsigned) ||
-        (blocks->bits == 32 && format == SAMPLEFORMAT_IEEEFP))
+    if (((image->bits == 8 || image->bits == 16) && is_unsigned) ||
+        (image->bits == 32 && format == SAMPLEFORMAT_IEEEFP))
         return SONJECT_OK;
-    return report_failure(
-        blocks->report, SONJECT_ERROR_INPUT,
-        "%s: has %u-bit %s pixels; sonject reads 8 and 16 bit unsigned and 32 bit float: "
-        "convert it to one of these",
-        blocks->name, blocks->bits,
+    return input_failure(
+        report, image->name,
+        "has %u-bit %s pixels; sonject reads 8 and 16 bit unsigned and 32 bit float: convert it to "
+        "one of these",
+        image->bits,
         is_unsigned ? "unsigned" : (format == SAMPLEFORMAT_INT ? "signed" : "floating-point"));
 }
 
-static sonject_status check_colours(const struct tiff_blocks *blocks)
+static sonject_status check_colours(struct report *report, const struct tiff_image *image)
 {
     uint16_t photometric = PHOTOMETRIC_MINISBLACK;
     uint16_t extras = 0;
     const uint16_t *kinds = NULL;
-    TIFFGetField(blocks->file, TIFFTAG_PHOTOMETRIC, &photometric);
-    TIFFGetFieldDefaulted(blocks->file, TIFFTAG_EXTRASAMPLES, &extras, &kinds);
+    TIFFGetField(image->file, TIFFTAG_PHOTOMETRIC, &photometric);
+    TIFFGetFieldDefaulted(image->file, TIFFTAG_EXTRASAMPLES, &extras, &kinds);
     if (photometric == PHOTOMETRIC_PALETTE)
-        return refuse(blocks, "has a palette; convert it to one channel first");
-    if (blocks->channels != 1 && blocks->channels != 2)
-        return report_failure(blocks->report, SONJECT_ERROR_INPUT,
-                              "%s: has %u channels; sonject reads 1 (amplitude) or 2 (real, "
-                              "imaginary); convert it to one channel first",
-                              blocks->name, blocks->channels);
-    if (blocks->channels == 2 && extras > 0 && kinds[0] != EXTRASAMPLE_UNSPECIFIED)
-        return refuse(blocks, "the second channel is transparency; convert it to one channel "
-                              "first");
+        return input_failure(report, image->name, "has a palette; convert it to one channel first");
+    if (image->channels != 1 && image->channels != 2)
+        return input_failure(report, image->name,
+                             "has %u channels; sonject reads 1 (amplitude) or 2 (real, imaginary); "
+                             "convert it to one channel first",
+                             image->channels);
+    if (image->channels == 2 && extras > 0 && kinds[0] != EXTRASAMPLE_UNSPECIFIED)
+        return input_failure(report, image->name,
+                             "the second channel is transparency; convert it to one channel first");
     if (photometric != PHOTOMETRIC_MINISBLACK)
-        return report_failure(
-            blocks->report, SONJECT_ERROR_INPUT,
-            "%s: %s (photometric interpretation %u); convert it to one where 0 "
-            "is black",
-            blocks->name, photometric == PHOTOMETRIC_MINISWHITE ? "0 is white" : "not a grey image",
-            photometric);
+        return input_failure(
+            report, image->name,
+            "%s (photometric interpretation %u); convert it to one where 0 is black",
+            photometric == PHOTOMETRIC_MINISWHITE ? "0 is white" : "not a grey image", photometric);
     return SONJECT_OK;
 }
 
-static sonject_status check_coding(const struct tiff_blocks *blocks)
+static sonject_status check_coding(struct report *report, const struct tiff_image *image)
 {
-    const uint16_t known[] = {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE,
-                              COMPRESSION_DEFLATE, COMPRESSION_PACKBITS};
+    static const uint16_t known[] = {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE,
+                                     COMPRESSION_DEFLATE, COMPRESSION_PACKBITS};
     uint16_t fill_order = FILLORDER_MSB2LSB;
     uint16_t predictor = PREDICTOR_NONE;
-    uint32_t strip_rows = 0;
     bool is_known = false;
-    TIFFGetFieldDefaulted(blocks->file, TIFFTAG_FILLORDER, &fill_order);
+    TIFFGetFieldDefaulted(image->file, TIFFTAG_FILLORDER, &fill_order);
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        is_known = is_known || blocks->compression == known[i];
+        is_known = is_known || image->compression == known[i];
     if (!is_known)
-        return report_failure(blocks->report, SONJECT_ERROR_INPUT,
-                              "%s: its compression (number %u) is not one that sonject reads: "
-                              "convert it to deflate, LZW or none",
-                              blocks->name, blocks->compression);
+        return input_failure(report, image->name,
+                             "its compression (number %u) is not one that sonject reads: convert "
+                             "it to deflate, LZW or none",
+                             image->compression);
     if (fill_order != FILLORDER_MSB2LSB)
-        return damaged(blocks, "it says impossible things about how pixels are stored");
-    TIFFGetField(blocks->file, TIFFTAG_PREDICTOR, &predictor);
-    if (predictor == PREDICTOR_FLOATINGPOINT && TIFFIsByteSwapped(blocks->file))
-        return refuse(blocks, "keeps floating-point differences in the other byte order, which "
-                              "libtiff cannot write: write it anew in this machine's");
-    /* OpenImageIO then takes turns between the planes, row by row, and cannot go back in a strip.
-     */
-    TIFFGetFieldDefaulted(blocks->file, TIFFTAG_ROWSPERSTRIP, &strip_rows);
-    if (blocks->planes > 1 && !blocks->is_tiled && blocks->compression != COMPRESSION_NONE &&
-        strip_rows > INT32_MAX)
-        return refuse(blocks, "is compressed in planes and does not say how many rows a strip has: "
-                              "write it anew, without compression or with rows per strip");
-    if (blocks->count > BLOCKS_MAX)
-        return refuse(blocks, "has more than 2^25 tiles or strips: write it with larger ones");
-    if ((blocks->is_tiled ? TIFFTileSize64(blocks->file) : TIFFStripSize64(blocks->file)) >
+        return damaged(report, image, "it says impossible things about how pixels are stored");
+    TIFFGetField(image->file, TIFFTAG_PREDICTOR, &predictor);
+    if (predictor == PREDICTOR_FLOATINGPOINT && TIFFIsByteSwapped(image->file))
+        return input_failure(report, image->name,
+                             "keeps floating-point differences in the other byte order, which "
+                             "libtiff cannot write: write it anew in this machine's");
+    if (image->count > BLOCKS_MAX)
+        return input_failure(report, image->name,
+                             "has more than 2^25 tiles or strips: write it with larger ones");
+    if ((image->is_tiled ? TIFFTileSize64(image->file) : TIFFStripSize64(image->file)) >
         BLOCK_BYTES_MAX)
-        return refuse(blocks, "its tiles or strips hold more than 256 MB each: write it with "
-                              "smaller ones");
+        return input_failure(
+            report, image->name,
+            "its tiles or strips hold more than 256 MB each: write it with smaller ones");
+    if (image->rows == 0 || image->block_rows == 0 || image->block_columns == 0 ||
+        image->count < image->planes)
+        return damaged(report, image, "its tiles or strips have no size");
     return SONJECT_OK;
 }
 
-static void look_at_blocks(struct tiff_blocks *blocks)
+static void look_at_blocks(struct tiff_image *image)
 {
-    TIFF *file = blocks->file;
+    TIFF *file = image->file;
     uint16_t planes = PLANARCONFIG_CONTIG;
-    blocks->channels = 1;
-    blocks->bits = 1;
-    blocks->compression = COMPRESSION_NONE;
-    TIFFGetField(file, TIFFTAG_IMAGEWIDTH, &blocks->columns);
-    TIFFGetField(file, TIFFTAG_IMAGELENGTH, &blocks->rows);
-    TIFFGetFieldDefaulted(file, TIFFTAG_SAMPLESPERPIXEL, &blocks->channels);
-    TIFFGetFieldDefaulted(file, TIFFTAG_BITSPERSAMPLE, &blocks->bits);
-    TIFFGetFieldDefaulted(file, TIFFTAG_COMPRESSION, &blocks->compression);
+    image->channels = 1;
+    image->bits = 1;
+    image->compression = COMPRESSION_NONE;
+    TIFFGetField(file, TIFFTAG_IMAGEWIDTH, &image->columns);
+    TIFFGetField(file, TIFFTAG_IMAGELENGTH, &image->rows);
+    TIFFGetFieldDefaulted(file, TIFFTAG_SAMPLESPERPIXEL, &image->channels);
+    TIFFGetFieldDefaulted(file, TIFFTAG_BITSPERSAMPLE, &image->bits);
+    TIFFGetFieldDefaulted(file, TIFFTAG_COMPRESSION, &image->compression);
     TIFFGetFieldDefaulted(file, TIFFTAG_PLANARCONFIG, &planes);
-    blocks->planes = planes == PLANARCONFIG_SEPARATE ? blocks->channels : 1;
-    blocks->is_tiled = TIFFIsTiled(file) != 0;
-    blocks->block_columns = blocks->columns;
-    if (blocks->is_tiled) {
-        TIFFGetField(file, TIFFTAG_TILEWIDTH, &blocks->block_columns);
-        TIFFGetField(file, TIFFTAG_TILELENGTH, &blocks->block_rows);
+    image->planes = planes == PLANARCONFIG_SEPARATE ? image->channels : 1;
+    image->is_tiled = TIFFIsTiled(file) != 0;
+    image->block_columns = image->columns;
+    if (image->is_tiled) {
+        TIFFGetField(file, TIFFTAG_TILEWIDTH, &image->block_columns);
+        TIFFGetField(file, TIFFTAG_TILELENGTH, &image->block_rows);
     } else {
-        TIFFGetFieldDefaulted(file, TIFFTAG_ROWSPERSTRIP, &blocks->block_rows);
+        TIFFGetFieldDefaulted(file, TIFFTAG_ROWSPERSTRIP, &image->block_rows);
     }
-    if (!blocks->is_tiled && blocks->block_rows > blocks->rows)
-        blocks->block_rows = blocks->rows;
-    blocks->count = blocks->is_tiled ? TIFFNumberOfTiles(file) : TIFFNumberOfStrips(file);
+    if (!image->is_tiled && image->block_rows > image->rows)
+        image->block_rows = image->rows;
+    image->count = image->is_tiled ? TIFFNumberOfTiles(file) : TIFFNumberOfStrips(file);
 }
 
 /* Rows that a block holds whose first one is this. */
-static uint32_t rows_of_block(const struct tiff_blocks *blocks, uint32_t row)
+static uint32_t rows_of_block(const struct tiff_image *image, uint32_t row)
 {
-    const uint32_t left = blocks->rows - row;
-    return blocks->is_tiled || left > blocks->block_rows ? blocks->block_rows : left;
+    const uint32_t left = image->rows - row;
+    return image->is_tiled || left > image->block_rows ? image->block_rows : left;
 }
 
-static uint64_t bytes_of_block(const struct tiff_blocks *blocks, uint32_t row)
+static uint64_t bytes_of_block(const struct tiff_image *image, uint32_t row)
 {
-    return blocks->is_tiled ? TIFFTileSize64(blocks->file)
-                            : TIFFVStripSize64(blocks->file, rows_of_block(blocks, row));
+    return image->is_tiled ? TIFFTileSize64(image->file)
+                           : TIFFVStripSize64(image->file, rows_of_block(image, row));
 }
 
 static int compare_places(const void *a, const void *b)
@@ -212,139 +221,212 @@ static int compare_places(const void *a, const void *b)
 
 /* Blocks must lie apart: one that is seen in several places of the image cannot be changed in one
  * of them. places: room for a place and an end for each. */
-static sonject_status check_places(const struct tiff_blocks *blocks, uint64_t file_bytes,
-                                   uint64_t (*places)[2])
+static sonject_status check_places(struct report *report, const struct tiff_image *image,
+                                   uint64_t file_bytes, uint64_t (*places)[2])
 {
-    const uint32_t in_plane = blocks->count / blocks->planes;
-    const uint32_t across = (blocks->columns - 1) / blocks->block_columns + 1;
-    for (uint32_t i = 0; i < blocks->count; i++) {
-        const uint32_t row = i % in_plane / across * blocks->block_rows;
-        const uint64_t count = TIFFGetStrileByteCount(blocks->file, i);
-        places[i][0] = TIFFGetStrileOffset(blocks->file, i);
+    const uint32_t in_plane = image->count / image->planes;
+    const uint32_t across = (image->columns - 1) / image->block_columns + 1;
+    for (uint32_t i = 0; i < image->count; i++) {
+        const uint32_t row = i % in_plane / across * image->block_rows;
+        const uint64_t count = TIFFGetStrileByteCount(image->file, i);
+        places[i][0] = TIFFGetStrileOffset(image->file, i);
         places[i][1] = places[i][0] + count;
         if (count == 0)
-            return damaged(blocks, "some of its tiles or strips were never written");
+            return damaged(report, image, "some of its tiles or strips were never written");
         if (places[i][0] > file_bytes || count > file_bytes - places[i][0])
-            return damaged(blocks, "cut short: some of its tiles or strips are not there");
-        if (blocks->compression == COMPRESSION_NONE && count < bytes_of_block(blocks, row))
-            return damaged(blocks, "some of its tiles or strips are too short");
+            return damaged(report, image, "cut short: some of its tiles or strips are not there");
+        if (image->compression == COMPRESSION_NONE && count < bytes_of_block(image, row))
+            return damaged(report, image, "some of its tiles or strips are too short");
     }
-    qsort(places, blocks->count, sizeof *places, compare_places);
-    for (uint32_t i = 1; i < blocks->count; i++)
+    qsort(places, image->count, sizeof *places, compare_places);
+    for (uint32_t i = 1; i < image->count; i++)
         if (places[i][0] < places[i - 1][1])
-            return refuse(blocks, "keeps several of its tiles or strips in the same place: write "
-                                  "it anew, each on its own");
+            return input_failure(report, image->name,
+                                 "keeps several of its tiles or strips in the same place: write it "
+                                 "anew, each on its own");
     return SONJECT_OK;
 }
 
-/* Further pages stay as they are; smaller copies of the first one would not show what is put in. */
-static sonject_status check_other_pages(const struct tiff_blocks *blocks)
+/* Further pages stay as they are; smaller copies of the first one would not show what is put in.
+ * Leaves the file at its first page again. */
+static sonject_status check_other_pages(struct report *report, const struct tiff_image *image)
 {
     uint16_t count = 0;
     const uint64_t *places = NULL;
     uint32_t kind = 0;
-    bool has_copies = TIFFGetField(blocks->file, TIFFTAG_SUBIFD, &count, &places) && count > 0;
-    while (!has_copies && !TIFFLastDirectory(blocks->file)) {
-        if (!TIFFReadDirectory(blocks->file))
-            return damaged(blocks, "the list of its pages is broken or cut short");
-        has_copies = TIFFGetField(blocks->file, TIFFTAG_SUBFILETYPE, &kind) &&
+    bool has_copies = TIFFGetField(image->file, TIFFTAG_SUBIFD, &count, &places) && count > 0;
+    while (!has_copies && !TIFFLastDirectory(image->file)) {
+        if (!TIFFReadDirectory(image->file))
+            return damaged(report, image, "the list of its pages is broken or cut short");
+        has_copies = TIFFGetField(image->file, TIFFTAG_SUBFILETYPE, &kind) &&
                      (kind & FILETYPE_REDUCEDIMAGE) != 0;
     }
-    return has_copies ? refuse(blocks, "holds smaller copies of the image (overviews), which would "
-                                       "go on showing the seabed without the target: take them "
-                                       "out first")
-                      : SONJECT_OK;
+    if (has_copies)
+        return input_failure(report, image->name,
+                             "holds smaller copies of the image (overviews), which would go on "
+                             "showing the seabed without the target: take them out first");
+    return TIFFSetDirectory(image->file, 0) ? SONJECT_OK : tell_fault(report, image);
 }
 
-static sonject_status check(struct tiff_blocks *blocks, uint64_t file_bytes)
+static sonject_status check(struct report *report, struct tiff_image *image, uint64_t file_bytes)
 {
-    look_at_blocks(blocks);
-    sonject_status status = check_type(blocks);
-    THEN(status, check_colours(blocks));
-    THEN(status, check_coding(blocks));
-    if (status != SONJECT_OK)
-        return status;
-    if (blocks->rows == 0 || blocks->block_rows == 0 || blocks->block_columns == 0 ||
-        blocks->count < blocks->planes)
-        return damaged(blocks, "its tiles or strips have no size");
-    uint64_t(*places)[2] = allocate_array(blocks->count, sizeof *places);
-    status = places ? check_places(blocks, file_bytes, places)
-                    : report_out_of_memory(blocks->report, blocks->name);
+    look_at_blocks(image);
+    CHECK(check_type(report, image));
+    CHECK(check_colours(report, image));
+    CHECK(check_coding(report, image));
+    uint64_t(*places)[2] = allocate_array(image->count, sizeof *places);
+    CHECK_MEMORY(report, places, image->name);
+    const sonject_status status = check_places(report, image, file_bytes, places);
     free(places);
-    return status == SONJECT_OK ? check_other_pages(blocks) : status;
+    CHECK(status);
+    return check_other_pages(report, image);
 }
 
-sonject_status tiff_check(struct report *report, const char *name, const char *path)
+static void close_image(void *opened)
 {
-    struct tiff_blocks blocks = {.report = report, .name = name};
+    struct tiff_image *image = opened;
+    if (image->file)
+        TIFFClose(image->file);
+    for (int i = 0; i < 2; i++)
+        free(image->kept[i].pixels);
+    free(image->name);
+    free(image->path);
+    free(image);
+}
+
+static sonject_status open_file(struct report *report, struct tiff_image *image, const char *name,
+                                const char *path, struct image_facts *facts)
+{
     struct file_identity identity;
-    sonject_status status = file_identify(report, path, &identity);
-    if (status != SONJECT_OK)
-        return status;
-    blocks.file = tiff_open(path, "rm", &blocks.fault);
-    if (!blocks.file)
-        return tell_fault(&blocks);
-    status = check(&blocks, identity.bytes);
-    TIFFClose(blocks.file);
-    return status == SONJECT_OK && *blocks.fault.message ? tell_fault(&blocks) : status;
+    const char *description = NULL;
+    image->name = copy_text(name);
+    image->path = copy_text(path);
+    CHECK_MEMORY(report, image->name && image->path, name);
+    CHECK(file_identify(report, path, &identity));
+    image->file = open_tiff(path, "rm", &image->fault);
+    if (!image->file)
+        return tell_fault(report, image);
+    CHECK(check(report, image, identity.bytes));
+    if (*image->fault.message)
+        return tell_fault(report, image);
+    for (uint16_t i = 0; i < image->planes; i++) {
+        image->kept[i].pixels = allocate_array((size_t)bytes_of_block(image, 0), 1);
+        CHECK_MEMORY(report, image->kept[i].pixels, name);
+    }
+    facts->layout = (struct raster_layout){image->rows, image->columns, image->channels,
+                                           image->bits == 8    ? PIXEL_UINT8
+                                           : image->bits == 16 ? PIXEL_UINT16
+                                                               : PIXEL_FLOAT32};
+    if (TIFFGetField(image->file, TIFFTAG_IMAGEDESCRIPTION, &description) && description) {
+        facts->description = copy_text(description);
+        CHECK_MEMORY(report, facts->description, name);
+    }
+    return SONJECT_OK;
 }
 
-/* Puts what a block of a plane shares with the region into the block's pixels. */
-static void fill_block(const struct tiff_blocks *blocks, uint32_t row, uint32_t column,
-                       uint16_t plane, const struct region *region, const unsigned char *pixels,
-                       unsigned char *block)
+static sonject_status open_image(struct report *report, const char *name, const char *path,
+                                 const char *array, bool writes, void **opened,
+                                 struct image_facts *facts)
 {
-    const size_t sample = blocks->bits / 8;
-    const size_t pixel = blocks->channels * sample;
-    const size_t in_block = blocks->planes > 1 ? sample : pixel;
+    struct tiff_image *image = allocate_array(1, sizeof *image);
+    (void)array, (void)writes;
+    CHECK_MEMORY(report, image, name);
+    const sonject_status status = open_file(report, image, name, path, facts);
+    if (status == SONJECT_OK)
+        *opened = image;
+    else
+        close_image(image);
+    return status;
+}
+
+/* Moves what a block of a plane shares with the region between the two. */
+static void move_pixels(const struct tiff_image *image, uint32_t row, uint32_t column,
+                        uint16_t plane, const struct region *region, unsigned char *pixels,
+                        unsigned char *block, bool writes)
+{
+    const size_t sample = image->bits / 8;
+    const size_t pixel = image->channels * sample;
+    const size_t in_block = image->planes > 1 ? sample : pixel;
     const uint64_t first = region->first_column > column ? region->first_column : column;
     const uint64_t region_end = region->first_column + region->columns;
-    const uint64_t block_end = (uint64_t)column + blocks->block_columns;
+    const uint64_t block_end = (uint64_t)column + image->block_columns;
     const uint64_t end = region_end < block_end ? region_end : block_end;
-    for (uint32_t i = 0; i < rows_of_block(blocks, row); i++)
-        for (uint64_t j = first;
-             row + i >= region->first_row && row + i - region->first_row < region->rows && j < end;
-             j++)
-            memcpy(
-                block + ((size_t)i * blocks->block_columns + (j - column)) * in_block,
-                pixels +
-                    ((row + i - region->first_row) * region->columns + (j - region->first_column)) *
-                        pixel +
-                    plane * sample,
-                in_block);
+    const uint64_t at_once = image->planes > 1 ? 1 : end - first;
+    for (uint32_t i = 0; i < rows_of_block(image, row); i++) {
+        const uint64_t down = row + i - region->first_row;
+        for (uint64_t j = first; row + i >= region->first_row && down < region->rows && j < end;
+             j += at_once) {
+            unsigned char *stored =
+                block + ((size_t)i * image->block_columns + (j - column)) * in_block;
+            unsigned char *given = pixels +
+                                   (down * region->columns + (j - region->first_column)) * pixel +
+                                   plane * sample;
+            memcpy(writes ? stored : given, writes ? given : stored, (size_t)at_once * in_block);
+        }
+    }
 }
 
-/* Reads by one file and writes by another: a codec of libtiff's does one of the two. */
-static bool change_block(const struct tiff_blocks *blocks, TIFF *writer, uint32_t row,
-                         uint32_t column, uint16_t plane, const struct region *region,
-                         const void *pixels, unsigned char *block)
+/* A block's pixels, which are kept; NULL: they cannot be read. */
+static unsigned char *read_block(struct tiff_image *image, uint32_t number, uint16_t plane,
+                                 tmsize_t bytes)
 {
-    const tmsize_t bytes = (tmsize_t)bytes_of_block(blocks, row);
-    const uint32_t number = blocks->is_tiled ? TIFFComputeTile(writer, column, row, 0, plane)
-                                             : TIFFComputeStrip(writer, row, plane);
-    if ((blocks->is_tiled ? TIFFReadEncodedTile(blocks->file, number, block, bytes)
-                          : TIFFReadEncodedStrip(blocks->file, number, block, bytes)) != bytes)
-        return false;
-    fill_block(blocks, row, column, plane, region, pixels, block);
-    return (blocks->is_tiled ? TIFFWriteEncodedTile(writer, number, block, bytes)
-                             : TIFFWriteEncodedStrip(writer, number, block, bytes)) == bytes;
+    struct kept_block *kept = &image->kept[plane];
+    if (!kept->is_there || kept->number != number)
+        kept->is_there =
+            (image->is_tiled
+                 ? TIFFReadEncodedTile(image->file, number, kept->pixels, bytes)
+                 : TIFFReadEncodedStrip(image->file, number, kept->pixels, bytes)) == bytes;
+    kept->number = number;
+    return kept->is_there ? kept->pixels : NULL;
 }
 
-static bool change_blocks(const struct tiff_blocks *blocks, TIFF *writer,
-                          const struct region *region, const void *pixels, unsigned char *block)
+/* Reads a block by one file and, if there is a writer, writes it by another: a codec of libtiff's
+ * does one of the two. */
+static bool exchange_block(struct tiff_image *image, TIFF *writer, uint32_t row, uint32_t column,
+                           uint16_t plane, const struct region *region, unsigned char *pixels)
+{
+    const tmsize_t bytes = (tmsize_t)bytes_of_block(image, row);
+    const uint32_t number = image->is_tiled ? TIFFComputeTile(image->file, column, row, 0, plane)
+                                            : TIFFComputeStrip(image->file, row, plane);
+    unsigned char *block = read_block(image, number, plane, bytes);
+    if (!block)
+        return false;
+    move_pixels(image, row, column, plane, region, pixels, block, writer != NULL);
+    if (!writer)
+        return true;
+    image->kept[plane].is_there = false; /* what encodes it may use the block for itself */
+    return (image->is_tiled ? TIFFWriteEncodedTile(writer, number, block, bytes)
+                            : TIFFWriteEncodedStrip(writer, number, block, bytes)) == bytes;
+}
+
+static bool exchange_blocks(struct tiff_image *image, TIFF *writer, const struct region *region,
+                            unsigned char *pixels)
 {
     const uint64_t row_end = region->first_row + region->rows;
     const uint64_t column_end = region->first_column + region->columns;
-    const uint32_t height = blocks->block_rows;
-    const uint32_t width = blocks->block_columns;
-    for (uint16_t plane = 0; plane < blocks->planes; plane++)
+    const uint32_t height = image->block_rows;
+    const uint32_t width = image->block_columns;
+    for (uint16_t plane = 0; plane < image->planes; plane++)
         for (uint64_t row = region->first_row / height * height; row < row_end; row += height)
             for (uint64_t column = region->first_column / width * width; column < column_end;
                  column += width)
-                if (!change_block(blocks, writer, (uint32_t)row, (uint32_t)column, plane, region,
-                                  pixels, block))
+                if (!exchange_block(image, writer, (uint32_t)row, (uint32_t)column, plane, region,
+                                    pixels))
                     return false;
     return true;
+}
+
+static sonject_status read_pixels(struct report *report, void *opened, const struct region *region,
+                                  void *pixels)
+{
+    struct tiff_image *image = opened;
+    if (exchange_blocks(image, NULL, region, pixels))
+        return SONJECT_OK;
+    errno = image->fault.error;
+    return input_failure(report, image->name, "cut short or damaged at rows %llu...%llu: %s",
+                         (unsigned long long)region->first_row,
+                         (unsigned long long)(region->first_row + region->rows - 1),
+                         image->fault.message);
 }
 
 /* Writing ends with the lists of places and sizes; were the directory to be written anew, tags
@@ -355,34 +437,111 @@ static bool flush_lists(TIFF *writer)
     return TIFFFlush(writer) && TIFFCurrentDirOffset(writer) == directory;
 }
 
-sonject_status tiff_change(struct report *report, const char *name, const char *path,
-                           const struct region *region, const void *pixels)
+/* The file is opened anew for each change, for its lists of places move with the blocks. */
+static sonject_status change_pixels(struct report *report, void *opened,
+                                    const struct region *region, const void *pixels)
 {
-    struct tiff_blocks blocks = {.report = report, .name = name};
-    struct tiff_fault fault = {"", 0};
-    unsigned char *block = NULL;
+    struct tiff_image *image = opened;
+    struct fault fault = {"", 0};
     bool is_done = false;
-    blocks.file = tiff_open(path, "rm", &blocks.fault);
-    TIFF *writer = blocks.file ? tiff_open(path, "r+m", &fault) : NULL;
+    TIFFClose(image->file);
+    image->file = open_tiff(image->path, "rm", &image->fault);
+    TIFF *writer = image->file ? open_tiff(image->path, "r+m", &fault) : NULL;
     if (writer) {
-        look_at_blocks(&blocks);
-        block = allocate_array((size_t)bytes_of_block(&blocks, 0), 1);
         is_done =
-            block && change_blocks(&blocks, writer, region, pixels, block) && flush_lists(writer);
+            exchange_blocks(image, writer, region, (unsigned char *)pixels) && flush_lists(writer);
         TIFFClose(writer);
     }
-    if (blocks.file)
-        TIFFClose(blocks.file);
-    free(block);
     if (is_done)
         return SONJECT_OK;
-    if (writer && !block)
-        return report_out_of_memory(report, name);
-    if (*blocks.fault.message)
-        return tell_fault(&blocks);
+    if (*image->fault.message)
+        return tell_fault(report, image);
     if (fault.error != 0)
-        return file_failure(report, name, "write", fault.error);
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: its pixels cannot be replaced: %s: convert it to BigTIFF", name,
-                          fault.message);
+        return file_failure(report, image->name, "write", fault.error);
+    return input_failure(report, image->name,
+                         "its pixels cannot be replaced: %s: convert it to BigTIFF", fault.message);
+}
+
+static sonject_status finish_image(struct report *report, void *image)
+{
+    (void)report, (void)image;
+    return SONJECT_OK;
+}
+
+const struct image_library tiff_library = {open_image, close_image, read_pixels, change_pixels,
+                                           finish_image};
+
+static uint64_t row_bytes(const struct raster_layout *layout)
+{
+    return layout->columns * layout->channels * pixel_bytes(layout->type);
+}
+
+uint64_t rows_at_once(const struct raster_layout *layout)
+{
+    const uint64_t rows = ROWS_BYTES / row_bytes(layout);
+    return rows == 0 ? 1 : rows < layout->rows ? rows : layout->rows;
+}
+
+static void set_tags(TIFF *file, const struct image_encoding *encoding)
+{
+    const struct raster_layout *layout = &encoding->layout;
+    const uint64_t rows = NEW_STRIP_BYTES / row_bytes(layout);
+    const uint16_t unspecified = EXTRASAMPLE_UNSPECIFIED;
+    TIFFSetField(file, TIFFTAG_IMAGEWIDTH, (uint32_t)layout->columns);
+    TIFFSetField(file, TIFFTAG_IMAGELENGTH, (uint32_t)layout->rows);
+    TIFFSetField(file, TIFFTAG_BITSPERSAMPLE, (int)(8 * pixel_bytes(layout->type)));
+    TIFFSetField(file, TIFFTAG_COMPRESSION, COMPRESSION_NONE);
+    TIFFSetField(file, TIFFTAG_PHOTOMETRIC,
+                 layout->channels == 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);
+    TIFFSetField(file, TIFFTAG_SAMPLESPERPIXEL, (int)layout->channels);
+    TIFFSetField(file, TIFFTAG_ROWSPERSTRIP, (uint32_t)(rows > 0 ? rows : 1));
+    TIFFSetField(file, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+    TIFFSetField(file, TIFFTAG_SOFTWARE, "sonject");
+    if (layout->channels == 2)
+        TIFFSetField(file, TIFFTAG_EXTRASAMPLES, 1, &unspecified);
+    TIFFSetField(file, TIFFTAG_SAMPLEFORMAT,
+                 layout->type == PIXEL_FLOAT32 ? SAMPLEFORMAT_IEEEFP : SAMPLEFORMAT_UINT);
+    if (*encoding->description)
+        TIFFSetField(file, TIFFTAG_IMAGEDESCRIPTION, encoding->description);
+}
+
+/* OK with *is_written false: libtiff failed. */
+static sonject_status write_rows(TIFF *file, const struct image_encoding *encoding,
+                                 unsigned char *strip, bool *is_written)
+{
+    const struct raster_layout *layout = &encoding->layout;
+    const uint64_t at_once = rows_at_once(layout);
+    *is_written = true;
+    for (uint64_t first = 0; *is_written && first < layout->rows; first += at_once) {
+        const uint64_t end = layout->rows - first < at_once ? layout->rows : first + at_once;
+        CHECK(encoding->give_rows(encoding->user, first, end, strip));
+        for (uint64_t row = first; *is_written && row < end; row++)
+            *is_written = TIFFWriteScanline(file, strip + (row - first) * row_bytes(layout),
+                                            (uint32_t)row, 0) >= 0;
+    }
+    *is_written = *is_written && TIFFFlush(file);
+    return SONJECT_OK;
+}
+
+sonject_status tiff_encode(struct report *report, const struct image_encoding *encoding)
+{
+    const struct raster_layout *layout = &encoding->layout;
+    const bool is_large = layout->rows > CLASSIC_MAX / row_bytes(layout);
+    struct fault fault;
+    bool is_written = false;
+    sonject_status status = SONJECT_OK;
+    unsigned char *strip = allocate_array((size_t)rows_at_once(layout), (size_t)row_bytes(layout));
+    CHECK_MEMORY(report, strip, encoding->name);
+    TIFF *file = open_tiff(encoding->path, is_large ? "w8" : "w", &fault);
+    if (file) {
+        set_tags(file, encoding);
+        status = write_rows(file, encoding, strip, &is_written);
+        TIFFClose(file);
+    }
+    free(strip);
+    if (status != SONJECT_OK || is_written)
+        return status;
+    return fault.error != 0 ? file_failure(report, encoding->name, "write", fault.error)
+                            : report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot write: %s",
+                                             encoding->name, fault.message);
 }

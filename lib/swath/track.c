@@ -1,18 +1,100 @@
-#include "swath/track.h"
+/* What a recording says of where the sonar was: geometry of its rows, and its track. */
+#include "swath/xtf_file.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "swath/xtf_file.h"
 
 #define PI                 3.14159265358979323846
+#define METRES_PER_DEGREE  (1852.0 * 60.0)
 #define EQUATOR_RADIUS_M   6378137.0
 #define ECCENTRICITY_2     6.69437999014e-3 /* of the WGS 84 ellipsoid, squared */
 #define HIGHEST_LATITUDE   89.9             /* beyond, east and west mean nothing */
 #define COURSE_ROWS        25.0             /* to either side, of which the course is the mean */
 #define DEGREES_PER_RADIAN (180.0 / PI)
+
+bool xtf_ping_has_position(const struct xtf_ping *ping)
+{
+    return ping->easting != 0.0 || ping->northing != 0.0;
+}
+
+/* Straight distance between two pings with positions, m. */
+static double distance_between(const struct xtf_file *file, const struct xtf_ping *a,
+                               const struct xtf_ping *b)
+{
+    double across = b->easting - a->easting;
+    double along = b->northing - a->northing;
+    if (file->is_geographic) {
+        const double latitude = 0.5 * (a->northing + b->northing) * PI / 180.0;
+        across = remainder(across, 360.0) * METRES_PER_DEGREE * cos(latitude);
+        along *= METRES_PER_DEGREE;
+    }
+    return hypot(across, along);
+}
+
+/* Takes in as many rows on either side; false if all of the file's were there. */
+static bool widen(const struct xtf_file *file, uint64_t *first, uint64_t *end)
+{
+    const uint64_t rows = file->rows;
+    const uint64_t more = *end - *first;
+    const bool is_more = *first > 0 || *end < rows;
+    *first -= more < *first ? more : *first;
+    *end += more < rows - *end ? more : rows - *end;
+    return is_more;
+}
+
+/* Between the first and the last position of the rows, and of those around them where two are not
+ * there; NaN if they are nowhere. */
+static double mean_spacing(const struct xtf_file *file, uint64_t first, uint64_t end)
+{
+    do {
+        uint64_t from = first;
+        uint64_t to = end - 1;
+        while (from < to && !xtf_ping_has_position(&file->pings[from]))
+            from++;
+        while (from < to && !xtf_ping_has_position(&file->pings[to]))
+            to--;
+        if (from < to)
+            return distance_between(file, &file->pings[from], &file->pings[to]) /
+                   (double)(to - from);
+    } while (widen(file, &first, &end));
+    return NAN;
+}
+
+/* Of the rows' pings that have an altitude, or of those around them; 0 if there are none. */
+static double mean_altitude(const struct xtf_file *file, uint64_t first, uint64_t end)
+{
+    do {
+        double sum = 0.0;
+        uint64_t sounded = 0;
+        for (uint64_t row = first; row < end; row++)
+            if (file->pings[row].altitude_m > 0.0f) {
+                sum += (double)file->pings[row].altitude_m;
+                sounded++;
+            }
+        if (sounded > 0)
+            return sum / (double)sounded;
+    } while (widen(file, &first, &end));
+    return 0.0;
+}
+
+struct xtf_geometry xtf_geometry_of(const struct xtf_file *file, uint64_t first_row, uint64_t count)
+{
+    const struct xtf_ping *first = &file->pings[first_row];
+    struct xtf_geometry geometry;
+    geometry.row_spacing_m = mean_spacing(file, first_row, first_row + count);
+    geometry.altitude_m = mean_altitude(file, first_row, first_row + count);
+    /* the delay is part of the way to the far edge */
+    const double duration = (double)first->duration_s;
+    const double delay = (double)first->delay_s;
+    const double delay_share = duration > 0.0 && delay > 0.0 ? delay / (delay + duration) : 0.0;
+    const double near_edge = (double)first->slant_range_m * delay_share;
+    geometry.column_spacing_m = ((double)first->slant_range_m - near_edge) / (double)file->columns;
+    geometry.first_slant_range_m = near_edge + 0.5 * geometry.column_spacing_m;
+    return geometry;
+}
 
 void track_clear(struct track *track)
 {

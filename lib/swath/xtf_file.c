@@ -5,12 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/byte_file.h"
 #include "base/byte_order.h"
+#include "base/file.h"
 #include "swath/swath_format.h"
 
-#define PI                  3.14159265358979323846
-#define METRES_PER_DEGREE   (1852.0 * 60.0)
 #define FILE_MARK           0x7B
 #define PACKET_MARK         0xFACE
 #define HEADER_BLOCK        1024
@@ -68,9 +66,9 @@ static double double_at(const unsigned char *bytes, size_t place)
 
 static sonject_status damaged(const struct opening *opening, uint64_t place, const char *what)
 {
-    return report_failure(opening->report, SONJECT_ERROR_INPUT,
-                          "%s: damaged at byte %llu: %s: copy or export it again",
-                          opening->file->path, (unsigned long long)place, what);
+    return input_failure(opening->report, opening->file->path,
+                         "damaged at byte %llu: %s: copy or export it again",
+                         (unsigned long long)place, what);
 }
 
 static bool is_sidescan(const struct xtf_channel *channel)
@@ -126,12 +124,11 @@ static sonject_status choose_channel(struct opening *opening, int32_t wanted)
         found = i;
     }
     if (*list == '\0')
-        return report_failure(opening->report, SONJECT_ERROR_INPUT, "%s: has no sidescan channel",
-                              opening->file->path);
+        return input_failure(opening->report, opening->file->path, "has no sidescan channel");
     if (matches != 1)
-        return report_failure(opening->report, SONJECT_ERROR_INPUT,
-                              "%s: has %s such sidescan channel: choose one of %s",
-                              opening->file->path, matches == 0 ? "no" : "more than one", list);
+        return input_failure(opening->report, opening->file->path,
+                             "has %s such sidescan channel: choose one of %s",
+                             matches == 0 ? "no" : "more than one", list);
     opening->file->xtf.channel = found;
     opening->file->xtf.side = opening->channels[found].kind;
     opening->file->xtf.is_ground_range = opening->channels[found].is_ground_range;
@@ -143,9 +140,9 @@ static sonject_status set_samples(struct opening *opening)
     struct swath_file *file = opening->file;
     const struct xtf_channel *channel = &opening->channels[file->xtf.channel];
     if (channel->sample_bytes != 1 && channel->sample_bytes != 2)
-        return report_failure(opening->report, SONJECT_ERROR_INPUT,
-                              "%s: channel %u has samples of %u bytes; sonject reads 1 and 2",
-                              file->path, file->xtf.channel, channel->sample_bytes);
+        return input_failure(opening->report, file->path,
+                             "channel %u has samples of %u bytes; sonject reads 1 and 2",
+                             file->xtf.channel, channel->sample_bytes);
     file->layout.type = channel->sample_bytes == 1 ? PIXEL_UINT8 : PIXEL_UINT16;
     file->layout.channels = 1;
     file->lines.type = channel->sample_bytes == 1 ? STORED_UINT8
@@ -185,12 +182,11 @@ static sonject_status check_same(struct opening *opening, const struct xtf_ping 
                               fabsf(ping->slant_range_m - file->xtf.pings[0].slant_range_m) <=
                                   1e-3f * file->xtf.pings[0].slant_range_m))
         return SONJECT_OK;
-    return report_failure(opening->report, SONJECT_ERROR_INPUT,
-                          "%s: ping %llu has %llu samples to %g m, the pings before it %llu to %g "
-                          "m: cut the file there",
-                          file->path, (unsigned long long)layout->rows, (unsigned long long)samples,
-                          (double)ping->slant_range_m, (unsigned long long)layout->columns,
-                          (double)file->xtf.pings[0].slant_range_m);
+    return input_failure(
+        opening->report, file->path,
+        "ping %llu has %llu samples to %g m, the pings before it %llu to %g m: cut the file there",
+        (unsigned long long)layout->rows, (unsigned long long)samples, (double)ping->slant_range_m,
+        (unsigned long long)layout->columns, (double)file->xtf.pings[0].slant_range_m);
 }
 
 static sonject_status add_ping(struct opening *opening, const unsigned char *packet,
@@ -266,7 +262,8 @@ static sonject_status read_packets(struct opening *opening, uint64_t place)
         }
         place += bytes;
     }
-    return file->layout.rows > 0 ? SONJECT_OK : swath_refuse(opening->report, file, "has no pings");
+    return file->layout.rows > 0 ? SONJECT_OK
+                                 : input_failure(opening->report, file->path, "has no pings");
 }
 
 static sonject_status open_xtf(struct report *report, struct swath_file *file, int32_t channel,
@@ -286,84 +283,3 @@ static sonject_status open_xtf(struct report *report, struct swath_file *file, i
 
 const struct swath_format xtf_format = {
     true, false, is_xtf, open_xtf, sample_lines_read, sample_lines_copy};
-
-bool xtf_ping_has_position(const struct xtf_ping *ping)
-{
-    return ping->easting != 0.0 || ping->northing != 0.0;
-}
-
-/* Straight distance between two pings with positions, m. */
-static double distance_between(const struct xtf_file *file, const struct xtf_ping *a,
-                               const struct xtf_ping *b)
-{
-    double across = b->easting - a->easting;
-    double along = b->northing - a->northing;
-    if (file->is_geographic) {
-        const double latitude = 0.5 * (a->northing + b->northing) * PI / 180.0;
-        across = remainder(across, 360.0) * METRES_PER_DEGREE * cos(latitude);
-        along *= METRES_PER_DEGREE;
-    }
-    return hypot(across, along);
-}
-
-/* Takes in as many rows on either side; false if all of the file's were there. */
-static bool widen(const struct xtf_file *file, uint64_t *first, uint64_t *end)
-{
-    const uint64_t rows = file->rows;
-    const uint64_t more = *end - *first;
-    const bool is_more = *first > 0 || *end < rows;
-    *first -= more < *first ? more : *first;
-    *end += more < rows - *end ? more : rows - *end;
-    return is_more;
-}
-
-/* Between the first and the last position of the rows, and of those around them where two are not
- * there; NaN if they are nowhere. */
-static double mean_spacing(const struct xtf_file *file, uint64_t first, uint64_t end)
-{
-    do {
-        uint64_t from = first;
-        uint64_t to = end - 1;
-        while (from < to && !xtf_ping_has_position(&file->pings[from]))
-            from++;
-        while (from < to && !xtf_ping_has_position(&file->pings[to]))
-            to--;
-        if (from < to)
-            return distance_between(file, &file->pings[from], &file->pings[to]) /
-                   (double)(to - from);
-    } while (widen(file, &first, &end));
-    return NAN;
-}
-
-/* Of the rows' pings that have an altitude, or of those around them; 0 if there are none. */
-static double mean_altitude(const struct xtf_file *file, uint64_t first, uint64_t end)
-{
-    do {
-        double sum = 0.0;
-        uint64_t sounded = 0;
-        for (uint64_t row = first; row < end; row++)
-            if (file->pings[row].altitude_m > 0.0f) {
-                sum += (double)file->pings[row].altitude_m;
-                sounded++;
-            }
-        if (sounded > 0)
-            return sum / (double)sounded;
-    } while (widen(file, &first, &end));
-    return 0.0;
-}
-
-struct xtf_geometry xtf_geometry_of(const struct xtf_file *file, uint64_t first_row, uint64_t count)
-{
-    const struct xtf_ping *first = &file->pings[first_row];
-    struct xtf_geometry geometry;
-    geometry.row_spacing_m = mean_spacing(file, first_row, first_row + count);
-    geometry.altitude_m = mean_altitude(file, first_row, first_row + count);
-    /* the delay is part of the way to the far edge */
-    const double duration = (double)first->duration_s;
-    const double delay = (double)first->delay_s;
-    const double delay_share = duration > 0.0 && delay > 0.0 ? delay / (delay + duration) : 0.0;
-    const double near_edge = (double)first->slant_range_m * delay_share;
-    geometry.column_spacing_m = ((double)first->slant_range_m - near_edge) / (double)file->columns;
-    geometry.first_slant_range_m = near_edge + 0.5 * geometry.column_spacing_m;
-    return geometry;
-}

@@ -28,7 +28,7 @@ void embree_trace(struct embree_scene *scene, bool is_coherent, const float *inp
 
 #include <embree3/rtcore.h>
 
-#include "base/clock.h"
+#include "base/report.h"
 #include "kernel/mesh_probe.h"
 
 /* Embree does not look behind a ray's origin. It is put where the ray begins, at most so far before

@@ -10,8 +10,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "base/clock.h"
 #include "base/memory.h"
+#include "base/report.h"
 #include "benchmark_scene.h"
 #include "kernel/mesh_native.h"
 #include "kernel/mesh_probe.h"

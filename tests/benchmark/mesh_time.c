@@ -12,7 +12,7 @@
 
 #include <sonject/sonject.h>
 
-#include "base/clock.h"
+#include "base/report.h"
 #include "kernel/mesh_samples.h"
 #include "mesh/mesh.h"
 #include "mesh/mesh_reader.h"

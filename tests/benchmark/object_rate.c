@@ -7,8 +7,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "base/clock.h"
 #include "base/memory.h"
+#include "base/report.h"
 #include "benchmark_scene.h"
 #include "inject/injection.h"
 #include "trace/chains.h"

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/memory.h"
+#include "base/report.h"
 #include "benchmark_scene.h"
 #include "device/device.h"
 #include "native_kernel.h"

@@ -7,7 +7,7 @@
 #include <errno.h>
 #include <sys/stat.h>
 
-#include "swath/raster_formats.h"
+#include "swath/raster_file.h"
 #include "swath/swath_file.h"
 #include "unit/temporary_folder.h"
 

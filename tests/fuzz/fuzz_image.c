@@ -2,12 +2,13 @@
  * OpenImageIO's. */
 #include "fuzz.h"
 
-#include "swath/plain_head.h"
+#include "swath/image_head.h"
 
-static void check_head(sonject_status (*check)(struct report *report, const char *path))
+static void check_head(sonject_status (*check)(struct report *report, const char *name,
+                                               const char *path))
 {
     struct report report = {{0}, NULL, NULL};
-    fuzz_expect(check(&report, "fuzz.image"), &report);
+    fuzz_expect(check(&report, "fuzz.image", "fuzz.image"), &report);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-#include "base/byte_file.h"
+#include "base/file.h"
 #include "base/memory.h"
 #include "image/raster.h"
 #include "swath/swath_format.h"

@@ -5,8 +5,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "base/clock.h"
 #include "base/file.h"
+#include "base/report.h"
 #include "kernel/mesh_probe.h"
 
 static void require(const struct report *report, int is_well, const char *what)

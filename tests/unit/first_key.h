@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "base/ranges.h"
+#include "base/report.h"
 
 struct first_key {
     struct check_listener listener; /* first */

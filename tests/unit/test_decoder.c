@@ -10,12 +10,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <hdf5.h>
-
 #include "claims.h"
 #include <sonject/run.h>
 
 #include "api/handles.h"
+#include "hdf5_drafts.h"
 #include "swath/decoder.h"
 #include "swath/swath_file.h"
 #include "temporary_folder.h"
@@ -61,63 +60,26 @@ enum {
     KINDS = 16
 };
 
-static void write_text(hid_t object, const char *name, const char *text)
-{
-    const hid_t type = H5Tcopy(H5T_C_S1);
-    const hid_t space = H5Screate(H5S_SCALAR);
-    H5Tset_size(type, strlen(text) + 1);
-    const hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-    assert_true(H5Awrite(attribute, type, text) >= 0);
-    H5Aclose(attribute);
-    H5Sclose(space);
-    H5Tclose(type);
-}
-
-static hid_t number_type(int kind)
-{
-    static const char *const names[2][2] = {{"r", "i"}, {"real", "imag"}};
-    if (!(kind & PAIRS))
-        return H5Tcopy(H5T_NATIVE_DOUBLE);
-    const hid_t type = H5Tcreate(H5T_COMPOUND, 16);
-    H5Tinsert(type, names[kind & MATLAB][0], 0, H5T_NATIVE_DOUBLE);
-    H5Tinsert(type, names[kind & MATLAB][1], 8, H5T_NATIVE_DOUBLE);
-    return type;
-}
-
 /* A group, a text, and the array "deep/img" of SIDE x SIDE. */
 static void make_file(const char *path, int kind)
 {
+    static const char *const pairs[2][2] = {{"r", "i"}, {"real", "imag"}};
     static double numbers[2 * SIDE * SIDE];
     const hsize_t sides[2] = {SIDE, SIDE};
+    const hsize_t chunk[2] = {7, 5};
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
-    const hid_t storage = H5Pcreate(H5P_DATASET_CREATE);
     for (size_t i = 0; i < 2 * SIDE * SIDE; i++)
         numbers[i] = (double)i;
     if (kind & LATEST)
         H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
     if (kind & MATLAB)
         H5Pset_userblock(creation, 512);
-    if (kind & CHUNKS) {
-        H5Pset_chunk(storage, 2, (const hsize_t[]){7, 5});
-        H5Pset_shuffle(storage);
-        H5Pset_deflate(storage, 4);
-        H5Pset_fletcher32(storage);
-    }
     const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, creation, access);
     const hid_t group = H5Gcreate2(file, "deep", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    const hid_t space = H5Screate_simple(2, sides, NULL);
-    const hid_t type = number_type(kind);
-    const hid_t set = H5Dcreate2(group, "img", type, space, H5P_DEFAULT, storage, H5P_DEFAULT);
-    assert_true(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers) >= 0);
-    write_text(set, "sonject:range_axis", "slant");
-    if (kind & MATLAB)
-        write_text(set, "MATLAB_class", "double");
-    H5Dclose(set);
-    H5Tclose(type);
-    H5Sclose(space);
+    put_set(group, "img", sides, numbers, kind & PAIRS ? pairs[kind & MATLAB] : NULL, kind & MATLAB,
+            kind & CHUNKS ? chunk : NULL, "slant");
     H5Gclose(group);
-    H5Pclose(storage);
     H5Pclose(creation);
     H5Pclose(access);
     assert_true(H5Fclose(file) >= 0);

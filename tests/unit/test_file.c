@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 
 #include "base/file.h"
-#include "base/file_list.h"
+#include "base/json_document.h"
 #include "temporary_folder.h"
 
 static void expect_text(char *text, const char *expected)

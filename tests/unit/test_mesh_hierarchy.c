@@ -40,7 +40,7 @@ static void expect_inside(const struct box *inner, const struct box *outer, floa
         }                                                                                          \
     }
 
-struct check {
+struct tree_check {
     const struct mesh_hierarchy *hierarchy;
     const float *vertices;
     const uint32_t *corners;
@@ -49,7 +49,7 @@ struct check {
     float padding;
 };
 
-static struct box check_leaf(struct check *check, int number)
+static struct box check_leaf(struct tree_check *check, int number)
 {
     const struct mesh_leaf *leaf = &check->hierarchy->leaves[number];
     struct box all = empty_box;
@@ -84,7 +84,7 @@ static struct box check_leaf(struct check *check, int number)
 }
 
 /* Recursion is bounded by MESH_LEVELS, which is what is tested. */
-static struct box check_branch(struct check *check, int number, unsigned level)
+static struct box check_branch(struct tree_check *check, int number, unsigned level)
 {
     const struct mesh_branch *branch = &check->hierarchy->branches[number];
     struct box all = empty_box;
@@ -120,8 +120,8 @@ static void check_hierarchy(const char *what, const float *vertices, const uint3
                         again.branch_count * sizeof *again.branches);
     assert_memory_equal(hierarchy.leaves, again.leaves, again.leaf_count * sizeof *again.leaves);
     mesh_hierarchy_clear(&again);
-    struct check check = {&hierarchy, vertices, corners, calloc(triangles, 1),
-                          0,          0,        0,       MESH_PADDING * radius};
+    struct tree_check check = {&hierarchy, vertices, corners, calloc(triangles, 1),
+                               0,          0,        0,       MESH_PADDING * radius};
     assert_non_null(check.is_seen);
     assert_in_range(hierarchy.levels, 1, MESH_LEVELS);
     check_branch(&check, 0, 1);

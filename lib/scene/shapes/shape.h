@@ -9,7 +9,7 @@
 
 #include <sonject/object.h>
 
-#include "base/ranges.h"
+#include "base/report.h"
 #include "kernels/layout.h"
 #include "mesh/mesh.h"
 #include "scene/scene.h"
