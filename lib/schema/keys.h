@@ -136,6 +136,24 @@ struct section {
 
 #define PI 3.14159265358979323846
 
+/* A place of the image, in metres or pixels; range_meant: of slant_range. */
+#define INDEX_MAX 1099511627776.0 /* 2^40 pixels */
+#define PLACE_FIELDS(range_meant, least_index)                                                     \
+    {"along_track", "track position", QUANTITY(position_along, LENGTH), COORDINATE,                \
+     SETS(position_kind, SONJECT_POSITION_METRES)},                                                \
+        {"slant_range", range_meant, QUANTITY(position_range, LENGTH), FROM_ZERO,                  \
+         SETS(position_kind, SONJECT_POSITION_METRES)},                                            \
+        {"row", "of the swath, may be a fraction", QUANTITY(position_along, NUMBER),               \
+         WITHIN(least_index, INDEX_MAX), SETS(position_kind, SONJECT_POSITION_PIXELS)},            \
+    {                                                                                              \
+        "column", "of the swath, may be a fraction", QUANTITY(position_range, NUMBER),             \
+            WITHIN(least_index, INDEX_MAX), SETS(position_kind, SONJECT_POSITION_PIXELS)           \
+    }
+#define CENTRE_WORD                                                                                \
+    WORD(position_kind) = {[SONJECT_POSITION_PATCH_CENTRE] = "centre",                             \
+                           [SONJECT_POSITION_METRES] = "",                                         \
+                           [SONJECT_POSITION_PIXELS] = ""}
+
 /* ---- What is made from the tables, in keys.c. */
 
 /* The values that are there without any key, in all of a section's structure. scene: whose members

@@ -11,8 +11,7 @@
 #include "schema/keys.h"
 #include "schema/scene_file.h"
 
-#define INDEX_MAX  1099511627776.0 /* 2^40 pixels */
-#define LEVELS_MAX 8               /* of lists of parts within lists */
+#define LEVELS_MAX 8 /* of lists of parts within lists */
 
 /* ---- The keys that a shape has wherever one is described: in an object, in a part of one, in the
  * file of a target. Each of their structures begins with a sonject_object_params. */
@@ -473,16 +472,7 @@ sonject_status scene_append_target(struct scene *scene, struct report *report, c
 
 /* ---- Objects. */
 
-static const struct field position_fields[] = {
-    {"along_track", "track position", QUANTITY(position_along, LENGTH), COORDINATE,
-     SETS(position_kind, SONJECT_POSITION_METRES)},
-    {"slant_range", "as the image shows it", QUANTITY(position_range, LENGTH), FROM_ZERO,
-     SETS(position_kind, SONJECT_POSITION_METRES)},
-    {"row", "of the swath, may be a fraction", QUANTITY(position_along, NUMBER),
-     WITHIN(-1.0, INDEX_MAX), SETS(position_kind, SONJECT_POSITION_PIXELS)},
-    {"column", "of the swath, may be a fraction", QUANTITY(position_range, NUMBER),
-     WITHIN(-1.0, INDEX_MAX), SETS(position_kind, SONJECT_POSITION_PIXELS)},
-};
+static const struct field position_fields[] = {PLACE_FIELDS("as the image shows it", -1.0)};
 static const struct section position_section = {ROWS(position_fields),
                                                 .choice = "along_track+slant_range row+column"};
 
@@ -545,10 +535,7 @@ static const struct field object_fields[] = {
     {"user", "number in the scene", HIDDEN, COUNT32(user_shape, 0, 0)},
     {"position",
      "ground point under the centre: centre, {along_track: , slant_range: } or {row: , column: }",
-     WORD(position_kind) = {[SONJECT_POSITION_PATCH_CENTRE] = "centre",
-                            [SONJECT_POSITION_METRES] = "",
-                            [SONJECT_POSITION_PIXELS] = ""},
-     .section = &position_section},
+     CENTRE_WORD, .section = &position_section},
     TURN_FIELDS("from along-track towards range"),
     {"burial", "kind", HIDDEN, WORD(burial_kind) = {"depth", "fraction", "proud"}},
     {"burial", "depth of the lowest point below the seabed, or {fraction: } or {proud: }",

@@ -8,31 +8,18 @@
 #include "schema/keys.h"
 #include "swath/swath_file.h"
 
-#define INDEX_MAX 1099511627776.0 /* 2^40, as of objects in swath pixels */
-
 /* ---- Features of the relief. */
 
 #define STRUCTURE struct relief_feature
 static const struct field place_fields[] = {
-    {"along_track", "track position", QUANTITY(position_along, LENGTH), COORDINATE,
-     SETS(position_kind, SONJECT_POSITION_METRES)},
-    {"slant_range", "of the mean seabed there, as the image shows it",
-     QUANTITY(position_range, LENGTH), FROM_ZERO, SETS(position_kind, SONJECT_POSITION_METRES)},
-    {"row", "of the swath, may be a fraction", QUANTITY(position_along, NUMBER),
-     WITHIN(-INDEX_MAX, INDEX_MAX), SETS(position_kind, SONJECT_POSITION_PIXELS)},
-    {"column", "of the swath, may be a fraction", QUANTITY(position_range, NUMBER),
-     WITHIN(-INDEX_MAX, INDEX_MAX), SETS(position_kind, SONJECT_POSITION_PIXELS)},
-};
+    PLACE_FIELDS("of the mean seabed there, as the image shows it", -INDEX_MAX)};
 static const struct section place_section = {ROWS(place_fields),
                                              .choice = "along_track+slant_range row+column"};
 
 #define POSITION_FIELD                                                                             \
     {                                                                                              \
         "position", "of its middle: centre, {along_track: , slant_range: } or {row: , column: }",  \
-            WORD(position_kind) = {[SONJECT_POSITION_PATCH_CENTRE] = "centre",                     \
-                                   [SONJECT_POSITION_METRES] = "",                                 \
-                                   [SONJECT_POSITION_PIXELS] = ""},                                \
-            .section = &place_section                                                              \
+            CENTRE_WORD, .section = &place_section                                                 \
     }
 #define HEIGHT QUANTITY(height_m, LENGTH), WITHIN(0.0, RELIEF_HEIGHT_MAX_M), REQUIRED
 #define RADIUS QUANTITY(radius_m, LENGTH), POSITIVE, REQUIRED

@@ -101,11 +101,20 @@ static sonject_status finish_pulse(struct reader *reader, const struct tree_node
     return SONJECT_OK;
 }
 
+#define TAYLOR_FIELDS                                                                              \
+    {"sidelobes",                                                                                  \
+     "depth of the side lobes",                                                                    \
+     QUANTITY(taylor_sidelobe_db, DECIBEL),                                                        \
+     WITHIN(1.0, 120.0),                                                                           \
+     .preset = 35.0,                                                                               \
+     REQUIRED},                                                                                    \
+    {                                                                                              \
+        "terms", "side lobes of equal height", COUNT32(taylor_terms, 2, 16), .preset = 5, REQUIRED \
+    }
+
 #define STRUCTURE sonject_pulse_params
 static const struct field pulse_taylor_fields[] = {
-    {"sidelobes", "depth of the side lobes", QUANTITY(taylor_sidelobe_db, DECIBEL),
-     WITHIN(1.0, 120.0), .preset = 35.0, REQUIRED},
-    {"terms", "side lobes of equal height", COUNT32(taylor_terms, 2, 16), .preset = 5, REQUIRED},
+    TAYLOR_FIELDS,
 };
 static const struct section pulse_taylor_section = {ROWS(pulse_taylor_fields)};
 
@@ -284,9 +293,7 @@ static sonject_status finish_sonar(struct reader *reader, const struct tree_node
 
 #define STRUCTURE sonject_sonar_params
 static const struct field taylor_fields[] = {
-    {"sidelobes", "depth of the side lobes", QUANTITY(taylor_sidelobe_db, DECIBEL),
-     WITHIN(1.0, 120.0), .preset = 35.0, REQUIRED},
-    {"terms", "side lobes of equal height", COUNT32(taylor_terms, 2, 16), .preset = 5, REQUIRED},
+    TAYLOR_FIELDS,
 };
 static const struct section taylor_section = {ROWS(taylor_fields)};
 

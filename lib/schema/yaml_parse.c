@@ -81,31 +81,6 @@ static sonject_status copy_scalar(const struct builder *builder, const yaml_even
     return *text ? SONJECT_OK : report_out_of_memory(builder->tree->report, "the scene file");
 }
 
-static sonject_status build_list(struct builder *builder, int depth, struct tree_node *node)
-{
-    sonject_status status = SONJECT_OK;
-    node->kind = TREE_LIST;
-    while (status == SONJECT_OK) {
-        yaml_event_t event;
-        struct tree_entry *entry;
-        status = next_event(builder, &event);
-        if (status != SONJECT_OK)
-            return status;
-        if (event.type == YAML_SEQUENCE_END_EVENT) {
-            yaml_event_delete(&event);
-            return SONJECT_OK;
-        }
-        const size_t before = key_path_add_index(&builder->path, node->count);
-        status = tree_append(builder->tree, node, &builder->path, NULL,
-                             place_of(builder, event.start_mark), &entry);
-        THEN(status, build_node(builder, &event, depth + 1, &entry->value));
-        yaml_event_delete(&event);
-        if (status == SONJECT_OK)
-            key_path_shorten(&builder->path, before);
-    }
-    return status;
-}
-
 static sonject_status take_key(struct builder *builder, const yaml_event_t *event,
                                struct tree_node *node, struct tree_entry **entry)
 {
@@ -137,28 +112,34 @@ static sonject_status build_value(struct builder *builder, int depth, struct tre
     return status;
 }
 
-static sonject_status build_section(struct builder *builder, int depth, struct tree_node *node)
+/* Entries of a list or of a section, to its end. After a failure the path stays where it was. */
+static sonject_status build_entries(struct builder *builder, enum tree_kind kind, int depth,
+                                    struct tree_node *node)
 {
-    sonject_status status = SONJECT_OK;
-    node->kind = TREE_SECTION;
-    while (status == SONJECT_OK) {
+    const bool is_list = kind == TREE_LIST;
+    const yaml_event_type_t end = is_list ? YAML_SEQUENCE_END_EVENT : YAML_MAPPING_END_EVENT;
+    node->kind = kind;
+    for (;;) {
         yaml_event_t event;
         struct tree_entry *entry;
         const size_t before = builder->path.length;
-        status = next_event(builder, &event);
-        if (status != SONJECT_OK)
-            return status;
-        if (event.type == YAML_MAPPING_END_EVENT) {
-            yaml_event_delete(&event);
-            return SONJECT_OK;
+        CHECK(next_event(builder, &event));
+        const bool is_over = event.type == end;
+        sonject_status status = SONJECT_OK;
+        if (is_list && !is_over) {
+            key_path_add_index(&builder->path, node->count);
+            status = tree_append(builder->tree, node, &builder->path, NULL,
+                                 place_of(builder, event.start_mark), &entry);
+            THEN(status, build_node(builder, &event, depth + 1, &entry->value));
+        } else if (!is_over) {
+            status = take_key(builder, &event, node, &entry);
+            THEN(status, build_value(builder, depth + 1, &entry->value));
         }
-        status = take_key(builder, &event, node, &entry);
         yaml_event_delete(&event);
-        THEN(status, build_value(builder, depth + 1, &entry->value));
-        if (status == SONJECT_OK)
-            key_path_shorten(&builder->path, before);
+        if (is_over || status != SONJECT_OK)
+            return status;
+        key_path_shorten(&builder->path, before);
     }
-    return status;
 }
 
 static bool is_marked(const yaml_char_t *anchor, const yaml_char_t *tag)
@@ -184,11 +165,11 @@ static sonject_status build_node(struct builder *builder, const yaml_event_t *ev
     case YAML_SEQUENCE_START_EVENT:
         if (is_marked(event->data.sequence_start.anchor, event->data.sequence_start.tag))
             return refuse(builder, event, no_marks);
-        return build_list(builder, depth, node);
+        return build_entries(builder, TREE_LIST, depth, node);
     case YAML_MAPPING_START_EVENT:
         if (is_marked(event->data.mapping_start.anchor, event->data.mapping_start.tag))
             return refuse(builder, event, no_marks);
-        return build_section(builder, depth, node);
+        return build_entries(builder, TREE_SECTION, depth, node);
     default:
         return refuse(builder, event, "aliases (*name) are not supported; write the value out");
     }
