@@ -85,7 +85,7 @@ struct target_spheres {
 sonject_status target_spheres_init(struct target_spheres *spheres, const struct tracer *tracer,
                                    const double origin[3]);
 
-/* The scene's number of the i-th part. */
+/* A launch's part number i. */
 static inline const struct placement *placement_of(const struct tracer *tracer,
                                                    const struct part_list *parts, uint32_t i)
 {

@@ -152,6 +152,17 @@ static double reference_distance(const struct sea *sea, const struct line *line,
     return far > begin ? far : INFINITY;
 }
 
+static float seabed_at(const struct sea *sea, struct vector3 point, struct vector3 direction,
+                       float minimum)
+{
+    return seabed_distance(&sea->fan, objects_of(sea), point, direction, minimum, -1);
+}
+
+static struct vector3 normal_at(const struct sea *sea, struct vector3 hit, struct vector3 direction)
+{
+    return seabed_normal(&sea->fan, objects_of(sea), hit, direction);
+}
+
 static double lowest_between(const struct sea *sea, const struct line *line, double a, double b)
 {
     double lowest = INFINITY;
@@ -176,7 +187,7 @@ static void compare_ray(const struct sea *sea, struct vector3 point, struct vect
                         float minimum, struct errors *errors)
 {
     const struct line line = line_of(point, direction);
-    const float found = seabed_distance(&sea->fan, objects_of(sea), point, direction, minimum, -1);
+    const float found = seabed_at(sea, point, direction, minimum);
     const double expected = reference_distance(sea, &line, (double)minimum);
     const double at = (double)found < 0.5 * (double)FAR_AWAY ? (double)found : INFINITY;
     errors->hits += isfinite(expected) != 0;
@@ -261,12 +272,11 @@ static void test_rays_from_the_surface(void **state)
     for (int ray = 0; ray < RAYS; ray++) {
         struct vector3 point, direction;
         fan_ray_from(50.0, &point, &direction);
-        const float distance =
-            seabed_distance(&sea.fan, objects_of(&sea), point, direction, -50.0f, -1);
+        const float distance = seabed_at(&sea, point, direction, -50.0f);
         const struct vector3 hit = along3(point, direction, distance);
         if (fabsf(hit.x) > 3.2f || fabsf(hit.y) > 3.2f)
             continue;
-        const struct vector3 normal = seabed_normal(&sea.fan, objects_of(&sea), hit, direction);
+        const struct vector3 normal = normal_at(&sea, hit, direction);
         assert_true(dot3(normal, direction) < 0.0f);
         assert_true(fabsf(dot3(normal, normal) - 1.0f) < 1e-6f);
         const struct vector3 start = along3(hit, normal, 2.0e-5f);
@@ -316,33 +326,13 @@ static void test_rays_on_grid_lines(void **state)
         point.y = (float)(-3.25 + column * 0.03125) - direction.y;
         point.z = height - direction.z;
         const struct line line = line_of(point, direction);
-        const float found =
-            seabed_distance(&sea.fan, objects_of(&sea), point, direction, -1.0f, -1);
+        const float found = seabed_at(&sea, point, direction, -1.0f);
         const double here = clearance(&sea, &line, (double)found);
         /* slopes reach 1.7: coordinates are off by 2^-22 m */
         if (fabs(here) > 3e-6)
             fail_msg("kind %d at row %d, column %d: %g m off", kind, row, column, here);
         /* what slants may just pass over a crest that it is aimed at */
         assert_true(kind != 0 || fabsf(found - 1.0f) < 3e-6f);
-    }
-    sea_clear(&sea);
-}
-
-/* All heights 0: the plane's distances, normals and bits. */
-static void test_level_relief(void **state)
-{
-    struct sea sea;
-    sea_init(&sea, level, 0.025, 6.5);
-    for (int ray = 0; ray < RAYS; ray++) {
-        struct vector3 point, direction;
-        fan_ray_from(ray % 2 ? 50.0 : 500.0, &point, &direction);
-        const float plane = plane_distance(&sea.fan, point, direction);
-        const float found =
-            seabed_distance(&sea.fan, objects_of(&sea), point, direction, -600.0f, -1);
-        assert_memory_equal(&plane, &found, sizeof plane);
-        const struct vector3 normal =
-            seabed_normal(&sea.fan, objects_of(&sea), along3(point, direction, found), direction);
-        assert_true(normal.x == 0.0f && normal.y == 0.0f && normal.z == 1.0f);
     }
     sea_clear(&sea);
 }
@@ -361,28 +351,30 @@ static bool is_level_at(const struct sea *sea, struct vector3 place)
     return true;
 }
 
-/* So where a mound ends, whatever is next to it. */
-static void test_level_ground_among_relief(void **state)
+/* All heights 0, and where a mound ends, whatever is next to it: the plane's distances, normals and
+ * bits. */
+static void test_level_ground_is_the_plane(void **state)
 {
-    struct sea sea;
-    size_t met = 0;
-    sea_init(&sea, one_mound, 0.025, 6.5);
-    for (int ray = 0; ray < RAYS; ray++) {
-        struct vector3 point, direction;
-        fan_ray_from(50.0, &point, &direction);
-        const float plane = plane_distance(&sea.fan, point, direction);
-        const float found =
-            seabed_distance(&sea.fan, objects_of(&sea), point, direction, -50.0f, -1);
-        const struct vector3 place = along3(point, direction, found);
-        if (!is_level_at(&sea, place) || fabsf(place.z) > 1e-5f)
-            continue;
-        const struct vector3 normal = seabed_normal(&sea.fan, objects_of(&sea), place, direction);
-        assert_memory_equal(&plane, &found, sizeof plane);
-        assert_true(normal.x == 0.0f && normal.y == 0.0f && normal.z == 1.0f);
-        met += hypot((double)place.x, (double)place.y) < 0.9;
+    for (int has_mound = 0; has_mound < 2; has_mound++) {
+        struct sea sea;
+        size_t met = 0;
+        sea_init(&sea, has_mound ? one_mound : level, 0.025, 6.5);
+        for (int ray = 0; ray < RAYS; ray++) {
+            struct vector3 point, direction;
+            fan_ray_from(has_mound || ray % 2 ? 50.0 : 500.0, &point, &direction);
+            const float plane = plane_distance(&sea.fan, point, direction);
+            const float found = seabed_at(&sea, point, direction, has_mound ? -50.0f : -600.0f);
+            const struct vector3 place = along3(point, direction, found);
+            if (has_mound && (!is_level_at(&sea, place) || fabsf(place.z) > 1e-5f))
+                continue;
+            const struct vector3 normal = normal_at(&sea, place, direction);
+            assert_memory_equal(&plane, &found, sizeof plane);
+            assert_true(normal.x == 0.0f && normal.y == 0.0f && normal.z == 1.0f);
+            met += hypot((double)place.x, (double)place.y) < 0.9;
+        }
+        assert_true(met > 200); /* in blocks that a mound reaches into */
+        sea_clear(&sea);
     }
-    assert_true(met > 200); /* in blocks that the mound reaches into */
-    sea_clear(&sea);
 }
 
 static double ripples_alone(double x, double y)
@@ -399,12 +391,11 @@ static void test_normals(void **state)
     for (int ray = 0; ray < RAYS / 10; ray++) {
         struct vector3 point, direction;
         fan_ray_from(50.0, &point, &direction);
-        const float distance =
-            seabed_distance(&sea.fan, objects_of(&sea), point, direction, -50.0f, -1);
+        const float distance = seabed_at(&sea, point, direction, -50.0f);
         const struct vector3 hit = along3(point, direction, distance);
         if (fabsf(hit.x) > 3.0f || fabsf(hit.y) > 3.0f)
             continue;
-        const struct vector3 normal = seabed_normal(&sea.fan, objects_of(&sea), hit, direction);
+        const struct vector3 normal = normal_at(&sea, hit, direction);
         const double phase = 2.0 * PI * (0.6 * (double)hit.x + 0.8 * (double)hit.y) / 0.4;
         const double slope = 0.03 * 2.0 * PI / 0.4 * sin(phase);
         const double length = sqrt(1.0 + slope * slope);
@@ -425,5 +416,5 @@ static void test_normals(void **state)
 }
 
 TEST_PROGRAM(NULL, NULL, TEST(test_primary_rays), TEST(test_rays_from_the_surface),
-             TEST(test_rays_on_grid_lines), TEST(test_level_relief),
-             TEST(test_level_ground_among_relief), TEST(test_normals))
+             TEST(test_rays_on_grid_lines), TEST(test_level_ground_is_the_plane),
+             TEST(test_normals))
