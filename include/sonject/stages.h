@@ -17,7 +17,7 @@ typedef struct sonject_trace_params {
     uint32_t reserved;
     const char *file;        /* to write, for sonject_form */
     const char *export_file; /* NULL, or the same as arrays of HDF5, described in
-                                lib/inject/impulse_export.h; builds without it: UNSUPPORTED */
+                                lib/inject/impulses.h; builds without it: UNSUPPORTED */
 } sonject_trace_params;
 
 SONJECT_API void sonject_trace_params_init(sonject_trace_params *params);

@@ -5,7 +5,7 @@
 
 #include <sonject/elements.h>
 
-#include "inject/element_echoes.h"
+#include "inject/injection.h"
 #include "scene/element_plan.h"
 
 /* The size of the patch that the scene makes itself; nothing where it makes none. */

@@ -11,9 +11,9 @@
 #include "base/report.h"
 #include "device/device.h"
 #include "inject/injection.h"
-#include "trace/sums_file.h"
 #include "scene/scene.h"
 #include "swath/decoder.h"
+#include "trace/sums_file.h"
 
 struct sonject_context {
     struct report report; /* its host is the next member */

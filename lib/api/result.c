@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "dataset/run.h"
-#include "inject/injection_setup.h"
+#include "inject/injection.h"
 
 sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
                            struct injection_input *input, float **packed)

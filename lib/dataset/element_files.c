@@ -14,7 +14,7 @@
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "dataset/earlier_result.h"
-#include "inject/element_echoes.h"
+#include "inject/injection.h"
 #include "inject/scene_hash.h"
 #include "inject/swath.h"
 #include "scene/element_plan.h"

@@ -13,7 +13,7 @@
 #include "base/report.h"
 #include "dataset/earlier_result.h"
 #include "inject/checkpoints.h"
-#include "inject/impulse_export.h"
+#include "inject/impulses.h"
 #include "inject/scene_hash.h"
 #include "inject/swath.h"
 #include "schema/scene_file.h"

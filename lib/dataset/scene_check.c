@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "base/text.h"
-#include "inject/injection_setup.h"
+#include "inject/injection.h"
 #include "inject/swath.h"
 #include "scene/placement.h"
 #include "user/shape_check.h"

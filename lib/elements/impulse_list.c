@@ -1,11 +1,10 @@
-#include "elements/impulse_list.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "device/device.h"
+#include "elements/elements.h"
+#include "form/form.h"
 
 #define MICROPASCAL 1e-6
 
@@ -29,55 +28,6 @@ void impulse_list_set_source_level(struct impulse_list *list, const struct patch
     const double pressure = sqrt(2.0) * MICROPASCAL * pow(10.0, source_level_db / 20.0);
     for (size_t i = 0; i < list->count; i++)
         scale_piece(&list->pieces[i], view, pressure, absorption_db_per_m);
-}
-
-/* Buffers and the kernel of a drawing. */
-struct drawing {
-    device_buffer energy, real_part, imaginary_part;
-    device_kernel kernel;
-};
-
-static sonject_status drawing_run(struct drawing *drawing, struct report *report,
-                                  struct device *device, struct span bins, struct span strips,
-                                  uint64_t seed, uint32_t stream)
-{
-    const int32_t bin_count = bins.count;
-    const int32_t first_bin = bins.first;
-    const int32_t first_strip = strips.first;
-    const uint32_t seed_low = (uint32_t)(seed & 0xffffffffu);
-    const uint32_t seed_high = (uint32_t)(seed >> 32);
-    const uint32_t stream_number = stream;
-    const struct kernel_argument arguments[] = {
-        ARGUMENT(drawing->energy), ARGUMENT(bin_count),          ARGUMENT(first_bin),
-        ARGUMENT(first_strip),     ARGUMENT(seed_low),           ARGUMENT(seed_high),
-        ARGUMENT(stream_number),   ARGUMENT(drawing->real_part), ARGUMENT(drawing->imaginary_part)};
-    const size_t global[2] = {((size_t)bins.count + device->width - 1) / device->width,
-                              (size_t)strips.count};
-    return kernel_run(report, device, drawing->kernel, arguments,
-                      sizeof arguments / sizeof *arguments, 2, global);
-}
-
-/* sqrt(energy) times complex normal deviates that depend on seed, stream, strip and bin alone, for
- * strips.count x bins.count cells of one grid, in two planes. Errors: DEVICE, MEMORY. */
-static sonject_status speckle_draw(struct report *report, struct device *device, struct span bins,
-                                   struct span strips, const float *energy, uint64_t seed,
-                                   uint32_t stream, float *real_part, float *imaginary_part)
-{
-    const size_t bytes = (size_t)strips.count * (size_t)bins.count * sizeof(float);
-    struct drawing drawing = {NULL, NULL, NULL, NULL};
-    sonject_status status =
-        kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "draw_speckle", &drawing.kernel);
-    THEN(status, buffer_create(report, device, bytes, energy, &drawing.energy));
-    THEN(status, buffer_create(report, device, bytes, NULL, &drawing.real_part));
-    THEN(status, buffer_create(report, device, bytes, NULL, &drawing.imaginary_part));
-    THEN(status, drawing_run(&drawing, report, device, bins, strips, seed, stream));
-    THEN(status, buffer_read(report, device, drawing.real_part, 0, bytes, real_part));
-    THEN(status, buffer_read(report, device, drawing.imaginary_part, 0, bytes, imaginary_part));
-    kernel_release(&drawing.kernel);
-    buffer_release(&drawing.energy);
-    buffer_release(&drawing.real_part);
-    buffer_release(&drawing.imaginary_part);
-    return status;
 }
 
 void impulse_list_init(struct impulse_list *list, struct report *report, struct device *device)
@@ -183,14 +133,17 @@ sonject_status impulse_list_add_speckle(struct impulse_list *list, const struct 
     const size_t cells = (size_t)strips.count * (size_t)grid->bins.count;
     if (cells == 0)
         return SONJECT_OK;
-    float *real_part = allocate_array(cells, sizeof *real_part);
-    float *imaginary_part = allocate_array(cells, sizeof *imaginary_part);
+    float *parts = allocate_array(2 * cells, sizeof *parts);
+    CHECK_MEMORY(list->report, parts, "speckle");
+    device_buffer drawn[2];
     sonject_status status =
-        real_part && imaginary_part ? SONJECT_OK : report_out_of_memory(list->report, "speckle");
-    THEN(status, speckle_draw(list->report, list->device, grid->bins, strips, energy, seed, stream,
-                              real_part, imaginary_part));
-    THEN(status, impulse_list_add(list, grid, strips, real_part, imaginary_part));
-    free(real_part);
-    free(imaginary_part);
+        speckle_draw(list->report, list->device, grid->bins, strips, energy, seed, stream, drawn);
+    for (size_t part = 0; part < 2; part++) {
+        THEN(status, buffer_read(list->report, list->device, drawn[part], 0, cells * sizeof *parts,
+                                 parts + part * cells));
+        buffer_release(&drawn[part]);
+    }
+    THEN(status, impulse_list_add(list, grid, strips, parts, parts + cells));
+    free(parts);
     return status;
 }

@@ -1,11 +1,9 @@
-#include "elements/series.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "device/device.h"
+#include "elements/elements.h"
 
 #define PI                    3.14159265358979323846
 #define SAMPLES_PER_DEVIATION 16.0      /* sharing between two fine samples then errs by 5e-4 */
@@ -18,7 +16,6 @@
 #define WORK_ITEMS            65536 /* that a GPU wants */
 #define SHARE_SAMPLES         64    /* of a line, for a work-item at least */
 
-/* On success to be given to fine_pulse_clear. Errors: MEMORY, INPUT (too many fine samples). */
 static void fine_pulse_clear(struct fine_pulse *pulse)
 {
     free(pulse->real_part);
@@ -58,6 +55,7 @@ static void fill_chirp(struct fine_pulse *pulse, const sonject_element_layout *l
     }
 }
 
+/* On success to be given to fine_pulse_clear. Errors: MEMORY, INPUT (too many fine samples). */
 static sonject_status fine_pulse_init(struct fine_pulse *pulse, struct report *report,
                                       const sonject_element_layout *layout,
                                       const struct point_response *response)
@@ -188,9 +186,8 @@ struct series_work {
     uint32_t fine_samples; /* of a line */
     int32_t line_stride, series_stride;
     struct element_pair_record *records; /* chunk */
-    float *real_part, *imaginary_part;   /* chunk x series_stride */
-    device_buffer lines_real, lines_imaginary, series_real, series_imaginary, pulse_real,
-        pulse_imaginary;
+    float *parts[2];                     /* chunk x series_stride */
+    device_buffer lines[2], series[2], pulses[2];
     device_kernel hear, pulse_kernel;
 };
 
@@ -198,15 +195,13 @@ static void work_clear(struct series_work *work)
 {
     kernel_release(&work->hear);
     kernel_release(&work->pulse_kernel);
-    buffer_release(&work->lines_real);
-    buffer_release(&work->lines_imaginary);
-    buffer_release(&work->series_real);
-    buffer_release(&work->series_imaginary);
-    buffer_release(&work->pulse_real);
-    buffer_release(&work->pulse_imaginary);
+    for (int part = 0; part < 2; part++) {
+        buffer_release(&work->lines[part]);
+        buffer_release(&work->series[part]);
+        buffer_release(&work->pulses[part]);
+        free(work->parts[part]);
+    }
     free(work->records);
-    free(work->real_part);
-    free(work->imaginary_part);
     fine_pulse_clear(&work->pulse);
 }
 
@@ -230,35 +225,24 @@ static sonject_status work_init(struct series_work *work, const struct series_re
     work->request = request;
     work->report = report;
     work->device = device;
-    sonject_status status =
-        fine_pulse_init(&work->pulse, report, request->layout, request->response);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(fine_pulse_init(&work->pulse, report, request->layout, request->response));
     choose_chunk(work);
     const size_t line_bytes = work->chunk * (size_t)work->line_stride * sizeof(float);
-    const size_t series_cells = work->chunk * (size_t)work->series_stride;
+    const size_t series_bytes = work->chunk * (size_t)work->series_stride * sizeof(float);
     const size_t pulse_bytes = work->pulse.taps * sizeof(float);
+    const float *const pulses[2] = {work->pulse.real_part, work->pulse.imaginary_part};
     work->records = allocate_array(work->chunk, sizeof *work->records);
-    work->real_part = allocate_array(series_cells, sizeof(float));
-    work->imaginary_part = allocate_array(series_cells, sizeof(float));
-    if (!work->records || !work->real_part || !work->imaginary_part)
-        status = report_out_of_memory(report, "time series");
-    device_buffer *const lines[] = {&work->lines_real, &work->lines_imaginary};
-    device_buffer *const series[] = {&work->series_real, &work->series_imaginary};
-    for (int part = 0; status == SONJECT_OK && part < 2; part++) {
-        status = buffer_create(report, device, line_bytes, NULL, lines[part]);
-        THEN(status,
-             buffer_create(report, device, series_cells * sizeof(float), NULL, series[part]));
+    CHECK_MEMORY(report, work->records, "time series");
+    for (int part = 0; part < 2; part++) {
+        work->parts[part] = allocate_array(series_bytes, 1);
+        CHECK_MEMORY(report, work->parts[part], "time series");
+        CHECK(buffer_create(report, device, line_bytes, NULL, &work->lines[part]));
+        CHECK(buffer_create(report, device, series_bytes, NULL, &work->series[part]));
+        CHECK(buffer_create(report, device, pulse_bytes, pulses[part], &work->pulses[part]));
     }
-    THEN(status,
-         buffer_create(report, device, pulse_bytes, work->pulse.real_part, &work->pulse_real));
-    THEN(status, buffer_create(report, device, pulse_bytes, work->pulse.imaginary_part,
-                               &work->pulse_imaginary));
-    THEN(status,
-         kernel_create(report, device, PROGRAM_ELEMENT_SERIES, 0, "hear_elements", &work->hear));
-    THEN(status, kernel_create(report, device, PROGRAM_ELEMENT_SERIES, 0, "pulse_elements",
-                               &work->pulse_kernel));
-    return status;
+    CHECK(kernel_create(report, device, PROGRAM_ELEMENT_SERIES, 0, "hear_elements", &work->hear));
+    return kernel_create(report, device, PROGRAM_ELEMENT_SERIES, 0, "pulse_elements",
+                         &work->pulse_kernel);
 }
 
 /* A buffer of a piece's numbers with room for a group of lanes behind them. */
@@ -280,59 +264,47 @@ static int32_t series_segments(const struct series_work *work)
     return most < wanted ? most : wanted;
 }
 
-struct piece_buffers {
-    device_buffer grid, pairs, starts, bins, real_part, imaginary_part;
-};
-
-static sonject_status piece_buffers_init(struct piece_buffers *buffers, struct series_work *work,
-                                         const struct impulse_piece *piece, size_t first,
-                                         size_t count, int32_t *segments)
-{
-    const struct series_request *request = work->request;
-    const struct impulse_grid_record grid = impulse_grid_record_of(
-        request->layout, request->view, piece, &work->pulse, series_segments(work));
-    *segments = grid.segments;
-    element_pair_records_fill(work->records, &request->layout->elements, request->view, piece,
-                              first, count);
-    memset(buffers, 0, sizeof *buffers);
-    CHECK(buffer_create(work->report, work->device, sizeof grid, &grid, &buffers->grid));
-    CHECK(buffer_create(work->report, work->device, count * sizeof *work->records, work->records,
-                        &buffers->pairs));
-    CHECK(
-        padded_buffer(work, piece->starts, (size_t)piece->grid.strips.count + 1, &buffers->starts));
-    CHECK(padded_buffer(work, piece->bins, piece->count, &buffers->bins));
-    CHECK(padded_buffer(work, piece->real_part, piece->count, &buffers->real_part));
-    return padded_buffer(work, piece->imaginary_part, piece->count, &buffers->imaginary_part);
-}
-
-static void piece_buffers_clear(struct piece_buffers *buffers)
-{
-    buffer_release(&buffers->grid);
-    buffer_release(&buffers->pairs);
-    buffer_release(&buffers->starts);
-    buffer_release(&buffers->bins);
-    buffer_release(&buffers->real_part);
-    buffer_release(&buffers->imaginary_part);
-}
-
 static sonject_status hear_piece(struct series_work *work, const struct impulse_piece *piece,
                                  size_t first, size_t count)
 {
-    struct piece_buffers buffers;
-    int32_t segments;
-    sonject_status status = piece_buffers_init(&buffers, work, piece, first, count, &segments);
+    enum {
+        GRID,
+        PAIRS,
+        STARTS,
+        BINS,
+        REAL_PART,
+        IMAGINARY_PART,
+        BUFFERS
+    };
+    const struct series_request *request = work->request;
+    const struct impulse_grid_record grid = impulse_grid_record_of(
+        request->layout, request->view, piece, &work->pulse, series_segments(work));
+    const size_t strips = (size_t)piece->grid.strips.count;
+    device_buffer buffers[BUFFERS] = {NULL};
+    element_pair_records_fill(work->records, &request->layout->elements, request->view, piece,
+                              first, count);
+    sonject_status status =
+        buffer_create(work->report, work->device, sizeof grid, &grid, &buffers[GRID]);
+    THEN(status, buffer_create(work->report, work->device, count * sizeof *work->records,
+                               work->records, &buffers[PAIRS]));
+    THEN(status, padded_buffer(work, piece->starts, strips + 1, &buffers[STARTS]));
+    THEN(status, padded_buffer(work, piece->bins, piece->count, &buffers[BINS]));
+    THEN(status, padded_buffer(work, piece->real_part, piece->count, &buffers[REAL_PART]));
+    THEN(status,
+         padded_buffer(work, piece->imaginary_part, piece->count, &buffers[IMAGINARY_PART]));
     if (status == SONJECT_OK) {
         const struct kernel_argument arguments[] = {
-            ARGUMENT(buffers.grid),         ARGUMENT(buffers.pairs),
-            ARGUMENT(buffers.starts),       ARGUMENT(buffers.bins),
-            ARGUMENT(buffers.real_part),    ARGUMENT(buffers.imaginary_part),
-            ARGUMENT(work->line_stride),    ARGUMENT(work->lines_real),
-            ARGUMENT(work->lines_imaginary)};
-        const size_t global[2] = {(size_t)segments, count};
+            ARGUMENT(buffers[GRID]),      ARGUMENT(buffers[PAIRS]),
+            ARGUMENT(buffers[STARTS]),    ARGUMENT(buffers[BINS]),
+            ARGUMENT(buffers[REAL_PART]), ARGUMENT(buffers[IMAGINARY_PART]),
+            ARGUMENT(work->line_stride),  ARGUMENT(work->lines[0]),
+            ARGUMENT(work->lines[1])};
+        const size_t global[2] = {(size_t)grid.segments, count};
         status = kernel_run(work->report, work->device, work->hear, arguments,
                             sizeof arguments / sizeof *arguments, 2, global);
     }
-    piece_buffers_clear(&buffers);
+    for (int i = 0; i < BUFFERS; i++)
+        buffer_release(&buffers[i]);
     return status;
 }
 
@@ -341,22 +313,16 @@ static sonject_status pulse_chunk(struct series_work *work, size_t count)
     const int32_t fine = (int32_t)work->pulse.fine;
     const int32_t taps = (int32_t)work->pulse.taps;
     const size_t bytes = count * (size_t)work->series_stride * sizeof(float);
-    const struct kernel_argument arguments[] = {ARGUMENT(work->lines_real),
-                                                ARGUMENT(work->lines_imaginary),
-                                                ARGUMENT(work->line_stride),
-                                                ARGUMENT(fine),
-                                                ARGUMENT(work->pulse_real),
-                                                ARGUMENT(work->pulse_imaginary),
-                                                ARGUMENT(taps),
-                                                ARGUMENT(work->series_stride),
-                                                ARGUMENT(work->series_real),
-                                                ARGUMENT(work->series_imaginary)};
+    const struct kernel_argument arguments[] = {
+        ARGUMENT(work->lines[0]), ARGUMENT(work->lines[1]),      ARGUMENT(work->line_stride),
+        ARGUMENT(fine),           ARGUMENT(work->pulses[0]),     ARGUMENT(work->pulses[1]),
+        ARGUMENT(taps),           ARGUMENT(work->series_stride), ARGUMENT(work->series[0]),
+        ARGUMENT(work->series[1])};
     const size_t global[2] = {(size_t)work->series_stride / work->device->width, count};
     CHECK(kernel_run(work->report, work->device, work->pulse_kernel, arguments,
                      sizeof arguments / sizeof *arguments, 2, global));
-    CHECK(buffer_read(work->report, work->device, work->series_real, 0, bytes, work->real_part));
-    return buffer_read(work->report, work->device, work->series_imaginary, 0, bytes,
-                       work->imaginary_part);
+    CHECK(buffer_read(work->report, work->device, work->series[0], 0, bytes, work->parts[0]));
+    return buffer_read(work->report, work->device, work->series[1], 0, bytes, work->parts[1]);
 }
 
 /* Puts a chunk's series into the caller's, on the carrier where that is wanted. */
@@ -372,8 +338,8 @@ static void hand_over(const struct series_work *work, size_t first, size_t count
         const float cosine = (float)cos(2.0 * PI * cycles);
         const float sine = (float)sin(2.0 * PI * cycles);
         for (size_t i = 0; i < count; i++) {
-            const float a = work->real_part[i * (size_t)work->series_stride + n];
-            const float b = work->imaginary_part[i * (size_t)work->series_stride + n];
+            const float a = work->parts[0][i * (size_t)work->series_stride + n];
+            const float b = work->parts[1][i * (size_t)work->series_stride + n];
             const size_t at = (first + i) * samples + n;
             if (is_passband) {
                 series[at] = a * cosine + b * sine;
@@ -390,8 +356,8 @@ static sonject_status compute_chunk(struct series_work *work, size_t first, size
 {
     const struct impulse_list *impulses = work->request->impulses;
     const size_t bytes = count * (size_t)work->line_stride * sizeof(float);
-    sonject_status status = buffer_clear(work->report, work->device, work->lines_real, bytes);
-    THEN(status, buffer_clear(work->report, work->device, work->lines_imaginary, bytes));
+    sonject_status status = buffer_clear(work->report, work->device, work->lines[0], bytes);
+    THEN(status, buffer_clear(work->report, work->device, work->lines[1], bytes));
     for (size_t i = 0; status == SONJECT_OK && i < impulses->count; i++)
         status = hear_piece(work, &impulses->pieces[i], first, count);
     THEN(status, pulse_chunk(work, count));

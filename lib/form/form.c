@@ -6,8 +6,8 @@
 
 #include "base/memory.h"
 #include "device/device.h"
-#include "form/combine_varied.h"
 #include "kernels/layout.h"
+#include "scene/motion_response.h"
 #include "scene/point_response.h"
 
 #define SEARCH_STEP          64    /* bins that are looked at together */
@@ -15,6 +15,8 @@
 #define SPECKLE_ENERGY_SHARE 0.001 /* of |W|^2 that is cut off from speckle and energies */
 #define COLUMN_STEP          16    /* lines are padded to whole groups of any width */
 #define ROWS_PER_ITEM        8     /* FORM_ROWS of kernels/image_formation.h */
+#define BLOCK_COLUMNS        16    /* that share a response; holds whole groups of any width */
+#define TAPS_OF_A_RUN        ((size_t)1 << 22)
 
 typedef char filled_span_is_packed[sizeof(struct filled_span) == 2 * 4 ? 1 : -1];
 
@@ -81,10 +83,9 @@ static void choose_window(struct form_lines *lines, const struct patch_view *vie
     lines->stride = (lines->columns + COLUMN_STEP - 1) / COLUMN_STEP * COLUMN_STEP;
 }
 
-static sonject_status send_taps(struct form_lines *lines, const float *taps, size_t count,
-                                device_buffer *buffer)
+static bool is_of_energies(const struct form_lines *lines)
 {
-    return buffer_create(lines->report, lines->device, count * sizeof *taps, taps, buffer);
+    return lines->kind == FORM_ENERGY || lines->kind == FORM_TWO_ENERGIES;
 }
 
 /* G, or |G|^2; both parts where it is complex. */
@@ -92,34 +93,27 @@ static sonject_status make_pulse(struct form_lines *lines, const struct patch_vi
                                  int32_t taps_each_side)
 {
     const double bin = view->column_spacing_m / lines->grid.bins_per_pixel;
-    const bool is_energy = form_is_of_energies(lines->kind);
-    const bool is_real = is_energy || range_response_is_real(&lines->response);
+    const bool is_real = is_of_energies(lines) || range_response_is_real(&lines->response);
     lines->pulse_taps = 2 * taps_each_side + 1;
     lines->pulse_first = -taps_each_side - lines->grid.bins.first;
     const size_t count = (size_t)lines->pulse_taps;
-    float *taps = allocate_array(count, sizeof *taps);
-    float *imaginary_taps = allocate_array(count, sizeof *taps);
-    sonject_status status =
-        taps && imaginary_taps ? SONJECT_OK : report_out_of_memory(lines->report, "the pulse");
-    for (int32_t tap = 0; status == SONJECT_OK && tap < lines->pulse_taps; tap++) {
+    float *taps = allocate_array(2 * count, sizeof *taps);
+    CHECK_MEMORY(lines->report, taps, "the pulse");
+    for (int32_t tap = 0; tap < lines->pulse_taps; tap++) {
         /* at the pixel's range less the bin's */
         const struct complex_number g =
             range_response_complex(&lines->response, (taps_each_side - tap) * bin);
         const double energy = g.real_part * g.real_part + g.imaginary_part * g.imaginary_part;
-        taps[tap] = (float)(is_energy ? energy : g.real_part);
-        imaginary_taps[tap] = (float)g.imaginary_part;
+        taps[tap] = (float)(is_of_energies(lines) ? energy : g.real_part);
+        taps[count + (size_t)tap] = (float)g.imaginary_part;
     }
-    THEN(status, send_taps(lines, taps, count, &lines->pulse));
+    sonject_status status =
+        buffer_create(lines->report, lines->device, count * sizeof *taps, taps, &lines->pulse);
     if (status == SONJECT_OK && !is_real)
-        status = send_taps(lines, imaginary_taps, count, &lines->imaginary_pulse);
+        status = buffer_create(lines->report, lines->device, count * sizeof *taps, taps + count,
+                               &lines->imaginary_pulse);
     free(taps);
-    free(imaginary_taps);
     return status;
-}
-
-bool form_is_of_energies(enum form_kind kind)
-{
-    return kind == FORM_ENERGY || kind == FORM_TWO_ENERGIES;
 }
 
 int32_t form_reach(const struct patch_view *view, const struct point_response *response,
@@ -161,15 +155,11 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
         allocate_array((size_t)grid->strips.count, sizeof *lines->filled_columns);
     sonject_status status = lines->filled_columns ? make_pulse(lines, view, taps_each_side)
                                                   : report_out_of_memory(report, "image formation");
-    THEN(status, buffer_create(report, device, bytes, NULL, &lines->real_lines));
-    THEN(status, buffer_create(report, device, bytes, NULL, &lines->imaginary_lines));
+    for (int part = 0; part < 2; part++)
+        THEN(status, buffer_create(report, device, bytes, NULL, &lines->lines[part]));
     THEN(status, kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0,
                                lines->imaginary_pulse ? "compress_range_complex" : "compress_range",
                                &lines->compress));
-    THEN(status, kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "combine_aspects",
-                               &lines->combine));
-    THEN(status, kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "draw_speckle",
-                               &lines->speckle));
     if (status != SONJECT_OK)
         form_lines_end(lines);
     return status;
@@ -178,13 +168,8 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
 void form_lines_end(struct form_lines *lines)
 {
     kernel_release(&lines->compress);
-    kernel_release(&lines->combine);
-    kernel_release(&lines->speckle);
-    lines->compress = NULL;
-    lines->combine = NULL;
-    lines->speckle = NULL;
-    buffer_release(&lines->real_lines);
-    buffer_release(&lines->imaginary_lines);
+    for (int part = 0; part < 2; part++)
+        buffer_release(&lines->lines[part]);
     buffer_release(&lines->pulse);
     buffer_release(&lines->imaginary_pulse);
     free(lines->filled_columns);
@@ -192,10 +177,9 @@ void form_lines_end(struct form_lines *lines)
 }
 
 static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t count,
-                               device_buffer real_bins, device_buffer imaginary_bins,
-                               device_buffer filled)
+                               const device_buffer bins[2], device_buffer filled)
 {
-    const int32_t bins = lines->grid.bins.count;
+    const int32_t bin_count = lines->grid.bins.count;
     const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
     const int32_t first = lines->pulse_first + (int32_t)lines->first_column * per_pixel;
     const int32_t taps = lines->pulse_taps;
@@ -203,14 +187,14 @@ static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t 
     const int32_t out_strip = strip - lines->grid.strips.first;
     const bool is_complex = lines->imaginary_pulse != NULL; /* else its place is the next one's */
     struct kernel_argument arguments[13] = {
-        ARGUMENT(real_bins), ARGUMENT(imaginary_bins), ARGUMENT(filled),      ARGUMENT(bins),
-        ARGUMENT(first),     ARGUMENT(per_pixel),      ARGUMENT(lines->pulse)};
+        ARGUMENT(bins[0]), ARGUMENT(bins[1]),   ARGUMENT(filled),      ARGUMENT(bin_count),
+        ARGUMENT(first),   ARGUMENT(per_pixel), ARGUMENT(lines->pulse)};
     const struct kernel_argument rest[] = {ARGUMENT(lines->imaginary_pulse),
                                            ARGUMENT(taps),
                                            ARGUMENT(stride),
                                            ARGUMENT(out_strip),
-                                           ARGUMENT(lines->real_lines),
-                                           ARGUMENT(lines->imaginary_lines)};
+                                           ARGUMENT(lines->lines[0]),
+                                           ARGUMENT(lines->lines[1])};
     const size_t left = is_complex ? 6 : 5;
     memcpy(&arguments[7], &rest[6 - left], left * sizeof *rest);
     const size_t global[3] = {lines->stride / lines->device->width, (size_t)count, lines->planes};
@@ -232,8 +216,7 @@ static void note_filled(struct form_lines *lines, int32_t strip, struct filled_s
 
 /* Compresses strips of which the device has the bins. */
 static sonject_status compress_filled(struct form_lines *lines, int32_t strip, int32_t count,
-                                      device_buffer real_bins, device_buffer imaginary_bins,
-                                      const struct filled_span *filled)
+                                      const device_buffer bins[2], const struct filled_span *filled)
 {
     device_buffer buffer = NULL;
     for (int32_t i = 0; i < count; i++)
@@ -241,96 +224,88 @@ static sonject_status compress_filled(struct form_lines *lines, int32_t strip, i
             note_filled(lines, strip + i, filled[i]);
     sonject_status status = buffer_create(lines->report, lines->device,
                                           (size_t)count * sizeof *filled, filled, &buffer);
-    THEN(status, compress(lines, strip, count, real_bins, imaginary_bins, buffer));
+    THEN(status, compress(lines, strip, count, bins, buffer));
     buffer_release(&buffer);
-    return status;
-}
-
-static sonject_status add_run(struct form_lines *lines, int32_t strip, int32_t count,
-                              const float *real_part, const float *imaginary_part,
-                              const struct filled_span *filled)
-{
-    const size_t bytes = (size_t)count * (size_t)lines->grid.bins.count * sizeof(float);
-    device_buffer real_bins = NULL;
-    device_buffer imaginary_bins = NULL;
-    sonject_status status =
-        buffer_create(lines->report, lines->device, bytes, real_part, &real_bins);
-    THEN(status,
-         buffer_create(lines->report, lines->device, bytes, imaginary_part, &imaginary_bins));
-    THEN(status, compress_filled(lines, strip, count, real_bins, imaginary_bins, filled));
-    buffer_release(&real_bins);
-    buffer_release(&imaginary_bins);
     return status;
 }
 
 sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t count,
                               const float *real_part, const float *imaginary_part)
 {
-    const size_t bins = (size_t)lines->grid.bins.count;
+    const size_t width = (size_t)lines->grid.bins.count;
     if (lines->columns == 0 || count == 0)
         return SONJECT_OK;
     struct filled_span *filled = allocate_array((size_t)count, sizeof *filled);
     CHECK_MEMORY(lines->report, filled, "image formation");
     for (size_t i = 0; i < (size_t)count; i++)
-        filled[i] = filled_span_of(real_part + i * bins,
-                                   imaginary_part ? imaginary_part + i * bins : NULL, bins);
+        filled[i] = filled_span_of(real_part + i * width,
+                                   imaginary_part ? imaginary_part + i * width : NULL, width);
     struct span run = {0, 0};
     sonject_status status = SONJECT_OK;
     while (status == SONJECT_OK && (run = next_filled_strips(filled, count, run)).count > 0) {
-        const size_t at = (size_t)run.first * bins;
-        status = add_run(lines, strip + run.first, run.count, real_part + at,
-                         imaginary_part ? imaginary_part + at : NULL, filled + run.first);
+        const size_t at = (size_t)run.first * width;
+        const size_t bytes = (size_t)run.count * width * sizeof(float);
+        const float *parts[2] = {real_part + at, imaginary_part ? imaginary_part + at : NULL};
+        device_buffer bins[2] = {NULL, NULL};
+        for (int part = 0; part < 2; part++)
+            THEN(status,
+                 buffer_create(lines->report, lines->device, bytes, parts[part], &bins[part]));
+        THEN(status,
+             compress_filled(lines, strip + run.first, run.count, bins, filled + run.first));
+        buffer_release(&bins[0]);
+        buffer_release(&bins[1]);
     }
     free(filled);
     return status;
 }
 
-/* Of strips that are all taken for filled. */
-static sonject_status compress_all(struct form_lines *lines, int32_t strip, int32_t count,
-                                   device_buffer real_bins, device_buffer imaginary_bins)
+sonject_status speckle_draw(struct report *report, struct device *device, struct span bins,
+                            struct span strips, const float *energy, uint64_t seed, uint32_t stream,
+                            device_buffer parts[2])
 {
-    struct filled_span *filled = allocate_array((size_t)count, sizeof *filled);
-    CHECK_MEMORY(lines->report, filled, "image formation");
-    for (int32_t i = 0; i < count; i++)
-        filled[i].end = lines->grid.bins.count;
-    const sonject_status status =
-        compress_filled(lines, strip, count, real_bins, imaginary_bins, filled);
-    free(filled);
+    const size_t bytes = (size_t)strips.count * (size_t)bins.count * sizeof(float);
+    const uint32_t seed_low = (uint32_t)(seed & 0xffffffffu);
+    const uint32_t seed_high = (uint32_t)(seed >> 32);
+    device_buffer energies = NULL;
+    device_kernel kernel = NULL;
+    parts[0] = parts[1] = NULL;
+    sonject_status status =
+        kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "draw_speckle", &kernel);
+    THEN(status, buffer_create(report, device, bytes, energy, &energies));
+    THEN(status, buffer_create(report, device, bytes, NULL, &parts[0]));
+    THEN(status, buffer_create(report, device, bytes, NULL, &parts[1]));
+    if (status == SONJECT_OK) {
+        const struct kernel_argument arguments[] = {
+            ARGUMENT(energies),     ARGUMENT(bins.count), ARGUMENT(bins.first),
+            ARGUMENT(strips.first), ARGUMENT(seed_low),   ARGUMENT(seed_high),
+            ARGUMENT(stream),       ARGUMENT(parts[0]),   ARGUMENT(parts[1])};
+        const size_t global[2] = {((size_t)bins.count + device->width - 1) / device->width,
+                                  (size_t)strips.count};
+        status = kernel_run(report, device, kernel, arguments, sizeof arguments / sizeof *arguments,
+                            2, global);
+    }
+    buffer_release(&energies);
+    kernel_release(&kernel);
     return status;
 }
 
 sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, int32_t count,
                                       const float *energy, uint64_t seed, uint32_t stream)
 {
+    const struct span strips = {strip, count};
+    device_buffer bins[2];
     if (lines->columns == 0 || count == 0)
         return SONJECT_OK;
-    const size_t bytes = (size_t)count * (size_t)lines->grid.bins.count * sizeof(float);
-    device_buffer energies = NULL;
-    device_buffer real_bins = NULL;
-    device_buffer imaginary_bins = NULL;
-    sonject_status status = buffer_create(lines->report, lines->device, bytes, energy, &energies);
-    THEN(status, buffer_create(lines->report, lines->device, bytes, NULL, &real_bins));
-    THEN(status, buffer_create(lines->report, lines->device, bytes, NULL, &imaginary_bins));
-    if (status == SONJECT_OK) {
-        const int32_t bins = lines->grid.bins.count;
-        const int32_t first_bin = lines->grid.bins.first;
-        const int32_t first_strip = strip;
-        const uint32_t seed_low = (uint32_t)(seed & 0xffffffffu);
-        const uint32_t seed_high = (uint32_t)(seed >> 32);
-        const uint32_t stream_number = stream;
-        const struct kernel_argument arguments[] = {
-            ARGUMENT(energies),      ARGUMENT(bins),      ARGUMENT(first_bin),
-            ARGUMENT(first_strip),   ARGUMENT(seed_low),  ARGUMENT(seed_high),
-            ARGUMENT(stream_number), ARGUMENT(real_bins), ARGUMENT(imaginary_bins)};
-        const size_t width = lines->device->width;
-        const size_t global[2] = {((size_t)bins + width - 1) / width, (size_t)count};
-        status = kernel_run(lines->report, lines->device, lines->speckle, arguments,
-                            sizeof arguments / sizeof *arguments, 2, global);
-    }
-    THEN(status, compress_all(lines, strip, count, real_bins, imaginary_bins));
-    buffer_release(&energies);
-    buffer_release(&real_bins);
-    buffer_release(&imaginary_bins);
+    struct filled_span *filled = allocate_array((size_t)count, sizeof *filled);
+    CHECK_MEMORY(lines->report, filled, "image formation");
+    for (int32_t i = 0; i < count; i++) /* all are taken for filled */
+        filled[i].end = lines->grid.bins.count;
+    sonject_status status = speckle_draw(lines->report, lines->device, lines->grid.bins, strips,
+                                         energy, seed, stream, bins);
+    THEN(status, compress_filled(lines, strip, count, bins, filled));
+    buffer_release(&bins[0]);
+    buffer_release(&bins[1]);
+    free(filled);
     return status;
 }
 
@@ -346,50 +321,209 @@ static float *response_taps(const struct form_lines *lines, size_t *count)
         const double strips = (double)i - lines->reach;
         const double rows = strips / per_row + 0.5 - 0.5 / per_row;
         const double w = along_track_response(&lines->response, rows * lines->row_spacing_m);
-        taps[zeros + i] = (float)(form_is_of_energies(lines->kind) ? w * w : w);
+        taps[zeros + i] = (float)(is_of_energies(lines) ? w * w : w);
     }
     return taps;
 }
 
-static sonject_status combine(struct form_lines *lines, device_buffer taps, device_buffer real_out,
-                              device_buffer imaginary_out)
+/* One real response for all rows and columns. */
+static sonject_status combine_plain(struct form_lines *lines, const device_buffer out[2])
 {
-    if (!cross_range_is_plain(&lines->response))
-        return combine_varied(lines, real_out, imaginary_out);
+    size_t count;
     const int32_t first_strip = lines->grid.strips.first;
     const int32_t end_strip = first_strip + lines->grid.strips.count;
     const int32_t per_row = (int32_t)lines->grid.strips_per_row;
-    const int32_t reach = lines->reach;
     const int32_t stride = (int32_t)lines->stride;
     const int32_t rows = (int32_t)lines->rows;
-    const struct kernel_argument arguments[] = {ARGUMENT(first_strip),
-                                                ARGUMENT(end_strip),
-                                                ARGUMENT(per_row),
-                                                ARGUMENT(reach),
-                                                ARGUMENT(lines->real_lines),
-                                                ARGUMENT(lines->imaginary_lines),
-                                                ARGUMENT(lines->filled),
-                                                ARGUMENT(stride),
-                                                ARGUMENT(taps),
-                                                ARGUMENT(rows),
-                                                ARGUMENT(real_out),
-                                                ARGUMENT(imaginary_out)};
-    const size_t global[3] = {lines->stride / lines->device->width,
-                              (lines->rows + ROWS_PER_ITEM - 1) / ROWS_PER_ITEM, lines->planes};
-    return kernel_run(lines->report, lines->device, lines->combine, arguments,
-                      sizeof arguments / sizeof *arguments, 3, global);
+    device_buffer buffer = NULL;
+    device_kernel kernel = NULL;
+    float *taps = response_taps(lines, &count);
+    CHECK_MEMORY(lines->report, taps, "image formation");
+    sonject_status status = kernel_create(lines->report, lines->device, PROGRAM_IMAGE_FORMATION, 0,
+                                          "combine_aspects", &kernel);
+    THEN(status, buffer_create(lines->report, lines->device, count * sizeof *taps, taps, &buffer));
+    if (status == SONJECT_OK) {
+        const struct kernel_argument arguments[] = {
+            ARGUMENT(first_strip),   ARGUMENT(end_strip),       ARGUMENT(per_row),
+            ARGUMENT(lines->reach),  ARGUMENT(lines->lines[0]), ARGUMENT(lines->lines[1]),
+            ARGUMENT(lines->filled), ARGUMENT(stride),          ARGUMENT(buffer),
+            ARGUMENT(rows),          ARGUMENT(out[0]),          ARGUMENT(out[1])};
+        const size_t global[3] = {lines->stride / lines->device->width,
+                                  (lines->rows + ROWS_PER_ITEM - 1) / ROWS_PER_ITEM, lines->planes};
+        status = kernel_run(lines->report, lines->device, kernel, arguments,
+                            sizeof arguments / sizeof *arguments, 3, global);
+    }
+    buffer_release(&buffer);
+    kernel_release(&kernel);
+    free(taps);
+    return status;
+}
+
+/* The taps of a run of rows, where the cross-range response is not one real function: complex (a
+ * measured one), another at each range (a real aperture), or another for each row (residual
+ * motion). */
+struct taps {
+    size_t each;         /* taps of one response */
+    size_t rows, blocks; /* responses: 1 where all rows, all columns share one */
+    float *parts[2];
+    double *response[2]; /* one response */
+};
+
+static sonject_status taps_init(struct taps *taps, const struct form_lines *lines)
+{
+    memset(taps, 0, sizeof *taps);
+    taps->each = 2 * (size_t)lines->reach + 1;
+    taps->blocks = lines->response.array_length_m > 0.0
+                       ? (lines->columns + BLOCK_COLUMNS - 1) / BLOCK_COLUMNS
+                       : 1;
+    taps->rows = 1;
+    if (lines->response.motion) {
+        const size_t most = TAPS_OF_A_RUN / taps->each / ROWS_PER_ITEM * ROWS_PER_ITEM;
+        taps->rows = most < ROWS_PER_ITEM ? ROWS_PER_ITEM : most;
+        taps->rows = taps->rows < lines->rows ? taps->rows : lines->rows;
+    }
+    for (int part = 0; part < 2; part++) {
+        taps->parts[part] = allocate_array(taps->each * taps->rows * taps->blocks, sizeof(float));
+        taps->response[part] = allocate_array(taps->each, sizeof(double));
+        CHECK_MEMORY(lines->report, taps->parts[part] && taps->response[part], "image formation");
+    }
+    return SONJECT_OK;
+}
+
+static void taps_clear(struct taps *taps)
+{
+    for (int part = 0; part < 2; part++) {
+        free(taps->parts[part]);
+        free(taps->response[part]);
+    }
+}
+
+/* Distance of a pixel from the middle of the strip of the tap in the middle: rows' middles are
+ * those of their strips. */
+static double offset_of(const struct form_lines *lines)
+{
+    return (0.5 - 0.5 / lines->grid.strips_per_row) * lines->row_spacing_m;
+}
+
+/* Keeps the response as one of many: W, or |W|^2. */
+static void store(struct taps *taps, const struct form_lines *lines, size_t number)
+{
+    const size_t first = number * taps->each;
+    for (size_t i = 0; i < taps->each; i++) {
+        const double a = taps->response[0][i];
+        const double b = taps->response[1][i];
+        taps->parts[0][first + i] = (float)(is_of_energies(lines) ? a * a + b * b : a);
+        taps->parts[1][first + i] = is_of_energies(lines) ? 0.0f : (float)b;
+    }
+}
+
+/* One response for each block of columns. */
+static void fill_blocks(struct taps *taps, const struct form_lines *lines)
+{
+    const double strip = lines->row_spacing_m / lines->grid.strips_per_row;
+    for (size_t block = 0; block < taps->blocks; block++) {
+        const double column =
+            (double)lines->first_column + ((double)block + 0.5) * BLOCK_COLUMNS - 0.5;
+        const double range = view_processor_range(lines->view, column);
+        for (size_t i = 0; i < taps->each; i++) {
+            const struct complex_number w = cross_range_response(
+                &lines->response, range, ((double)i - lines->reach) * strip + offset_of(lines));
+            taps->response[0][i] = w.real_part;
+            taps->response[1][i] = w.imaginary_part;
+        }
+        store(taps, lines, block);
+    }
+}
+
+static sonject_status run_rows(struct form_lines *lines, device_kernel kernel,
+                               const struct taps *taps, size_t first_row,
+                               const device_buffer out[2])
+{
+    const size_t bytes = taps->each * taps->rows * taps->blocks * sizeof(float);
+    device_buffer parts[2] = {NULL, NULL};
+    sonject_status status = SONJECT_OK;
+    for (int part = 0; part < 2; part++)
+        THEN(status,
+             buffer_create(lines->report, lines->device, bytes, taps->parts[part], &parts[part]));
+    if (status == SONJECT_OK) {
+        const bool by_row = lines->response.motion != NULL;
+        const size_t left = lines->rows - first_row;
+        const size_t some = by_row && taps->rows < left ? taps->rows : left;
+        const int32_t first_strip = lines->grid.strips.first;
+        const int32_t end_strip = first_strip + lines->grid.strips.count;
+        const int32_t per_row = (int32_t)lines->grid.strips_per_row;
+        const int32_t row = (int32_t)first_row;
+        const int32_t row_step = by_row ? (int32_t)taps->each : 0;
+        const int32_t block_columns = BLOCK_COLUMNS;
+        const int32_t block_step = taps->blocks > 1 ? (int32_t)taps->each : 0;
+        const int32_t stride = (int32_t)lines->stride;
+        const int32_t rows = (int32_t)(first_row + some);
+        const struct kernel_argument arguments[] = {
+            ARGUMENT(first_strip),     ARGUMENT(end_strip),     ARGUMENT(per_row),
+            ARGUMENT(lines->reach),    ARGUMENT(row),           ARGUMENT(row_step),
+            ARGUMENT(block_columns),   ARGUMENT(block_step),    ARGUMENT(lines->lines[0]),
+            ARGUMENT(lines->lines[1]), ARGUMENT(lines->filled), ARGUMENT(stride),
+            ARGUMENT(parts[0]),        ARGUMENT(parts[1]),      ARGUMENT(rows),
+            ARGUMENT(out[0]),          ARGUMENT(out[1])};
+        const size_t global[2] = {lines->stride / lines->device->width,
+                                  (some + ROWS_PER_ITEM - 1) / ROWS_PER_ITEM};
+        status = kernel_run(lines->report, lines->device, kernel, arguments,
+                            sizeof arguments / sizeof *arguments, 2, global);
+    }
+    buffer_release(&parts[0]);
+    buffer_release(&parts[1]);
+    return status;
+}
+
+/* Rows of their own responses, some at a time. */
+static sonject_status run_moved(struct form_lines *lines, device_kernel kernel, struct taps *taps,
+                                const device_buffer out[2])
+{
+    const double strip = lines->row_spacing_m / lines->grid.strips_per_row;
+    struct motion_response motion;
+    CHECK(motion_response_begin(&motion, lines->report, &lines->response, lines->view, strip,
+                                offset_of(lines), lines->reach));
+    sonject_status status = SONJECT_OK;
+    for (size_t first = 0; status == SONJECT_OK && first < lines->rows; first += taps->rows) {
+        for (size_t i = 0; i < taps->rows && first + i < lines->rows; i++) {
+            motion_response_row(&motion, (double)(first + i), taps->response[0], taps->response[1]);
+            store(taps, lines, i);
+        }
+        status = run_rows(lines, kernel, taps, first, out);
+    }
+    motion_response_end(&motion);
+    return status;
+}
+
+static sonject_status combine_varied(struct form_lines *lines, const device_buffer out[2])
+{
+    struct taps taps;
+    device_kernel kernel = NULL;
+    sonject_status status = taps_init(&taps, lines);
+    THEN(status, kernel_create(lines->report, lines->device, PROGRAM_IMAGE_FORMATION, 0,
+                               "combine_varied", &kernel));
+    if (status == SONJECT_OK && lines->response.motion) {
+        status = run_moved(lines, kernel, &taps, out);
+    } else if (status == SONJECT_OK) {
+        fill_blocks(&taps, lines);
+        status = run_rows(lines, kernel, &taps, 0, out);
+    }
+    kernel_release(&kernel);
+    taps_clear(&taps);
+    return status;
 }
 
 /* Reads a plane and drops the padding of its rows. */
-static sonject_status read_plane(struct form_lines *lines, device_buffer plane, float *padded,
-                                 float *out)
+static sonject_status read_plane(struct form_lines *lines, device_buffer plane, float *out)
 {
+    float *padded = allocate_array(lines->rows * lines->stride, sizeof *padded);
+    CHECK_MEMORY(lines->report, padded, "image formation");
     const sonject_status status = buffer_read(lines->report, lines->device, plane, 0,
                                               lines->rows * lines->stride * sizeof(float), padded);
-    if (status == SONJECT_OK)
-        for (size_t row = 0; row < lines->rows; row++)
-            memcpy(out + row * lines->columns, padded + row * lines->stride,
-                   lines->columns * sizeof *out);
+    for (size_t row = 0; status == SONJECT_OK && row < lines->rows; row++)
+        memcpy(out + row * lines->columns, padded + row * lines->stride,
+               lines->columns * sizeof *out);
+    free(padded);
     return status;
 }
 
@@ -397,33 +531,20 @@ sonject_status form_lines_finish(struct form_lines *lines, float *real_part, flo
 {
     if (lines->columns == 0)
         return SONJECT_OK;
-    size_t count;
-    const size_t plane = lines->rows * lines->stride;
-    device_buffer tap_buffer = NULL;
-    device_buffer real_out = NULL;
-    device_buffer imaginary_out = NULL;
-    float *taps = response_taps(lines, &count);
-    float *padded = allocate_array(plane, sizeof *padded);
-    sonject_status status =
-        taps && padded ? SONJECT_OK : report_out_of_memory(lines->report, "image formation");
-    THEN(status,
-         buffer_create(lines->report, lines->device, count * sizeof *taps, taps, &tap_buffer));
-    THEN(status,
-         buffer_create(lines->report, lines->device, plane * sizeof(float), NULL, &real_out));
-    THEN(status,
-         buffer_create(lines->report, lines->device, plane * sizeof(float), NULL, &imaginary_out));
+    const size_t bytes = lines->rows * lines->stride * sizeof(float);
+    device_buffer out[2] = {NULL, NULL};
+    sonject_status status = buffer_create(lines->report, lines->device, bytes, NULL, &out[0]);
+    THEN(status, buffer_create(lines->report, lines->device, bytes, NULL, &out[1]));
     THEN(status, buffer_create(lines->report, lines->device,
                                (size_t)lines->grid.strips.count * sizeof *lines->filled_columns,
                                lines->filled_columns, &lines->filled));
-    THEN(status, combine(lines, tap_buffer, real_out, imaginary_out));
-    THEN(status, read_plane(lines, real_out, padded, real_part));
+    THEN(status, cross_range_is_plain(&lines->response) ? combine_plain(lines, out)
+                                                        : combine_varied(lines, out));
+    THEN(status, read_plane(lines, out[0], real_part));
     if (status == SONJECT_OK && lines->planes == 2 && imaginary_part)
-        status = read_plane(lines, imaginary_out, padded, imaginary_part);
-    buffer_release(&tap_buffer);
-    buffer_release(&real_out);
-    buffer_release(&imaginary_out);
+        status = read_plane(lines, out[1], imaginary_part);
+    buffer_release(&out[0]);
+    buffer_release(&out[1]);
     buffer_release(&lines->filled);
-    free(taps);
-    free(padded);
     return status;
 }

@@ -35,9 +35,6 @@ enum form_kind {
     FORM_TWO_ENERGIES
 };
 
-/* Whether it is energies that are formed. */
-bool form_is_of_energies(enum form_kind kind);
-
 struct form_lines {
     struct report *report;
     struct device *device;
@@ -52,10 +49,10 @@ struct form_lines {
     struct filled_span *filled_columns; /* owned; of each strip's line */
     double row_spacing_m;
     struct point_response response;
-    device_buffer real_lines, imaginary_lines, pulse;
+    device_buffer lines[2], pulse;
     device_buffer imaginary_pulse; /* NULL where G is real */
     device_buffer filled;          /* filled_columns, while lines are combined */
-    device_kernel compress, combine, speckle;
+    device_kernel compress;
 };
 
 /* Prepares lines for the patch's rows and, of its columns, those that bins of the grid reach. On
@@ -76,8 +73,14 @@ int32_t form_reach(const struct patch_view *view, const struct point_response *r
 sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t count,
                               const float *real_part, const float *imaginary_part);
 
-/* The same with amplitudes drawn on the device: sqrt(energy) times complex normal deviates that
- * depend on seed, stream, strip and bin alone. */
+/* sqrt(energy) times complex normal deviates that depend on seed, stream, strip and bin alone, for
+ * strips.count x bins.count cells of one grid, in two buffers that are the caller's for
+ * buffer_release, also on failure. Errors: DEVICE, MEMORY. */
+sonject_status speckle_draw(struct report *report, struct device *device, struct span bins,
+                            struct span strips, const float *energy, uint64_t seed, uint32_t stream,
+                            device_buffer parts[2]);
+
+/* As form_lines_add, of amplitudes that speckle_draw draws. */
 sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, int32_t count,
                                       const float *energy, uint64_t seed, uint32_t stream);
 

@@ -41,7 +41,7 @@ struct ripples {
     float profile_mean, profile_scale, profile_square; /* of facing(), see measure_profile */
     double row_cycles, column_cycles;                  /* phase from pixel to pixel */
     uint32_t columns, next_row;
-    float *carrier[2]; /* cosine and sine of the column's phase */
+    float *carrier[2]; /* cosine and sine of the column's phase; borrowed */
 };
 
 /* Slope towards the sonar, of either sign, at a phase that is given by its cosine and sine. */
@@ -100,49 +100,28 @@ static void phase_of(double cycles, float *cosine, float *sine)
     sine_cosine_of_cycles((float)(cycles - floor(cycles)), sine, cosine);
 }
 
-static void ripples_release(struct ripples **ripples)
+/* carriers: two rows. Uses streams from `stream` on. Errors: MEMORY. */
+static sonject_status ripples_init(struct ripples *ripples, struct report *report,
+                                   const sonject_synthetic_params *synthetic,
+                                   const sonject_geometry_params *geometry, uint32_t stream,
+                                   float *carriers)
 {
-    if (!*ripples)
-        return;
-    for (int i = 0; i < WANDERS; i++)
-        random_field_release(&(*ripples)->wanders[i]);
-    free((*ripples)->carrier[0]);
-    free((*ripples)->carrier[1]);
-    free(*ripples);
-    *ripples = NULL;
-}
-
-static sonject_status ripples_create(struct report *report,
-                                     const sonject_synthetic_params *synthetic,
-                                     const sonject_geometry_params *geometry, uint32_t stream,
-                                     struct ripples **ripples)
-{
-    *ripples = NULL;
-    struct ripples *made = allocate_array(1, sizeof *made);
-    CHECK_MEMORY(report, made, "ripples");
-    made->columns = synthetic->columns;
-    made->contrast = (float)synthetic->ripple_contrast;
-    made->carrier[0] = allocate_array(made->columns, sizeof(float));
-    made->carrier[1] = allocate_array(made->columns, sizeof(float));
-    measure_profile(made);
-    set_direction(made, synthetic, geometry);
-    sonject_status status =
-        made->carrier[0] && made->carrier[1] ? SONJECT_OK : report_out_of_memory(report, "ripples");
-    for (uint32_t i = 0; status == SONJECT_OK && i < WANDERS; i++) {
+    ripples->columns = synthetic->columns;
+    ripples->contrast = (float)synthetic->ripple_contrast;
+    ripples->carrier[0] = carriers;
+    ripples->carrier[1] = carriers + ripples->columns;
+    measure_profile(ripples);
+    set_direction(ripples, synthetic, geometry);
+    for (uint32_t i = 0; i < WANDERS; i++) {
         const double length = wander_lengths[i] * synthetic->ripple_wavelength_m;
         const struct blur along_track = {BLUR_GAUSSIAN, length / geometry->row_spacing_m};
         const struct blur range = {BLUR_GAUSSIAN, length / geometry->column_spacing_m};
-        status = random_field_create(report, synthetic->seed, stream + i, made->columns,
-                                     along_track, range, &made->wanders[i]);
+        CHECK(random_field_create(report, synthetic->seed, stream + i, ripples->columns,
+                                  along_track, range, &ripples->wanders[i]));
     }
-    if (status != SONJECT_OK) {
-        ripples_release(&made);
-        return status;
-    }
-    for (uint32_t column = 0; column < made->columns; column++)
-        phase_of(made->column_cycles * column, &made->carrier[0][column],
-                 &made->carrier[1][column]);
-    *ripples = made;
+    for (uint32_t column = 0; column < ripples->columns; column++)
+        phase_of(ripples->column_cycles * column, &ripples->carrier[0][column],
+                 &ripples->carrier[1][column]);
     return SONJECT_OK;
 }
 
@@ -205,12 +184,13 @@ enum stream {
 struct seabed {
     const sonject_synthetic_params *synthetic;
     struct random_field *speckle, *texture_deviates, *octaves[OCTAVES];
-    struct ripples *ripples;
+    struct ripples ripples;
     struct speckle_texture texture;
-    bool has_texture, has_patches;
+    bool has_texture, has_patches, has_ripples;
     float bright_excess;        /* intensity of the brighter sediment over the darker one's, - 1 */
     float *sediment, *presence; /* one row of fields, then of what they mean */
     float *intensity;
+    float *rows; /* all of these, and the ripples' carriers; owned */
 };
 
 /* A step from 0 to 1 around field = 0, without corners. */
@@ -263,25 +243,25 @@ static sonject_status create_parts(struct report *report, struct seabed *seabed,
                                    const sonject_geometry_params *geometry)
 {
     const sonject_synthetic_params *synthetic = seabed->synthetic;
-    const bool has_ripples = synthetic->ripple_contrast > 0.0;
-    sonject_status status = SONJECT_OK;
+    const size_t columns = synthetic->columns;
     seabed->has_texture = isfinite(synthetic->speckle_shape);
     seabed->has_patches = synthetic->patch_contrast_db > 0.0;
+    seabed->has_ripples = synthetic->ripple_contrast > 0.0;
+    seabed->rows = allocate_array(columns, 5 * sizeof *seabed->rows);
+    CHECK_MEMORY(report, seabed->rows, "the synthetic seabed");
+    seabed->sediment = seabed->rows + 2 * columns;
+    seabed->presence = seabed->sediment + columns;
+    seabed->intensity = seabed->presence + columns;
     if (seabed->has_texture) {
         speckle_texture_init(&seabed->texture, synthetic->speckle_shape);
-        status = create_field(report, seabed, geometry, STREAM_TEXTURE,
-                              0.5 * synthetic->texture_length_m, &seabed->texture_deviates);
+        CHECK(create_field(report, seabed, geometry, STREAM_TEXTURE,
+                           0.5 * synthetic->texture_length_m, &seabed->texture_deviates));
     }
-    if (status == SONJECT_OK && has_ripples)
-        status = ripples_create(report, synthetic, geometry, STREAM_RIPPLES, &seabed->ripples);
-    if (status == SONJECT_OK && (has_ripples || seabed->has_patches))
-        status = create_patches(report, seabed, geometry);
-    seabed->sediment = allocate_array(synthetic->columns, sizeof(float));
-    seabed->presence = allocate_array(synthetic->columns, sizeof(float));
-    seabed->intensity = allocate_array(synthetic->columns, sizeof(float));
-    if (status == SONJECT_OK && !(seabed->sediment && seabed->presence && seabed->intensity))
-        status = report_out_of_memory(report, "the synthetic seabed");
-    return status;
+    if (seabed->has_ripples)
+        CHECK(ripples_init(&seabed->ripples, report, synthetic, geometry, STREAM_RIPPLES,
+                           seabed->rows));
+    return seabed->has_ripples || seabed->has_patches ? create_patches(report, seabed, geometry)
+                                                      : SONJECT_OK;
 }
 
 static void release_parts(struct seabed *seabed)
@@ -290,10 +270,9 @@ static void release_parts(struct seabed *seabed)
     random_field_release(&seabed->texture_deviates);
     for (int i = 0; i < OCTAVES; i++)
         random_field_release(&seabed->octaves[i]);
-    ripples_release(&seabed->ripples);
-    free(seabed->sediment);
-    free(seabed->presence);
-    free(seabed->intensity);
+    for (int i = 0; i < WANDERS; i++)
+        random_field_release(&seabed->ripples.wanders[i]);
+    free(seabed->rows);
 }
 
 /* The next row of the fields that say where the sediments and the ripples are. */
@@ -330,8 +309,8 @@ static void next_intensities(struct seabed *seabed)
     if (seabed->has_patches)
         for (uint32_t column = 0; column < columns; column++)
             seabed->intensity[column] += seabed->sediment[column] * seabed->bright_excess;
-    if (seabed->ripples)
-        ripples_modulate_next_row(seabed->ripples, seabed->presence, seabed->intensity);
+    if (seabed->has_ripples)
+        ripples_modulate_next_row(&seabed->ripples, seabed->presence, seabed->intensity);
 }
 
 static void next_row(struct seabed *seabed, float *pixels)

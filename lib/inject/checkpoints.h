@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "inject/impulse_file.h"
+#include "inject/impulses.h"
 #include "inject/injection.h"
 #include "trace/sums_file.h"
 

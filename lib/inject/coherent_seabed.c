@@ -1,7 +1,8 @@
-#include "inject/coherent_seabed.h"
-
 #include <math.h>
 #include <stdbool.h>
+
+#include "base/memory.h"
+#include "inject/echoes.h"
 
 /* One direction of the fine grid: a pixel's value is spread over its cells, and the image takes
  * the response's value at each cell's distance. */
@@ -109,30 +110,30 @@ static double clamp_index(double index, size_t count)
     return fmin(fmax(index, 0.0), (double)(count - 1));
 }
 
-void coherent_seabed_lines(const struct line_grid *grid, const struct tracer *tracer,
-                           struct span strips, const float *reflectivity_real,
-                           const float *reflectivity_imaginary, float *energy,
-                           float *imaginary_part)
+float *coherent_seabed_lines(const struct tracer *tracer, const struct echo_request *request,
+                             const struct impulse_lines *lines)
 {
     const struct patch_view *view = &tracer->view;
+    const struct line_grid *grid = &lines->grid;
+    const size_t width = (size_t)grid->bins.count;
+    const size_t cells = (size_t)lines->strips.count * width;
     const double scale = scale_of(grid, tracer);
-    for (int32_t s = 0; s < strips.count; s++) {
-        const double row =
-            clamp_index(floor((double)(strips.first + s) / grid->strips_per_row), view->rows);
-        const size_t line = (size_t)row * view->columns;
-        for (int32_t b = 0; b < grid->bins.count; b++) {
-            const double column =
-                clamp_index((double)(grid->bins.first + b) / grid->bins_per_pixel, view->columns);
-            const size_t left = (size_t)column;
-            const size_t right = left + 1 < view->columns ? left + 1 : left;
-            const double part = column - (double)left;
-            const size_t at = (size_t)s * (size_t)grid->bins.count + (size_t)b;
-            const double amplitude = scale * sqrt(energy[at]);
-            energy[at] = (float)(amplitude * ((1.0 - part) * reflectivity_real[line + left] +
-                                              part * reflectivity_real[line + right]));
-            imaginary_part[at] =
-                (float)(amplitude * ((1.0 - part) * reflectivity_imaginary[line + left] +
-                                     part * reflectivity_imaginary[line + right]));
-        }
+    float *parts = allocate_array(2 * cells, sizeof *parts);
+    for (size_t at = 0; parts && at < cells; at++) {
+        const int32_t strip = lines->strips.first + (int32_t)(at / width);
+        const double row = clamp_index(floor((double)strip / grid->strips_per_row), view->rows);
+        const double column =
+            clamp_index((double)(grid->bins.first + (int32_t)(at % width)) / grid->bins_per_pixel,
+                        view->columns);
+        const size_t left = (size_t)row * view->columns + (size_t)column;
+        const size_t right = (size_t)column + 1 < view->columns ? left + 1 : left;
+        const double part = column - floor(column);
+        const double amplitude = scale * sqrt(lines->plane[1][at]);
+        parts[at] = (float)(amplitude * ((1.0 - part) * request->reflectivity_real[left] +
+                                         part * request->reflectivity_real[right]));
+        parts[cells + at] =
+            (float)(amplitude * ((1.0 - part) * request->reflectivity_imaginary[left] +
+                                 part * request->reflectivity_imaginary[right]));
     }
+    return parts;
 }

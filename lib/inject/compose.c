@@ -5,76 +5,32 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "inject/looks.h"
 
-struct complex_plane {
-    float *real_part, *imaginary_part;
-};
-
-static sonject_status plane_of_noise(struct tracer *tracer, uint32_t stream,
-                                     const struct window *window, struct complex_plane *plane)
+/* Two planes of coloured noise, for free(). */
+static sonject_status planes_of_noise(struct tracer *tracer, uint32_t stream,
+                                      const struct window *window, float **planes)
 {
     const size_t pixels = tracer->view.rows * tracer->view.columns;
-    plane->real_part = allocate_array(pixels, sizeof(float));
-    plane->imaginary_part = allocate_array(pixels, sizeof(float));
-    if (!plane->real_part || !plane->imaginary_part)
-        return report_out_of_memory(tracer->report, "noise");
-    return coloured_noise(tracer, stream, window, plane->real_part, plane->imaginary_part);
-}
-
-static void plane_clear(struct complex_plane *plane)
-{
-    free(plane->real_part);
-    free(plane->imaginary_part);
-}
-
-/* One pixel: all in image units but V. */
-struct pixel_parts {
-    double input_real, input_imaginary; /* the measured seabed, or its new realisation */
-    double target_real, target_imaginary;
-    double noise_real, noise_imaginary;
-    double visibility;
-    double noise_energy;
-};
-
-static void add_parts(const struct pixel_parts *parts, bool seabed_is_in_view_already,
-                      double *real_part, double *imaginary_part)
-{
-    const double seabed = seabed_is_in_view_already ? 1.0 : sqrt(parts->visibility);
-    /* noise is lost with the pixel that held it; a brighter pixel holds enough */
-    const double noise = sqrt(fmax(0.0, 1.0 - parts->visibility) * parts->noise_energy);
-    *real_part = seabed * parts->input_real + parts->target_real + noise * parts->noise_real;
-    *imaginary_part =
-        seabed * parts->input_imaginary + parts->target_imaginary + noise * parts->noise_imaginary;
+    *planes = allocate_array(2 * pixels, sizeof **planes);
+    CHECK_MEMORY(tracer->report, *planes, "noise");
+    return coloured_noise(tracer, stream, window, *planes, *planes + pixels);
 }
 
 /* The measured pixel with a phase: its own, or where the image has only magnitudes that of a
  * speckle field of the sonar's point response, so that it varies as a real one would. */
-static void input_with_phase(const float *pixels, bool is_complex,
-                             const struct complex_plane *phase, size_t i, double *real_part,
-                             double *imaginary_part)
+static void input_with_phase(const float *pixels, bool is_complex, const float *phase, size_t count,
+                             size_t i, double *real_part, double *imaginary_part)
 {
     if (is_complex) {
         *real_part = pixels[2 * i];
         *imaginary_part = pixels[2 * i + 1];
         return;
     }
-    const double a = phase->real_part[i];
-    const double b = phase->imaginary_part[i];
+    const double a = phase[i];
+    const double b = phase[count + i];
     const double length = hypot(a, b);
     *real_part = length > 0.0 ? pixels[i] * a / length : pixels[i];
     *imaginary_part = length > 0.0 ? pixels[i] * b / length : 0.0;
-}
-
-static void store_pixel(struct injection_result *result, size_t i, double real_part,
-                        double imaginary_part)
-{
-    if (result->is_complex) {
-        result->image[2 * i] = (float)real_part;
-        result->image[2 * i + 1] = (float)imaginary_part;
-    } else {
-        result->image[i] = (float)hypot(real_part, imaginary_part);
-    }
 }
 
 /* How much of the seabed's energy the objects hide. */
@@ -153,37 +109,42 @@ static struct window mark_influence(const struct scene *scene, const struct patc
     return window;
 }
 
+/* The pixel in image units: the measured seabed or its new realisation, what is left of that in
+ * view, the target, and noise. */
 static void compose_pixel(const struct scene *scene, const struct patch_level *level,
-                          const struct echoes *echoes, const float *pixels,
-                          const struct complex_plane *noise, const struct complex_plane *phase,
-                          size_t i, struct injection_result *result)
+                          const struct echoes *echoes, const float *pixels, const float *noise,
+                          const float *phase, size_t i, struct injection_result *result)
 {
+    const size_t count = echoes->rows * echoes->columns;
     const double scale = sqrt(gain_at(level, echoes, i));
     const bool is_touched = result->influence[i] != 0;
     const bool resynthesises = is_traced_anew(scene, level, echoes, i);
-    struct pixel_parts parts;
-    parts.visibility = is_touched ? visibility_of(echoes, i) : 1.0;
-    parts.noise_energy = level->noise_ratio * level->level[i];
-    parts.target_real = scale * echoes->target_real[i];
-    parts.target_imaginary = scale * echoes->target_imaginary[i];
-    parts.noise_real = noise->real_part ? noise->real_part[i] : 0.0;
-    parts.noise_imaginary = noise->real_part ? noise->imaginary_part[i] : 0.0;
-    if (resynthesises) {
-        parts.input_real = scale * echoes->seabed_real[i];
-        parts.input_imaginary = scale * echoes->seabed_imaginary[i];
-    } else {
-        input_with_phase(pixels, result->is_complex, phase, i, &parts.input_real,
-                         &parts.input_imaginary);
-    }
-    double real_part = parts.input_real;
-    double imaginary_part = parts.input_imaginary;
+    const double visibility = is_touched ? visibility_of(echoes, i) : 1.0;
+    double real_part = resynthesises ? scale * echoes->seabed_real[i] : 0.0;
+    double imaginary_part = resynthesises ? scale * echoes->seabed_imaginary[i] : 0.0;
+    if (!resynthesises)
+        input_with_phase(pixels, result->is_complex, phase, count, i, &real_part, &imaginary_part);
     if (is_touched) {
-        add_parts(&parts, resynthesises, &real_part, &imaginary_part);
-        store_pixel(result, i, real_part, imaginary_part);
+        /* a realisation is of what is in view already */
+        const double seabed = resynthesises ? 1.0 : sqrt(visibility);
+        /* noise is lost with the pixel that held it; a brighter pixel holds enough */
+        const double lost =
+            sqrt(fmax(0.0, 1.0 - visibility) * (level->noise_ratio * level->level[i]));
+        const double noise_real = noise ? noise[i] : 0.0;
+        const double noise_imaginary = noise ? noise[count + i] : 0.0;
+        real_part = seabed * real_part + scale * echoes->target_real[i] + lost * noise_real;
+        imaginary_part =
+            seabed * imaginary_part + scale * echoes->target_imaginary[i] + lost * noise_imaginary;
+        if (result->is_complex) {
+            result->image[2 * i] = (float)real_part;
+            result->image[2 * i + 1] = (float)imaginary_part;
+        } else {
+            result->image[i] = (float)hypot(real_part, imaginary_part);
+        }
     }
     result->field[2 * i] = (float)(real_part / scale);
     result->field[2 * i + 1] = (float)(imaginary_part / scale);
-    result->visibility[i] = (float)parts.visibility;
+    result->visibility[i] = (float)visibility;
     result->energy[i] = echoes->energy[i];
 }
 
@@ -205,25 +166,25 @@ sonject_status compose(struct tracer *tracer, const struct image_match *match,
     const struct window touched = mark_influence(scene, level, echoes, result->influence);
     /* the field layer gives every pixel a phase, so that one is drawn everywhere */
     const struct window whole = {0, echoes->rows, 0, echoes->columns};
-    struct complex_plane noise = {NULL, NULL};
-    struct complex_plane phase = {NULL, NULL};
+    float *noise = NULL;
+    float *phase = NULL;
     sonject_status status = SONJECT_OK;
     if (scene->object_count > 0 || echoes->level_energy)
-        status = plane_of_noise(tracer, STREAM_NOISE, &touched, &noise);
+        status = planes_of_noise(tracer, STREAM_NOISE, &touched, &noise);
     const bool has_own_pixels = !resynthesises || level->water_columns > 0;
     if (status == SONJECT_OK && !is_complex && has_own_pixels)
-        status = plane_of_noise(tracer, STREAM_INPUT_PHASE, &whole, &phase);
+        status = planes_of_noise(tracer, STREAM_INPUT_PHASE, &whole, &phase);
     if (status == SONJECT_OK) {
         /* pixels that nothing touches must keep every bit, so they are copied, not computed */
         memcpy(result->image, pixels, count * (is_complex ? 2 : 1) * sizeof(float));
         for (size_t i = 0; i < count; i++)
-            compose_pixel(scene, level, echoes, pixels, &noise, &phase, i, result);
+            compose_pixel(scene, level, echoes, pixels, noise, phase, i, result);
     }
     if (status == SONJECT_OK && match->looks > 1.0)
         status = compose_looks(tracer, match->looks, level, echoes, pixels, &touched, result);
     if (status == SONJECT_OK)
         saturate(match->saturation, count, result);
-    plane_clear(&noise);
-    plane_clear(&phase);
+    free(noise);
+    free(phase);
     return status;
 }

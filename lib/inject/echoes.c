@@ -1,14 +1,12 @@
 #include "inject/echoes.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/report.h"
-#include "inject/chain_echoes.h"
-#include "inject/object_echoes.h"
-#include "inject/seabed_echoes.h"
-#include "inject/traced_impulses.h"
+
+#define PATTERN_FLOOR 1e-6f /* a black pixel's share in view must still be known */
 
 sonject_status echo_request_tell(const struct echo_request *request, struct report *report,
                                  double fraction, const char *stage)
@@ -18,47 +16,45 @@ sonject_status echo_request_tell(const struct echo_request *request, struct repo
     return SONJECT_OK;
 }
 
-static sonject_status allocate_orders(struct echoes *echoes, struct tracer *tracer)
-{
-    const size_t pixels = echoes->rows * echoes->columns;
-    if (!tracer->scene->injection.order_energies)
-        return SONJECT_OK;
-    echoes->orders = tracer->scene->injection.interactions;
-    for (uint32_t i = 0; i < echoes->orders; i++) {
-        echoes->order_energy[i] = allocate_array(pixels, sizeof(float));
-        if (!echoes->order_energy[i])
-            return report_out_of_memory(tracer->report, "energies of each order");
-    }
-    return SONJECT_OK;
-}
-
 static sonject_status allocate_planes(struct echoes *echoes, struct tracer *tracer,
                                       const struct echo_request *request)
 {
     const size_t pixels = tracer->view.rows * tracer->view.columns;
     const bool wants_field = request->field != SEABED_FIELD_NONE;
+    const struct {
+        float **plane;
+        bool is_wanted;
+    } planes[] = {{&echoes->seabed_energy, true},
+                  {&echoes->lost_energy, true},
+                  {&echoes->target_energy, true},
+                  {&echoes->energy, true},
+                  {&echoes->target_real, true},
+                  {&echoes->target_imaginary, true},
+                  {&echoes->seabed_real, wants_field},
+                  {&echoes->seabed_imaginary, wants_field},
+                  {&echoes->coherent_real, request->wants_coherent},
+                  {&echoes->coherent_imaginary, request->wants_coherent},
+                  {&echoes->level_energy, tracer->relief != NULL}};
+    const size_t most = sizeof planes / sizeof *planes;
     echoes->rows = tracer->view.rows;
     echoes->columns = tracer->view.columns;
     echoes->object_count = tracer->scene->object_count;
     echoes->objects = allocate_array(echoes->object_count, sizeof *echoes->objects);
-    echoes->seabed_energy = allocate_array(pixels, sizeof(float));
-    echoes->lost_energy = allocate_array(pixels, sizeof(float));
-    echoes->target_energy = allocate_array(pixels, sizeof(float));
-    echoes->energy = allocate_array(pixels, sizeof(float));
-    echoes->target_real = allocate_array(pixels, sizeof(float));
-    echoes->target_imaginary = allocate_array(pixels, sizeof(float));
-    echoes->seabed_real = wants_field ? allocate_array(pixels, sizeof(float)) : NULL;
-    echoes->seabed_imaginary = wants_field ? allocate_array(pixels, sizeof(float)) : NULL;
-    echoes->coherent_real = request->wants_coherent ? allocate_array(pixels, sizeof(float)) : NULL;
-    echoes->coherent_imaginary =
-        request->wants_coherent ? allocate_array(pixels, sizeof(float)) : NULL;
-    if (!echoes->objects || !echoes->seabed_energy || !echoes->lost_energy ||
-        !echoes->target_energy || !echoes->energy || !echoes->target_real ||
-        !echoes->target_imaginary ||
-        (request->wants_coherent && (!echoes->coherent_real || !echoes->coherent_imaginary)) ||
-        (wants_field && (!echoes->seabed_real || !echoes->seabed_imaginary)))
-        return report_out_of_memory(tracer->report, "the patch");
-    return allocate_orders(echoes, tracer);
+    echoes->memory = allocate_array(pixels, most * sizeof(float));
+    CHECK_MEMORY(tracer->report, echoes->objects && echoes->memory, "the patch");
+    float *next = echoes->memory;
+    for (size_t i = 0; i < most; i++)
+        if (planes[i].is_wanted) {
+            *planes[i].plane = next;
+            next += pixels;
+        }
+    if (tracer->scene->injection.order_energies)
+        echoes->orders = tracer->scene->injection.interactions;
+    for (uint32_t i = 0; i < echoes->orders; i++) {
+        echoes->order_energy[i] = allocate_array(pixels, sizeof(float));
+        CHECK_MEMORY(tracer->report, echoes->order_energy[i], "energies of each order");
+    }
+    return SONJECT_OK;
 }
 
 void echoes_clear(struct echoes *echoes)
@@ -69,20 +65,37 @@ void echoes_clear(struct echoes *echoes)
         free(echoes->objects[i].covered);
     }
     free(echoes->objects);
-    free(echoes->seabed_energy);
-    free(echoes->level_energy);
-    free(echoes->lost_energy);
-    free(echoes->target_energy);
-    free(echoes->energy);
+    free(echoes->memory);
     for (int i = 0; i < SCENE_INTERACTIONS_MAX; i++)
         free(echoes->order_energy[i]);
-    free(echoes->target_real);
-    free(echoes->target_imaginary);
-    free(echoes->coherent_real);
-    free(echoes->coherent_imaginary);
-    free(echoes->seabed_real);
-    free(echoes->seabed_imaginary);
     memset(echoes, 0, sizeof *echoes);
+}
+
+sonject_status form_end(struct form_lines *lines, struct formed *formed)
+{
+    formed->first_column = lines->first_column;
+    formed->columns = lines->columns;
+    formed->count = lines->rows * lines->columns;
+    formed->planes = allocate_array(2 * formed->count, sizeof *formed->planes);
+    const sonject_status status =
+        formed->planes ? form_lines_finish(lines, formed->planes, formed->planes + formed->count)
+                       : report_out_of_memory(lines->report, "image formation");
+    form_lines_end(lines);
+    return status;
+}
+
+sonject_status form_speckle(struct tracer *tracer, const struct line_grid *grid,
+                            const float *energy, uint32_t stream, struct formed *formed)
+{
+    struct form_lines lines;
+    formed->planes = NULL;
+    CHECK(form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view, &tracer->response,
+                           FORM_SPECKLE, grid));
+    sonject_status status = form_lines_add_speckle(&lines, grid->strips.first, grid->strips.count,
+                                                   energy, tracer->scene->injection.seed, stream);
+    THEN(status, form_end(&lines, formed));
+    form_lines_end(&lines);
+    return status;
 }
 
 /* What impulses are formed with. */
@@ -90,29 +103,248 @@ struct forming {
     struct echoes *echoes;
     struct tracer *tracer;
     const struct echo_request *request;
-    struct seabed_former seabed;
+    struct form_lines energies, field; /* of the set that comes in */
     struct object_former object;
-    struct beam_former beam;
-    struct chain_former chains;
+    float *beam_seabed; /* what pings hear of an even seabed, the patch's size */
+    struct line_grid chains_grid;
+    float *chains; /* of all orders on the grid; NULL: none came in */
 };
 
-static sonject_status form_set(struct forming *forming, const struct impulse_lines *lines)
+/* Forms lines of energies, one plane, by a response, as they come; with the last ones `formed`
+ * (rows x columns of the view) is whole. */
+static sonject_status form_energies(struct forming *forming, const struct point_response *response,
+                                    const struct impulse_lines *lines, float *formed)
+{
+    struct tracer *tracer = forming->tracer;
+    struct form_lines *energies = &forming->energies;
+    sonject_status status = SONJECT_OK;
+    if (impulse_lines_begin(lines))
+        status = form_lines_begin(energies, tracer->report, tracer->device, &tracer->view, response,
+                                  FORM_ENERGY, &lines->grid);
+    THEN(status,
+         form_lines_add(energies, lines->strips.first, lines->strips.count, lines->plane[0], NULL));
+    if (status == SONJECT_OK && impulse_lines_end(lines)) {
+        status = form_lines_finish(energies, formed, NULL);
+        form_lines_end(energies);
+    }
+    return status;
+}
+
+/* The measured complex reflectivity with the energies that are in view. */
+static sonject_status add_coherent(struct forming *forming, const struct impulse_lines *lines)
+{
+    const size_t cells = (size_t)lines->strips.count * (size_t)lines->grid.bins.count;
+    float *parts = coherent_seabed_lines(forming->tracer, forming->request, lines);
+    CHECK_MEMORY(forming->tracer->report, parts, "the seabed");
+    const sonject_status status = form_lines_add(&forming->field, lines->strips.first,
+                                                 lines->strips.count, parts, parts + cells);
+    free(parts);
+    return status;
+}
+
+/* The seabed as it is, and its realisation where that is wanted. */
+static sonject_status add_seabed(struct forming *forming, const struct impulse_lines *lines)
+{
+    struct tracer *tracer = forming->tracer;
+    struct echoes *echoes = forming->echoes;
+    struct form_lines *field = &forming->field;
+    CHECK(form_energies(forming, &tracer->response, lines, echoes->seabed_energy));
+    if (forming->request->field == SEABED_FIELD_NONE)
+        return SONJECT_OK;
+    if (impulse_lines_begin(lines))
+        CHECK(form_lines_begin(field, tracer->report, tracer->device, &tracer->view,
+                               &tracer->response, FORM_SPECKLE, &lines->grid));
+    CHECK(forming->request->field == SEABED_FIELD_COHERENT
+              ? add_coherent(forming, lines)
+              : form_lines_add_speckle(field, lines->strips.first, lines->strips.count,
+                                       lines->plane[1], tracer->scene->injection.seed,
+                                       STREAM_SEABED_SPECKLE));
+    if (!impulse_lines_end(lines))
+        return SONJECT_OK;
+    const sonject_status status =
+        form_lines_finish(field, echoes->seabed_real, echoes->seabed_imaginary);
+    form_lines_end(field);
+    return status;
+}
+
+const float *seabed_map(const struct tracer *tracer, const struct echo_request *request)
+{
+    return tracer->relief && request->field == SEABED_FIELD_NONE ? NULL : request->map;
+}
+
+static void multiply(float *plane, const float *map, size_t rows, size_t columns,
+                     size_t first_column, size_t map_columns)
+{
+    for (size_t row = 0; row < rows; row++)
+        for (size_t column = 0; column < columns; column++)
+            plane[row * columns + column] *=
+                fmaxf(map[row * map_columns + first_column + column], PATTERN_FLOOR);
+}
+
+/* Gives energies that were traced with an even reflectivity the map's pattern. */
+static void set_pattern(struct echoes *echoes, const float *map)
+{
+    const size_t rows = echoes->rows;
+    const size_t columns = echoes->columns;
+    multiply(echoes->seabed_energy, map, rows, columns, 0, columns);
+    multiply(echoes->lost_energy, map, rows, columns, 0, columns);
+    multiply(echoes->level_energy, map, rows, columns, 0, columns);
+    for (uint32_t i = 0; i < echoes->object_count; i++)
+        if (echoes->objects[i].lost)
+            multiply(echoes->objects[i].lost, map, rows, echoes->objects[i].columns,
+                     echoes->objects[i].first_column, columns);
+}
+
+/* The seabed as it would be if it were level, after it and the objects: a composite changes the
+ * measured pixels by the ratio of what relief and objects leave to that. */
+static sonject_status add_level(struct forming *forming, const struct impulse_lines *lines)
 {
     struct echoes *echoes = forming->echoes;
+    const struct echo_request *request = forming->request;
+    CHECK(form_energies(forming, &forming->tracer->response, lines, echoes->level_energy));
+    if (impulse_lines_end(lines) && request->map && request->field == SEABED_FIELD_NONE)
+        set_pattern(echoes, request->map);
+    return SONJECT_OK;
+}
+
+bool has_beam_shadows(const struct tracer *tracer)
+{
+    return tracer->scene->sonar.kind == SONJECT_SONAR_REAL && !tracer->relief;
+}
+
+void response_of_pings(struct point_response *response, const struct tracer *tracer)
+{
+    sonject_sonar_params sonar = tracer->scene->sonar;
+    sonar.kind = SONJECT_SONAR_SYNTHETIC;
+    sonar.response_window = SONJECT_WINDOW_RECTANGULAR;
+    sonar.along_track_resolution_m = tracer->view.row_spacing_m;
+    point_response_init(response, &sonar, scene_reference_speed(tracer->scene),
+                        tracer->view.row_spacing_m);
+}
+
+/* What each ping's beam hears of an even seabed, after the objects; with its last lines, what was
+ * found from broadside is forgotten. */
+static sonject_status add_beam(struct forming *forming, const struct impulse_lines *lines)
+{
+    struct echoes *echoes = forming->echoes;
+    const size_t pixels = echoes->rows * echoes->columns;
+    struct point_response response;
+    response_of_pings(&response, forming->tracer);
+    if (!forming->beam_seabed)
+        forming->beam_seabed = allocate_array(pixels, sizeof(float));
+    CHECK_MEMORY(forming->tracer->report, forming->beam_seabed, "the beam's shadows");
+    CHECK(form_energies(forming, &response, lines, forming->beam_seabed));
+    if (!impulse_lines_end(lines))
+        return SONJECT_OK;
+    memset(echoes->lost_energy, 0, pixels * sizeof(float));
+    for (uint32_t i = 0; i < echoes->object_count; i++)
+        if (echoes->objects[i].lost)
+            memset(echoes->objects[i].lost, 0,
+                   echoes->rows * echoes->objects[i].columns * sizeof(float));
+    return SONJECT_OK;
+}
+
+/* What an object hides of an even seabed: its share of what the ping would hear becomes the share
+ * of the seabed's energy that is lost. */
+static sonject_status add_hidden(struct forming *forming, const struct impulse_lines *lines)
+{
     struct tracer *tracer = forming->tracer;
+    struct echoes *echoes = forming->echoes;
+    struct object_echo *echo = &echoes->objects[lines->number];
+    struct point_response response;
+    struct formed hidden = {NULL, 0, 0, 0};
+    response_of_pings(&response, tracer);
+    if (line_grid_cells(&lines->grid) == 0)
+        return SONJECT_OK;
+    CHECK(form_lines_begin(&forming->energies, tracer->report, tracer->device, &tracer->view,
+                           &response, FORM_ENERGY, &lines->grid));
+    sonject_status status = form_lines_add(&forming->energies, lines->strips.first,
+                                           lines->strips.count, lines->plane[0], NULL);
+    THEN(status, form_end(&forming->energies, &hidden));
+    for (size_t i = 0; status == SONJECT_OK && i < hidden.count; i++) {
+        const size_t row = i / hidden.columns;
+        const size_t column = hidden.first_column + i % hidden.columns;
+        const size_t pixel = row * echoes->columns + column;
+        const float all = forming->beam_seabed[pixel];
+        const float share = all > 0.0f ? hidden.planes[i] / all : 0.0f;
+        const float lost = echoes->seabed_energy[pixel] * (share < 1.0f ? share : 1.0f);
+        echoes->lost_energy[pixel] += lost;
+        if (echo->lost && column >= echo->first_column &&
+            column - echo->first_column < echo->columns)
+            echo->lost[row * echo->columns + (column - echo->first_column)] = lost;
+    }
+    free(hidden.planes);
+    return status;
+}
+
+static void add_plane(float *sum, const float *plane, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        sum[i] += plane[i];
+}
+
+/* Paths of several interactions; forms order_energy where that is wanted. */
+static sonject_status add_chains(struct forming *forming, const struct impulse_lines *lines)
+{
+    const size_t cells = line_grid_cells(&lines->grid);
+    float *kept = forming->echoes->order_energy[lines->number - 1];
+    if (!forming->chains) {
+        forming->chains_grid = lines->grid;
+        forming->chains = allocate_array(cells, sizeof(float));
+    }
+    CHECK_MEMORY(forming->tracer->report, forming->chains, "multiple interactions");
+    if (kept)
+        CHECK(form_energies(forming, &forming->tracer->response, lines, kept));
+    add_plane(forming->chains, lines->plane[0], cells);
+    return SONJECT_OK;
+}
+
+/* Adds paths of several interactions to target_energy and to one realisation: the target's; by
+ * brute force, which counts everything that is rough, it becomes the seabed's. */
+static sonject_status finish_chains(struct forming *forming, bool is_brute_force)
+{
+    struct echoes *echoes = forming->echoes;
+    const size_t pixels = echoes->rows * echoes->columns;
+    const struct line_grid *grid = &forming->chains_grid;
+    const struct impulse_lines all = {IMPULSES_CHAINS, 0, *grid,
+                                      grid->strips,    1, {forming->chains}};
+    struct formed drawn = {NULL, 0, 0, 0};
+    float *energy = allocate_array(pixels, sizeof *energy);
+    CHECK_MEMORY(forming->tracer->report, energy, "multiple interactions");
+    sonject_status status = form_energies(forming, &forming->tracer->response, &all, energy);
+    THEN(status,
+         form_speckle(forming->tracer, grid, forming->chains, STREAM_CHAIN_SPECKLE, &drawn));
+    if (status == SONJECT_OK)
+        add_plane(echoes->energy, energy, pixels);
+    if (status == SONJECT_OK && is_brute_force) {
+        memcpy(echoes->seabed_real, drawn.planes, pixels * sizeof(float));
+        memcpy(echoes->seabed_imaginary, drawn.planes + drawn.count, pixels * sizeof(float));
+    } else if (status == SONJECT_OK) {
+        add_plane(echoes->target_energy, energy, pixels);
+        add_plane(echoes->target_real, drawn.planes, pixels);
+        add_plane(echoes->target_imaginary, drawn.planes + drawn.count, pixels);
+    }
+    free(energy);
+    free(drawn.planes);
+    return status;
+}
+
+static sonject_status add_set(struct forming *forming, const struct impulse_lines *lines)
+{
     switch (lines->kind) {
     case IMPULSES_SEABED:
-        return seabed_echoes_add(&forming->seabed, echoes, tracer, forming->request, lines);
+        return add_seabed(forming, lines);
     case IMPULSES_LEVEL:
-        return level_seabed_add(&forming->seabed, echoes, tracer, forming->request, lines);
+        return add_level(forming, lines);
     case IMPULSES_OBJECT:
     case IMPULSES_GLINT:
-        return object_echoes_add(&forming->object, echoes, tracer, lines);
+        return object_echoes_add(&forming->object, forming->echoes, forming->tracer, lines);
     case IMPULSES_BEAM:
+        return add_beam(forming, lines);
     case IMPULSES_HIDDEN:
-        return beam_shadows_add(&forming->beam, echoes, tracer, lines);
+        return add_hidden(forming, lines);
     case IMPULSES_CHAINS:
-        return chain_echoes_add(&forming->chains, echoes, tracer, lines);
+        return add_chains(forming, lines);
     }
     return SONJECT_OK;
 }
@@ -121,18 +353,30 @@ static sonject_status take(void *taker, const struct impulse_lines *lines)
 {
     struct forming *forming = taker;
     const double start = clock_seconds();
-    const sonject_status status = form_set(forming, lines);
+    const sonject_status status = add_set(forming, lines);
     forming->echoes->form_s += clock_seconds() - start;
     return status;
 }
 
+/* What one interaction brings is the energy of the objects' echoes, and of the seabed in view; by
+ * brute force the chains bring it anew, all but the glints. */
 static sonject_status finish(struct forming *forming)
 {
+    struct echoes *echoes = forming->echoes;
+    const bool is_brute_force =
+        forming->tracer->scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE;
     const double start = clock_seconds();
-    sonject_status status =
-        object_echoes_finish(&forming->object, forming->echoes, forming->tracer);
-    THEN(status, chain_echoes_finish(&forming->chains, forming->echoes, forming->tracer));
-    forming->echoes->form_s += clock_seconds() - start;
+    CHECK(object_echoes_finish(&forming->object, echoes, forming->tracer));
+    for (size_t i = 0; i < echoes->rows * echoes->columns; i++) {
+        const float in_view = fmaxf(0.0f, echoes->seabed_energy[i] - echoes->lost_energy[i]);
+        echoes->energy[i] = is_brute_force ? 0.0f : echoes->target_energy[i] + in_view;
+    }
+    if (echoes->order_energy[0] && !is_brute_force)
+        memcpy(echoes->order_energy[0], echoes->energy,
+               echoes->rows * echoes->columns * sizeof(float));
+    const sonject_status status =
+        forming->chains ? finish_chains(forming, is_brute_force) : SONJECT_OK;
+    echoes->form_s += clock_seconds() - start;
     return status;
 }
 
@@ -150,10 +394,11 @@ sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
     sonject_status status = allocate_planes(echoes, tracer, request);
     THEN(status, source->deliver(source->giver, tracer, request, &sink));
     THEN(status, finish(&forming));
-    seabed_former_clear(&forming.seabed);
+    form_lines_end(&forming.energies);
+    form_lines_end(&forming.field);
     object_former_clear(&forming.object);
-    beam_former_clear(&forming.beam);
-    chain_former_clear(&forming.chains);
+    free(forming.beam_seabed);
+    free(forming.chains);
     echoes->trace_s = clock_seconds() - start - echoes->form_s;
     if (status != SONJECT_OK)
         echoes_clear(echoes);

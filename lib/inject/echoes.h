@@ -2,9 +2,11 @@
 #ifndef SONJECT_INJECT_ECHOES_H
 #define SONJECT_INJECT_ECHOES_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/report.h"
+#include "form/form.h"
 #include "inject/impulses.h"
 #include "trace/tracer.h"
 
@@ -18,9 +20,10 @@ struct object_echo {
                                          none, and the processor range where it is */
 };
 
-/* Everything is rows x columns of the view unless said otherwise. Owned. */
+/* Everything is rows x columns of the view unless said otherwise. */
 struct echoes {
     size_t rows, columns;
+    void *memory;         /* of the planes but for those of orders; owned */
     float *seabed_energy; /* expected without objects, m^2 */
     float *level_energy;  /* expected without objects and relief; NULL: there is no relief */
     float *lost_energy;   /* of it, hidden by objects */
@@ -32,10 +35,10 @@ struct echoes {
         *seabed_imaginary; /* one realisation of what is in view; NULL if unwanted */
     float *energy;         /* expected from everything that was traced */
     /* Expected from paths of k interactions at [k - 1], k <= orders; NULL unless the scene asks for
-     * them. */
+     * them; each owned. */
     float *order_energy[SCENE_INTERACTIONS_MAX];
     uint32_t orders;
-    struct object_echo *objects;
+    struct object_echo *objects; /* owned, as all in them */
     uint32_t object_count;
     double trace_s, form_s; /* wall clock; trace_s: of the impulses' source */
 };
@@ -75,15 +78,67 @@ sonject_status echoes_compute(struct echoes *echoes, struct tracer *tracer,
                               const struct echo_request *request);
 void echoes_clear(struct echoes *echoes);
 
-/* Rows and columns of a view. */
-struct window {
-    size_t first_row, rows, first_column, columns;
+/* The reflectivity that the seabed's energies are traced with. With relief a composite takes an
+ * even one: the ratio of two energies is then that of geometry, not of the speckle of two places;
+ * the map's pattern is given to the formed energies. */
+const float *seabed_map(const struct tracer *tracer, const struct echo_request *request);
+
+/* Whether the scene's shadows are found within the beam: its sonar has a real aperture, over a
+ * level seabed. Shadows over relief keep to lines from broadside. */
+bool has_beam_shadows(const struct tracer *tracer);
+
+/* A response that keeps rows apart: a ping's energies are its row's as they are. */
+void response_of_pings(struct point_response *response, const struct tracer *tracer);
+
+/* The seabed as a measured complex reflectivity: its own phases instead of new speckle. Complex
+ * amplitudes of lines of SEABED, whose second plane is what is in view: the root of that energy
+ * times the reflectivity of the bin's pixel, scaled so that the image's mean energy stays what
+ * speckle would give. Two planes in one array for free(); NULL where memory lacks. */
+float *coherent_seabed_lines(const struct tracer *tracer, const struct echo_request *request,
+                             const struct impulse_lines *lines);
+
+/* Where lines are formed once more: a lattice of points that is finer than the point response. */
+struct peak_lattice {
+    struct patch_view view;  /* whose pixels are the points */
+    struct line_grid grid;   /* of the lines that it was laid on, as that view counts them */
+    struct form_lines lines; /* that are being formed */
+    float *planes;           /* two of view.rows x view.columns; owned; NULL: no echo */
 };
 
-/* A field of complex normal deviates of unit mean square with the sonar's point response, in two
- * planes of rows x columns of the view. Only the window is filled; its values do not depend on the
- * window's size. Errors: DEVICE, MEMORY. */
-sonject_status coloured_noise(struct tracer *tracer, uint32_t stream, const struct window *window,
-                              float *real_part, float *imaginary_part);
+/* What objects return by one interaction, in the making: that object's rough surfaces and glints
+ * whose sets come in. */
+struct object_former {
+    bool is_open;
+    uint32_t number;
+    struct line_grid grid;   /* of its tile */
+    float *rough_energy;     /* of the tile; NULL: no realisation of it is drawn */
+    float *glint;            /* of its parts, which interfere, over the columns of its echo: two
+                                planes; owned */
+    struct form_lines lines; /* of the part whose glints come in */
+    struct peak_lattice glint_peak, rough_peak;
+};
+
+/* Takes lines of OBJECT and GLINT. The next OBJECT finishes the one before; object_echoes_finish
+ * the last. Errors: DEVICE, MEMORY. */
+sonject_status object_echoes_add(struct object_former *former, struct echoes *echoes,
+                                 struct tracer *tracer, const struct impulse_lines *lines);
+sonject_status object_echoes_finish(struct object_former *former, struct echoes *echoes,
+                                    struct tracer *tracer);
+void object_former_clear(struct object_former *former);
+
+/* Formed pixels, both planes in one array. */
+struct formed {
+    float *planes;                       /* owned */
+    size_t first_column, columns, count; /* count: of one plane, all rows */
+};
+
+/* Combines all lines into *formed, whose planes are the caller's for free(), and ends them. Errors:
+ * DEVICE, MEMORY. */
+sonject_status form_end(struct form_lines *lines, struct formed *formed);
+
+/* Forms a drawing of energies on a grid: sqrt(energy) times complex normal deviates. Errors:
+ * DEVICE, MEMORY. */
+sonject_status form_speckle(struct tracer *tracer, const struct line_grid *grid,
+                            const float *energy, uint32_t stream, struct formed *formed);
 
 #endif

@@ -1,15 +1,10 @@
-#include "inject/element_echoes.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "elements/impulse_list.h"
-#include "elements/series.h"
-#include "inject/coherent_seabed.h"
-#include "inject/injection_setup.h"
-#include "inject/traced_impulses.h"
+#include "elements/elements.h"
+#include "inject/compose.h"
 #include "scene/sonar_array.h"
 
 #define TRACE_SHARE 0.5 /* of a run's progress */
@@ -27,21 +22,11 @@ static sonject_status add_coherent_seabed(struct element_taker *taker,
                                           const struct impulse_lines *lines)
 {
     const size_t cells = (size_t)lines->strips.count * (size_t)lines->grid.bins.count;
-    float *real_part = allocate_array(cells, sizeof *real_part);
-    float *imaginary_part = allocate_array(cells, sizeof *imaginary_part);
-    sonject_status status = real_part && imaginary_part
-                                ? SONJECT_OK
-                                : report_out_of_memory(taker->tracer->report, "the seabed");
-    if (status == SONJECT_OK) {
-        memcpy(real_part, lines->plane[1], cells * sizeof *real_part);
-        coherent_seabed_lines(&lines->grid, taker->tracer, lines->strips,
-                              taker->request->reflectivity_real,
-                              taker->request->reflectivity_imaginary, real_part, imaginary_part);
-        status = impulse_list_add(&taker->impulses, &lines->grid, lines->strips, real_part,
-                                  imaginary_part);
-    }
-    free(real_part);
-    free(imaginary_part);
+    float *parts = coherent_seabed_lines(taker->tracer, taker->request, lines);
+    CHECK_MEMORY(taker->tracer->report, parts, "the seabed");
+    const sonject_status status =
+        impulse_list_add(&taker->impulses, &lines->grid, lines->strips, parts, parts + cells);
+    free(parts);
     return status;
 }
 

@@ -6,10 +6,14 @@
 
 #include <sonject/version.h>
 
+#include "inject/impulses.h"
+#include "inject/injection.h"
+
+#ifdef HAS_HDF5
+
 #include "base/file.h"
 #include "base/hdf5_values.h"
 #include "base/memory.h"
-#include "inject/impulse_export.h"
 
 #define CELLS_A_CHUNK     ((size_t)1 << 18)
 #define DEFLATE_LEVEL     1 /* more saves a few per cent and takes several times as long */
@@ -124,21 +128,23 @@ static bool choose_storage(hid_t creation, hid_t access, const struct line_grid 
            H5Pset_chunk_cache(access, 521, CHUNK_CACHE_BYTES, 1.0) >= 0;
 }
 
+/* Closes what is open of them, whatever it is. */
+static void close_all(const hid_t *identifiers, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (identifiers[i] >= 0)
+            H5Idec_ref(identifiers[i]);
+}
+
 static hid_t make_plane(hid_t group, const char *name, const struct line_grid *grid)
 {
     const hsize_t extent[2] = {(hsize_t)grid->strips.count, (hsize_t)grid->bins.count};
-    const hid_t space = H5Screate_simple(2, extent, NULL);
-    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
-    const hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
+    const hid_t used[3] = {H5Screate_simple(2, extent, NULL), H5Pcreate(H5P_DATASET_CREATE),
+                           H5Pcreate(H5P_DATASET_ACCESS)};
     hid_t plane = -1;
-    if (space >= 0 && creation >= 0 && access >= 0 && choose_storage(creation, access, grid))
-        plane = H5Dcreate2(group, name, H5T_IEEE_F32LE, space, H5P_DEFAULT, creation, access);
-    if (access >= 0)
-        H5Pclose(access);
-    if (creation >= 0)
-        H5Pclose(creation);
-    if (space >= 0)
-        H5Sclose(space);
+    if (used[0] >= 0 && used[1] >= 0 && used[2] >= 0 && choose_storage(used[1], used[2], grid))
+        plane = H5Dcreate2(group, name, H5T_IEEE_F32LE, used[0], H5P_DEFAULT, used[1], used[2]);
+    close_all(used, 3);
     return plane;
 }
 
@@ -164,16 +170,12 @@ static bool write_plane(hid_t plane, const struct impulse_lines *lines, const fl
 {
     const hsize_t first[2] = {(hsize_t)(lines->strips.first - lines->grid.strips.first), 0};
     const hsize_t count[2] = {(hsize_t)lines->strips.count, (hsize_t)lines->grid.bins.count};
-    const hid_t memory = H5Screate_simple(2, count, NULL);
-    const hid_t space = H5Dget_space(plane);
+    const hid_t spaces[2] = {H5Screate_simple(2, count, NULL), H5Dget_space(plane)};
     const bool is_done =
-        memory >= 0 && space >= 0 &&
-        H5Sselect_hyperslab(space, H5S_SELECT_SET, first, NULL, count, NULL) >= 0 &&
-        H5Dwrite(plane, H5T_NATIVE_FLOAT, memory, space, H5P_DEFAULT, values) >= 0;
-    if (space >= 0)
-        H5Sclose(space);
-    if (memory >= 0)
-        H5Sclose(memory);
+        spaces[0] >= 0 && spaces[1] >= 0 &&
+        H5Sselect_hyperslab(spaces[1], H5S_SELECT_SET, first, NULL, count, NULL) >= 0 &&
+        H5Dwrite(plane, H5T_NATIVE_FLOAT, spaces[0], spaces[1], H5P_DEFAULT, values) >= 0;
+    close_all(spaces, 2);
     return is_done;
 }
 
@@ -280,3 +282,37 @@ void impulse_export_release(struct impulse_export **export)
     free(*export);
     *export = NULL;
 }
+
+#else /* a build without HDF5 */
+
+sonject_status impulse_export_begin(struct report *report, const char *path,
+                                    struct impulse_export **export)
+{
+    *export = NULL;
+    return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                          "%s: this build of sonject exports no impulses: build it with HDF5",
+                          path);
+}
+
+sonject_status impulse_export_lines(struct impulse_export *export,
+                                    const struct impulse_lines *lines)
+{
+    (void)export, (void)lines;
+    return SONJECT_ERROR_UNSUPPORTED;
+}
+
+sonject_status impulse_export_publish(struct impulse_export *export, const struct scene *scene,
+                                      const struct injection_input *input,
+                                      const struct impulse_facts *facts, const char *scene_hash,
+                                      const char *image_path)
+{
+    (void)export, (void)scene, (void)input, (void)facts, (void)scene_hash, (void)image_path;
+    return SONJECT_ERROR_UNSUPPORTED;
+}
+
+void impulse_export_release(struct impulse_export **export)
+{
+    *export = NULL;
+}
+
+#endif

@@ -1,17 +1,20 @@
-/* Lines and facts as records of a file of sums. */
-/* The lines of a file, in the order of tracing, for the former of an image. */
-#include "inject/impulse_file.h"
-
+/* Lines and facts as records of a file of sums; and whether impulses that were traced for one pulse
+ * and cross-range response give an image with another. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/memory.h"
 #include "inject/echoes.h"
-#include "inject/reimaging.h"
-#include "inject/seabed_echoes.h"
+#include "scene/point_response.h"
+#include "trace/glints.h"
 
-#define SPAN_MAX ((int64_t)1 << 28)
+#define EDGE_LOSS         0.02   /* of an edge pixel's energy, which half its margin lacks */
+#define EDGE_DEVIATIONS   1.4522 /* erfc(x) / 2 = EDGE_LOSS, G^2 being exp(-(r / sigma)^2) */
+#define ROUNDING          1e-6
+#define CELLS_A_PIXEL_MAX 4096
+#define SPAN_MAX          ((int64_t)1 << 28)
 
 typedef char impulse_facts_are_packed[sizeof(struct impulse_facts) == 128 ? 1 : -1];
 
@@ -84,12 +87,12 @@ static sonject_status read_facts(struct impulse_file *file)
                               "forms it",
                               sums->path);
     CHECK(sums_file_record(sums, file->report, sums->head.records - 1, &words, &count));
+    const size_t bytes = count * sizeof *words;
     file->last = words;
     file->image_path = (const char *)words + sizeof file->facts;
-    if (count * sizeof *words > sizeof file->facts)
+    if (bytes > sizeof file->facts)
         memcpy(&file->facts, words, sizeof file->facts);
-    if (count * sizeof *words > sizeof file->facts &&
-        ((const char *)words)[count * sizeof *words - 1] == '\0' &&
+    if (bytes > sizeof file->facts && ((const char *)words)[bytes - 1] == '\0' &&
         memchr(file->facts.image_hash, '\0', sizeof file->facts.image_hash))
         return SONJECT_OK;
     return report_failure(file->report, SONJECT_ERROR_INPUT,
@@ -120,6 +123,7 @@ void impulse_file_close(struct impulse_file *file)
 /* What is read for, and the grids of the seabed's and the beam's lines, which others share. */
 struct delivery {
     struct impulse_file *file;
+    const char *path; /* of it */
     struct tracer *tracer;
     const struct echo_request *request;
     const struct impulse_sink *sink;
@@ -133,7 +137,7 @@ static sonject_status refuse(const struct delivery *delivery)
 {
     return report_failure(delivery->tracer->report, SONJECT_ERROR_INPUT,
                           "%s: its impulses are not those of this scene: trace again",
-                          delivery->file->sums.path);
+                          delivery->path);
 }
 
 static bool span_is_inside(struct span inner, struct span outer)
@@ -192,6 +196,82 @@ static bool grids_are_equal(const struct line_grid *a, const struct line_grid *b
            a->bins.first == b->bins.first && a->bins.count == b->bins.count;
 }
 
+/* The pulse's range resolution is inverse to the bandwidth. */
+static double bandwidth_for(const struct tracer *tracer, double share)
+{
+    return 1e-3 * tracer->scene->sonar.bandwidth_hz * share;
+}
+
+/* Bins fine enough for the tracer's pulse, and margins so wide that a pixel at the patch's edge
+ * lacks at most EDGE_LOSS of its energy. Half of what is not within the margin lies beyond it. */
+static sonject_status check_bins(const struct delivery *delivery)
+{
+    const struct tracer *tracer = delivery->tracer;
+    const struct point_response *response = &tracer->response;
+    const struct line_grid *grid = &delivery->lines.grid;
+    const double spacing = tracer->view.column_spacing_m;
+    const double bin = spacing / grid->bins_per_pixel;
+    const double margin = -grid->bins.first * bin;
+    const double fine = response->range_deviation_m / line_grid_shortest_deviation(grid, spacing);
+    const double reach = response->pulse_kind == SONJECT_PULSE_GAUSSIAN
+                             ? EDGE_DEVIATIONS * response->range_deviation_m
+                             : range_energy_reach(response, 2.0 * EDGE_LOSS);
+    /* a margin that ends at range 0 holds all that any pulse reaches */
+    const double wide = tracer->view.first_range_m - margin < bin ? HUGE_VAL : margin / reach;
+    if (fine >= 1.0 - ROUNDING && wide >= 1.0 - ROUNDING)
+        return SONJECT_OK;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "sonar.bandwidth: %g kHz, but with that pulse %s was traced for %.4g to "
+                          "%.4g kHz: trace again with another bandwidth",
+                          bandwidth_for(tracer, 1.0), delivery->path,
+                          bandwidth_for(tracer, 1.0 / wide), bandwidth_for(tracer, fine));
+}
+
+/* The same of strips and the cross-range response. */
+static sonject_status check_strips(const struct delivery *delivery)
+{
+    const struct tracer *tracer = delivery->tracer;
+    const struct line_grid *grid = &delivery->lines.grid;
+    const double strip = tracer->view.row_spacing_m / grid->strips_per_row;
+    const double margin = -grid->strips.first * strip;
+    if (tracer->response.strip_m < strip * (1.0 - ROUNDING))
+        return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                              "sonar.resolution: %g cm, but %s was traced in strips of %.4g cm: "
+                              "trace again with a finer one",
+                              1e2 * tracer->response.strip_m, delivery->path, 1e2 * strip);
+    const double farthest = view_processor_range(&tracer->view, (double)tracer->view.columns - 1.0);
+    const double reach = cross_range_energy_reach(&tracer->response, farthest, 2.0 * EDGE_LOSS);
+    const bool is_moved = tracer->response.motion != NULL;
+    if (reach <= margin)
+        return SONJECT_OK;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "%s: the response reaches %.4g m, but %s was traced to %.4g m beyond the "
+                          "patch: trace again with %s",
+                          is_moved ? "sonar.motion" : "sonar.resolution", reach, delivery->path,
+                          margin, is_moved ? "this motion" : "a coarser resolution");
+}
+
+/* Of a part's glints, whose bins are finer. */
+static sonject_status check_glints(const struct delivery *delivery)
+{
+    const struct tracer *tracer = delivery->tracer;
+    const double shortest =
+        glint_shortest_deviation(&delivery->lines.grid, tracer->view.column_spacing_m);
+    if (tracer->response.range_deviation_m >= shortest * (1.0 - ROUNDING))
+        return SONJECT_OK;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "sonar.bandwidth: %g kHz, but the glints of %s were traced for at most "
+                          "%.4g kHz: trace again with another bandwidth",
+                          bandwidth_for(tracer, 1.0), delivery->path,
+                          bandwidth_for(tracer, tracer->response.range_deviation_m / shortest));
+}
+
+/* A span that begins at or before the first of `count` and ends at or behind the last. */
+static bool span_holds(struct span span, double count)
+{
+    return span.first <= 0 && (double)span.first + span.count >= count;
+}
+
 /* Whether tracing could have laid the lines' grid, and the tracer's response can be formed on it.
  */
 static sonject_status check_grid(const struct delivery *delivery)
@@ -200,16 +280,26 @@ static sonject_status check_grid(const struct delivery *delivery)
     const struct line_grid *grid = &lines->grid;
     const struct line_grid *of =
         lines->kind == IMPULSES_HIDDEN ? &delivery->beam : &delivery->seabed;
-    const char *path = delivery->file->sums.path;
+    const struct patch_view *view = &delivery->tracer->view;
     bool is_possible = lines->strips.count == grid->strips.count; /* they come in one piece */
+    if (grid->strips_per_row > CELLS_A_PIXEL_MAX || grid->bins_per_pixel > CELLS_A_PIXEL_MAX)
+        return report_failure(delivery->tracer->report, SONJECT_ERROR_INPUT,
+                              "%s: is damaged: its grids are finer than tracing lays them",
+                              delivery->path);
     switch (lines->kind) {
     case IMPULSES_SEABED:
-        return reimaging_check_patch(grid, delivery->tracer, path);
     case IMPULSES_BEAM:
-        return reimaging_check_beam(grid, delivery->tracer, path);
+        if (!span_holds(grid->strips, (double)view->rows * grid->strips_per_row) ||
+            !span_holds(grid->bins, (double)(view->columns - 1) * grid->bins_per_pixel + 1.0))
+            return report_failure(delivery->tracer->report, SONJECT_ERROR_INPUT,
+                                  "%s: is damaged: its seabed is not that of the patch",
+                                  delivery->path);
+        if (lines->kind == IMPULSES_BEAM) /* lines of single pings, not spread along the track */
+            return SONJECT_OK;
+        CHECK(check_bins(delivery));
+        return check_strips(delivery);
     case IMPULSES_GLINT:
-        return line_grid_cells(grid) > 0 ? reimaging_check_glints(grid, delivery->tracer, path)
-                                         : refuse(delivery);
+        return line_grid_cells(grid) > 0 ? check_glints(delivery) : refuse(delivery);
     case IMPULSES_OBJECT:
     case IMPULSES_HIDDEN:
         is_possible = is_possible && grid->strips_per_row == of->strips_per_row &&
@@ -234,82 +324,69 @@ static sonject_status deliver_set(struct delivery *delivery, enum impulse_kind k
     if (!delivery->words || lines->kind != kind || lines->number != number)
         return is_required ? refuse(delivery) : SONJECT_OK;
     const struct line_grid grid = lines->grid;
-    int32_t strip = grid.strips.first;
-    sonject_status status = check_grid(delivery);
+    const int32_t end = grid.strips.first + grid.strips.count;
+    CHECK(check_grid(delivery));
     if (kind == IMPULSES_SEABED)
         delivery->seabed = grid;
     else if (kind == IMPULSES_BEAM)
         delivery->beam = grid;
-    do {
-        if (status == SONJECT_OK &&
-            (!delivery->words || lines->kind != kind || lines->number != number ||
-             lines->planes != planes || lines->strips.first != strip ||
-             !grids_are_equal(&lines->grid, &grid)))
-            status = refuse(delivery);
-        THEN(status, delivery->sink->take(delivery->sink->taker, lines));
+    for (int32_t strip = grid.strips.first; true;) {
+        if (!delivery->words || lines->kind != kind || lines->number != number ||
+            lines->planes != planes || lines->strips.first != strip ||
+            !grids_are_equal(&lines->grid, &grid))
+            return refuse(delivery);
+        CHECK(delivery->sink->take(delivery->sink->taker, lines));
         strip += lines->strips.count;
-        THEN(status, read_next(delivery));
-    } while (status == SONJECT_OK && strip < grid.strips.first + grid.strips.count);
-    return status;
+        CHECK(read_next(delivery));
+        if (strip >= end)
+            return SONJECT_OK;
+    }
 }
 
 static sonject_status deliver_objects(struct delivery *delivery)
 {
     const uint32_t count = delivery->tracer->scene->object_count;
-    sonject_status status = SONJECT_OK;
-    for (uint32_t i = 0; status == SONJECT_OK && i < count; i++) {
+    for (uint32_t i = 0; i < count; i++) {
         const struct placed_object *object = &delivery->tracer->objects[i];
-        status = deliver_set(delivery, IMPULSES_OBJECT, i, 3, true);
-        for (uint32_t k = 0; status == SONJECT_OK && k < object->part_count; k++)
-            status = deliver_set(delivery, IMPULSES_GLINT, object->first_part + k, 2, false);
-        THEN(status, echo_request_tell(delivery->request, delivery->tracer->report,
-                                       ROUGH_SHARE + (1.0 - ROUGH_SHARE) * (i + 1) / count,
-                                       "forming the objects"));
+        CHECK(deliver_set(delivery, IMPULSES_OBJECT, i, 3, true));
+        for (uint32_t k = 0; k < object->part_count; k++)
+            CHECK(deliver_set(delivery, IMPULSES_GLINT, object->first_part + k, 2, false));
+        CHECK(echo_request_tell(delivery->request, delivery->tracer->report,
+                                ROUGH_SHARE + (1.0 - ROUGH_SHARE) * (i + 1) / count,
+                                "forming the objects"));
     }
-    return status;
+    return SONJECT_OK;
 }
 
-static sonject_status deliver_beam(struct delivery *delivery)
+static sonject_status deliver_all(struct delivery *delivery)
 {
-    sonject_status status = deliver_set(delivery, IMPULSES_BEAM, 0, 1, true);
-    for (uint32_t i = 0; status == SONJECT_OK && i < delivery->tracer->scene->object_count; i++)
-        status = deliver_set(delivery, IMPULSES_HIDDEN, i, 1, true);
-    return status;
-}
-
-static sonject_status deliver_chains(struct delivery *delivery)
-{
-    sonject_status status = SONJECT_OK;
-    for (uint32_t order = 1; status == SONJECT_OK && order <= SCENE_INTERACTIONS_MAX; order++)
-        status = deliver_set(delivery, IMPULSES_CHAINS, order, 1, false);
-    return status;
+    struct tracer *tracer = delivery->tracer;
+    const uint32_t planes = delivery->request->field == SEABED_FIELD_NONE ? 1 : 2;
+    sonject_sonar_params traced = tracer->scene->sonar;
+    impulse_facts_take_sonar(&delivery->file->facts, &traced);
+    if (check_sonar(&traced, tracer->report, NULL) != SONJECT_OK)
+        return refuse(delivery);
+    CHECK(read_next(delivery));
+    CHECK(deliver_set(delivery, IMPULSES_SEABED, 0, planes, true));
+    CHECK(echo_request_tell(delivery->request, tracer->report, ROUGH_SHARE, "forming the seabed"));
+    CHECK(deliver_objects(delivery));
+    if (has_beam_shadows(tracer))
+        CHECK(deliver_set(delivery, IMPULSES_BEAM, 0, 1, true));
+    for (uint32_t i = 0; has_beam_shadows(tracer) && i < tracer->scene->object_count; i++)
+        CHECK(deliver_set(delivery, IMPULSES_HIDDEN, i, 1, true));
+    if (tracer->relief)
+        CHECK(deliver_set(delivery, IMPULSES_LEVEL, 0, 1, true));
+    for (uint32_t order = 1; order <= SCENE_INTERACTIONS_MAX; order++)
+        CHECK(deliver_set(delivery, IMPULSES_CHAINS, order, 1, false));
+    return delivery->words ? refuse(delivery) : SONJECT_OK;
 }
 
 static sonject_status deliver(void *giver, struct tracer *tracer,
                               const struct echo_request *request, const struct impulse_sink *sink)
 {
-    const uint32_t planes = request->field == SEABED_FIELD_NONE ? 1 : 2;
-    struct delivery delivery;
-    memset(&delivery, 0, sizeof delivery);
-    delivery.file = giver;
-    delivery.tracer = tracer;
-    delivery.request = request;
-    delivery.sink = sink;
-    sonject_sonar_params traced = tracer->scene->sonar;
-    impulse_facts_take_sonar(&delivery.file->facts, &traced);
-    sonject_status status =
-        check_sonar(&traced, tracer->report, NULL) == SONJECT_OK ? SONJECT_OK : refuse(&delivery);
-    THEN(status, read_next(&delivery));
-    THEN(status, deliver_set(&delivery, IMPULSES_SEABED, 0, planes, true));
-    THEN(status, echo_request_tell(request, tracer->report, ROUGH_SHARE, "forming the seabed"));
-    THEN(status, deliver_objects(&delivery));
-    if (status == SONJECT_OK && has_beam_shadows(tracer))
-        status = deliver_beam(&delivery);
-    if (status == SONJECT_OK && tracer->relief)
-        status = deliver_set(&delivery, IMPULSES_LEVEL, 0, 1, true);
-    THEN(status, deliver_chains(&delivery));
-    if (status == SONJECT_OK && delivery.words)
-        status = refuse(&delivery);
+    struct delivery delivery = {.file = giver, .tracer = tracer, .request = request, .sink = sink};
+    delivery.path = delivery.file->sums.path;
+    const sonject_status status = deliver_all(&delivery);
     free(delivery.words);
     tracer->counts = delivery.file->facts.counts;
     return status;

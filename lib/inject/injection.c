@@ -5,28 +5,171 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/report.h"
-#include "image/statistics.h"
+#include "image/synthetic.h"
 #include "inject/compose.h"
-#include "inject/echoes.h"
-#include "inject/injection_setup.h"
-#include "inject/match.h"
-#include "inject/patch_level.h"
-#include "inject/traced_impulses.h"
-#include "inject/truth.h"
+#include "scene/point_response.h"
+
+sonject_status make_input(struct report *report, const struct scene *scene,
+                          struct injection_input *input)
+{
+    const sonject_synthetic_params *synthetic = &scene->synthetic;
+    const bool is_synthetic = scene->input_kind == SONJECT_INPUT_SYNTHETIC;
+    const double reference = scene_reference_speed(scene);
+    struct point_response response;
+    memset(input, 0, sizeof *input);
+    input->is_made = true;
+    input->rows = is_synthetic ? synthetic->rows : scene->uniform_rows;
+    input->columns = is_synthetic ? synthetic->columns : scene->uniform_columns;
+    input->is_complex = is_synthetic && synthetic->complex_pixels;
+    const size_t count = input->rows * input->columns;
+    float *pixels = allocate_array(count, (input->is_complex ? 2 : 1) * sizeof *pixels);
+    CHECK_MEMORY(report, pixels, is_synthetic ? "the synthetic seabed" : "the uniform seabed");
+    input->pixels = pixels;
+    for (size_t i = 0; !is_synthetic && i < count; i++)
+        pixels[i] = 1.0f;
+    if (!is_synthetic)
+        return SONJECT_OK;
+    point_response_init(&response, &scene->sonar, reference, scene->geometry.row_spacing_m);
+    const sonject_status status =
+        synthesise_seabed(report, synthetic, &scene->geometry, response.resolution_m,
+                          reference / (2.0 * scene->sonar.bandwidth_hz), pixels);
+    if (status != SONJECT_OK) {
+        free(pixels);
+        input->pixels = NULL;
+    }
+    return status;
+}
+
+static void flip_rows(void *plane, size_t rows, size_t row_bytes)
+{
+    char *top = plane;
+    for (size_t row = 0; row < rows / 2; row++) {
+        char *a = top + row * row_bytes;
+        char *b = top + (rows - 1 - row) * row_bytes;
+        for (size_t i = 0; i < row_bytes; i++) {
+            const char kept = a[i];
+            a[i] = b[i];
+            b[i] = kept;
+        }
+    }
+}
+
+static sonject_status check_combination(struct report *report, const struct scene *scene,
+                                        bool is_complex)
+{
+    if (scene->injection.mode == SONJECT_MODE_RESYNTHESISE &&
+        scene->seabed.map == SONJECT_MAP_COHERENT && !is_complex)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the coherent seabed map needs a complex image: use map: intensity "
+                              "or despeckled");
+    if (scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
+        (scene->injection.mode != SONJECT_MODE_RESYNTHESISE || scene->sonar.transducer_side_m <= 0))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the brute force estimator needs mode: resynthesise and a transducer "
+                              "that rays can hit: give its side");
+    for (uint32_t i = 0; i < scene->object_count; i++)
+        if (scene->objects[i].level_kind != SONJECT_LEVEL_PHYSICAL &&
+            scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE)
+            return report_failure(report, SONJECT_ERROR_INPUT,
+                                  "objects[%u].level needs the estimator connect: brute force does "
+                                  "not tell objects and seabed apart",
+                                  (unsigned)i);
+    return SONJECT_OK;
+}
+
+static sonject_status check_straight_rays(const struct tracer *tracer)
+{
+    if (tracer->scene->injection.estimator != SONJECT_ESTIMATOR_BRUTE_FORCE ||
+        tracer->view.water.is_straight)
+        return SONJECT_OK;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "the brute force estimator follows straight rays only: use connect where "
+                          "layers of water bend them");
+}
+
+/* The coherent map's scale is known for one real cross-range response. */
+static sonject_status check_coherent_map(const struct tracer *tracer)
+{
+    const struct scene *scene = tracer->scene;
+    if (scene->injection.mode != SONJECT_MODE_RESYNTHESISE ||
+        scene->seabed.map != SONJECT_MAP_COHERENT || cross_range_is_plain(&tracer->response))
+        return SONJECT_OK;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "the coherent seabed map needs a synthetic aperture without motion or a "
+                          "measured cross-range response: use map: intensity or despeckled");
+}
+
+/* The sonar's response on the patch. */
+static sonject_status find_response(struct tracer *tracer)
+{
+    const struct patch_view *view = &tracer->view;
+    CHECK(point_response_of_scene(&tracer->response, tracer->report, tracer->scene, view,
+                                  view->range_ratio * view->water.water->straight_speed_mps));
+    CHECK(cross_range_check(&tracer->response, tracer->report, tracer->scene, view));
+    return check_coherent_map(tracer);
+}
+
+void injection_setup_clear(struct injection_setup *setup)
+{
+    placements_clear(&setup->placements);
+    water_clear(&setup->water);
+    free(setup->pixels);
+}
+
+sonject_status injection_setup_init_scene(struct injection_setup *setup, struct report *report,
+                                          struct device *device, const struct scene *scene,
+                                          const struct injection_input *input)
+{
+    struct tracer *tracer = &setup->tracer;
+    char lines[REPORT_CAPACITY] = "";
+    memset(setup, 0, sizeof *setup);
+    tracer->report = report;
+    tracer->device = device;
+    tracer->scene = scene;
+    tracer->checkpoint = input->checkpoint;
+    sonject_status status = scene_locate(
+        scene, report, check_combination(report, scene, input->is_complex), "injection");
+    status = report_gather(report, lines, SONJECT_OK, status);
+    sonject_status of_view = scene_lay_water(scene, report, &setup->water);
+    THEN(of_view,
+         scene_locate(scene, report,
+                      patch_view_init(&tracer->view, report, scene, &setup->water, input->first_row,
+                                      input->first_column, input->rows, input->columns),
+                      "input.geometry"));
+    status = report_gather(report, lines, status, of_view);
+    if (of_view != SONJECT_OK)
+        return status;
+    status = report_gather(report, lines, status,
+                           placements_init(&setup->placements, report, scene, &tracer->view,
+                                           input->first_row, input->first_column));
+    tracer->placements = setup->placements.parts;
+    tracer->part_count = setup->placements.part_count;
+    tracer->objects = setup->placements.objects;
+    tracer->relief = setup->placements.relief;
+    sonject_status of_sonar = check_straight_rays(tracer);
+    THEN(of_sonar, find_response(tracer));
+    return report_gather(report, lines, status, scene_locate(scene, report, of_sonar, "sonar"));
+}
+
+sonject_status injection_setup_init(struct injection_setup *setup, struct report *report,
+                                    struct device *device, const struct scene *scene,
+                                    const struct injection_input *input)
+{
+    const size_t row_bytes = input->columns * (input->is_complex ? 2 : 1) * sizeof(float);
+    CHECK(injection_setup_init_scene(setup, report, device, scene, input));
+    setup->pixels = allocate_array(input->rows, row_bytes);
+    CHECK_MEMORY(report, setup->pixels, "the patch");
+    memcpy(setup->pixels, input->pixels, input->rows * row_bytes);
+    if (setup->tracer.view.is_mirrored)
+        flip_rows(setup->pixels, input->rows, row_bytes);
+    return SONJECT_OK;
+}
 
 void injection_result_clear(struct injection_result *result)
 {
-    free(result->image);
-    free(result->field);
-    free(result->energy);
+    free(result->memory);
     for (int i = 0; i < SCENE_INTERACTIONS_MAX; i++)
         free(result->order_energy[i]);
-    free(result->visibility);
-    free(result->highlight);
-    free(result->shadow);
-    free(result->labels);
-    free(result->influence);
     free(result->objects);
     memset(result, 0, sizeof *result);
 }
@@ -35,32 +178,27 @@ static sonject_status result_init(struct injection_result *result, struct report
                                   const struct scene *scene, const struct injection_input *input)
 {
     const size_t pixels = input->rows * input->columns;
+    const size_t parts = input->is_complex ? 2 : 1;
+    sonject_statistics *statistics = &result->statistics;
     memset(result, 0, sizeof *result);
     result->rows = input->rows;
     result->columns = input->columns;
     result->is_complex = input->is_complex;
     result->object_count = scene->object_count;
-    result->statistics.level_change_db = NAN;
-    result->statistics.input_contrast = NAN;
-    result->statistics.output_contrast = NAN;
-    result->statistics.histogram_distance = NAN;
-    result->statistics.correlation = NAN;
-    result->statistics.struct_size = sizeof result->statistics;
-    result->image = allocate_array(pixels, (input->is_complex ? 2 : 1) * sizeof(float));
-    result->field = allocate_array(pixels, 2 * sizeof(float));
-    result->energy = allocate_array(pixels, sizeof(float));
-    result->visibility = allocate_array(pixels, sizeof(float));
-    result->highlight = allocate_array(pixels, 1);
-    result->shadow = allocate_array(pixels, 1);
-    result->labels = allocate_array(pixels, 1);
-    result->influence = allocate_array(pixels, 1);
+    statistics->level_change_db = statistics->histogram_distance = statistics->correlation = NAN;
+    statistics->input_contrast = statistics->output_contrast = NAN;
+    statistics->struct_size = sizeof *statistics;
+    result->memory = allocate_array(pixels, (parts + 4) * sizeof(float) + 4);
     result->objects = allocate_array(scene->object_count, sizeof *result->objects);
-    if (!result->image || !result->field || !result->energy || !result->visibility ||
-        !result->highlight || !result->shadow || !result->labels || !result->influence ||
-        !result->objects) {
-        injection_result_clear(result);
-        return report_out_of_memory(report, "the result");
-    }
+    CHECK_MEMORY(report, result->memory && result->objects, "the result");
+    result->image = result->memory;
+    result->field = result->image + parts * pixels;
+    result->energy = result->field + 2 * pixels;
+    result->visibility = result->energy + pixels;
+    result->highlight = (uint8_t *)(result->visibility + pixels);
+    result->shadow = result->highlight + pixels;
+    result->labels = result->shadow + pixels;
+    result->influence = result->labels + pixels;
     return SONJECT_OK;
 }
 
@@ -71,20 +209,20 @@ static void flip_box(sonject_box *box, size_t rows)
 }
 
 /* From the mirrored view back into the image's row order. */
-static void unmirror(struct injection_result *result, char *scratch)
+static void unmirror(struct injection_result *result)
 {
     const size_t rows = result->rows;
-    const size_t columns = result->columns;
-    flip_rows(result->image, rows, columns * (result->is_complex ? 2 : 1) * sizeof(float), scratch);
-    flip_rows(result->field, rows, columns * 2 * sizeof(float), scratch);
-    flip_rows(result->energy, rows, columns * sizeof(float), scratch);
+    const size_t line = result->columns * sizeof(float);
+    flip_rows(result->image, rows, line * (result->is_complex ? 2 : 1));
+    flip_rows(result->field, rows, line * 2);
+    flip_rows(result->energy, rows, line);
+    flip_rows(result->visibility, rows, line);
     for (uint32_t i = 0; i < result->orders; i++)
-        flip_rows(result->order_energy[i], rows, columns * sizeof(float), scratch);
-    flip_rows(result->visibility, rows, columns * sizeof(float), scratch);
-    flip_rows(result->highlight, rows, columns, scratch);
-    flip_rows(result->shadow, rows, columns, scratch);
-    flip_rows(result->labels, rows, columns, scratch);
-    flip_rows(result->influence, rows, columns, scratch);
+        flip_rows(result->order_energy[i], rows, line);
+    flip_rows(result->highlight, rows, result->columns);
+    flip_rows(result->shadow, rows, result->columns);
+    flip_rows(result->labels, rows, result->columns);
+    flip_rows(result->influence, rows, result->columns);
     for (uint32_t i = 0; i < result->object_count; i++) {
         sonject_object_truth *truth = &result->objects[i];
         truth->row = (double)(rows - 1) - truth->row;
@@ -102,12 +240,13 @@ static sonject_status compare_seabed(struct report *report, const struct echoes 
                                      struct injection_result *result)
 {
     const size_t pixels = result->rows * result->columns;
-    float *before = allocate_array(pixels, sizeof *before);
-    float *after = allocate_array(pixels, sizeof *after);
+    sonject_statistics *statistics = &result->statistics;
+    float *before = allocate_array(2 * pixels, sizeof *before);
+    float *after = before + pixels;
     size_t count = 0;
-    sonject_status status =
-        before && after ? SONJECT_OK : report_out_of_memory(report, "the comparison");
-    for (size_t i = 0; status == SONJECT_OK && i < pixels; i++) {
+    sonject_status status = SONJECT_OK;
+    CHECK_MEMORY(report, before, "the comparison");
+    for (size_t i = 0; i < pixels; i++) {
         if (echoes->lost_energy[i] > 1e-3f * echoes->seabed_energy[i] ||
             echoes->target_energy[i] > 1e-3f * echoes->seabed_energy[i])
             continue;
@@ -116,8 +255,7 @@ static sonject_status compare_seabed(struct report *report, const struct echoes 
         before[count] = level->intensity[i];
         after[count++] = a * a + b * b;
     }
-    if (status == SONJECT_OK && count > 1) {
-        sonject_statistics *statistics = &result->statistics;
+    if (count > 1) {
         double mean_before, mean_after, deviation_before, deviation_after;
         mean_and_deviation(before, count, &mean_before, &deviation_before);
         mean_and_deviation(after, count, &mean_after, &deviation_after);
@@ -128,7 +266,6 @@ static sonject_status compare_seabed(struct report *report, const struct echoes 
         status = histogram_distance(report, before, after, count, &statistics->histogram_distance);
     }
     free(before);
-    free(after);
     return status;
 }
 
@@ -149,16 +286,6 @@ static void fill_statistics(const struct tracer *tracer, const struct patch_leve
         statistics->changed_pixels += result->influence[i] != 0;
 }
 
-/* The energies of each order become the result's. */
-static void hand_over_orders(struct echoes *echoes, struct injection_result *result)
-{
-    result->orders = echoes->orders;
-    for (uint32_t i = 0; i < echoes->orders; i++) {
-        result->order_energy[i] = echoes->order_energy[i];
-        echoes->order_energy[i] = NULL;
-    }
-}
-
 static sonject_status form_and_compose(struct injection_setup *setup,
                                        const struct injection_input *input,
                                        const struct impulse_source *source,
@@ -168,30 +295,27 @@ static sonject_status form_and_compose(struct injection_setup *setup,
     struct tracer *tracer = &setup->tracer;
     const float *pixels = setup->pixels;
     const bool is_complex = input->is_complex;
-    const bool resynthesises = tracer->scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
     struct patch_request patch;
     struct image_match match;
     struct echoes echoes;
-    sonject_status status = match_image(tracer, pixels, input, &match);
-    THEN(status, patch_request_init(&patch, tracer, pixels, is_complex, progress, user));
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(match_image(tracer, pixels, input, &match));
+    CHECK(patch_request_init(&patch, tracer, pixels, is_complex, progress, user));
     patch.request.wants_coherent = match.looks > 1.0;
-    status = echoes_form(&echoes, tracer, &patch.request, source);
+    sonject_status status = echoes_form(&echoes, tracer, &patch.request, source);
+    const double start = clock_seconds();
+    THEN(status, set_target_levels(tracer, &echoes, result));
+    THEN(status, compose(tracer, &match, &patch.level, &echoes, pixels, is_complex, result));
+    if (status == SONJECT_OK && tracer->scene->injection.mode == SONJECT_MODE_RESYNTHESISE)
+        status = compare_seabed(tracer->report, &echoes, &patch.level, result);
+    THEN(status, find_truth(tracer, &patch.level, &match.seabed, &echoes, result));
     if (status == SONJECT_OK) {
-        const double start = clock_seconds();
-        status = set_target_levels(tracer, &echoes, result);
-        THEN(status, compose(tracer, &match, &patch.level, &echoes, pixels, is_complex, result));
-        if (status == SONJECT_OK && resynthesises)
-            status = compare_seabed(tracer->report, &echoes, &patch.level, result);
-        if (status == SONJECT_OK) {
-            status = find_truth(tracer, &patch.level, &match.seabed, &echoes, result);
-            tell_match(&match, &tracer->response, &result->statistics);
-            fill_statistics(tracer, &patch.level, &echoes, clock_seconds() - start, result);
-            hand_over_orders(&echoes, result);
-        }
-        echoes_clear(&echoes);
+        tell_match(&match, &tracer->response, &result->statistics);
+        fill_statistics(tracer, &patch.level, &echoes, clock_seconds() - start, result);
+        result->orders = echoes.orders;
+        memcpy(result->order_energy, echoes.order_energy, sizeof result->order_energy);
+        memset(echoes.order_energy, 0, sizeof echoes.order_energy); /* they are the result's now */
     }
+    echoes_clear(&echoes);
     patch_request_clear(&patch);
     return status;
 }
@@ -208,7 +332,7 @@ sonject_status injection_form(struct report *report, struct device *device,
     THEN(status, result_init(result, report, scene, input));
     THEN(status, form_and_compose(&setup, input, source, progress, user, result));
     if (status == SONJECT_OK && setup.tracer.view.is_mirrored)
-        unmirror(result, setup.scratch);
+        unmirror(result);
     injection_setup_clear(&setup);
     if (status != SONJECT_OK)
         injection_result_clear(result);
@@ -233,8 +357,8 @@ sonject_status injection_trace(struct report *report, struct device *device,
     struct image_match match;
     struct patch_request patch;
     sonject_status status = injection_setup_init(&setup, report, device, scene, input);
-    if (status == SONJECT_OK) /* the grid follows the response */
-        status = match_image(&setup.tracer, setup.pixels, input, &match);
+    /* the grid follows the response */
+    THEN(status, match_image(&setup.tracer, setup.pixels, input, &match));
     THEN(status, patch_request_init(&patch, &setup.tracer, setup.pixels, input->is_complex,
                                     progress, user));
     if (status == SONJECT_OK) {

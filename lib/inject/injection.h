@@ -1,9 +1,11 @@
-/* One injection in memory, from a patch to a patch with objects and its truth. */
+/* One injection in memory, from a patch to a patch with objects and its truth; or to what the
+ * hydrophones hear of it. */
 #ifndef SONJECT_INJECT_INJECTION_H
 #define SONJECT_INJECT_INJECTION_H
 
 #include <stdbool.h>
 
+#include <sonject/elements.h>
 #include <sonject/result.h>
 
 #include "base/report.h"
@@ -23,17 +25,18 @@ struct injection_input {
     struct checkpoint *checkpoint; /* how tracing is cut; NULL: not at all */
 };
 
-/* What sonject_result is. All layers rows x columns in the image's row order; owned. */
+/* What sonject_result is. All layers rows x columns in the image's row order. */
 struct injection_result {
     size_t rows, columns;
     bool is_complex;
+    void *memory; /* of the layers; owned */
     float *image; /* kind of the input */
     float *field; /* pairs; m */
     float *energy, *visibility;
-    float *order_energy[SCENE_INTERACTIONS_MAX]; /* as in struct echoes */
+    float *order_energy[SCENE_INTERACTIONS_MAX]; /* as in struct echoes; each owned */
     uint32_t orders;
     uint8_t *highlight, *shadow, *labels, *influence;
-    sonject_object_truth *objects;
+    sonject_object_truth *objects; /* owned */
     uint32_t object_count;
     sonject_statistics statistics;
 };
@@ -57,5 +60,46 @@ sonject_status injection_form(struct report *report, struct device *device,
                               const struct impulse_source *source,
                               sonject_progress_function progress, void *user,
                               struct injection_result *result);
+
+/* The element level of a patch: its impulses, traced as for the image, heard by hydrophones. Fills
+ * *layout (not its struct_size) for a patch of the input's size; pixels are not used. Errors:
+ * INPUT, MEMORY. */
+sonject_status element_echoes_describe(struct report *report, const struct scene *scene,
+                                       const struct injection_input *input,
+                                       sonject_element_layout *layout);
+
+/* Traces, and fills series: element_plan_samples values of the layout, pairs in base band. Progress
+ * fractions run from 0 to 1. Errors: as sonject_element_series. */
+sonject_status element_echoes_compute(struct report *report, struct device *device,
+                                      const struct scene *scene,
+                                      const struct injection_input *input,
+                                      sonject_progress_function progress, void *user,
+                                      const sonject_element_layout *layout, float *series);
+
+/* Makes the pixels of the scene's uniform or synthetic input (its whole swath) and describes them
+ * in *input. input->pixels is to be given to free(). Errors: MEMORY. */
+sonject_status make_input(struct report *report, const struct scene *scene,
+                          struct injection_input *input);
+
+/* Patch and scene, ready for rays or for impulses. */
+struct injection_setup {
+    struct placements placements;
+    struct water water;
+    struct tracer tracer;
+    float *pixels; /* in the view's row order */
+};
+
+/* Lays the scene out without the pixels, which stay NULL: geometry, water, objects, response.
+ * device may be NULL where no ray follows. All that is wrong is told, a line each. To be given to
+ * injection_setup_clear, also on failure. Errors: INPUT, MEMORY. */
+sonject_status injection_setup_init_scene(struct injection_setup *setup, struct report *report,
+                                          struct device *device, const struct scene *scene,
+                                          const struct injection_input *input);
+
+/* The same with the pixels. */
+sonject_status injection_setup_init(struct injection_setup *setup, struct report *report,
+                                    struct device *device, const struct scene *scene,
+                                    const struct injection_input *input);
+void injection_setup_clear(struct injection_setup *setup);
 
 #endif

@@ -1,15 +1,189 @@
-#include "inject/looks.h"
-
+/* What is put into a measured magnitude image takes that image's own widths, looks and saturation:
+ * what the image tells of them, coloured noise, and pixels of several looks, of images that were
+ * averaged before they were stored. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "form/form.h"
-#include "inject/echoes.h"
+#include "inject/compose.h"
 #include "scene/point_response.h"
 
-#define CHUNK 256 /* strips drawn at a time */
+#define PI            3.14159265358979323846
+#define REACH         160  /* pixels around the objects: ten blocks across */
+#define ASPECTS       256  /* of the numerical integral */
+#define CLEARLY       4.0  /* standard errors */
+#define DIFFERENCE    0.05 /* of correlations, below which they count as equal */
+#define LOOKS_CLEARLY 1.15
+#define LOOKS_MOST    64.0
+#define WIDEST        8.0  /* pixels */
+#define FAINTEST      0.02 /* correlation; a response much narrower than a pixel shows none */
+#define HALVINGS      60
+#define CHUNK         256 /* strips drawn at a time */
+
+/* By Wiener and Khinchin: the aspects' energy, transformed. */
+double along_track_speckle_correlation(const struct point_response *response, double distance_m)
+{
+    double sum = 0.0;
+    double total = 0.0;
+    for (int i = 0; i < ASPECTS; i++) {
+        const double aspect = (i + 0.5) / ASPECTS - 0.5;
+        double amplitude = 1.0;
+        for (int m = 1; m <= response->terms; m++)
+            amplitude += 2.0 * response->weights[m - 1] * cos(2.0 * PI * m * aspect);
+        sum += amplitude * amplitude * cos(2.0 * PI * aspect * distance_m / response->resolution_m);
+        total += amplitude * amplitude;
+    }
+    return (sum / total) * (sum / total);
+}
+
+static double range_speckle_correlation(const struct point_response *response, double distance_m)
+{
+    const double x = distance_m / response->range_deviation_m;
+    return exp(-0.5 * x * x);
+}
+
+static bool clearly_differs(double measured, double error, double nominal)
+{
+    return fabs(measured - nominal) > fmax(DIFFERENCE, CLEARLY * error);
+}
+
+/* The resolution that gives neighbouring rows the correlation: at least their spacing, which gives
+ * nearly none. */
+static void match_along_track(struct point_response *response, const struct speckle_axis *axis,
+                              double spacing_m)
+{
+    struct point_response trial = *response;
+    if (!clearly_differs(axis->correlation[1], axis->lag_one_error,
+                         along_track_speckle_correlation(response, spacing_m)))
+        return;
+    double low = spacing_m;
+    double high = WIDEST * spacing_m;
+    for (int i = 0; i < HALVINGS; i++) {
+        trial.resolution_m = 0.5 * (low + high);
+        if (along_track_speckle_correlation(&trial, spacing_m) < axis->correlation[1])
+            low = trial.resolution_m;
+        else
+            high = trial.resolution_m;
+    }
+    point_response_set_widths(response, trial.resolution_m, response->range_resolution_m);
+}
+
+static void match_range(struct point_response *response, const struct speckle_axis *axis,
+                        double spacing_m)
+{
+    if (!clearly_differs(axis->correlation[1], axis->lag_one_error,
+                         range_speckle_correlation(response, spacing_m)))
+        return;
+    const double widest = exp(-0.5 / (WIDEST * WIDEST));
+    const double correlation = fmin(widest, fmax(FAINTEST, axis->correlation[1]));
+    point_response_set_widths(response, response->resolution_m,
+                              2.0 * sqrt(log(2.0)) * spacing_m / sqrt(-2.0 * log(correlation)));
+}
+
+/* Widths are matched where the scene has no other pulse or response than the image's own kind. */
+static bool has_widths(const struct point_response *response)
+{
+    return response->pulse_kind == SONJECT_PULSE_GAUSSIAN && cross_range_is_plain(response);
+}
+
+/* From REACH pixels before low to REACH behind high, where they exist. */
+static size_t around(double low, double high, size_t count, size_t *first)
+{
+    const double last = (double)count;
+    const double start = fmin(last, fmax(0.0, floor(low) - REACH));
+    *first = (size_t)start;
+    return (size_t)(fmin(last, fmax(start, ceil(high) + REACH + 1.0)) - start);
+}
+
+/* The pixels around the objects; all where there is none. */
+static struct window find_region(const struct tracer *tracer)
+{
+    const struct patch_view *view = &tracer->view;
+    const bool is_all = tracer->part_count == 0;
+    const double rows = (double)view->rows;
+    const double columns = (double)view->columns;
+    double low[2] = {is_all ? 0.0 : rows, is_all ? 0.0 : columns};
+    double high[2] = {is_all ? rows : 0.0, is_all ? columns : 0.0};
+    struct window region;
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
+        const struct placement *part = &tracer->placements[i];
+        const double range = water_way_range(&view->water, part->centre[1], part->centre[2]);
+        const double at[2] = {view_row_of_x(view, part->centre[0]),
+                              view_column_of_range(view, range * view->range_ratio)};
+        for (int axis = 0; axis < 2; axis++) {
+            low[axis] = fmin(low[axis], at[axis]);
+            high[axis] = fmax(high[axis], at[axis]);
+        }
+    }
+    region.rows = around(low[0], high[0], view->rows, &region.first_row);
+    region.columns = around(low[1], high[1], view->columns, &region.first_column);
+    return region;
+}
+
+static sonject_status measure_around(const struct tracer *tracer, const float *pixels,
+                                     bool is_complex, struct speckle_statistics *seabed)
+{
+    const struct window region = find_region(tracer);
+    const size_t count = region.rows * region.columns;
+    float *intensity = allocate_array(count, sizeof *intensity);
+    CHECK_MEMORY(tracer->report, intensity, "the seabed's statistics");
+    for (size_t k = 0; k < count; k++) {
+        const size_t i = (region.first_row + k / region.columns) * tracer->view.columns +
+                         region.first_column + k % region.columns;
+        const float a = is_complex ? pixels[2 * i] : pixels[i];
+        const float b = is_complex ? pixels[2 * i + 1] : 0.0f;
+        intensity[k] = a * a + b * b;
+    }
+    const sonject_status status = measure_speckle(tracer->report, intensity, NULL, region.rows,
+                                                  region.columns, region.columns, seabed);
+    free(intensity);
+    return status;
+}
+
+sonject_status match_image(struct tracer *tracer, const float *pixels,
+                           const struct injection_input *input, struct image_match *match)
+{
+    const sonject_injection_params *asked = &tracer->scene->injection;
+    const struct speckle_statistics *seabed = &match->seabed;
+    memset(match, 0, sizeof *match);
+    match->looks = 1.0;
+    match->saturation = INFINITY;
+    const sonject_status status = measure_around(tracer, pixels, input->is_complex, &match->seabed);
+    if (status != SONJECT_OK || input->is_complex || input->is_made ||
+        asked->mode != SONJECT_MODE_COMPOSITE)
+        return status;
+    if (asked->match_looks >= 1.0)
+        match->looks = asked->match_looks;
+    else if (seabed->blocks > 0 && seabed->looks > LOOKS_CLEARLY &&
+             seabed->looks - 1.0 > CLEARLY * seabed->looks_error)
+        match->looks = fmin(LOOKS_MOST, seabed->looks);
+    if (asked->match_response == SONJECT_MATCH_IMAGE && seabed->blocks > 0 &&
+        has_widths(&tracer->response)) {
+        match_along_track(&tracer->response, &seabed->along_track, tracer->view.row_spacing_m);
+        match_range(&tracer->response, &seabed->range, tracer->view.column_spacing_m);
+    }
+    if (asked->match_saturation == SONJECT_MATCH_IMAGE)
+        match->saturation = find_saturation(pixels, tracer->view.rows * tracer->view.columns);
+    return SONJECT_OK;
+}
+
+void tell_match(const struct image_match *match, const struct point_response *response,
+                sonject_statistics *statistics)
+{
+    const struct speckle_statistics *seabed = &match->seabed;
+    const bool is_known = seabed->blocks > 0;
+    statistics->seabed_amplitude_contrast = is_known ? seabed->amplitude_contrast : NAN;
+    statistics->seabed_shape = is_known ? seabed->shape : NAN;
+    statistics->seabed_looks = is_known ? seabed->looks : NAN;
+    statistics->seabed_row_correlation = is_known ? seabed->along_track.correlation[1] : NAN;
+    statistics->seabed_column_correlation = is_known ? seabed->range.correlation[1] : NAN;
+    statistics->along_track_resolution_m = response->resolution_m;
+    statistics->range_resolution_m = response->range_resolution_m;
+    statistics->looks = match->looks;
+    statistics->saturation_amplitude = match->saturation;
+}
 
 static int32_t limit(double value, struct span span)
 {
@@ -37,16 +211,6 @@ static void cut_grid(struct line_grid *grid, const struct tracer *tracer,
         limit((double)(window->first_column + window->columns - 1) * per_pixel + pulse + 1.0,
               bins) -
         grid->bins.first;
-}
-
-/* Copies the window out of formed planes that start at the lines' own first column. */
-static void copy_window(const struct form_lines *lines, const struct window *window,
-                        const float *formed, size_t patch_columns, float *plane)
-{
-    for (size_t row = window->first_row; row < window->first_row + window->rows; row++)
-        memcpy(plane + row * patch_columns + window->first_column,
-               formed + row * lines->columns + window->first_column - lines->first_column,
-               window->columns * sizeof *plane);
 }
 
 /* Energies of cells that make the formed noise's mean energy 1 at every range. */
@@ -93,24 +257,24 @@ sonject_status coloured_noise(struct tracer *tracer, uint32_t stream, const stru
 {
     struct line_grid grid;
     struct form_lines lines;
+    struct formed formed = {NULL, 0, 0, 0};
     if (window->rows == 0 || window->columns == 0)
         return SONJECT_OK;
     line_grid_for_patch(&grid, &tracer->view, &tracer->response);
     cut_grid(&grid, tracer, window);
     CHECK(form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view, &tracer->response,
                            FORM_SPECKLE, &grid));
-    const size_t formed = lines.rows * lines.columns;
-    float *a = allocate_array(formed, sizeof *a);
-    float *b = allocate_array(formed, sizeof *b);
-    sonject_status status =
-        a && b ? draw_noise(&lines, tracer, stream) : report_out_of_memory(tracer->report, "noise");
-    THEN(status, form_lines_finish(&lines, a, b));
-    if (status == SONJECT_OK) {
-        copy_window(&lines, window, a, tracer->view.columns, real_part);
-        copy_window(&lines, window, b, tracer->view.columns, imaginary_part);
+    sonject_status status = draw_noise(&lines, tracer, stream);
+    THEN(status, form_end(&lines, &formed));
+    for (size_t k = 0; status == SONJECT_OK && k < window->rows; k++) {
+        const size_t to = (window->first_row + k) * tracer->view.columns + window->first_column;
+        const size_t from =
+            (window->first_row + k) * formed.columns + window->first_column - formed.first_column;
+        const size_t bytes = window->columns * sizeof(float);
+        memcpy(real_part + to, formed.planes + from, bytes);
+        memcpy(imaginary_part + to, formed.planes + formed.count + from, bytes);
     }
-    free(a);
-    free(b);
+    free(formed.planes);
     form_lines_end(&lines);
     return status;
 }
@@ -153,20 +317,15 @@ struct look_work {
     float *planes[LOOK_PLANES];
 };
 
-static uint32_t stream_of(uint32_t look, uint32_t first_look, uint32_t which)
-{
-    return look == 0 ? first_look : STREAM_LOOKS + 3 * (look - 1) + which;
-}
-
 static sonject_status draw(const struct look_work *work, uint32_t stream, enum look_plane plane)
 {
     return coloured_noise(work->tracer, stream, work->window, work->planes[plane],
                           work->planes[plane + 1]);
 }
 
-static sonject_status draw_phase(const struct look_work *work, uint32_t look)
+static uint32_t stream_of(uint32_t look, uint32_t first_look, uint32_t which)
 {
-    return draw(work, stream_of(look, STREAM_INPUT_PHASE, 0), PHASE_REAL);
+    return look == 0 ? first_look : STREAM_LOOKS + 3 * (look - 1) + which;
 }
 
 /* The target's echo in a look: the traced realisation in the first; in the others glints, and the
@@ -206,79 +365,59 @@ static void add_look(const struct look_work *work, uint32_t look, double weight,
     work->planes[INTENSITY][i] += (float)(weight * (a * a + b * b));
 }
 
-typedef void pixel_function(const struct look_work *work, uint32_t look, double weight, size_t i);
-
-static void each_touched(const struct look_work *work, pixel_function *function, uint32_t look,
-                         double weight)
-{
-    const struct window *window = work->window;
-    for (size_t row = window->first_row; row < window->first_row + window->rows; row++)
-        for (size_t column = window->first_column; column < window->first_column + window->columns;
-             column++)
-            if (work->result->influence[row * work->echoes->columns + column])
-                function(work, look, weight, row * work->echoes->columns + column);
-}
-
-static void add_phase_energy(const struct look_work *work, uint32_t look, double weight, size_t i)
-{
-    const float a = work->planes[PHASE_REAL][i];
-    const float b = work->planes[PHASE_IMAGINARY][i];
-    (void)look;
-    work->planes[PHASE_ENERGY][i] += (float)(weight * (double)(a * a + b * b));
-}
-
-/* The field keeps the first look's phase. */
-static void store(const struct look_work *work, uint32_t look, double weight, size_t i)
-{
-    float *field = work->result->field + 2 * i;
-    const float before = work->result->image[i];
-    const float after = sqrtf(work->planes[INTENSITY][i]);
-    (void)look;
-    (void)weight;
-    work->result->image[i] = after;
-    if (before > 0.0f) {
-        field[0] *= after / before;
-        field[1] *= after / before;
-    }
-}
-
-static sonject_status add_looks(const struct look_work *work, double looks)
+/* touched: the numbers of count pixels. */
+static sonject_status add_looks(const struct look_work *work, double looks, const size_t *touched,
+                                size_t count)
 {
     double weight, last;
-    const uint32_t count = look_weights(looks, &weight, &last);
-    sonject_status status = SONJECT_OK;
-    for (uint32_t look = 0; status == SONJECT_OK && look < count; look++) {
-        status = draw_phase(work, look);
-        if (status == SONJECT_OK)
-            each_touched(work, add_phase_energy, look, look + 1 == count ? last : weight);
+    const uint32_t look_count = look_weights(looks, &weight, &last);
+    for (uint32_t look = 0; look < look_count; look++) {
+        CHECK(draw(work, stream_of(look, STREAM_INPUT_PHASE, 0), PHASE_REAL));
+        for (size_t k = 0; k < count; k++) {
+            const float a = work->planes[PHASE_REAL][touched[k]];
+            const float b = work->planes[PHASE_IMAGINARY][touched[k]];
+            work->planes[PHASE_ENERGY][touched[k]] +=
+                (float)((look + 1 == look_count ? last : weight) * (double)(a * a + b * b));
+        }
     }
-    for (uint32_t look = 0; status == SONJECT_OK && look < count; look++) {
-        status = draw_phase(work, look);
-        THEN(status, draw(work, stream_of(look, STREAM_NOISE, 1), NOISE_REAL));
-        if (status == SONJECT_OK && look > 0)
-            status = draw(work, stream_of(look, 0, 2), TARGET_REAL);
-        if (status == SONJECT_OK)
-            each_touched(work, add_look, look, look + 1 == count ? last : weight);
+    for (uint32_t look = 0; look < look_count; look++) {
+        CHECK(draw(work, stream_of(look, STREAM_INPUT_PHASE, 0), PHASE_REAL));
+        CHECK(draw(work, stream_of(look, STREAM_NOISE, 1), NOISE_REAL));
+        if (look > 0)
+            CHECK(draw(work, stream_of(look, 0, 2), TARGET_REAL));
+        for (size_t k = 0; k < count; k++)
+            add_look(work, look, look + 1 == look_count ? last : weight, touched[k]);
     }
-    return status;
+    return SONJECT_OK;
 }
 
 sonject_status compose_looks(struct tracer *tracer, double looks, const struct patch_level *level,
                              const struct echoes *echoes, const float *pixels,
                              const struct window *window, struct injection_result *result)
 {
+    const size_t pixel_count = echoes->rows * echoes->columns;
+    size_t count = 0;
     struct look_work work = {tracer, level, echoes, pixels, window, result, {NULL}};
-    const size_t count = echoes->rows * echoes->columns;
-    bool is_complete = true;
-    for (int i = 0; i < LOOK_PLANES; i++) {
-        work.planes[i] = allocate_array(count, sizeof(float));
-        is_complete = is_complete && work.planes[i];
+    float *planes = allocate_array(pixel_count, LOOK_PLANES * sizeof *planes);
+    size_t *touched = allocate_array(pixel_count, sizeof *touched);
+    for (size_t i = 0; i < LOOK_PLANES && planes; i++)
+        work.planes[i] = planes + i * pixel_count;
+    for (size_t i = 0; i < pixel_count && touched; i++)
+        if (result->influence[i])
+            touched[count++] = i;
+    const sonject_status status = planes && touched ? add_looks(&work, looks, touched, count)
+                                                    : report_out_of_memory(tracer->report, "looks");
+    for (size_t k = 0; status == SONJECT_OK && k < count; k++) {
+        float *field = result->field + 2 * touched[k];
+        const float before = result->image[touched[k]];
+        const float after = sqrtf(work.planes[INTENSITY][touched[k]]);
+        result->image[touched[k]] = after;
+        if (before > 0.0f) { /* the field keeps the first look's phase */
+            field[0] *= after / before;
+            field[1] *= after / before;
+        }
     }
-    const sonject_status status =
-        is_complete ? add_looks(&work, looks) : report_out_of_memory(tracer->report, "looks");
-    if (status == SONJECT_OK)
-        each_touched(&work, store, 0, 0.0);
-    for (int i = 0; i < LOOK_PLANES; i++)
-        free(work.planes[i]);
+    free(planes);
+    free(touched);
     return status;
 }

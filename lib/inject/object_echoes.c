@@ -1,18 +1,204 @@
-#include "inject/object_echoes.h"
-
+/* What objects return by one interaction, formed: their rough surfaces and their glints; and the
+ * peak of each echo, wherever pixels lie and however far apart they are: on a lattice of points
+ * that is finer than the point response, and between them. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "inject/echoes.h"
+#include "scene/point_response.h"
+
+#define POINTS_PER_RESOLUTION 4 /* a parabola in dB between them errs by 0.02 dB */
+#define MARGIN                2 /* points around the tile */
+
+/* Points every `step` cells that hold a tile's cells, in cells of another size. */
+static struct span points_over(struct span tile, double cells_per_tile_cell, int32_t step)
+{
+    struct span points;
+    points.first = (int32_t)floor(tile.first * cells_per_tile_cell / step) - MARGIN;
+    points.count = (int32_t)ceil((tile.first + tile.count) * cells_per_tile_cell / step) + MARGIN -
+                   points.first;
+    return points;
+}
+
+static int32_t cells_of(double resolution_m, double cell_m)
+{
+    return (int32_t)fmax(1.0, floor(resolution_m / (POINTS_PER_RESOLUTION * cell_m)));
+}
+
+/* Lays points over a tile: every so many strips and bins of the grid as are a quarter of the
+ * resolution, at least one. */
+static sonject_status peak_lattice_init(struct peak_lattice *lattice, const struct tracer *tracer,
+                                        const struct line_grid *tile, const struct line_grid *grid)
+{
+    const struct patch_view *view = &tracer->view;
+    const double strip = view->row_spacing_m / grid->strips_per_row;
+    const double bin = view->column_spacing_m / grid->bins_per_pixel;
+    const double range =
+        view_processor_range(view, (double)tile->bins.first / tile->bins_per_pixel);
+    const int32_t strips = cells_of(
+        cross_range_energy_width(&tracer->response, fmax(range, view->first_range_m)), strip);
+    const int32_t bins = cells_of(range_energy_width(&tracer->response), bin);
+    const struct span rows =
+        points_over(tile->strips, (double)grid->strips_per_row / tile->strips_per_row, strips);
+    const struct span columns =
+        points_over(tile->bins, (double)grid->bins_per_pixel / tile->bins_per_pixel, bins);
+    memset(lattice, 0, sizeof *lattice);
+    lattice->grid.strips_per_row = (uint32_t)strips;
+    lattice->grid.bins_per_pixel = (uint32_t)bins;
+    lattice->grid.strips.first = rows.first * strips;
+    lattice->grid.bins.first = columns.first * bins;
+    lattice->view = *view;
+    lattice->view.rows = (size_t)rows.count;
+    lattice->view.columns = (size_t)columns.count;
+    lattice->view.row_spacing_m = strips * strip;
+    lattice->view.column_spacing_m = bins * bin;
+    /* rows are in the middle of their strips, columns on bins */
+    lattice->view.first_x_m =
+        view_x_of_row(view, -0.5) + ((double)rows.first + 0.5) * lattice->view.row_spacing_m;
+    lattice->view.first_range_m =
+        view->first_range_m + columns.first * lattice->view.column_spacing_m;
+    lattice->planes = allocate_array(2 * lattice->view.rows, lattice->view.columns * sizeof(float));
+    CHECK_MEMORY(tracer->report, lattice->planes, "an echo's peak");
+    return SONJECT_OK;
+}
+
+/* Begins to form lines of a grid of such strips and bins. */
+static sonject_status peak_lattice_begin(struct peak_lattice *lattice, struct tracer *tracer,
+                                         enum form_kind kind, const struct line_grid *grid)
+{
+    struct line_grid counted = *grid;
+    counted.strips.first -= lattice->grid.strips.first;
+    counted.bins.first -= lattice->grid.bins.first;
+    counted.strips_per_row = lattice->grid.strips_per_row;
+    counted.bins_per_pixel = lattice->grid.bins_per_pixel;
+    return form_lines_begin(&lattice->lines, tracer->report, tracer->device, &lattice->view,
+                            &tracer->response, kind, &counted);
+}
+
+/* Adds the formed lines to the planes. */
+static sonject_status peak_lattice_finish(struct peak_lattice *lattice)
+{
+    const size_t width = lattice->view.columns;
+    struct formed formed;
+    const sonject_status status = form_end(&lattice->lines, &formed);
+    for (size_t i = 0; status == SONJECT_OK && i < 2 * formed.count; i++) {
+        const size_t at = i % formed.count;
+        lattice->planes[i / formed.count * lattice->view.rows * width +
+                        at / formed.columns * width + formed.first_column + at % formed.columns] +=
+            formed.planes[i];
+    }
+    free(formed.planes);
+    return status;
+}
+
+/* Two lattices of one echo: a field or energies at the first one's points, and the other's energy
+ * there. */
+struct echo_points {
+    const struct peak_lattice *own, *other;
+    bool own_is_field;
+};
+
+static double energy_at_point(const struct peak_lattice *lattice, bool is_field, size_t i)
+{
+    const double a = (double)lattice->planes[i];
+    const double b = (double)lattice->planes[lattice->view.rows * lattice->view.columns + i];
+    return is_field ? a * a + b * b : a;
+}
+
+/* Between the points of a lattice, linear in both directions; 0 beyond them. */
+static double energy_between(const struct peak_lattice *lattice, bool is_field, double row,
+                             double column)
+{
+    const struct patch_view *view = &lattice->view;
+    double sum = 0.0;
+    if (!lattice->planes || row < 0.0 || column < 0.0 || row >= (double)view->rows - 1.0 ||
+        column >= (double)view->columns - 1.0)
+        return 0.0;
+    for (int k = 0; k < 4; k++) {
+        const double r = floor(row) + k / 2;
+        const double c = floor(column) + k % 2;
+        sum += (1.0 - fabs(row - r)) * (1.0 - fabs(column - c)) *
+               energy_at_point(lattice, is_field, (size_t)r * view->columns + (size_t)c);
+    }
+    return sum;
+}
+
+static double energy_of_both(const struct echo_points *points, size_t row, size_t column)
+{
+    const struct patch_view *own = &points->own->view;
+    const struct patch_view *other = &points->other->view;
+    return energy_at_point(points->own, points->own_is_field, row * own->columns + column) +
+           energy_between(points->other, !points->own_is_field,
+                          view_row_of_x(other, view_x_of_row(own, (double)row)),
+                          view_column_of_range(other, view_processor_range(own, (double)column)));
+}
+
+/* The peak of the parabola through the levels of a point and its neighbours; the point's own energy
+ * where that has none. */
+static double peak_around(const struct echo_points *points, size_t row, size_t column)
+{
+    const struct patch_view *view = &points->own->view;
+    const double energy = energy_of_both(points, row, column);
+    double level[3][3];
+    if (row == 0 || column == 0 || row + 1 == view->rows || column + 1 == view->columns)
+        return energy;
+    for (size_t r = 0; r < 3; r++)
+        for (size_t c = 0; c < 3; c++)
+            level[r][c] = log(energy_of_both(points, row + r - 1, column + c - 1) / energy);
+    const double x = 0.5 * (level[2][1] - level[0][1]);
+    const double y = 0.5 * (level[1][2] - level[1][0]);
+    const double xx = level[2][1] + level[0][1];
+    const double yy = level[1][2] + level[1][0];
+    const double xy = 0.25 * (level[2][2] + level[0][0] - level[2][0] - level[0][2]);
+    const double curvature = xx * yy - xy * xy;
+    const double rise = -0.5 * (yy * x * x - 2.0 * xy * x * y + xx * y * y) / curvature;
+    return xx < 0.0 && curvature > 0.0 && rise < log(2.0) ? energy * exp(rise) : energy;
+}
+
+/* Of the peaks where most is of the first lattice; *peak grows. */
+static void find_peak(const struct echo_points *points, double *peak, double *range_m)
+{
+    const struct patch_view *view = &points->own->view;
+    double brightest = *peak;
+    size_t at = 0;
+    for (size_t i = 0; points->own->planes && i < view->rows * view->columns; i++) {
+        if (energy_at_point(points->own, points->own_is_field, i) < 0.5 * brightest)
+            continue;
+        const double energy = energy_of_both(points, i / view->columns, i % view->columns);
+        if (energy > brightest) {
+            brightest = energy;
+            at = i;
+        }
+    }
+    if (!(brightest > *peak))
+        return;
+    *peak = peak_around(points, at / view->columns, at % view->columns);
+    *range_m = view_processor_range(view, (double)(at % view->columns));
+}
+
+/* The largest expected cross-section, m^2, of glints (both parts of a field, m) and rough surfaces
+ * (energies, m^2) together, and the processor range where it is. 0: there is no echo. */
+static double peak_of_echo(const struct peak_lattice *glint, const struct peak_lattice *rough,
+                           double *range_m)
+{
+    const struct echo_points of_glint = {glint, rough, true};
+    const struct echo_points of_rough = {rough, glint, false};
+    double peak = 0.0;
+    *range_m = 0.0;
+    find_peak(&of_glint, &peak, range_m);
+    find_peak(&of_rough, &peak, range_m);
+    return peak;
+}
 
 /* Adds a window's plane into a plane of the whole patch. */
-static void add_window(float *patch, size_t patch_columns, const float *window, size_t rows,
+static void add_window(float *patch, const struct echoes *echoes, const float *window,
                        size_t first_column, size_t columns)
 {
-    for (size_t row = 0; row < rows; row++)
+    for (size_t row = 0; row < echoes->rows; row++)
         for (size_t column = 0; column < columns; column++)
-            patch[row * patch_columns + first_column + column] += window[row * columns + column];
+            patch[row * echoes->columns + first_column + column] += window[row * columns + column];
 }
 
 /* Pixels of the window in which some ray met the object. */
@@ -48,28 +234,25 @@ static sonject_status form_rough(struct echoes *echoes, struct tracer *tracer,
 {
     struct object_echo *echo = &echoes->objects[tile->number];
     struct form_lines lines;
-    sonject_status status = form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view,
-                                             &tracer->response, FORM_TWO_ENERGIES, &tile->grid);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view, &tracer->response,
+                           FORM_TWO_ENERGIES, &tile->grid));
     const size_t pixels = echoes->rows * lines.columns;
     echo->first_column = lines.first_column;
     echo->columns = lines.columns;
     echo->energy = allocate_array(pixels, sizeof(float));
     echo->lost = allocate_array(pixels, sizeof(float));
     echo->covered = allocate_array(pixels, 1);
-    if (!echo->energy || !echo->lost || !echo->covered)
-        status = report_out_of_memory(tracer->report, "an object's echo");
-    THEN(status, form_lines_add(&lines, tile->strips.first, tile->strips.count,
-                                tile->plane[TILE_ENERGY], tile->plane[TILE_LOST]));
+    sonject_status status = echo->energy && echo->lost && echo->covered
+                                ? form_lines_add(&lines, tile->strips.first, tile->strips.count,
+                                                 tile->plane[TILE_ENERGY], tile->plane[TILE_LOST])
+                                : report_out_of_memory(tracer->report, "an object's echo");
     THEN(status, form_lines_finish(&lines, echo->energy, echo->lost));
     form_lines_end(&lines);
-    if (status != SONJECT_OK)
-        return status;
-    mark_covered(echo, &tile->grid, tile->plane[TILE_FOOTPRINT], echoes->rows);
-    add_window(echoes->lost_energy, echoes->columns, echo->lost, echoes->rows, echo->first_column,
-               echo->columns);
-    return SONJECT_OK;
+    if (status == SONJECT_OK) {
+        add_window(echoes->lost_energy, echoes, echo->lost, echo->first_column, echo->columns);
+        mark_covered(echo, &tile->grid, tile->plane[TILE_FOOTPRINT], echoes->rows);
+    }
+    return status;
 }
 
 static bool has_rough_part(const struct tracer *tracer, uint32_t number)
@@ -84,85 +267,61 @@ static bool has_rough_part(const struct tracer *tracer, uint32_t number)
     return false;
 }
 
-/* Brute force draws all that is rough at once. */
-static bool draws_rough(const struct tracer *tracer, const struct impulse_lines *tile)
-{
-    return tracer->scene->injection.estimator != SONJECT_ESTIMATOR_BRUTE_FORCE &&
-           line_grid_cells(&tile->grid) > 0 && has_rough_part(tracer, tile->number);
-}
-
 static sonject_status begin_object(struct object_former *former, struct echoes *echoes,
                                    struct tracer *tracer, const struct impulse_lines *tile)
 {
     const size_t cells = line_grid_cells(&tile->grid);
+    const bool is_rough = cells > 0 && has_rough_part(tracer, tile->number);
     former->is_open = true;
     former->number = tile->number;
     former->grid = tile->grid;
-    sonject_status status = cells > 0 ? form_rough(echoes, tracer, tile) : SONJECT_OK;
-    if (status == SONJECT_OK && cells > 0 && has_rough_part(tracer, tile->number))
-        status = form_rough_peak(&former->rough_peak, tracer, tile);
-    if (status != SONJECT_OK)
-        return status;
+    if (cells > 0)
+        CHECK(form_rough(echoes, tracer, tile));
+    if (is_rough)
+        CHECK(form_rough_peak(&former->rough_peak, tracer, tile));
     const struct object_echo *echo = &echoes->objects[tile->number];
     const size_t pixels = echo->energy ? echoes->rows * echo->columns : 0;
-    former->glint_real = allocate_array(pixels, sizeof(float));
-    former->glint_imaginary = allocate_array(pixels, sizeof(float));
-    if (!former->glint_real || !former->glint_imaginary)
-        return report_out_of_memory(tracer->report, "an object's glints");
-    if (draws_rough(tracer, tile)) {
-        former->rough_energy = allocate_array(cells, sizeof(float));
-        CHECK_MEMORY(tracer->report, former->rough_energy, "an object's echo");
-        memcpy(former->rough_energy, tile->plane[TILE_ENERGY], cells * sizeof(float));
-    }
+    former->glint = allocate_array(2 * pixels, sizeof(float));
+    CHECK_MEMORY(tracer->report, former->glint, "an object's glints");
+    /* brute force draws all that is rough at once */
+    if (!is_rough || tracer->scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE)
+        return SONJECT_OK;
+    former->rough_energy = allocate_array(cells, sizeof(float));
+    CHECK_MEMORY(tracer->report, former->rough_energy, "an object's echo");
+    memcpy(former->rough_energy, tile->plane[TILE_ENERGY], cells * sizeof(float));
     return SONJECT_OK;
 }
 
-/* Adds a formed window to the object's glint. */
-static void add_glint(struct object_former *former, const struct echoes *echoes,
-                      const struct form_lines *lines, const float *real_part,
-                      const float *imaginary_part)
+/* Adds formed pixels to the target's field. */
+static void add_field(struct echoes *echoes, const struct formed *formed)
+{
+    add_window(echoes->target_real, echoes, formed->planes, formed->first_column, formed->columns);
+    add_window(echoes->target_imaginary, echoes, formed->planes + formed->count,
+               formed->first_column, formed->columns);
+}
+
+/* Adds formed pixels to the object's glint, and to what is the same in every look. */
+static void add_glint(struct object_former *former, struct echoes *echoes,
+                      const struct formed *formed)
 {
     const struct object_echo *echo = &echoes->objects[former->number];
-    for (size_t i = 0; i < echoes->rows * lines->columns; i++) {
-        const size_t column = lines->first_column + i % lines->columns;
+    for (size_t i = 0; i < formed->count; i++) {
+        const size_t column = formed->first_column + i % formed->columns;
         if (column < echo->first_column || column >= echo->first_column + echo->columns)
             continue;
-        const size_t at = i / lines->columns * echo->columns + column - echo->first_column;
-        former->glint_real[at] += real_part[i];
-        former->glint_imaginary[at] += imaginary_part[i];
+        const size_t at = i / formed->columns * echo->columns + column - echo->first_column;
+        former->glint[at] += formed->planes[i];
+        former->glint[echoes->rows * echo->columns + at] += formed->planes[formed->count + i];
     }
+    if (!echoes->coherent_real)
+        return;
+    add_window(echoes->coherent_real, echoes, formed->planes, formed->first_column,
+               formed->columns);
+    add_window(echoes->coherent_imaginary, echoes, formed->planes + formed->count,
+               formed->first_column, formed->columns);
 }
 
-/* Adds formed lines to the target's field and, where it is given, to an object's glint. */
-static sonject_status finish_field(struct echoes *echoes, struct form_lines *lines,
-                                   struct object_former *glint)
-{
-    const size_t pixels = echoes->rows * lines->columns;
-    float *real_part = allocate_array(pixels, sizeof(float));
-    float *imaginary_part = allocate_array(pixels, sizeof(float));
-    sonject_status status = real_part && imaginary_part
-                                ? form_lines_finish(lines, real_part, imaginary_part)
-                                : report_out_of_memory(lines->report, "an object's echo");
-    if (status == SONJECT_OK) {
-        add_window(echoes->target_real, echoes->columns, real_part, echoes->rows,
-                   lines->first_column, lines->columns);
-        add_window(echoes->target_imaginary, echoes->columns, imaginary_part, echoes->rows,
-                   lines->first_column, lines->columns);
-        if (glint)
-            add_glint(glint, echoes, lines, real_part, imaginary_part);
-        if (glint && echoes->coherent_real) {
-            add_window(echoes->coherent_real, echoes->columns, real_part, echoes->rows,
-                       lines->first_column, lines->columns);
-            add_window(echoes->coherent_imaginary, echoes->columns, imaginary_part, echoes->rows,
-                       lines->first_column, lines->columns);
-        }
-    }
-    free(real_part);
-    free(imaginary_part);
-    return status;
-}
-
-/* The same lines between pixels. */
+/* Lines of glints between pixels. */
 static sonject_status find_glint_peak(struct object_former *former, struct tracer *tracer,
                                       const struct impulse_lines *lines)
 {
@@ -170,7 +329,7 @@ static sonject_status find_glint_peak(struct object_former *former, struct trace
     sonject_status status = SONJECT_OK;
     if (line_grid_cells(&former->grid) == 0)
         return SONJECT_OK;
-    if (!lattice->plane[0])
+    if (!lattice->planes)
         status = peak_lattice_init(lattice, tracer, &former->grid, &lines->grid);
     if (status == SONJECT_OK && impulse_lines_begin(lines))
         status = peak_lattice_begin(lattice, tracer, FORM_SPECKLE, &lines->grid);
@@ -182,31 +341,21 @@ static sonject_status find_glint_peak(struct object_former *former, struct trace
 static sonject_status form_glint(struct object_former *former, struct echoes *echoes,
                                  struct tracer *tracer, const struct impulse_lines *lines)
 {
-    sonject_status status = find_glint_peak(former, tracer, lines);
-    if (status == SONJECT_OK && impulse_lines_begin(lines))
-        status = form_lines_begin(&former->lines, tracer->report, tracer->device, &tracer->view,
-                                  &tracer->response, FORM_GLINT, &lines->grid);
-    THEN(status, form_lines_add(&former->lines, lines->strips.first, lines->strips.count,
-                                lines->plane[0], lines->plane[1]));
-    if (status == SONJECT_OK && impulse_lines_end(lines)) {
-        status = finish_field(echoes, &former->lines, former);
-        form_lines_end(&former->lines);
+    struct formed formed;
+    CHECK(find_glint_peak(former, tracer, lines));
+    if (impulse_lines_begin(lines))
+        CHECK(form_lines_begin(&former->lines, tracer->report, tracer->device, &tracer->view,
+                               &tracer->response, FORM_GLINT, &lines->grid));
+    CHECK(form_lines_add(&former->lines, lines->strips.first, lines->strips.count, lines->plane[0],
+                         lines->plane[1]));
+    if (!impulse_lines_end(lines))
+        return SONJECT_OK;
+    const sonject_status status = form_end(&former->lines, &formed);
+    if (status == SONJECT_OK) {
+        add_field(echoes, &formed);
+        add_glint(former, echoes, &formed);
     }
-    return status;
-}
-
-/* The rough part's realisation. */
-static sonject_status draw_rough(struct object_former *former, struct echoes *echoes,
-                                 struct tracer *tracer)
-{
-    struct form_lines lines;
-    CHECK(form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view, &tracer->response,
-                           FORM_SPECKLE, &former->grid));
-    sonject_status status = form_lines_add_speckle(
-        &lines, former->grid.strips.first, former->grid.strips.count, former->rough_energy,
-        tracer->scene->injection.seed, STREAM_OBJECT_SPECKLE + former->number);
-    THEN(status, finish_field(echoes, &lines, NULL));
-    form_lines_end(&lines);
+    free(formed.planes);
     return status;
 }
 
@@ -219,14 +368,21 @@ sonject_status object_echoes_finish(struct object_former *former, struct echoes 
     const size_t pixels = echo->energy ? echoes->rows * echo->columns : 0;
     echo->peak_energy = peak_of_echo(&former->glint_peak, &former->rough_peak, &echo->peak_range_m);
     for (size_t i = 0; i < pixels; i++)
-        echo->energy[i] += former->glint_real[i] * former->glint_real[i] +
-                           former->glint_imaginary[i] * former->glint_imaginary[i];
-    const sonject_status status =
-        former->rough_energy ? draw_rough(former, echoes, tracer) : SONJECT_OK;
-    add_window(echoes->target_energy, echoes->columns, echo->energy,
-               echo->energy ? echoes->rows : 0, echo->first_column, echo->columns);
+        echo->energy[i] += former->glint[i] * former->glint[i] +
+                           former->glint[pixels + i] * former->glint[pixels + i];
+    if (former->rough_energy) {
+        struct formed drawn;
+        const sonject_status status = form_speckle(tracer, &former->grid, former->rough_energy,
+                                                   STREAM_OBJECT_SPECKLE + former->number, &drawn);
+        if (status == SONJECT_OK)
+            add_field(echoes, &drawn);
+        free(drawn.planes);
+        CHECK(status);
+    }
+    if (echo->energy)
+        add_window(echoes->target_energy, echoes, echo->energy, echo->first_column, echo->columns);
     object_former_clear(former);
-    return status;
+    return SONJECT_OK;
 }
 
 sonject_status object_echoes_add(struct object_former *former, struct echoes *echoes,
@@ -240,11 +396,13 @@ sonject_status object_echoes_add(struct object_former *former, struct echoes *ec
 
 void object_former_clear(struct object_former *former)
 {
+    struct peak_lattice *const lattices[] = {&former->glint_peak, &former->rough_peak};
+    for (int i = 0; i < 2; i++) {
+        form_lines_end(&lattices[i]->lines);
+        free(lattices[i]->planes);
+    }
     free(former->rough_energy);
-    free(former->glint_real);
-    free(former->glint_imaginary);
+    free(former->glint);
     form_lines_end(&former->lines);
-    peak_lattice_clear(&former->glint_peak);
-    peak_lattice_clear(&former->rough_peak);
     memset(former, 0, sizeof *former);
 }

@@ -1,16 +1,14 @@
-#include "inject/patch_level.h"
+#include "inject/compose.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "image/statistics.h"
 #include "scene/point_response.h"
 
-#define LEVEL_FLOOR                                                                                \
-    1e-6 /* of the patch's mean intensity: blank corners of a swath have no level                  \
-          */
+#define LEVEL_FLOOR 1e-6  /* of the mean intensity: blank corners of a swath have no level */
+#define WATER_SHARE 0.05f /* of seabed around a pixel that tells its level */
 
 double seabed_cell_energy(const struct patch_view *view, const struct point_response *response,
                           double mu, double processor_range_m)
@@ -30,13 +28,8 @@ double seabed_cell_energy(const struct patch_view *view, const struct point_resp
 void patch_level_clear(struct patch_level *level)
 {
     free(level->intensity);
-    free(level->level);
-    free(level->map);
-    free(level->cell_energy);
     memset(level, 0, sizeof *level);
 }
-
-#define WATER_SHARE 0.05f /* of seabed around a pixel that tells its level */
 
 static sonject_status set_intensity(struct patch_level *level, struct report *report,
                                     const struct patch_view *view, const float *pixels,
@@ -66,24 +59,28 @@ static sonject_status set_intensity(struct patch_level *level, struct report *re
     return SONJECT_OK;
 }
 
+static sonject_status smooth(struct report *report, const struct patch_view *view,
+                             const float *values, double radius_m, float *mean)
+{
+    return local_mean(report, values, view->rows, view->columns, radius_m / view->row_spacing_m,
+                      radius_m / view->column_spacing_m, mean);
+}
+
 /* The local mean of the seabed alone; in the water column that of the seabed nearby. */
 static sonject_status level_beside_water(struct patch_level *level, struct report *report,
                                          const struct scene *scene, const struct patch_view *view)
 {
     const size_t count = view->rows * view->columns;
-    float *seabed = allocate_array(count, sizeof *seabed);
-    float *share = allocate_array(count, sizeof *share);
-    sonject_status status =
-        seabed && share ? SONJECT_OK : report_out_of_memory(report, "the patch");
-    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+    const double radius = scene->seabed.level_radius_m;
+    float *seabed = allocate_array(2 * count, sizeof *seabed);
+    float *share = seabed + count;
+    CHECK_MEMORY(report, seabed, "the patch");
+    for (size_t i = 0; i < count; i++)
         seabed[i] = i % view->columns < level->water_columns ? 0.0f : 1.0f;
-    const double rows = scene->seabed.level_radius_m / view->row_spacing_m;
-    const double columns = scene->seabed.level_radius_m / view->column_spacing_m;
-    THEN(status, local_mean(report, seabed, view->rows, view->columns, rows, columns, share));
+    sonject_status status = smooth(report, view, seabed, radius, share);
     for (size_t i = 0; status == SONJECT_OK && i < count; i++)
         seabed[i] *= level->intensity[i];
-    THEN(status,
-         local_mean(report, seabed, view->rows, view->columns, rows, columns, level->level));
+    THEN(status, smooth(report, view, seabed, radius, level->level));
     for (size_t i = count; status == SONJECT_OK && i-- > 0;) {
         const bool has_neighbour = (i + 1) % view->columns != 0;
         level->level[i] = share[i] > WATER_SHARE ? level->level[i] / share[i]
@@ -91,27 +88,30 @@ static sonject_status level_beside_water(struct patch_level *level, struct repor
                                                  : 0.0f;
     }
     free(seabed);
-    free(share);
     return status;
 }
 
-/* Intensity (or its local mean) over the level. */
-static sonject_status make_map(struct patch_level *level, struct report *report,
-                               const struct scene *scene, const struct patch_view *view)
+/* Level and map of an intensity of a mean: the map is the intensity, or its local mean, over the
+ * level. */
+static sonject_status find_level(struct patch_level *level, struct report *report,
+                                 const struct scene *scene, const struct patch_view *view,
+                                 double mean)
 {
-    const size_t pixels = view->rows * view->columns;
-    sonject_status status = SONJECT_OK;
-    if (scene->seabed.map == SONJECT_MAP_DESPECKLED)
-        status = local_mean(report, level->intensity, view->rows, view->columns,
-                            scene->seabed.despeckle_radius_m / view->row_spacing_m,
-                            scene->seabed.despeckle_radius_m / view->column_spacing_m, level->map);
-    else if (scene->seabed.map == SONJECT_MAP_COHERENT)
-        memcpy(level->map, level->level, pixels * sizeof *level->map);
+    const size_t count = view->rows * view->columns;
+    const sonject_seabed_params *seabed = &scene->seabed;
+    CHECK(level->water_columns > 0
+              ? level_beside_water(level, report, scene, view)
+              : smooth(report, view, level->intensity, seabed->level_radius_m, level->level));
+    for (size_t i = 0; i < count; i++)
+        level->level[i] = fmaxf(level->level[i], (float)(LEVEL_FLOOR * mean));
+    if (seabed->map == SONJECT_MAP_DESPECKLED)
+        CHECK(smooth(report, view, level->intensity, seabed->despeckle_radius_m, level->map));
     else
-        memcpy(level->map, level->intensity, pixels * sizeof *level->map);
-    for (size_t i = 0; status == SONJECT_OK && i < pixels; i++)
+        memcpy(level->map, seabed->map == SONJECT_MAP_COHERENT ? level->level : level->intensity,
+               count * sizeof *level->map);
+    for (size_t i = 0; i < count; i++)
         level->map[i] /= level->level[i];
-    return status;
+    return SONJECT_OK;
 }
 
 sonject_status patch_level_init(struct patch_level *level, struct report *report,
@@ -123,45 +123,68 @@ sonject_status patch_level_init(struct patch_level *level, struct report *report
     double mean = 0.0;
     memset(level, 0, sizeof *level);
     level->water_columns = view_water_columns(view);
-    level->intensity = allocate_array(count, sizeof(float));
-    level->level = allocate_array(count, sizeof(float));
-    level->map = allocate_array(count, sizeof(float));
-    level->cell_energy = allocate_array(view->columns, sizeof(float));
-    sonject_status status = level->intensity && level->level && level->map && level->cell_energy
-                                ? SONJECT_OK
-                                : report_out_of_memory(report, "the patch");
-    THEN(status, set_intensity(level, report, view, pixels, is_complex, &mean));
-    if (status == SONJECT_OK && level->water_columns > 0)
-        status = level_beside_water(level, report, scene, view);
-    else if (status == SONJECT_OK)
-        status = local_mean(report, level->intensity, view->rows, view->columns,
-                            scene->seabed.level_radius_m / view->row_spacing_m,
-                            scene->seabed.level_radius_m / view->column_spacing_m, level->level);
-    if (status == SONJECT_OK) {
-        for (size_t i = 0; i < count; i++)
-            level->level[i] = fmaxf(level->level[i], (float)(LEVEL_FLOOR * mean));
-        for (size_t j = 0; j < view->columns; j++)
-            level->cell_energy[j] = (float)seabed_cell_energy(
-                view, response, scene->seabed.lambert, view_processor_range(view, (double)j));
-        status = make_map(level, report, scene, view);
-    }
-    level->noise_ratio = pow(10.0, scene->injection.noise_floor_db / 10.0);
-    if (status == SONJECT_OK && scene->injection.estimate_noise)
-        level->noise_ratio =
-            estimate_noise_floor(level->intensity, level->level, view->rows, view->columns);
-    if (status != SONJECT_OK)
+    level->intensity = allocate_array(3 * count + view->columns, sizeof(float));
+    CHECK_MEMORY(report, level->intensity, "the patch");
+    level->level = level->intensity + count;
+    level->map = level->level + count;
+    level->cell_energy = level->map + count;
+    sonject_status status = set_intensity(level, report, view, pixels, is_complex, &mean);
+    THEN(status, find_level(level, report, scene, view, mean));
+    if (status != SONJECT_OK) {
         patch_level_clear(level);
-    return status;
+        return status;
+    }
+    for (size_t j = 0; j < view->columns; j++)
+        level->cell_energy[j] = (float)seabed_cell_energy(view, response, scene->seabed.lambert,
+                                                          view_processor_range(view, (double)j));
+    level->noise_ratio =
+        scene->injection.estimate_noise
+            ? estimate_noise_floor(level->intensity, level->level, view->rows, view->columns)
+            : pow(10.0, scene->injection.noise_floor_db / 10.0);
+    return SONJECT_OK;
 }
 
-/* Over the seabed that the peak of an object's echo lies on. */
-static double peak_over_seabed(const struct tracer *tracer, const struct object_echo *echo)
+void patch_request_clear(struct patch_request *patch)
 {
-    return echo->peak_energy > 0.0
-               ? echo->peak_energy / seabed_cell_energy(&tracer->view, &tracer->response,
-                                                        tracer->scene->seabed.lambert,
-                                                        echo->peak_range_m)
-               : 0.0;
+    free(patch->reflectivity);
+    patch_level_clear(&patch->level);
+}
+
+sonject_status patch_request_init(struct patch_request *patch, struct tracer *tracer,
+                                  const float *pixels, bool is_complex,
+                                  sonject_progress_function progress, void *user)
+{
+    const struct scene *scene = tracer->scene;
+    const size_t count = tracer->view.rows * tracer->view.columns;
+    const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
+    const bool is_coherent = resynthesises && scene->seabed.map == SONJECT_MAP_COHERENT;
+    memset(patch, 0, sizeof *patch);
+    CHECK(patch_level_init(&patch->level, tracer->report, scene, &tracer->view, &tracer->response,
+                           pixels, is_complex));
+    patch->request.map = patch->level.map;
+    patch->request.field = is_coherent     ? SEABED_FIELD_COHERENT
+                           : resynthesises ? SEABED_FIELD_SPECKLE
+                                           : SEABED_FIELD_NONE;
+    patch->request.progress = progress;
+    patch->request.user = user;
+    if (!is_coherent)
+        return SONJECT_OK;
+    patch->reflectivity = allocate_array(2 * count, sizeof *patch->reflectivity);
+    if (!patch->reflectivity) {
+        patch_request_clear(patch);
+        return report_out_of_memory(tracer->report, "the reflectivity");
+    }
+    /* of unit mean square: the pixels over the root of the level */
+    for (size_t i = 0; i < 2 * count; i++)
+        patch->reflectivity[i % 2 * count + i / 2] = pixels[i] / sqrtf(patch->level.level[i / 2]);
+    patch->request.reflectivity_real = patch->reflectivity;
+    patch->request.reflectivity_imaginary = patch->reflectivity + count;
+    return SONJECT_OK;
+}
+
+static double decibels(double ratio)
+{
+    return ratio > 0.0 ? 10.0 * log10(ratio) : -INFINITY;
 }
 
 /* In energy; 1 where nothing is heard. */
@@ -175,20 +198,14 @@ static double gain_of(const sonject_object_params *object, double energy, double
     return 1.0;
 }
 
-static double decibels(double ratio)
+/* In energy, of a pixel. What came by the seabed has the gain of the object that is heard there, or
+ * whose shadow it fills, or where there is neither the objects' mean. */
+static void scale_pixel(struct echoes *echoes, const double *gains, double mean, size_t i)
 {
-    return ratio > 0.0 ? 10.0 * log10(ratio) : -INFINITY;
-}
-
-/* Sums over the objects at a pixel. */
-struct pixel_gain {
-    double energy, scaled; /* of first hits alone, and the same with the gains */
-    double hidden, scaled_hidden;
-};
-
-static struct pixel_gain gains_at(const struct echoes *echoes, const double *gains, size_t i)
-{
-    struct pixel_gain sums = {0.0, 0.0, 0.0, 0.0};
+    double energy = 0.0; /* of first hits alone, and the same with the gains */
+    double scaled = 0.0;
+    double hidden = 0.0;
+    double scaled_hidden = 0.0;
     const size_t row = i / echoes->columns;
     const size_t column = i % echoes->columns;
     for (uint32_t number = 0; number < echoes->object_count; number++) {
@@ -197,27 +214,14 @@ static struct pixel_gain gains_at(const struct echoes *echoes, const double *gai
             column >= echo->first_column + echo->columns)
             continue;
         const size_t at = row * echo->columns + column - echo->first_column;
-        sums.energy += (double)echo->energy[at];
-        sums.scaled += gains[number] * (double)echo->energy[at];
-        sums.hidden += (double)echo->lost[at];
-        sums.scaled_hidden += gains[number] * (double)echo->lost[at];
+        energy += (double)echo->energy[at];
+        scaled += gains[number] * (double)echo->energy[at];
+        hidden += (double)echo->lost[at];
+        scaled_hidden += gains[number] * (double)echo->lost[at];
     }
-    return sums;
-}
-
-/* What came by the seabed has the gain of the object that is heard there, or whose shadow it fills,
- * or where there is neither the objects' mean. */
-static double pixel_gain(const struct pixel_gain *sums, double mean)
-{
-    if (sums->energy > 0.0)
-        return sums->scaled / sums->energy;
-    return sums->hidden > 0.0 ? sums->scaled_hidden / sums->hidden : mean;
-}
-
-static void scale_pixel(struct echoes *echoes, const double *gains, double mean, size_t i)
-{
-    const struct pixel_gain sums = gains_at(echoes, gains, i);
-    const double gain = pixel_gain(&sums, mean);
+    const double gain = energy > 0.0   ? scaled / energy
+                        : hidden > 0.0 ? scaled_hidden / hidden
+                                       : mean;
     const float amplitude = (float)sqrt(gain);
     echoes->energy[i] += (float)((gain - 1.0) * (double)echoes->target_energy[i]);
     echoes->target_energy[i] *= (float)gain;
@@ -229,17 +233,7 @@ static void scale_pixel(struct echoes *echoes, const double *gains, double mean,
     }
     for (uint32_t order = 0; order < echoes->orders; order++) {
         float *kept = &echoes->order_energy[order][i];
-        *kept = order == 0 ? *kept + (float)(sums.scaled - sums.energy) : *kept * (float)gain;
-    }
-}
-
-static void scale_objects(struct echoes *echoes, const double *gains)
-{
-    for (uint32_t number = 0; number < echoes->object_count; number++) {
-        struct object_echo *echo = &echoes->objects[number];
-        echo->peak_energy *= gains[number];
-        for (size_t i = 0; echo->energy && i < echoes->rows * echo->columns; i++)
-            echo->energy[i] *= (float)gains[number];
+        *kept = order == 0 ? *kept + (float)(scaled - energy) : *kept * (float)gain;
     }
 }
 
@@ -253,7 +247,12 @@ sonject_status set_target_levels(const struct tracer *tracer, struct echoes *ech
     CHECK_MEMORY(tracer->report, gains, "the objects' levels");
     for (uint32_t i = 0; i < echoes->object_count; i++) {
         const struct object_echo *echo = &echoes->objects[i];
-        const double over_seabed = peak_over_seabed(tracer, echo);
+        /* over the seabed that the peak of the echo lies on */
+        const double over_seabed =
+            echo->peak_energy > 0.0
+                ? echo->peak_energy / seabed_cell_energy(&tracer->view, &tracer->response,
+                                                         scene->seabed.lambert, echo->peak_range_m)
+                : 0.0;
         const double grazing = water_way_grazing(&tracer->view.water, tracer->objects[i].origin[1],
                                                  tracer->objects[i].origin[2]);
         sonject_object_truth *truth = &result->objects[i];
@@ -267,8 +266,12 @@ sonject_status set_target_levels(const struct tracer *tracer, struct echoes *ech
     }
     for (size_t i = 0; is_scaled && i < echoes->rows * echoes->columns; i++)
         scale_pixel(echoes, gains, mean, i);
-    if (is_scaled)
-        scale_objects(echoes, gains);
+    for (uint32_t i = 0; is_scaled && i < echoes->object_count; i++) {
+        struct object_echo *echo = &echoes->objects[i];
+        echo->peak_energy *= gains[i];
+        for (size_t k = 0; echo->energy && k < echoes->rows * echo->columns; k++)
+            echo->energy[k] *= (float)gains[i];
+    }
     free(gains);
     return SONJECT_OK;
 }

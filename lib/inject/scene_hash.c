@@ -8,7 +8,7 @@
 
 #include "base/json_document.h"
 #include "device/device.h"
-#include "inject/impulse_file.h"
+#include "inject/impulses.h"
 #include "schema/keys.h"
 
 /* Members one by one: the padding of a structure is not part of its value. */

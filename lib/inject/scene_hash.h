@@ -22,7 +22,7 @@ sonject_status scene_inputs(struct report *report, const struct scene *scene,
                             json_t **inputs);
 
 /* The hash of what tracing depends on: without the sonar's pulse and cross-range response
- * (inject/impulse_file.h). Errors: MEMORY. */
+ * (inject/impulses.h). Errors: MEMORY. */
 sonject_status traced_scene_hash(struct report *report, const struct scene *scene,
                                  const char *input_identity, char hash[HASH_TEXT_CAPACITY]);
 

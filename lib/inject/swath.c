@@ -1,12 +1,12 @@
 #include "inject/swath.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/memory.h"
 #include "image/raster.h"
-#include "inject/injection_setup.h"
 #include "swath/geometry_notes.h"
 #include "swath/raster_file.h"
 #include "swath/swath_file.h"
@@ -79,7 +79,7 @@ static sonject_status describe_file(struct report *report, const struct scene *s
     return recording ? track_of_recording(&swath->track, report, recording) : SONJECT_OK;
 }
 
-static sonject_status describe_made(const struct scene *scene, struct swath *swath)
+static void describe_made(const struct scene *scene, struct swath *swath)
 {
     const bool is_synthetic = scene->input_kind == SONJECT_INPUT_SYNTHETIC;
     swath->layout.rows = is_synthetic ? scene->synthetic.rows : scene->uniform_rows;
@@ -89,7 +89,6 @@ static sonject_status describe_made(const struct scene *scene, struct swath *swa
     swath->layout.type = PIXEL_FLOAT32;
     swath->is_made = true;
     swath->new_extension = ".tif";
-    return SONJECT_OK;
 }
 
 static sonject_status open_input(struct report *report, const struct scene *scene,
@@ -103,16 +102,16 @@ static sonject_status open_and_describe(struct report *report, const struct scen
 {
     memset(swath, 0, sizeof *swath);
     *file = NULL;
-    sonject_status status;
+    sonject_status status = SONJECT_OK;
     if (scene->input_kind == SONJECT_INPUT_MEMORY)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the scene has no input image: give input.path");
     if (scene->input_kind == SONJECT_INPUT_FILE) {
-        status = scene_locate(scene, report, open_input(report, scene, file), "input.path");
-        THEN(status,
-             scene_locate(scene, report, describe_file(report, scene, *file, swath), "input.path"));
+        status = open_input(report, scene, file);
+        THEN(status, describe_file(report, scene, *file, swath));
+        status = scene_locate(scene, report, status, "input.path");
     } else {
-        status = describe_made(scene, swath);
+        describe_made(scene, swath);
     }
     THEN(status, scene_locate(scene, report, choose_patch(report, scene, swath), "patch"));
     if (status != SONJECT_OK) {
@@ -156,33 +155,30 @@ static sonject_status bad_pixel(struct report *report, const struct scene *scene
                           (unsigned long long)(swath->patch.first_column + pixel % columns), what);
 }
 
-static sonject_status check_signs(struct report *report, const struct scene *scene,
-                                  const struct swath *swath, size_t count)
+/* Bytes of a pixel as it is stored. */
+static size_t stored_bytes(const struct swath *swath)
 {
-    for (size_t i = 0; !swath->is_complex && i < count; i++)
-        if (swath->pixels[i] < 0.0f)
-            return bad_pixel(report, scene, swath, i, "a negative amplitude");
-    return SONJECT_OK;
+    return swath->layout.channels * pixel_bytes(swath->layout.type);
+}
+
+/* A row of the patch among the stored pixels of a whole swath. */
+static unsigned char *row_in_swath(const struct swath *swath, const void *whole, size_t row)
+{
+    return (unsigned char *)whole +
+           (((size_t)swath->patch.first_row + row) * (size_t)swath->layout.columns +
+            (size_t)swath->patch.first_column) *
+               stored_bytes(swath);
+}
+
+/* Copies the patch out of a whole swath. */
+static void cut_patch(const struct swath *swath, const void *whole, void *patch)
+{
+    const size_t bytes = (size_t)swath->patch.columns * stored_bytes(swath);
+    for (size_t row = 0; row < swath->patch.rows; row++)
+        memcpy((unsigned char *)patch + row * bytes, row_in_swath(swath, whole, row), bytes);
 }
 
 /* whole: the file's pixels, if they are in memory. */
-static sonject_status read_stored(struct report *report, struct swath_file *file,
-                                  const unsigned char *whole, const struct swath *swath)
-{
-    const struct region *patch = &swath->patch;
-    const struct raster_layout *layout = &swath->layout;
-    if (!whole)
-        return swath_file_read(report, file, patch, swath->stored);
-    const size_t pixel = layout->channels * pixel_bytes(layout->type);
-    for (size_t row = 0; row < patch->rows; row++)
-        memcpy((unsigned char *)swath->stored + row * (size_t)patch->columns * pixel,
-               whole + (((size_t)patch->first_row + row) * (size_t)layout->columns +
-                        (size_t)patch->first_column) *
-                           pixel,
-               (size_t)patch->columns * pixel);
-    return SONJECT_OK;
-}
-
 static sonject_status read_patch(struct report *report, const struct scene *scene,
                                  struct swath_file *file, const void *whole, struct swath *swath)
 {
@@ -195,45 +191,31 @@ static sonject_status read_patch(struct report *report, const struct scene *scen
     swath->stored = allocate_array(bytes, 1);
     swath->pixels = allocate_array(count, sizeof(float));
     CHECK_MEMORY(report, swath->stored && swath->pixels, "the patch");
-    sonject_status status = read_stored(report, file, whole, swath);
-    if (status == SONJECT_OK) {
-        status = transfer_to_amplitude(&swath->transfer, swath->layout.type, swath->stored, count,
-                                       swath->pixels, &bad, &swath->clipped);
-        if (status != SONJECT_OK)
-            status = bad_pixel(report, scene, swath, bad, "not a finite number");
-        else
-            status = check_signs(report, scene, swath, count);
-    }
-    return status == SONJECT_OK ? identify(report, swath, swath->stored, bytes) : status;
+    if (whole)
+        cut_patch(swath, whole, swath->stored);
+    else
+        CHECK(swath_file_read(report, file, &swath->patch, swath->stored));
+    if (transfer_to_amplitude(&swath->transfer, swath->layout.type, swath->stored, count,
+                              swath->pixels, &bad, &swath->clipped) != SONJECT_OK)
+        return bad_pixel(report, scene, swath, bad, "not a finite number");
+    for (size_t i = 0; !swath->is_complex && i < count; i++)
+        if (swath->pixels[i] < 0.0f)
+            return bad_pixel(report, scene, swath, i, "a negative amplitude");
+    return identify(report, swath, swath->stored, bytes);
 }
 
-/* Made swaths are made whole; the patch is cut out of them. */
+/* Made swaths are made whole, and kept for writing them back; the patch is cut out of them. */
 static sonject_status make_patch(struct report *report, const struct scene *scene,
                                  struct swath *swath)
 {
     struct injection_input whole;
     CHECK(make_input(report, scene, &whole));
-    sonject_status status = SONJECT_OK;
-    const size_t parts = swath->is_complex ? 2 : 1;
-    const size_t row_floats = (size_t)swath->patch.columns * parts;
-    swath->pixels = allocate_array((size_t)swath->patch.rows, row_floats * sizeof(float));
-    if (!swath->pixels) {
-        status = report_out_of_memory(report, "the patch");
-    } else {
-        for (size_t row = 0; row < swath->patch.rows; row++)
-            memcpy(swath->pixels + row * row_floats,
-                   whole.pixels + (((size_t)swath->patch.first_row + row) * whole.columns +
-                                   (size_t)swath->patch.first_column) *
-                                      parts,
-                   row_floats * sizeof(float));
-        /* kept for writing the swath back around the patch */
-        swath->stored = (void *)whole.pixels;
-        status = identify(report, swath, whole.pixels,
-                          whole.rows * whole.columns * parts * sizeof(float));
-    }
-    if (status != SONJECT_OK && !swath->stored)
-        free((void *)whole.pixels);
-    return status;
+    swath->stored = (void *)whole.pixels;
+    swath->pixels = allocate_array((size_t)swath->patch.rows * (size_t)swath->patch.columns,
+                                   stored_bytes(swath));
+    CHECK_MEMORY(report, swath->pixels, "the patch");
+    cut_patch(swath, whole.pixels, swath->pixels);
+    return identify(report, swath, whole.pixels, whole.rows * whole.columns * stored_bytes(swath));
 }
 
 sonject_status swath_open(struct report *report, const struct scene *scene, struct swath *swath)
@@ -342,10 +324,8 @@ char *swath_image_name(const struct scene *scene, const struct swath *swath)
         extension = dot && (!slash || dot > slash) ? dot : ".tif";
     }
     char *name = allocate_array(strlen("image") + strlen(extension) + 1, 1);
-    if (name) {
-        strcpy(name, "image");
-        strcat(name, extension);
-    }
+    if (name)
+        strcat(strcpy(name, "image"), extension);
     return name;
 }
 
@@ -353,30 +333,20 @@ void *swath_stored_result(const struct swath *swath, const struct injection_resu
                           uint64_t *clipped)
 {
     const size_t pixels = result->rows * result->columns;
-    const size_t parts = swath->is_complex ? 2 : 1;
-    const size_t bytes = pixel_bytes(swath->layout.type);
-    unsigned char *stored = allocate_array(pixels * parts, bytes);
-    unsigned char *fresh = allocate_array(pixels * parts, bytes);
-    uint32_t step = quantisation_step(swath->layout.type, swath->stored, pixels * parts);
+    const size_t bytes = stored_bytes(swath);
+    unsigned char *stored = allocate_array(pixels, bytes);
+    uint32_t step =
+        quantisation_step(swath->layout.type, swath->stored, pixels * swath->layout.channels);
     if (step == 0 && swath->is_whole)
         step = 1;
-    if (stored && fresh) {
-        memcpy(stored, swath->stored, pixels * parts * bytes);
-        if (swath->is_complex)
-            memcpy(fresh, result->image, pixels * parts * bytes);
-        else
-            for (size_t i = 0; i < pixels; i++)
-                if (result->influence[i])
-                    transfer_to_stored(&swath->transfer, swath->layout.type, step,
-                                       result->image + i, 1, fresh + i * bytes, clipped);
-        for (size_t i = 0; i < pixels; i++)
-            if (result->influence[i])
-                memcpy(stored + i * parts * bytes, fresh + i * parts * bytes, parts * bytes);
-    } else {
-        free(stored);
-        stored = NULL;
-    }
-    free(fresh);
+    if (stored)
+        memcpy(stored, swath->stored, pixels * bytes);
+    for (size_t i = 0; stored && i < pixels; i++)
+        if (result->influence[i] && swath->is_complex)
+            memcpy(stored + i * bytes, result->image + 2 * i, bytes);
+        else if (result->influence[i])
+            transfer_to_stored(&swath->transfer, swath->layout.type, step, result->image + i, 1,
+                               stored + i * bytes, clipped);
     return stored;
 }
 
@@ -384,14 +354,10 @@ static sonject_status write_made(struct report *report, const struct scene *scen
                                  const struct swath *swath, const struct injection_result *result,
                                  const char *path)
 {
-    const size_t parts = swath->is_complex ? 2 : 1;
-    const size_t row_floats = (size_t)swath->patch.columns * parts;
+    const size_t bytes = (size_t)swath->patch.columns * stored_bytes(swath);
     float *whole = swath->stored;
     for (size_t row = 0; row < result->rows; row++)
-        memcpy(whole + (((size_t)swath->patch.first_row + row) * (size_t)swath->layout.columns +
-                        (size_t)swath->patch.first_column) *
-                           parts,
-               result->image + row * row_floats, row_floats * sizeof(float));
+        memcpy(row_in_swath(swath, whole, row), (const char *)result->image + row * bytes, bytes);
     static const char *const complex_names[] = {"real", "imag"};
     struct geometry_notes notes;
     geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
@@ -415,5 +381,45 @@ sonject_status swath_write(struct report *report, const struct scene *scene,
          swath_file_copy_with_patch(report, file, path, &swath->patch, stored, progress, user));
     swath_file_close(&file);
     free(stored);
+    return status;
+}
+
+static bool ends_with(const char *text, const char *end)
+{
+    const size_t length = strlen(text);
+    const size_t end_length = strlen(end);
+    return length >= end_length && strcmp(text + length - end_length, end) == 0;
+}
+
+/* Amplitudes as 8-bit numbers, 1 = 255; in place, since they need less room. */
+static void to_bytes(float *pixels, size_t count)
+{
+    unsigned char *bytes = (unsigned char *)pixels;
+    for (size_t i = 0; i < count; i++)
+        bytes[i] = (unsigned char)fminf(255.0f, floorf(pixels[i] * 255.0f + 0.5f));
+}
+
+sonject_status write_seabed(struct report *report, const struct scene *scene, const char *path)
+{
+    static const char *const complex_names[] = {"real", "imag"};
+    const bool is_png = ends_with(path, ".png");
+    const bool is_complex = scene->synthetic.complex_pixels != 0;
+    struct geometry_notes notes;
+    struct injection_input input;
+    if (!is_png && !ends_with(path, ".tif"))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: a synthetic seabed is written as .tif or .png", path);
+    if (is_complex && is_png)
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: complex pixels need .tif", path);
+    CHECK(make_input(report, scene, &input));
+    const struct raster_layout layout = {input.rows, input.columns, is_complex ? 2 : 1,
+                                         is_png ? PIXEL_UINT8 : PIXEL_FLOAT32};
+    geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
+    if (is_png)
+        to_bytes((float *)input.pixels, input.rows * input.columns);
+    const sonject_status status =
+        raster_file_write(report, path, &layout, is_complex ? complex_names : NULL,
+                          notes.attributes, notes.count, input.pixels);
+    free((void *)input.pixels);
     return status;
 }

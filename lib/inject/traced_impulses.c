@@ -1,11 +1,9 @@
-#include "inject/traced_impulses.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "inject/seabed_echoes.h"
+#include "inject/echoes.h"
 #include "trace/chains.h"
 #include "trace/checkpoint.h"
 #include "trace/glints.h"
@@ -23,22 +21,11 @@ struct tracing {
     float *chunk, *second; /* lines that are handed out */
 };
 
-static sonject_status emit(const struct tracing *tracing, enum impulse_kind kind, uint32_t number,
-                           const struct line_grid *grid, struct span strips, uint32_t planes,
-                           const float *const *plane)
+static sonject_status emit(const struct tracing *tracing, const struct impulse_lines *lines)
 {
-    struct impulse_lines lines;
-    if (checkpoint_is_cut_short(tracing->tracer->checkpoint))
-        return SONJECT_OK;
-    memset(&lines, 0, sizeof lines);
-    lines.kind = kind;
-    lines.number = number;
-    lines.grid = *grid;
-    lines.strips = strips;
-    lines.planes = planes;
-    for (uint32_t i = 0; i < planes; i++)
-        lines.plane[i] = plane[i];
-    return tracing->sink->take(tracing->sink->taker, &lines);
+    return checkpoint_is_cut_short(tracing->tracer->checkpoint)
+               ? SONJECT_OK
+               : tracing->sink->take(tracing->sink->taker, lines);
 }
 
 /* The next strips of a grid, at most `most`; count 0 after the last. */
@@ -89,27 +76,36 @@ static sonject_status find_in_view(struct tracing *tracing, struct span strips)
     return SONJECT_OK;
 }
 
-static sonject_status trace_seabed(struct tracing *tracing)
+/* What rays hear of the seabed, by the rough trace as it now is: as it is; or again, of one that is
+ * level or even. */
+static sonject_status trace_seabed(struct tracing *tracing, enum impulse_kind kind,
+                                   const char *stage)
 {
     struct rough_trace *trace = &tracing->rough;
-    const float *const planes[] = {tracing->chunk, tracing->second};
-    struct span strips = {trace->grid.strips.first, 0};
+    const bool is_again = kind != IMPULSES_SEABED;
+    const bool has_view = !is_again && wants_field(tracing);
+    const uint64_t pings = tracing->tracer->counts.pings;
+    struct impulse_lines lines = {kind,
+                                  0,
+                                  trace->grid,
+                                  {trace->grid.strips.first, 0},
+                                  has_view ? 2 : 1,
+                                  {tracing->chunk, tracing->second}};
     sonject_status status = SONJECT_OK;
     while (status == SONJECT_OK &&
-           (strips = next_strips(&trace->grid, strips, trace->chunk)).count > 0) {
-        status = rough_trace_strips(trace, tracing->tracer, strips, tracing->chunk);
-        if (status == SONJECT_OK && wants_field(tracing))
-            status = find_in_view(tracing, strips);
-        THEN(status, emit(tracing, IMPULSES_SEABED, 0, &trace->grid, strips,
-                          wants_field(tracing) ? 2 : 1, planes));
-        THEN(status, echo_request_tell(
-                         tracing->request, tracing->tracer->report,
-                         ROUGH_SHARE * (strips.first + strips.count - trace->grid.strips.first) /
-                             trace->grid.strips.count,
-                         "tracing the seabed"));
+           (lines.strips = next_strips(&trace->grid, lines.strips, trace->chunk)).count > 0) {
+        const int32_t done = lines.strips.first + lines.strips.count - trace->grid.strips.first;
+        status = rough_trace_strips(trace, tracing->tracer, lines.strips, tracing->chunk);
+        if (status == SONJECT_OK && has_view)
+            status = find_in_view(tracing, lines.strips);
+        THEN(status, emit(tracing, &lines));
+        THEN(status, echo_request_tell(tracing->request, tracing->tracer->report,
+                                       is_again ? ROUGH_SHARE + OBJECT_SHARE
+                                                : ROUGH_SHARE * done / trace->grid.strips.count,
+                                       stage));
     }
-    THEN(status, rough_trace_mirrored(trace, tracing->tracer));
-    THEN(status, rough_trace_tiles(trace, tracing->tracer, tracing->tiles));
+    if (is_again)
+        tracing->tracer->counts.pings = pings; /* the same ones */
     return status;
 }
 
@@ -117,11 +113,11 @@ static sonject_status emit_tile(const struct tracing *tracing, uint32_t number)
 {
     const struct rough_tile *tile = &tracing->rough.tiles[number];
     const size_t cells = line_grid_cells(&tile->grid);
-    const float *planes[TILE_PLANES];
+    struct impulse_lines lines = {IMPULSES_OBJECT,   number,      tile->grid,
+                                  tile->grid.strips, TILE_PLANES, {NULL}};
     for (size_t i = 0; i < TILE_PLANES; i++)
-        planes[i] = tracing->tiles + tile->offset + i * cells;
-    return emit(tracing, IMPULSES_OBJECT, number, &tile->grid, tile->grid.strips, TILE_PLANES,
-                planes);
+        lines.plane[i] = tracing->tiles + tile->offset + i * cells;
+    return emit(tracing, &lines);
 }
 
 /* Chunks that are the same wherever the grid begins: its extent depends on echoes of corners, which
@@ -134,34 +130,25 @@ static struct span next_glint_strips(const struct glints *glints, struct span be
     return next_strips(&glints->grid, before, chunk - rest);
 }
 
-static sonject_status trace_glint_strips(const struct tracing *tracing, struct glints *glints,
-                                         uint32_t part)
-{
-    const size_t chunk = (size_t)glints->chunk * (size_t)glints->grid.bins.count;
-    float *real_part = allocate_array(chunk, sizeof(float));
-    float *imaginary_part = allocate_array(chunk, sizeof(float));
-    const float *const planes[] = {real_part, imaginary_part};
-    struct span strips = {glints->grid.strips.first, 0};
-    sonject_status status = real_part && imaginary_part
-                                ? SONJECT_OK
-                                : report_out_of_memory(tracing->tracer->report, "glints");
-    while (status == SONJECT_OK && (strips = next_glint_strips(glints, strips)).count > 0) {
-        status = glints_trace(glints, tracing->tracer, strips, real_part, imaginary_part);
-        THEN(status, emit(tracing, IMPULSES_GLINT, part, &glints->grid, strips, 2, planes));
-    }
-    free(real_part);
-    free(imaginary_part);
-    return status;
-}
-
 static sonject_status trace_glints(const struct tracing *tracing, uint32_t part)
 {
     struct glints glints;
-    sonject_status status = glints_begin(&glints, tracing->tracer, part);
-    if (status != SONJECT_OK)
-        return status;
-    if (line_grid_cells(&glints.grid) > 0)
-        status = trace_glint_strips(tracing, &glints, part);
+    CHECK(glints_begin(&glints, tracing->tracer, part));
+    const size_t chunk = line_grid_cells(&glints.grid) > 0
+                             ? (size_t)glints.chunk * (size_t)glints.grid.bins.count
+                             : 0;
+    float *parts = allocate_array(2 * chunk, sizeof(float));
+    struct impulse_lines lines = {
+        IMPULSES_GLINT,        part, glints.grid, {glints.grid.strips.first, 0}, 2,
+        {parts, parts + chunk}};
+    sonject_status status =
+        parts ? SONJECT_OK : report_out_of_memory(tracing->tracer->report, "glints");
+    while (status == SONJECT_OK && chunk > 0 &&
+           (lines.strips = next_glint_strips(&glints, lines.strips)).count > 0) {
+        status = glints_trace(&glints, tracing->tracer, lines.strips, parts, parts + chunk);
+        THEN(status, emit(tracing, &lines));
+    }
+    free(parts);
     glints_end(&glints);
     return status;
 }
@@ -182,26 +169,6 @@ static sonject_status trace_objects(const struct tracing *tracing)
     return status;
 }
 
-/* What the same rays hear of a seabed that is level or even, by the rough trace as it now is. */
-static sonject_status trace_again(struct tracing *tracing, enum impulse_kind kind,
-                                  const char *stage)
-{
-    struct rough_trace *trace = &tracing->rough;
-    const float *const planes[] = {tracing->chunk};
-    const uint64_t pings = tracing->tracer->counts.pings;
-    struct span strips = {trace->grid.strips.first, 0};
-    sonject_status status = SONJECT_OK;
-    while (status == SONJECT_OK &&
-           (strips = next_strips(&trace->grid, strips, trace->chunk)).count > 0) {
-        status = rough_trace_strips(trace, tracing->tracer, strips, tracing->chunk);
-        THEN(status, emit(tracing, kind, 0, &trace->grid, strips, 1, planes));
-        THEN(status, echo_request_tell(tracing->request, tracing->tracer->report,
-                                       ROUGH_SHARE + OBJECT_SHARE, stage));
-    }
-    tracing->tracer->counts.pings = pings; /* the same ones */
-    return status;
-}
-
 static sonject_status allocate_chunks(struct tracing *tracing)
 {
     const struct rough_trace *trace = &tracing->rough;
@@ -214,37 +181,33 @@ static sonject_status allocate_chunks(struct tracing *tracing)
                : report_out_of_memory(tracing->tracer->report, "the seabed");
 }
 
-static sonject_status emit_hidden(const struct tracing *beam)
+static void tracing_clear(struct tracing *tracing)
 {
-    sonject_status status = SONJECT_OK;
-    for (uint32_t i = 0; status == SONJECT_OK && i < beam->tracer->scene->object_count; i++) {
-        const struct rough_tile *tile = &beam->rough.tiles[i];
-        const float *const planes[] = {beam->tiles + tile->offset +
-                                       TILE_LOST * line_grid_cells(&tile->grid)};
-        status = emit(beam, IMPULSES_HIDDEN, i, &tile->grid, tile->grid.strips, 1, planes);
-    }
-    return status;
+    rough_trace_end(&tracing->rough);
+    free(tracing->tiles);
+    free(tracing->chunk);
+    free(tracing->second);
 }
 
+/* What each ping hears of an even seabed, and what objects hide of that. */
 static sonject_status trace_beam(struct tracer *tracer, const struct echo_request *request,
                                  const struct impulse_sink *sink)
 {
     struct point_response response;
-    struct tracing beam;
-    memset(&beam, 0, sizeof beam);
-    beam.tracer = tracer;
-    beam.request = request;
-    beam.sink = sink;
+    struct tracing beam = {.tracer = tracer, .request = request, .sink = sink};
     response_of_pings(&response, tracer);
     CHECK(rough_trace_begin_beam(&beam.rough, tracer, &response));
     sonject_status status = allocate_chunks(&beam);
-    THEN(status, trace_again(&beam, IMPULSES_BEAM, "tracing the beam"));
+    THEN(status, trace_seabed(&beam, IMPULSES_BEAM, "tracing the beam"));
     THEN(status, rough_trace_tiles(&beam.rough, tracer, beam.tiles));
-    THEN(status, emit_hidden(&beam));
-    rough_trace_end(&beam.rough);
-    free(beam.tiles);
-    free(beam.chunk);
-    free(beam.second);
+    for (uint32_t i = 0; status == SONJECT_OK && i < tracer->scene->object_count; i++) {
+        const struct rough_tile *tile = &beam.rough.tiles[i];
+        const float *lost = beam.tiles + tile->offset + TILE_LOST * line_grid_cells(&tile->grid);
+        const struct impulse_lines lines = {IMPULSES_HIDDEN,   i, tile->grid,
+                                            tile->grid.strips, 1, {lost}};
+        status = emit(&beam, &lines);
+    }
+    tracing_clear(&beam);
     return status;
 }
 
@@ -274,14 +237,15 @@ static sonject_status trace_fan(const struct tracing *tracing, struct chain_trac
 static sonject_status emit_chains(const struct tracing *tracing, struct chain_trace *trace)
 {
     float *energy = allocate_array(line_grid_cells(&trace->grid), sizeof *energy);
-    const float *const planes[] = {energy};
+    struct impulse_lines lines = {
+        IMPULSES_CHAINS, trace->first_order, trace->grid, trace->grid.strips, 1, {energy}};
     sonject_status status =
         energy ? SONJECT_OK
                : report_out_of_memory(tracing->tracer->report, "multiple interactions");
     for (uint32_t plane = 0; status == SONJECT_OK && plane < trace->planes; plane++) {
         status = chain_trace_read(trace, tracing->tracer, plane, energy);
-        THEN(status, emit(tracing, IMPULSES_CHAINS, trace->first_order + plane, &trace->grid,
-                          trace->grid.strips, 1, planes));
+        THEN(status, emit(tracing, &lines));
+        lines.number++;
     }
     free(energy);
     return status;
@@ -303,25 +267,20 @@ static sonject_status trace_chains(const struct tracing *tracing)
 sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *request,
                               const struct impulse_sink *sink)
 {
-    struct tracing tracing;
-    memset(&tracing, 0, sizeof tracing);
-    tracing.tracer = tracer;
-    tracing.request = request;
-    tracing.sink = sink;
+    struct tracing tracing = {.tracer = tracer, .request = request, .sink = sink};
     CHECK(rough_trace_begin(&tracing.rough, tracer, seabed_map(tracer, request)));
     sonject_status status = allocate_chunks(&tracing);
-    THEN(status, trace_seabed(&tracing));
+    THEN(status, trace_seabed(&tracing, IMPULSES_SEABED, "tracing the seabed"));
+    THEN(status, rough_trace_mirrored(&tracing.rough, tracer));
+    THEN(status, rough_trace_tiles(&tracing.rough, tracer, tracing.tiles));
     THEN(status, trace_objects(&tracing));
     if (status == SONJECT_OK && has_beam_shadows(tracer))
         status = trace_beam(tracer, request, sink);
     if (status == SONJECT_OK && tracer->relief) {
         rough_trace_flatten(&tracing.rough);
-        status = trace_again(&tracing, IMPULSES_LEVEL, "tracing the level seabed");
+        status = trace_seabed(&tracing, IMPULSES_LEVEL, "tracing the level seabed");
     }
-    rough_trace_end(&tracing.rough);
-    free(tracing.tiles);
-    free(tracing.chunk);
-    free(tracing.second);
+    tracing_clear(&tracing);
     THEN(status, trace_chains(&tracing));
     if (status == SONJECT_OK && tracer->checkpoint)
         status = checkpoint_finish(tracer->checkpoint, &tracer->counts);

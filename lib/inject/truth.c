@@ -1,4 +1,4 @@
-#include "inject/truth.h"
+#include "inject/compose.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,41 +7,23 @@
 #include "base/memory.h"
 #include "measure/contacts.h"
 
-struct box_search {
-    size_t first_row, last_row, first_column, last_column;
-    uint64_t pixels;
-};
-
-static void box_include(struct box_search *box, size_t row, size_t column)
+/* Grows a box, which holds nothing where it has no rows, by a pixel. */
+static void box_include(sonject_box *box, size_t row, size_t column)
 {
-    if (box->pixels == 0 || row < box->first_row)
-        box->first_row = row;
-    if (box->pixels == 0 || row > box->last_row)
-        box->last_row = row;
-    if (box->pixels == 0 || column < box->first_column)
-        box->first_column = column;
-    if (box->pixels == 0 || column > box->last_column)
-        box->last_column = column;
-    box->pixels++;
+    const bool is_empty = box->rows == 0;
+    const uint64_t end_row = is_empty ? 0 : box->first_row + box->rows;
+    const uint64_t end_column = is_empty ? 0 : box->first_column + box->columns;
+    box->first_row = is_empty || row < box->first_row ? row : box->first_row;
+    box->first_column = is_empty || column < box->first_column ? column : box->first_column;
+    box->rows = (row + 1 > end_row ? row + 1 : end_row) - box->first_row;
+    box->columns = (column + 1 > end_column ? column + 1 : end_column) - box->first_column;
 }
 
-static sonject_box box_of(const struct box_search *search)
+static bool box_is_cut(const sonject_box *box, const struct echoes *echoes)
 {
-    sonject_box box = {0, 0, 0, 0};
-    if (search->pixels > 0) {
-        box.first_row = search->first_row;
-        box.first_column = search->first_column;
-        box.rows = search->last_row - search->first_row + 1;
-        box.columns = search->last_column - search->first_column + 1;
-    }
-    return box;
-}
-
-static bool box_is_cut(const struct box_search *search, const struct echoes *echoes)
-{
-    return search->pixels > 0 &&
-           (search->first_row == 0 || search->first_column == 0 ||
-            search->last_row + 1 == echoes->rows || search->last_column + 1 == echoes->columns);
+    return box->rows > 0 && (box->first_row == 0 || box->first_column == 0 ||
+                             box->first_row + box->rows == echoes->rows ||
+                             box->first_column + box->columns == echoes->columns);
 }
 
 /* A ray of the pixel or of a neighbour met the object: side lobes are not the object. */
@@ -88,10 +70,8 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
                         uint32_t number, struct injection_result *result)
 {
     const struct object_echo *echo = &echoes->objects[number];
-    struct box_search highlight, shadow, both;
-    memset(&highlight, 0, sizeof highlight);
-    memset(&shadow, 0, sizeof shadow);
-    memset(&both, 0, sizeof both);
+    sonject_object_truth *truth = &result->objects[number];
+    const uint8_t label = (uint8_t)(number + 1);
     double energy = 0.0;
     double dominant = 0.0;
     for (size_t row = 0; echo->energy && row < echoes->rows; row++)
@@ -104,26 +84,22 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
                 dominant += levels.own;
             if (levels.own > levels.background && is_on_object(echo, echoes->rows, row, column)) {
                 result->highlight[i] = 255;
-                result->labels[i] = (uint8_t)(number + 1);
-                box_include(&highlight, row, column);
-                box_include(&both, row, column);
+                result->labels[i] = label;
+                box_include(&truth->highlight, row, column);
+                truth->highlight_pixels++;
             } else if (levels.hidden_share > 0.5) {
-                if (!result->labels[i])
-                    result->labels[i] = (uint8_t)(number + 1);
+                result->labels[i] = result->labels[i] ? result->labels[i] : label;
                 result->shadow[i] = 255;
-                box_include(&shadow, row, column);
-                box_include(&both, row, column);
+                box_include(&truth->shadow, row, column);
+                truth->shadow_pixels++;
+            } else {
+                continue;
             }
+            box_include(&truth->both, row, column);
         }
-    sonject_object_truth *truth = &result->objects[number];
-    truth->is_visible = both.pixels > 0;
-    truth->highlight_is_cut = box_is_cut(&highlight, echoes);
-    truth->shadow_is_cut = box_is_cut(&shadow, echoes);
-    truth->highlight = box_of(&highlight);
-    truth->shadow = box_of(&shadow);
-    truth->both = box_of(&both);
-    truth->highlight_pixels = highlight.pixels;
-    truth->shadow_pixels = shadow.pixels;
+    truth->is_visible = truth->both.rows > 0;
+    truth->highlight_is_cut = box_is_cut(&truth->highlight, echoes);
+    truth->shadow_is_cut = box_is_cut(&truth->shadow, echoes);
     truth->highlight_visible = energy > 0.0 ? dominant / energy : NAN;
     truth->target_strength_db = decibels(echo->peak_energy);
 }
@@ -218,11 +194,6 @@ static double expected_over_seabed(const struct patch_level *level, const struct
            hidden * level->noise_ratio;
 }
 
-static double in_metres(struct contact_length length, double spacing_m)
-{
-    return length.pixels * spacing_m;
-}
-
 /* Lays the ruler of contacts on an object as it is expected to show, in its box with a margin. */
 static sonject_status measure_object(const struct tracer *tracer, const struct patch_level *level,
                                      const struct speckle_statistics *speckle,
@@ -255,12 +226,12 @@ static sonject_status measure_object(const struct tracer *tracer, const struct p
         const struct patch_view *view = &tracer->view;
         truth->highlight_contrast_db = decibels(sizes.highlight_intensity / sizes.seabed);
         truth->shadow_contrast_db = decibels(sizes.shadow_intensity / sizes.seabed);
-        truth->highlight_along_m = in_metres(sizes.highlight_rows, view->row_spacing_m);
-        truth->highlight_range_m = in_metres(sizes.highlight_columns, view->column_spacing_m);
-        truth->shadow_along_m = in_metres(sizes.shadow_rows, view->row_spacing_m);
-        truth->shadow_range_m = in_metres(sizes.shadow_columns, view->column_spacing_m);
-        truth->gap_range_m = in_metres(sizes.gap_columns, view->column_spacing_m);
-        truth->dim_range_m = in_metres(sizes.dim_columns, view->column_spacing_m);
+        truth->highlight_along_m = sizes.highlight_rows.pixels * view->row_spacing_m;
+        truth->highlight_range_m = sizes.highlight_columns.pixels * view->column_spacing_m;
+        truth->shadow_along_m = sizes.shadow_rows.pixels * view->row_spacing_m;
+        truth->shadow_range_m = sizes.shadow_columns.pixels * view->column_spacing_m;
+        truth->gap_range_m = sizes.gap_columns.pixels * view->column_spacing_m;
+        truth->dim_range_m = sizes.dim_columns.pixels * view->column_spacing_m;
     }
     contact_image_clear(&image);
     free(expected);

@@ -4,7 +4,7 @@
 #include "element_series.h"
 
 #include "device/device.h"
-#include "elements/series.h"
+#include "elements/elements.h"
 #include "physics/bench.h"
 
 #define STRIPS   40

@@ -6,8 +6,7 @@
 
 #include "estimate.h"
 #include "form/form.h"
-#include "inject/echoes.h"
-#include "inject/patch_level.h"
+#include "inject/compose.h"
 #include "trace/chains.h"
 #include "trace/glints.h"
 #include "trace/rough.h"

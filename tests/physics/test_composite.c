@@ -1,8 +1,6 @@
 /* Measured and traced sound in one picture: what is kept, what is added, with which response,
  * looks, saturation and level, and how a whole patch comes out when it is traced anew. */
-#include "inject/injection_setup.h"
-#include "inject/looks.h"
-#include "inject/match.h"
+#include "inject/compose.h"
 #include "sea.h"
 
 #define SIDE    320 /* pixels */

@@ -13,6 +13,10 @@ struct picture {
     uint32_t panel_height, panel_width;
 };
 
+/* The last picture that was drawn, and pixels to draw. */
+static struct picture picture;
+static float amplitude[3200 * 3202];
+
 static struct plot_frame frame_of(uint64_t rows, uint64_t columns)
 {
     const struct plot_frame frame = {rows,  columns,          0.0,   0.025, 44.0,
@@ -20,98 +24,90 @@ static struct plot_frame frame_of(uint64_t rows, uint64_t columns)
     return frame;
 }
 
-static bool is_frame(const struct picture *picture, uint32_t x, uint32_t y)
+static bool is_frame(uint32_t x, uint32_t y)
 {
-    const uint8_t *pixel = picture->rgb + 3 * ((size_t)y * picture->width + x);
+    const uint8_t *pixel = picture.rgb + 3 * ((size_t)y * picture.width + x);
     return pixel[0] == FRAME_GREY && pixel[1] == FRAME_GREY && pixel[2] == FRAME_GREY;
 }
 
 /* The topmost line of frame colour is the first panel's upper edge: no tick or text has it and lies
  * above. */
-static void find_first_panel(struct picture *picture)
+static void find_first_panel(void)
 {
     uint32_t x = 0;
     uint32_t y = 0;
-    while (!is_frame(picture, x, y)) {
-        if (++x == picture->width) {
+    while (!is_frame(x, y)) {
+        if (++x == picture.width) {
             x = 0;
             y++;
         }
-        assert_true(y < picture->height);
+        assert_true(y < picture.height);
     }
-    picture->x = x + 1;
-    picture->y = y + 1;
-    for (picture->panel_width = 0; is_frame(picture, picture->x + picture->panel_width + 1, y);)
-        picture->panel_width++;
-    for (picture->panel_height = 0; is_frame(picture, x, picture->y + picture->panel_height + 1);)
-        picture->panel_height++;
+    picture.x = x + 1;
+    picture.y = y + 1;
+    for (picture.panel_width = 0; is_frame(picture.x + picture.panel_width + 1, y);)
+        picture.panel_width++;
+    for (picture.panel_height = 0; is_frame(x, picture.y + picture.panel_height + 1);)
+        picture.panel_height++;
 }
 
-static struct picture draw(const struct plot_frame *frame, const struct plot_panel *panels,
-                           uint32_t count)
+static void draw(const struct plot_frame *frame, const struct plot_panel *panels, uint32_t count)
 {
     struct report report;
-    struct picture picture;
     memset(&report, 0, sizeof report);
-    memset(&picture, 0, sizeof picture);
+    free(picture.rgb);
     assert_int_equal(
         plot_panels(&report, frame, panels, count, &picture.rgb, &picture.height, &picture.width),
         SONJECT_OK);
     assert_non_null(picture.rgb);
-    find_first_panel(&picture);
-    return picture;
+    find_first_panel();
 }
 
-static struct picture draw_one(const struct plot_frame *frame, const float *amplitude)
+static void draw_one(const struct plot_frame *frame)
 {
     const struct plot_panel panel = {"title", amplitude, false};
-    return draw(frame, &panel, 1);
+    draw(frame, &panel, 1);
 }
 
-static const uint8_t *pixel_at(const struct picture *picture, uint32_t x, uint32_t y)
+static const uint8_t *pixel_at(uint32_t x, uint32_t y)
 {
-    assert_true(x < picture->panel_width && y < picture->panel_height);
-    return picture->rgb + 3 * ((size_t)(picture->y + y) * picture->width + picture->x + x);
+    assert_true(x < picture.panel_width && y < picture.panel_height);
+    return picture.rgb + 3 * ((size_t)(picture.y + y) * picture.width + picture.x + x);
 }
 
-static void expect_grey(const struct picture *picture, uint32_t x, uint32_t y, int grey)
+static void expect_grey(uint32_t x, uint32_t y, int grey)
 {
-    const uint8_t *pixel = pixel_at(picture, x, y);
+    const uint8_t *pixel = pixel_at(x, y);
     if (pixel[0] != grey || pixel[1] != grey || pixel[2] != grey)
         fail_msg("pixel %u, %u is %d %d %d, not %d", x, y, pixel[0], pixel[1], pixel[2], grey);
 }
 
-static float *filled(size_t count, float value)
+static void fill(size_t count, float value)
 {
-    float *values = malloc(count * sizeof *values);
-    assert_non_null(values);
     for (size_t i = 0; i < count; i++)
-        values[i] = value;
-    return values;
+        amplitude[i] = value;
 }
 
 /* 20 dB apart on a scale of 40 dB: half of the greys. Row 0 at the top, column 0 at the left. */
 static void test_grey_levels(void **state)
 {
     const struct plot_frame frame = frame_of(40, 50);
-    float *amplitude = filled(40 * 50, 1.0f);
+    fill(40 * 50, 1.0f);
     for (size_t i = 0; i < 10 * 50; i++)
         amplitude[i] = 0.1f; /* the first ten rows */
     for (size_t row = 10; row < 40; row++)
         amplitude[row * 50] = 1e-6f;
     amplitude[39 * 50 + 49] = 1e6f;
-    struct picture picture = draw_one(&frame, amplitude);
+    draw_one(&frame);
     assert_int_equal(picture.panel_width, 50 * 16); /* 800 / 50 */
     assert_int_equal(picture.panel_height, 40 * 16);
-    expect_grey(&picture, 0, 0, 64); /* 255 * 10 / 40 */
-    expect_grey(&picture, 799, 10 * 16 - 1, 64);
-    expect_grey(&picture, 799, 10 * 16, 191); /* 255 * 30 / 40 */
-    expect_grey(&picture, 15, 10 * 16, 0);
-    expect_grey(&picture, 16, 10 * 16, 191);
-    expect_grey(&picture, 799, 639, 255);
-    expect_grey(&picture, 783, 639, 191);
-    free(picture.rgb);
-    free(amplitude);
+    expect_grey(0, 0, 64); /* 255 * 10 / 40 */
+    expect_grey(799, 10 * 16 - 1, 64);
+    expect_grey(799, 10 * 16, 191); /* 255 * 30 / 40 */
+    expect_grey(15, 10 * 16, 0);
+    expect_grey(16, 10 * 16, 191);
+    expect_grey(799, 639, 255);
+    expect_grey(783, 639, 191);
 }
 
 /* -40...0 dB in equal steps: of a thousand pixels the 30th darkest and the 2nd brightest bound the
@@ -120,19 +116,17 @@ static void test_scale_from_percentiles(void **state)
 {
     struct plot_frame frame = frame_of(100, 100);
     frame.minimum_db = frame.maximum_db = 0.0;
-    float *amplitude = filled(100 * 100, 0.0f);
+    fill(100 * 100, 0.0f);
     for (size_t i = 0; i < 10000; i++)
         amplitude[i] = powf(10.0f, (float)(i / 10) / 25.0f / 20.0f - 2.0f);
-    struct picture picture = draw_one(&frame, amplitude);
+    draw_one(&frame);
     for (uint32_t i = 0; i < 100; i += 7) {
         const double decibels = -40.0 + 40.0 * (i / 100.0);
         const double expected = 255.0 * fmin(fmax((decibels + 38.8) / (38.8 - 0.08), 0.0), 1.0);
-        const int grey = pixel_at(&picture, 4, i * 8 + 4)[0];
+        const int grey = pixel_at(4, i * 8 + 4)[0];
         if (fabs(grey - expected) > 1.0)
             fail_msg("row %u is %d, not %.1f", i, grey, expected);
     }
-    free(picture.rgb);
-    free(amplitude);
 }
 
 /* Energies are averaged, not amplitudes or decibels: half of the pixels at 0 dB and half empty make
@@ -140,19 +134,17 @@ static void test_scale_from_percentiles(void **state)
 static void test_large_images_average_energy(void **state)
 {
     const struct plot_frame frame = frame_of(3200, 3202);
-    float *amplitude = filled((size_t)3200 * 3202, 1.0f);
+    fill((size_t)3200 * 3202, 1.0f);
     for (size_t i = 0; i < (size_t)3200 * 3202; i += 2)
         amplitude[i] = 0.0f;
     amplitude[4] = amplitude[5] = NAN; /* they count for nothing: the cell's mean is the same */
-    struct picture picture = draw_one(&frame, amplitude);
+    draw_one(&frame);
     assert_int_equal(picture.panel_height, 800);
     assert_int_equal(picture.panel_width, 801); /* the last column of cells holds two pixels */
     for (uint32_t i = 0; i < 800; i += 13)
-        expect_grey(&picture, i, i, 172);
-    expect_grey(&picture, 1, 0, 172);
-    expect_grey(&picture, 800, 799, 172);
-    free(picture.rgb);
-    free(amplitude);
+        expect_grey(i, i, 172);
+    expect_grey(1, 0, 172);
+    expect_grey(800, 799, 172);
 }
 
 /* Rows four times as far apart as columns are drawn four times as high. */
@@ -160,42 +152,32 @@ static void test_distances_are_in_proportion(void **state)
 {
     struct plot_frame frame = frame_of(100, 400);
     frame.row_spacing_m = 0.1;
-    float *amplitude = filled(100 * 400, 1.0f);
-    struct picture picture = draw_one(&frame, amplitude);
+    fill(100 * 400, 1.0f);
+    draw_one(&frame);
     assert_int_equal(picture.panel_width, 800);
     assert_int_equal(picture.panel_height, 800);
-    free(picture.rgb);
-    free(amplitude);
 }
 
 static void test_difference_colours(void **state)
 {
     const struct plot_frame frame = frame_of(4, 4);
-    float *amplitude = filled(16, 1.0f);
-    float *difference = filled(16, 0.0f);
-    difference[0] = 20.0f;
-    difference[1] = -20.0f;
-    difference[2] = 500.0f;
-    difference[4] = 10.0f;
-    difference[5] = NAN;
+    fill(16, 1.0f);
+    float difference[16] = {20.0f, -20.0f, 500.0f, 0.0f, 10.0f, NAN};
     const struct plot_panel panels[] = {{"difference", difference, true}, {"", amplitude, false}};
-    struct picture picture = draw(&frame, panels, 2);
+    draw(&frame, panels, 2);
     const uint32_t cell = picture.panel_width / 4;
-    const uint8_t *red = pixel_at(&picture, 0, 0);
-    const uint8_t *blue = pixel_at(&picture, cell, 0);
-    const uint8_t *beyond = pixel_at(&picture, 2 * cell, 0);
-    const uint8_t *white = pixel_at(&picture, 3 * cell, 0);
-    const uint8_t *pale = pixel_at(&picture, 0, cell);
+    const uint8_t *red = pixel_at(0, 0);
+    const uint8_t *blue = pixel_at(cell, 0);
+    const uint8_t *beyond = pixel_at(2 * cell, 0);
+    const uint8_t *white = pixel_at(3 * cell, 0);
+    const uint8_t *pale = pixel_at(0, cell);
     assert_true(red[0] > 150 && red[1] < 60 && red[2] < 60);
     assert_true(blue[2] > 150 && blue[0] < 60 && blue[1] < 100);
     assert_memory_equal(beyond, red, 3);
     assert_true(white[0] == white[1] && white[1] == white[2] && white[0] > 240);
     for (int i = 0; i < 3; i++) /* half way from white to red */
         assert_true(abs(2 * pale[i] - red[i] - white[i]) <= 1);
-    expect_grey(&picture, cell, cell, 0);
-    free(picture.rgb);
-    free(amplitude);
-    free(difference);
+    expect_grey(cell, cell, 0);
 }
 
 /* Every panel that is drawn has the first one's size, and a picture has no more panels than asked
@@ -203,15 +185,15 @@ static void test_difference_colours(void **state)
 static void test_panels_side_by_side(void **state)
 {
     const struct plot_frame frame = frame_of(400, 480);
-    float *amplitude = filled(400 * 480, 1.0f);
+    fill(400 * 480, 1.0f);
     const struct plot_panel panels[] = {
         {"before", amplitude, false}, {"after", amplitude, false}, {"difference", amplitude, true}};
-    struct picture picture = draw(&frame, panels, 3);
+    draw(&frame, panels, 3);
     assert_int_equal(picture.panel_height, 400);
     uint32_t wide = 0;
     uint32_t narrow = 0;
     for (uint32_t x = 0, run = 0; x < picture.width; x++) {
-        if (is_frame(&picture, x, picture.y - 1)) {
+        if (is_frame(x, picture.y - 1)) {
             run++;
         } else if (run > 0) {
             wide += run == 480 + 2;
@@ -221,8 +203,6 @@ static void test_panels_side_by_side(void **state)
     }
     assert_int_equal(wide, 3);
     assert_int_equal(narrow, 2); /* one bar for both greys, one for the difference */
-    free(picture.rgb);
-    free(amplitude);
 }
 
 /* 480 columns from 44 m, 2.5 cm apart and 2 picture pixels wide: 46 m is column 80, whose middle is
@@ -230,17 +210,15 @@ static void test_panels_side_by_side(void **state)
 static void test_ticks_are_where_they_belong(void **state)
 {
     const struct plot_frame frame = frame_of(400, 480);
-    float *amplitude = filled(400 * 480, 1.0f);
-    struct picture picture = draw_one(&frame, amplitude);
+    fill(400 * 480, 1.0f);
+    draw_one(&frame);
     assert_int_equal(picture.panel_width, 960);
     const uint32_t below = picture.y + picture.panel_height + 3;
     const uint32_t beside = picture.x - 4;
     for (uint32_t i = 0; i < 960; i++)
-        assert_int_equal(is_frame(&picture, picture.x + i, below), i % 80 == 1);
+        assert_int_equal(is_frame(picture.x + i, below), i % 80 == 1);
     for (uint32_t i = 0; i < 800; i++)
-        assert_int_equal(is_frame(&picture, beside, picture.y + i), i % 80 == 1);
-    free(picture.rgb);
-    free(amplitude);
+        assert_int_equal(is_frame(beside, picture.y + i), i % 80 == 1);
 }
 
 static void expect_ticks(double low, double high, double most, int count, const char *first,
@@ -277,16 +255,16 @@ static void test_tick_numbers(void **state)
     expect_ticks(0.0, 1e-300, 5.0, 0, "", "");
 }
 
-static void expect_no_picture(const struct plot_frame *frame, const float *amplitude)
+static void expect_no_picture(const struct plot_frame *frame)
 {
     struct report report;
     memset(&report, 0, sizeof report);
     const struct plot_panel panel = {"", amplitude, false};
-    uint8_t *picture = (uint8_t *)&report;
+    uint8_t *drawn = (uint8_t *)&report;
     uint32_t height, width;
-    assert_int_equal(plot_panels(&report, frame, &panel, 1, &picture, &height, &width),
+    assert_int_equal(plot_panels(&report, frame, &panel, 1, &drawn, &height, &width),
                      SONJECT_ERROR_INPUT);
-    assert_null(picture);
+    assert_null(drawn);
     assert_non_null(strstr(report.message, "nothing to draw"));
 }
 
@@ -294,53 +272,51 @@ static void test_nothing_to_draw(void **state)
 {
     struct plot_frame frame = frame_of(30, 20);
     frame.minimum_db = frame.maximum_db = 0.0;
-    float *amplitude = filled(600, 0.0f);
-    expect_no_picture(&frame, amplitude);
+    fill(600, 0.0f);
+    expect_no_picture(&frame);
     amplitude[5] = NAN;
     amplitude[6] = INFINITY;
-    expect_no_picture(&frame, amplitude);
+    expect_no_picture(&frame);
     frame.rows = 0;
-    expect_no_picture(&frame, amplitude);
+    expect_no_picture(&frame);
     frame.rows = 30;
     frame.columns = 0;
-    expect_no_picture(&frame, amplitude);
-    free(amplitude);
+    expect_no_picture(&frame);
 }
 
 static void test_pixels_that_are_no_levels(void **state)
 {
     const struct plot_frame frame = frame_of(2, 2);
-    const float amplitude[] = {0.0f, NAN, INFINITY, 1.0f};
-    struct picture picture = draw_one(&frame, amplitude);
-    expect_grey(&picture, 0, 0, 0);
-    expect_grey(&picture, picture.panel_width - 1, 0, 0);
-    expect_grey(&picture, 0, picture.panel_height - 1, 255);
-    expect_grey(&picture, picture.panel_width - 1, picture.panel_height - 1, 191);
-    free(picture.rgb);
+    static const float values[] = {0.0f, NAN, INFINITY, 1.0f};
+    memcpy(amplitude, values, sizeof values);
+    draw_one(&frame);
+    expect_grey(0, 0, 0);
+    expect_grey(picture.panel_width - 1, 0, 0);
+    expect_grey(0, picture.panel_height - 1, 255);
+    expect_grey(picture.panel_width - 1, picture.panel_height - 1, 191);
 }
 
 static void test_extreme_shapes(void **state)
 {
     static const uint64_t sides[][2] = {{1, 1},     {1, 2},      {1, 10000}, {10000, 1},
                                         {3, 30000}, {1201, 799}, {801, 1}};
-    float *amplitude = filled(90000 + 1000000, 0.5f);
+    fill(90000 + 1000000, 0.5f);
     for (size_t i = 0; i < COUNT(sides); i++) {
         struct plot_frame frame = frame_of(sides[i][0], sides[i][1]);
         frame.maximum_db = frame.minimum_db; /* one level only: the middle of the scale */
-        struct picture picture = draw_one(&frame, amplitude);
+        draw_one(&frame);
         assert_true(picture.height < 1500 && picture.width < 1500);
         assert_true(picture.panel_height > 100 && picture.panel_width > 100);
-        expect_grey(&picture, picture.panel_width - 1, picture.panel_height - 1, 128);
-        free(picture.rgb);
+        expect_grey(picture.panel_width - 1, picture.panel_height - 1, 128);
     }
-    free(amplitude);
 }
 
 static void test_extreme_axes_and_titles(void **state)
 {
     static const double values[] = {0.0,    NAN,   INFINITY, -INFINITY, 1e300,
                                     1e-300, -1e-3, 1e15,     5e-324};
-    const float amplitude[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f};
+    for (size_t i = 0; i < 6; i++)
+        amplitude[i] = 0.1f * (float)(i + 1);
     char title[1000];
     memset(title, 'W', sizeof title - 1);
     title[sizeof title - 1] = '\0';
@@ -354,9 +330,8 @@ static void test_extreme_axes_and_titles(void **state)
                                        &frame.minimum_db};
             *members[member] = values[i];
             frame.range_label = i % 2 ? NULL : "column";
-            struct picture picture = draw(&frame, panels, 3);
+            draw(&frame, panels, 3);
             assert_true(picture.height < 2000 && picture.width < 4000);
-            free(picture.rgb);
         }
     }
 }
