@@ -29,11 +29,12 @@ struct random_field {
     uint32_t stream, columns;
     struct axis along_track, range;
     size_t lattice_columns;
-    float *range_weights;  /* columns x range taps */
-    uint32_t *range_first; /* lattice column of each pixel's first tap */
-    float *noise[2];       /* one lattice row */
-    float *blurred[2];     /* the last along-track taps lattice rows, blurred in range, by turns */
+    float *memory;        /* of all that follows but for range_first; owned */
+    float *range_weights; /* columns x range taps */
+    float *noise[2];      /* one lattice row */
+    float *blurred[2];    /* the last along-track taps lattice rows, blurred in range, by turns */
     float *row[2];
+    uint32_t *range_first; /* lattice column of each pixel's first tap; owned */
     uint32_t next_lattice_row, next_row;
 };
 
@@ -75,20 +76,26 @@ static uint32_t weigh_taps(const struct axis *axis, uint32_t pixel, float *weigh
     return (uint32_t)whole_position;
 }
 
+/* False where memory lacks. */
 static bool allocate_buffers(struct random_field *field)
 {
     const size_t columns = field->columns;
     const size_t lines = field->along_track.taps;
-    field->range_weights = allocate_array(columns, field->range.taps * sizeof(float));
+    const size_t weights = columns * field->range.taps;
     field->range_first = allocate_array(columns, sizeof *field->range_first);
-    bool is_complete = field->range_weights && field->range_first;
+    field->memory = allocate_array(
+        weights + 2 * (field->lattice_columns + columns * lines + columns), sizeof(float));
+    if (!field->range_first || !field->memory)
+        return false;
+    field->range_weights = field->memory;
+    float *next = field->memory + weights;
     for (int part = 0; part < 2; part++) {
-        field->noise[part] = allocate_array(field->lattice_columns, sizeof(float));
-        field->blurred[part] = allocate_array(columns, lines * sizeof(float));
-        field->row[part] = allocate_array(columns, sizeof(float));
-        is_complete = is_complete && field->noise[part] && field->blurred[part] && field->row[part];
+        field->noise[part] = next;
+        field->blurred[part] = field->noise[part] + field->lattice_columns;
+        field->row[part] = field->blurred[part] + columns * lines;
+        next = field->row[part] + columns;
     }
-    return is_complete;
+    return true;
 }
 
 sonject_status random_field_create(struct report *report, uint64_t seed, uint32_t stream,
@@ -119,12 +126,7 @@ void random_field_release(struct random_field **field)
 {
     if (!*field)
         return;
-    for (int part = 0; part < 2; part++) {
-        free((*field)->noise[part]);
-        free((*field)->blurred[part]);
-        free((*field)->row[part]);
-    }
-    free((*field)->range_weights);
+    free((*field)->memory);
     free((*field)->range_first);
     free(*field);
     *field = NULL;

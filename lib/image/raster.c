@@ -10,28 +10,14 @@
 
 size_t pixel_bytes(enum pixel_type type)
 {
-    switch (type) {
-    case PIXEL_UINT8:
-        return 1;
-    case PIXEL_UINT16:
-        return 2;
-    case PIXEL_FLOAT32:
-        break;
-    }
-    return 4;
+    static const size_t bytes[] = {1, 2, 4};
+    return bytes[type];
 }
 
 double pixel_full_scale(enum pixel_type type)
 {
-    switch (type) {
-    case PIXEL_UINT8:
-        return 255.0;
-    case PIXEL_UINT16:
-        return 65535.0;
-    case PIXEL_FLOAT32:
-        break;
-    }
-    return 1.0;
+    static const double full_scales[] = {255.0, 65535.0, 1.0};
+    return full_scales[type];
 }
 
 bool region_bytes(const struct raster_layout *layout, const struct region *region, size_t *bytes)
