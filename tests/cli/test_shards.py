@@ -10,15 +10,10 @@ import pytest
 
 from conftest import COMMAND, assert_refused, files_below
 from test_run import RESULTS, contents, read_rest, start_and_wait_for_the_bar
-from test_stages import compare_shards_with_run
+from test_stages import command, compare_shards_with_run, options_of
 
 # So many that a launch is cut in slices, between which a run stops.
 MANY_RAYS = ["--set", "injection.rays=256"]
-
-
-def command(sonject, *arguments):
-    answer = sonject(*arguments, "--quiet")
-    assert (answer.returncode, answer.stdout, answer.stderr) == (0, "", "")
 
 
 def checkpoints(folder):
@@ -194,7 +189,7 @@ def test_shards_know_their_scene_from_elsewhere(sonject, scene, tmp_path, whole)
     ["injection.interactions=2", "injection.columns=paper"],
 ], ids=["relief", "paper"])
 def test_shards_of_other_seabeds_and_columns(sonject, scene, tmp_path, chosen):
-    options = [word for each in chosen for word in ("--set", each)]
+    options = options_of(chosen)
     command(sonject, "run", scene, "-o", "run", *options)
     compare_shards_with_run(sonject, tmp_path, scene, *options)
 
