@@ -1,10 +1,11 @@
-"""Writes the modules of the Python package that say what the C headers say: generate.py FOLDER HEADER...
+"""Writes the modules of the Python package that say what other files say: generate.py FOLDER KEYS HEADER...
 
-FOLDER gets _interface.py, the declarations for ctypes; enumerations.py; and _classes.py, the
-dataclasses of structures, with the headers' comments as their documentation. Whatever in a header is
-not understood ends it with an error.
+FOLDER gets _interface.py, the declarations of the C headers for ctypes; enumerations.py; _classes.py,
+the dataclasses of structures, with the headers' comments as their documentation; and keys.py, the
+keys of scenes, from tools/scenes/KEYS.md. Whatever is not understood ends it with an error.
 """
 
+import keyword
 import pathlib
 import re
 import sys
@@ -19,19 +20,9 @@ ENUMERATION_NAMES = {"sonject_injection_mode": "Mode", "sonject_labels": "LabelF
 # Structures that are classes in Python: name and base, of _parameters.py.
 CLASSES = {
     "sonject_box": ("Box", "BoxBase"),
-    "sonject_material_params": ("Material", "MaterialBase"),
-    "sonject_sonar_params": ("Sonar", "Parameters"),
-    "sonject_pulse_params": ("Pulse", "Parameters"),
-    "sonject_motion_params": ("Motion", "MotionBase"),
-    "sonject_medium_params": ("Medium", "Parameters"),
-    "sonject_seabed_params": ("Seabed", "Parameters"),
-    "sonject_surface_params": ("Surface", "Parameters"),
     "sonject_geometry_params": ("Geometry", "Parameters"),
     "sonject_transfer_params": ("Transfer", "Parameters"),
-    "sonject_injection_params": ("Injection", "InjectionBase"),
-    "sonject_synthetic_params": ("Synthetic", "Parameters"),
-    "sonject_patch_params": ("Patch", "Parameters"),
-    "sonject_elements_params": ("Elements", "Parameters"),
+    "sonject_elements_params": ("ElementArray", "Answer"),
     "sonject_element_layout": ("ElementLayout", "ElementLayoutBase"),
     "sonject_device_info": ("Device", "Answer"),
     "sonject_object_truth": ("ObjectTruth", "Answer"),
@@ -40,18 +31,9 @@ CLASSES = {
     "sonject_contact_measures": ("ContactMeasures", "Answer"),
     "sonject_campaign_image": ("CampaignImage", "Answer"),
 }
-# Members that are no fields: their bases have them in another form, or a call without files leaves
-# them unset.
-NO_FIELDS = {"struct_size", "reserved", "estimate_noise", "noise_floor_db of Injection", "sway_count",
-             "sways", "yaw_count", "yaws", "seam_before"}
-# What those bases have instead.
-OF_BASES = {
-    "Motion": [("sways, yaws", "up to 8 sines each, added together: amplitude (m or rad), wavelength_m "
-                "along-track, phase_rad")],
-    "Injection": [("noise_floor_db", "noise energy over the local mean seabed energy, below 0; None: "
-                   "estimated from the patch")],
-}
-REQUIRED = {"first_slant_range_m of Geometry"}  # beside those of structures without defaults
+# Members that are no fields: a call without files leaves seam_before unset.
+NO_FIELDS = {"struct_size", "reserved", "seam_before"}
+REQUIRED = {"row_spacing_m", "column_spacing_m", "first_slant_range_m", "kind"}  # of parameters
 COMMENT = r"/\*(?:(?!\*/).)*\*/"
 
 
@@ -233,10 +215,10 @@ def documentation(header, title, described):
 
 def fields_of(header, structure):
     """(name, type in Python, comment) of the fields of a structure's class."""
-    kind, base = CLASSES[structure]
+    base = CLASSES[structure][1]
     for declaration, comment in header.structures[structure]:
         written, name, length = split(declaration)
-        if NO_FIELDS & {name, f"{name} of {kind}"}:
+        if name in NO_FIELDS:
             continue
         choice = re.match(r"sonject_\w+", comment)
         assert not length or written == "char", f"no field for {declaration}"
@@ -260,11 +242,10 @@ def classes(header):
     """_classes.py"""
     chosen = sorted(enumeration_name(name) for name in header.enumerations)
     bases = sorted({base for _, base in CLASSES.values()})
-    functions = {name for _, name, _ in header.functions}
     yield '"""The classes of structures, their fields as include/sonject declares them."""\n'
     yield "from dataclasses import dataclass\n"
     yield "from . import _interface as s"
-    yield f"from ._parameters import {', '.join(bases)}, library_default"
+    yield f"from ._parameters import {', '.join(bases)}"
     yield f"from .enumerations import ({', '.join(chosen)})"
     for structure, (kind, base) in CLASSES.items():
         found = list(fields_of(header, structure))
@@ -272,21 +253,123 @@ def classes(header):
         yield f"\n\n@dataclass({'frozen' if is_answer else 'kw_only'}=True)"
         yield f"class {kind}({base}):"
         yield from documentation(header, header.titles[structure],
-                                 OF_BASES.get(kind, []) + [(name, comment)
-                                                           for name, _, comment in found])
+                                 [(name, comment) for name, _, comment in found])
         yield f"    _structure = s.{structure}\n"
-        has_defaults = structure + "_init" in functions
         for name, kind_of, _ in found:
-            is_given = not has_defaults or f"{name} of {kind}" in REQUIRED
-            yield f"    {name}: {kind_of}" + ("" if is_given else " = library_default()")
+            is_given = is_answer or name in REQUIRED
+            yield f"    {name}: {kind_of}" + ("" if is_given else f" = {kind_of}(0)")
+
+
+class Key:
+    """A key of scene files, or a section of keys, as tools/scenes/KEYS.md tells it."""
+
+    def __init__(self):
+        self.unit, self.told, self.words = "", "", ""
+        self.inner, self.is_list = {}, False
+
+    def at(self, path):
+        """The key at a path below this one, made where it is new."""
+        key = self
+        for part in path.split("."):
+            key = key.inner.setdefault(part.removesuffix("[]"), Key())
+            key.is_list = key.is_list or part.endswith("[]")
+        return key
+
+
+def read_keys(text):
+    scene = Key()
+    for path, mark, meaning, unit, default, limits in re.findall(
+            r"^\| `([^`]+)`( \*)? \| (.*?) \| (.*?) \| (.*?) \| (.*?) \|$", text, flags=re.M):
+        key = scene.at(path)
+        key.unit, key.words = unit, limits
+        notes = [unit, limits, "required" if mark else default != "–" and f"default {default}"]
+        key.told = f"{meaning} ({'; '.join(filter(None, notes))})".replace("\\|", "|")
+    (shared,) = re.findall(r"^Parts, .*meaning: (.*)$", text, flags=re.M)
+    body, part = scene.at("objects"), scene.at("objects.parts")
+    for name in re.findall(r"`(\w+)", shared):
+        if not part.at(name).inner and name != "parts":
+            part.inner[name] = body.inner[name]
+    return scene
+
+
+def key_types(scene):
+    """keys.py: what a scene says, as dictionaries whose keys type checkers know."""
+    yield '"""The keys of scenes, as in scene files: each section is a dictionary.\n'
+    yield "Quantities are numbers in the first unit that is listed, or texts with a unit: 0.3 or \"30 cm\"."
+    yield '"""\n\nfrom __future__ import annotations\n'
+    yield "import os\nfrom typing import Any, Literal, Sequence, TypedDict, Union\n"
+    yield "Quantity = Union[float, str]\nFile = Union[str, os.PathLike[str]]"
+    written = set()
+
+    def class_name(path):
+        names = "".join(part.capitalize() for part in re.findall(r"[a-z]+", path))
+        return re.sub("^Objects", "Object", names).replace("Parts", "Part") or "Scene"
+
+    def kind_of(path, key):
+        kinds = []
+        if key.unit == "word":
+            kinds.append("Literal[" + ", ".join(f'"{word}"' for word in key.words.split(", ")) + "]")
+        elif key.unit == "whole number":
+            kinds.append("int")
+        elif key.unit == "true or false":
+            kinds.append("bool")
+        elif key.unit == "file name":
+            kinds.append("File")
+        elif key.unit in ("text", "name"):
+            kinds.append("str")
+        elif key.unit == "list":
+            return f"Sequence[{class_name(path.rpartition('.')[0])}]"
+        elif key.unit and "a list" in key.words:
+            return "Sequence[Quantity]"
+        elif key.unit:
+            kinds.append("Any" if "section" in key.unit or "list" in key.unit else "Quantity")
+        if key.inner:
+            section = class_name(path)
+            kinds.append(f"Sequence[{section}]" if key.is_list else section)
+        return kinds[0] if len(kinds) == 1 else f"Union[{', '.join(kinds)}]"
+
+    def write(path, key):
+        name = class_name(path)
+        if name in written:
+            return
+        written.add(name)
+        fields = {}
+        for part, inner in key.inner.items():
+            inside = f"{path}.{part}".lstrip(".")
+            if id(inner) in places:
+                inside = places[id(inner)]
+            places[id(inner)] = inside
+            if inner.inner:
+                yield from write(inside, inner)
+            fields[part] = (kind_of(inside, inner), inner.told)
+        base = "TypedDict"
+        reserved = {part: kind for part, (kind, _) in fields.items() if keyword.iskeyword(part)}
+        if reserved:
+            base = f"_{name}"
+            listed = ", ".join(f'"{part}": {kind}' for part, kind in reserved.items())
+            yield f'\n\n{base} = TypedDict("{base}", {{{listed}}}, total=False)'
+        yield f"\n\nclass {name}Keys({base}, total=False):" if name == "Scene" else (
+            f"\n\nclass {name}({base}, total=False):")
+        told = [f"`{path}`." if path else "All sections of a scene."]
+        for part, (_, meaning) in fields.items():
+            if meaning:
+                told += textwrap.wrap(f"{part}: {meaning}", 94, subsequent_indent="    ")
+        text = "\n".join(told + [""] * (len(told) > 1))
+        yield textwrap.indent(f'"""{text}"""', "    ", lambda line: line.strip()) + "\n"
+        yield from (f"    {part}: {kind}" for part, (kind, _) in fields.items()
+                    if part not in reserved)
+
+    places = {}
+    yield from write("", scene)
 
 
 def main():
     folder = pathlib.Path(sys.argv[1])
-    header = Header([pathlib.Path(name).read_text(encoding="utf-8") for name in sys.argv[2:]])
-    for name, write in {"_interface": interface, "enumerations": enumerations,
-                        "_classes": classes}.items():
-        text = "\n".join(write(header)) + "\n"
+    texts = [pathlib.Path(name).read_text(encoding="utf-8") for name in sys.argv[2:]]
+    header = Header(texts[1:])
+    for name, lines_of in {"_interface": interface(header), "enumerations": enumerations(header),
+                           "_classes": classes(header), "keys": key_types(read_keys(texts[0]))}.items():
+        text = "\n".join(lines_of) + "\n"
         (folder / f"{name}.py").write_text(text, encoding="utf-8")
 
 

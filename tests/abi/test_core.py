@@ -106,8 +106,9 @@ def test_the_installed_package_finds_its_library(installed):
     program = """\
 import pathlib, sonject
 from sonject import _library
-scene = sonject.Scene(geometry=sonject.Geometry(first_slant_range_m=40.0),
-                      objects=[sonject.Sphere(diameter_m=0.5)])
+geometry = {"row_spacing": 0.025, "column_spacing": 0.025, "first_slant_range": 40}
+scene = sonject.Scene(sonar={"frequency": 1e5, "bandwidth": 3e4, "altitude": 10},
+                      input={"geometry": geometry}, objects=[{"shape": "sphere", "diameter": 0.5}])
 print(sonject.version(), scene.object_count, pathlib.Path(_library.load()._name).parent)
 """
     variables = {name: value for name, value in os.environ.items() if name != "SONJECT_LIBRARY"}

@@ -42,10 +42,9 @@ def time_figure6(folder, swath):
 def time_injection():
     patch = numpy.random.default_rng(1).rayleigh(size=(512, 512)).astype(numpy.float32)
     scene = sonject.Scene(
-        sonar=sonject.Sonar(centre_frequency_hz=100e3, bandwidth_hz=30e3, altitude_m=10.0),
-        geometry=sonject.Geometry(row_spacing_m=0.025, column_spacing_m=0.025,
-                                  first_slant_range_m=43.6),
-        objects=[sonject.Capsule(length_m=2.3, diameter_m=0.3, heading_rad=0.6, burial_m=0.1)])
+        sonar={"frequency": 100e3, "bandwidth": 30e3, "altitude": 10},
+        input={"geometry": {"row_spacing": 0.025, "column_spacing": 0.025, "first_slant_range": 43.6}},
+        objects=[{"shape": "capsule", "length": 2.3, "diameter": 0.3, "heading": "0.6 rad", "burial": 0.1}])
     sonject.inject(patch, scene)
     taken = best_time(lambda _: sonject.inject(patch, scene))
     print(f"injection of a capsule into 512 x 512 pixels: {taken:.3f} s")

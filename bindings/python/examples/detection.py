@@ -28,65 +28,63 @@ SPACING = 0.05  # m, of rows and columns
 ROWS, COLUMNS = 96, 128  # of a chip
 SWATH_ROWS, SWATH_COLUMNS = 256, 384
 FIRST_RANGE, ALTITUDE = 40.0, 8.0  # m
+SONAR = {"frequency": "100 kHz", "bandwidth": "30 kHz", "altitude": ALTITUDE}
 CHIPS_A_SWATH = 32
 # Matched filters: target's lengths along the track and shadows' lengths in slant range, m.
 LENGTHS, SHADOWS, HIGHLIGHT = (0.6, 1.6), (0.8, 1.8), 0.4
 
 
+def geometry_from(first_range):
+    return {"row_spacing": SPACING, "column_spacing": SPACING, "first_slant_range": first_range}
+
+
 def make_swath(random):
     """Amplitudes of a synthetic seabed with ripples, sediments and speckle of its own."""
-    seabed = sonject.Synthetic(
-        rows=SWATH_ROWS,
-        columns=SWATH_COLUMNS,
-        seed=int(random.integers(2**32)),
-        speckle_shape=random.uniform(3.0, 30.0),
-        ripple_wavelength_m=random.uniform(0.3, 1.5),
-        ripple_contrast=random.uniform(0.0, 0.7),
-        ripple_heading_rad=random.uniform(0.0, numpy.pi),
-        patch_contrast_db=random.uniform(0.0, 6.0),
-    )
-    geometry = sonject.Geometry(
-        row_spacing_m=SPACING, column_spacing_m=SPACING, first_slant_range_m=FIRST_RANGE
-    )
-    sonar = sonject.Sonar(altitude_m=ALTITUDE)
-    with sonject.Scene(input=seabed, geometry=geometry, sonar=sonar) as scene:
+    seabed = {
+        "rows": SWATH_ROWS,
+        "columns": SWATH_COLUMNS,
+        "seed": random.integers(2**32),
+        "speckle_shape": random.uniform(3.0, 30.0),
+        "ripple_wavelength": random.uniform(0.3, 1.5),
+        "ripple_contrast": random.uniform(0.0, 0.7),
+        "ripple_heading": f"{random.uniform(0.0, numpy.pi)} rad",
+        "patch_contrast": random.uniform(0.0, 6.0),
+    }
+    swath = {"synthetic": seabed, "geometry": geometry_from(FIRST_RANGE)}
+    with sonject.Scene(input=swath, sonar=SONAR) as scene:
         return sonject.inject(None, scene).image
 
 
 def make_mine(random, place):
     """A cylinder or a truncated cone, as they lie about."""
     burial, heading = random.uniform(0.0, 0.3), random.uniform(0.0, 2 * numpy.pi)
-    placing = dict(position=place, burial_fraction=burial, heading_rad=heading, class_name="mine")
+    placing = {"position": place, "burial": {"fraction": burial}, "heading": f"{heading} rad",
+               "class": "mine"}
     if random.random() < 0.5:
-        return sonject.Cylinder(
-            length_m=random.uniform(1.4, 2.2), diameter_m=random.uniform(0.4, 0.6), **placing
-        )
-    return sonject.TruncatedCone(
-        diameter_m=random.uniform(0.8, 1.1), top_diameter_m=0.5, height_m=0.45, **placing
-    )
+        return {"shape": "cylinder", "length": random.uniform(1.4, 2.2),
+                "diameter": random.uniform(0.4, 0.6), **placing}
+    return {"shape": "truncated_cone", "diameter": random.uniform(0.8, 1.1), "top_diameter": 0.5,
+            "height": 0.45, **placing}
 
 
 def make_rock(random, place):
     """A boulder: two ellipsoids that overlap, of sizes that mines have too."""
-    material = sonject.Material.named("rock", roughness_m=1e-2)
 
     def block(scale):
         sizes = scale * random.uniform(0.5, 1.3, 3)
-        return sonject.Ellipsoid(
-            length_m=sizes[0], width_m=sizes[1], height_m=0.6 * sizes[2], material=material
-        )
+        return {"shape": "ellipsoid", "length": sizes[0], "width": sizes[1],
+                "height": 0.6 * sizes[2]}
 
     shift = random.uniform(-0.3, 0.3, 2)
-    return sonject.Parts(
-        [
-            sonject.Part(block(1.0)),
-            sonject.Part(block(0.7), along_m=shift[0], across_m=shift[1], up_m=0.1),
-        ],
-        position=place,
-        burial_fraction=random.uniform(0.0, 0.4),
-        heading_rad=random.uniform(0.0, 2 * numpy.pi),
-        class_name="rock",
-    )
+    return {
+        "parts": [block(1.0),
+                  block(0.7) | {"at": {"along": shift[0], "across": shift[1], "up": 0.1}}],
+        "material": {"name": "rock", "roughness": "1 cm"},
+        "position": place,
+        "burial": {"fraction": random.uniform(0.0, 0.4)},
+        "heading": f"{random.uniform(0.0, 2 * numpy.pi)} rad",
+        "class": "rock",
+    }
 
 
 def make_chip(random, swath, kind):
@@ -96,18 +94,13 @@ def make_chip(random, swath, kind):
     patch = swath[row : row + ROWS, column : column + COLUMNS]
     if kind == "nothing":
         return patch
-    place = sonject.Pixels(random.uniform(0.35, 0.65) * ROWS, random.uniform(0.3, 0.5) * COLUMNS)
+    place = {"row": random.uniform(0.35, 0.65) * ROWS, "column": random.uniform(0.3, 0.5) * COLUMNS}
     maker = make_mine if kind == "mine" else make_rock
-    geometry = sonject.Geometry(
-        row_spacing_m=SPACING,
-        column_spacing_m=SPACING,
-        first_slant_range_m=FIRST_RANGE + column * SPACING,
-    )
     with sonject.Scene(
-        sonar=sonject.Sonar(altitude_m=ALTITUDE),
-        geometry=geometry,
-        injection=sonject.Injection(seed=int(random.integers(2**32))),
-        seabed=sonject.Seabed(lambert=10 ** random.uniform(-3.0, -2.4)),
+        sonar=SONAR,
+        input={"geometry": geometry_from(FIRST_RANGE + column * SPACING)},
+        injection={"seed": random.integers(2**32)},
+        seabed={"lambert": 10 ** random.uniform(-3.0, -2.4)},
         objects=[maker(random, place)],
     ) as scene:
         return sonject.inject(patch, scene).image

@@ -40,8 +40,7 @@ def _candidates() -> Iterator[str]:
 
 
 def _check_version(library: ctypes.CDLL) -> None:
-    # The library's _init functions write as many bytes as its own structures have, so structures
-    # of another version could overflow ours: only the same major.minor will do.
+    # Structures and functions may differ between minor versions.
     text = library.sonject_version().decode("ascii")
     if tuple(int(part) for part in text.split(".")[:2]) != VERSION[:2]:
         ours = ".".join(str(part) for part in VERSION)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ctypes
 import enum
+import json
+import math
 import numbers
 import operator
 import os
@@ -101,6 +103,37 @@ def file_name(name: str, value: Any) -> bytes:
 
 def optional_file_name(name: str, value: Any) -> Optional[bytes]:
     return None if value is None else file_name(name, value)
+
+
+def channel_number(channel: Union[str, int, None]) -> int:
+    """A channel of an XTF file as the library counts them: port, starboard, its number there, or
+    None for the only one."""
+    words: dict[Any, int] = {
+        "port": s.CHANNEL_PORT, "starboard": s.CHANNEL_STARBOARD, None: s.CHANNEL_ONLY,
+    }
+    return words[channel] if channel in words else whole_number("channel", channel, 63)
+
+
+def key_text(name: str, value: Any) -> str:
+    """The value of a scene's key as JSON, which is YAML, too."""
+    return json.dumps(_plain(name, value), ensure_ascii=False, allow_nan=False)
+
+
+def _plain(name: str, value: Any) -> Any:
+    """Of dictionaries, lists, texts and numbers alone."""
+    if isinstance(value, numpy.generic) or isinstance(value, numpy.ndarray):
+        value = value.tolist()
+    if isinstance(value, (str, bool, int)):
+        return value
+    if isinstance(value, numbers.Real):
+        return float(value) if math.isfinite(value) else str(float(value))
+    if isinstance(value, os.PathLike):
+        return os.fsdecode(value)
+    if isinstance(value, Mapping):
+        return {str(key): _plain(f"{name}.{key}", each) for key, each in value.items()}
+    if isinstance(value, Iterable) and not isinstance(value, bytes):
+        return [_plain(f"{name}[{index}]", each) for index, each in enumerate(value)]
+    raise TypeError(f"{name} must be of texts, numbers, lists and dictionaries, not {value!r}")
 
 
 def initialised(kind: Type[AnyStructure]) -> AnyStructure:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import ctypes
+import itertools
 from typing import Any, Iterable, Optional, Tuple, Union
 
 import numpy
 
 from . import _interface as s
-from ._classes import ElementLayout
+from ._classes import ElementLayout, Geometry, Transfer
+from ._library import load
 from ._values import (
     Overrides,
     PathLike,
+    channel_number,
     choice,
     file_name,
     filled,
@@ -27,7 +30,6 @@ from ._values import (
 )
 from .context import Context, Progress, ProgressBridge, default_context
 from .enumerations import ConvertAxis, LabelFormat, RangeAxis, Samples, SeriesForm
-from .parameters import Geometry, Recording, Sonar, Synthetic, Transfer
 from .result import Array, Box, ContactMeasures, Measurement, Result
 from .scene import Scene
 
@@ -38,8 +40,8 @@ def inject(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Res
     patch: array of rows (track positions) x columns (slant ranges), linear amplitudes or complex
     pixels; its pixel (0, 0) lies where the scene's geometry begins. float32 and complex64 arrays
     with contiguous columns are read where they lie, other floating point arrays are converted to
-    these, anything else is refused. None where the scene's input is Uniform or Synthetic. The patch
-    is never changed.
+    these, anything else is refused. None where the scene's input makes the patch, uniform or synthetic. The
+    patch is never changed.
 
     progress: called with the finished fraction and the stage's name; a true answer cancels, and
     what it raises ends the call and is raised here.
@@ -217,7 +219,7 @@ def quicklook(
     array: Optional[str] = None,
     context: Optional[Context] = None,
 ) -> None:
-    """Draws an image file, a channel of an XTF file (see Recording), or the array of that name in
+    """Draws an image file, a channel of an XTF file ("port", "starboard", its number, None for the only one), or the array of that name in
     an HDF5 or MATLAB file, as a PNG.
 
     decibels: ends of the grey scale, None: chosen from the image; altitude_m, geometry: None for
@@ -234,7 +236,7 @@ def quicklook(
         image=file_name("image", image),
         picture=file_name("picture", picture),
         range_axis=choice("range_axis", RangeAxis, range_axis),
-        channel=Recording(image, channel).number(),
+        channel=channel_number(channel),
         array=None if array is None else plain_text("array", array),
         has_geometry=geometry is not None,
         has_transfer=transfer is not None,
@@ -276,7 +278,7 @@ def convert(
         input=file_name("source", source),
         output=file_name("output", output),
         into=optional_file_name("into", into),
-        channel=Recording(source, channel).number(),
+        channel=channel_number(channel),
         array=None if array is None else plain_text("array", array),
         magnitude=bool(magnitude),
         samples=choice("samples", Samples, samples),
@@ -286,23 +288,6 @@ def convert(
         **given(geometry=geometry, altitude_m=altitude_m),
     )
     context.call("sonject_convert", context, ctypes.byref(params))
-
-
-def write_seabed(
-    image: PathLike,
-    synthetic: Optional[Synthetic] = None,
-    geometry: Optional[Geometry] = None,
-    sonar: Optional[Sonar] = None,
-    context: Optional[Context] = None,
-) -> None:
-    """Writes a synthetic seabed with its geometry as metadata: .tif (float32) or .png (8 bit)."""
-    context = default_context() if context is None else context
-    params = filled(
-        s.sonject_seabed_file_params,
-        image=file_name("image", image),
-        **given(synthetic=synthetic, geometry=geometry, sonar=sonar),
-    )
-    context.call("sonject_seabed_write", context, ctypes.byref(params))
 
 
 def _mask(name: str, mask: Any, shape: tuple[int, ...]) -> Any:
@@ -389,7 +374,7 @@ def _find_layout(scene: Scene, rows: int, columns: int) -> ElementLayout:
 def element_layout(scene: Scene, shape: tuple[int, int] = (0, 0)) -> ElementLayout:
     """What element_series gives for a patch of this shape, rows x columns.
 
-    (0, 0): for the patch that the scene's input, Uniform or Synthetic, makes.
+    (0, 0): for the patch that the scene's input makes, uniform or synthetic.
     """
     largest = 2**31
     rows, columns = (whole_number("shape", size, largest) for size in shape)
@@ -436,3 +421,22 @@ def run_elements(
     scene.context.work(
         "sonject_elements_run", scene.context, scene, ctypes.byref(params), progress=progress
     )
+
+
+def absorption(
+    frequency_hz: float,
+    temperature_celsius: float,
+    salinity_permille: float = 35.0,
+    depth_m: float = 0.0,
+    ph: float = 8.0,
+) -> float:
+    """Absorption of sea water in dB/m after Francois and Garrison (1982).
+
+    200 Hz...1 MHz, -2...30 degrees Celsius, 0...40 per mille, 0...5000 m below the sea surface,
+    pH 7...9; NaN outside of these.
+    """
+    given_in_order = {
+        "frequency_hz": frequency_hz, "temperature_celsius": temperature_celsius,
+        "salinity_permille": salinity_permille, "depth_m": depth_m, "ph": ph,
+    }
+    return float(load().sonject_absorption(*itertools.starmap(real_number, given_in_order.items())))

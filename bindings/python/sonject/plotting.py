@@ -7,7 +7,7 @@ from typing import Any, Optional
 
 import numpy
 
-from .parameters import Geometry
+from ._classes import Geometry
 from .result import Result
 
 # Of the brightest thousandth to what is hardly seen beside it.

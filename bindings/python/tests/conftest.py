@@ -13,6 +13,13 @@ DOCUMENTS = pathlib.Path(__file__).resolve().parents[1]
 PACKAGE = pathlib.Path(sonject.__file__).resolve().parent  # in the folder of the build
 
 ROWS, COLUMNS = 96, 128
+# A proud sphere in the middle of a patch, which is 2.4 m x 3.2 m at about 26 m.
+GEOMETRY = {"row_spacing": 0.025, "column_spacing": 0.025, "first_slant_range": 25}
+KEYS = {
+    "sonar": {"frequency": 100e3, "bandwidth": 30e3, "altitude": 10},
+    "input": {"geometry": GEOMETRY},
+    "objects": [{"shape": "sphere", "diameter": 0.5, "name": "ball"}],
+}
 
 
 def pytest_sessionstart(session):
@@ -41,15 +48,9 @@ def amplitude_patch(complex_patch):
 
 @pytest.fixture
 def make_scene(context):
-    """A proud sphere in the middle of the patch, which is 2.4 m x 3.2 m at about 26 m."""
+    """The scene of KEYS with other sections."""
 
     def make(**changes):
-        settings = {
-            "geometry": sonject.Geometry(first_slant_range_m=25.0),
-            "objects": [sonject.Sphere(diameter_m=0.5, name="ball")],
-            "context": context,
-        }
-        settings.update(changes)
-        return sonject.Scene(**settings)
+        return sonject.Scene(**{"context": context, **KEYS, **changes})
 
     return make

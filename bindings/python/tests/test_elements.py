@@ -21,34 +21,26 @@ RADIUS = 0.03
 MIDDLE = (15, 22)
 PATCH = numpy.ones((ROWS, COLUMNS), numpy.float32)
 
-SMOOTH = dict(reflection=1.0, roughness_m=0.0, lambert=0.0)
-ROUGH = dict(reflection=0.0, lambert=0.2)
+SMOOTH = dict(reflection=1, roughness=0, lambert=0)
+ROUGH = dict(reflection=0, lambert=0.2)
 
 
-def sphere(material):
-    return sonject.Sphere(
-        diameter_m=2 * RADIUS,
-        material=sonject.Material(**material),
-        position=sonject.Pixels(*MIDDLE),
-        burial_m=-0.2,
-    )
-
-
-def scene_of(context, material, *, elements, side="port", lambert=1e-9, **injection):
-    scene = sonject.Scene(
-        geometry=sonject.Geometry(
-            row_spacing_m=SPACING,
-            column_spacing_m=SPACING,
-            first_slant_range_m=FIRST_RANGE,
-            side=sonject.Side[side.upper()],
-        ),
-        seabed=sonject.Seabed(lambert=lambert),
-        injection=sonject.Injection(**injection),
-        objects=[] if material is None else [sphere(material)],
+def scene_of(context, material, *, elements, side="port", lambert=1e-9, medium=None, **injection):
+    row, column = MIDDLE
+    sphere = dict(shape="sphere", diameter=2 * RADIUS, material=material, burial=-0.2,
+                  position={"row": row, "column": column})
+    geometry = dict(row_spacing=SPACING, column_spacing=SPACING, first_slant_range=FIRST_RANGE,
+                    side=side)
+    return sonject.Scene(
+        sonar={"frequency": 100e3, "bandwidth": 30e3, "altitude": 10},
+        input={"geometry": geometry},
+        seabed={"lambert": lambert},
+        medium=medium or {},
+        injection=injection,
+        elements=elements,
+        objects=[] if material is None else [sphere],
         context=context,
     )
-    scene.set_elements(elements)
-    return scene
 
 
 def beamform(series, layout, along_track, slant_range):
@@ -78,13 +70,11 @@ def decibels(ratio):
 
 
 ARRAYS = {
-    "one hydrophone": sonject.Elements(),
-    "towed behind the transmitter": sonject.Elements(
-        hydrophones=6, hydrophone_spacing_m=0.05, transmitter_offset_m=0.4, first_hydrophone_m=-0.3
-    ),
-    "points": sonject.Elements(
-        hydrophone_length_m=0.0, transmitter_length_m=0.0, hydrophones=2, hydrophone_spacing_m=0.04
-    ),
+    "one hydrophone": {},
+    "towed behind the transmitter": {"hydrophones": {"count": 6, "spacing": 0.05, "first": -0.3},
+                                     "transmitter": {"offset": 0.4}},
+    "points": {"hydrophones": {"count": 2, "spacing": 0.04, "length": 0},
+               "transmitter": {"length": 0}},
 }
 
 
@@ -138,9 +128,8 @@ def test_an_aperture_cut_at_the_target_leaves_less(context):
     the distance from the pixel: the side lobes' curvature and most of the change with frequency go.
     The array sees more aspects than the image takes."""
     wider, fine, margin = 1.5, 2, 40 * SPACING
-    array = sonject.Elements(
-        hydrophone_length_m=0.02, transmitter_length_m=0.02, ping_spacing_m=0.0125, pings=900
-    )
+    array = {"hydrophones": {"length": 0.02}, "transmitter": {"length": 0.02},
+             "pings": {"spacing": 0.0125, "count": 900}}
     scene = speckle_scene(context, array)
     formed = sonject.inject(PATCH, scene).field
     layout = sonject.element_layout(scene, PATCH.shape)
@@ -165,7 +154,7 @@ def test_a_rough_target_has_the_images_place_and_level(context):
     levels = []
     for seed in range(1, 7):
         scene = scene_of(
-            context, ROUGH, elements=sonject.Elements(), mode="resynthesise", seed=seed
+            context, ROUGH, elements={}, mode="resynthesise", seed=seed
         )
         formed = numpy.abs(sonject.inject(PATCH, scene).field)
         layout = sonject.element_layout(scene, PATCH.shape)
@@ -180,7 +169,7 @@ def test_a_coherent_seabed_is_heard_as_it_is_drawn(context):
     patch = random.standard_normal((2, ROWS, COLUMNS)).astype(numpy.float32)
     patch = patch[0] + 1j * patch[1]
     scene = speckle_scene(context, ARRAYS["one hydrophone"])
-    scene.set_seabed(sonject.Seabed(map="coherent"))
+    scene["seabed"] = {"map": "coherent"}
     formed = sonject.inject(patch, scene).field
     layout = sonject.element_layout(scene, patch.shape)
     image = beamform(sonject.element_series(patch, scene), layout, *axes())
@@ -191,8 +180,8 @@ def test_a_coherent_seabed_is_heard_as_it_is_drawn(context):
 
 def test_delays_are_those_of_the_processors_sound_speed(context):
     """The sound is 2 % slower than the processor assumes: targets lie and count as in its image."""
-    scene = scene_of(context, SMOOTH, elements=ARRAYS["one hydrophone"])
-    scene.set_medium(sonject.Medium(sound_speed_mps=1470.0, reference_sound_speed_mps=1500.0))
+    scene = scene_of(context, SMOOTH, elements=ARRAYS["one hydrophone"],
+                     medium={"sound_speed": 1470, "reference_sound_speed": 1500})
     layout = sonject.element_layout(scene, PATCH.shape)
     assert layout.sound_speed_mps == 1500.0
     formed = numpy.abs(sonject.inject(PATCH, scene).field)
@@ -202,11 +191,11 @@ def test_delays_are_those_of_the_processors_sound_speed(context):
 
 
 def few_pings(**more):
-    return sonject.Elements(pings=3, first_ping_m=0.1, ping_spacing_m=0.4, **more)
+    return {"pings": {"count": 3, "first": 0.1, "spacing": 0.4}, **more}
 
 
 def test_passband_is_baseband_on_its_carrier(context):
-    times = dict(first_time_s=0.0265, last_time_s=0.0285, sampling_rate_hz=400e3)
+    times = dict(first_time=0.0265, last_time=0.0285, sampling_rate=400e3)
     base = sonject.element_series(
         PATCH, scene_of(context, SMOOTH, elements=few_pings(**times))
     )
@@ -224,7 +213,7 @@ def test_a_chirp_compresses_to_the_echo(context):
     """A matched filter: peak at the echo's delay, with the chirp's energy times its level. The
     sphere's false echo, half a radius of sound behind, is 40 dB down."""
     duration = 2e-3
-    chirped = few_pings(pulse="chirp", chirp_duration_s=duration, sampling_rate_hz=120e3)
+    chirped = few_pings(pulse="chirp", chirp=duration, sampling_rate=120e3)
     scene = scene_of(context, SMOOTH, elements=chirped)
     series = sonject.element_series(PATCH, scene)
     layout = sonject.element_layout(scene, PATCH.shape)
@@ -233,9 +222,9 @@ def test_a_chirp_compresses_to_the_echo(context):
         context,
         SMOOTH,
         elements=few_pings(
-            sampling_rate_hz=rate,
-            first_time_s=layout.elements.first_time_s,
-            last_time_s=layout.elements.last_time_s,
+            sampling_rate=rate,
+            first_time=layout.elements.first_time_s,
+            last_time=layout.elements.last_time_s,
         ),
     )
     compressed = sonject.element_series(PATCH, compressed_scene)
@@ -271,12 +260,11 @@ def test_chains_of_interactions_are_heard(context):
 
 
 def test_aspects_beyond_the_limit_are_left_out(context):
-    far = dict(pings=2, first_ping_m=0.4, ping_spacing_m=6.0, first_time_s=0.026, last_time_s=0.032)
-    whole = sonject.element_series(
-        PATCH, scene_of(context, SMOOTH, elements=sonject.Elements(**far))
-    )
-    limited = sonject.element_series(
-        PATCH, scene_of(context, SMOOTH, elements=sonject.Elements(aspect_limit_rad=0.2, **far))
+    far = dict(pings={"count": 2, "first": 0.4, "spacing": 6}, first_time=0.026, last_time=0.032)
+    limit = {"aspect_limit": "0.2 rad"}
+    whole, limited = (
+        sonject.element_series(PATCH, scene_of(context, SMOOTH, elements=elements))
+        for elements in (far, far | limit)
     )
     assert numpy.array_equal(limited[0], whole[0]) and numpy.abs(whole[0]).max() > 0
     assert numpy.all(limited[1] == 0) and numpy.abs(whole[1]).max() > 0
@@ -285,19 +273,12 @@ def test_aspects_beyond_the_limit_are_left_out(context):
 def test_a_source_level_makes_pressures(context):
     """The sonar equation: SL - absorption on the way there and back, at the water's own sound speed,
     not the processor's; and sqrt(2) from rms to amplitude."""
-    array = dict(pings=1, hydrophones=2)
+    array = {"pings": {"count": 1}, "hydrophones": {"count": 2}}
     level, absorption, true_speed, assumed_speed = 217.0, 0.05, 1500.0, 1450.0
-    scenes = []
-    for elements in sonject.Elements(**array), sonject.Elements(source_level_db=level, **array):
-        scene = scene_of(context, SMOOTH, elements=elements)
-        scene.set_medium(
-            sonject.Medium(
-                sound_speed_mps=true_speed,
-                reference_sound_speed_mps=assumed_speed,
-                absorption_db_per_m=absorption,
-            )
-        )
-        scenes.append(scene)
+    medium = {"sound_speed": true_speed, "reference_sound_speed": assumed_speed,
+              "absorption": absorption}
+    scenes = [scene_of(context, SMOOTH, elements=elements, medium=medium)
+              for elements in (array, array | {"source_level": level})]
     ratio, pressure = (sonject.element_series(PATCH, scene) for scene in scenes)
     below = (FIRST_RANGE + MIDDLE[1] * SPACING) * true_speed / assumed_speed  # of the seabed there
     altitude, centre = 10.0, 0.2 + RADIUS
@@ -309,26 +290,23 @@ def test_a_source_level_makes_pressures(context):
 
 
 def test_what_is_wrong_is_told(context):
-    def refused(match, **elements):
-        scene = scene_of(context, SMOOTH, elements=sonject.Elements(**elements))
+    for match, elements, injection in (
+        ("sampling_rate: must be at least 30000 Hz for the sonar's band", {"sampling_rate": 29e3}, {}),
+        ("at least 230000 Hz for the sonar's band",
+         {"form": "passband", "sampling_rate": 229e3}, {}),
+        ("the window from 0.5 s to .* is empty", {"first_time": 0.5}, {}),
+        ("more than 2\\^22", {"first_time": 0, "last_time": 30}, {}),
+        ("use connect for the element level", {},
+         {"mode": "resynthesise", "estimator": "brute_force"}),
+    ):
         with pytest.raises(sonject.SonjectError, match=match) as caught:
+            scene = scene_of(context, SMOOTH, elements=elements)
+            scene["injection"] = injection
+            scene["sonar.transducer"] = 0.1
             sonject.element_series(PATCH, scene)
         assert caught.value.status is sonject.Status.ERROR_INPUT
-
-    refused("sampling_rate must be at least 30000 Hz, the bandwidth", sampling_rate_hz=29e3)
-    refused(
-        "at least 230000 Hz, twice the highest frequency", form="passband", sampling_rate_hz=229e3
-    )
-    refused("the window from 0.5 s to .* is empty", first_time_s=0.5)
-    refused("more than 2\\^22", first_time_s=0.0, last_time_s=30.0)
-    scene = scene_of(context, SMOOTH, elements=sonject.Elements())
-    with pytest.raises(sonject.SonjectError, match="hydrophones.count must be 1...65536, not 0"):
-        scene.set_elements(sonject.Elements(hydrophones=0))
-    scene.set_injection(
-        sonject.Injection(mode="resynthesise", estimator=sonject.Estimator.BRUTE_FORCE)
-    )
-    with pytest.raises(sonject.SonjectError, match="use connect for the element level"):
-        sonject.element_series(PATCH, scene)
+    with pytest.raises(sonject.SonjectError, match="hydrophones.count: must be 1...65536, not 0"):
+        scene_of(context, SMOOTH, elements={"hydrophones": {"count": 0}})
 
 
 def test_a_true_answer_cancels(context):
@@ -342,11 +320,11 @@ def test_a_true_answer_cancels(context):
 
 
 def test_the_files_are_the_series(context, tmp_path, monkeypatch):
-    scene = scene_of(context, SMOOTH, elements=sonject.Elements(ping_spacing_m=0.1))
-    scene.set_input(sonject.Uniform(ROWS, COLUMNS))
+    scene, other = (scene_of(context, SMOOTH, elements={"pings": {"spacing": spacing}})
+                    for spacing in (0.1, 0.2))
+    for each in scene, other:
+        each["input.uniform"] = {"rows": ROWS, "columns": COLUMNS}
     sonject.run_elements(scene, tmp_path)
-    other = scene_of(context, SMOOTH, elements=sonject.Elements(ping_spacing_m=0.2))
-    other.set_input(sonject.Uniform(ROWS, COLUMNS))
     with pytest.raises(sonject.SonjectError, match="differs in elements"):
         sonject.run_elements(other, tmp_path)
     sonject.run_elements(other, tmp_path, overwrites=True)

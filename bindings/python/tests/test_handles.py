@@ -7,7 +7,7 @@ import sys
 import pytest
 
 import sonject
-from conftest import PACKAGE
+from conftest import KEYS, PACKAGE
 
 
 def test_version_is_the_packages():
@@ -23,11 +23,7 @@ def test_devices_have_names_and_one_default(context):
 
 def test_closing_the_context_closes_what_it_made(amplitude_patch):
     context = sonject.Context()
-    scene = sonject.Scene(
-        geometry=sonject.Geometry(first_slant_range_m=25.0),
-        objects=[sonject.Sphere(diameter_m=0.5)],
-        context=context,
-    )
+    scene = sonject.Scene(**KEYS, context=context)
     result = sonject.inject(amplitude_patch, scene)
     image = result.image
     context.close()
@@ -68,8 +64,7 @@ def test_a_child_of_a_process_that_used_opencl_is_told_so(context, amplitude_pat
 
 INJECTION = (
     "import numpy, os, sonject\n"
-    "scene = sonject.Scene(geometry=sonject.Geometry(first_slant_range_m=25.0),\n"
-    "                      objects=[sonject.Sphere(diameter_m=0.5)])\n"
+    f"scene = sonject.Scene(**{KEYS})\n"
     "patch = numpy.ones((64, 64), numpy.float32)\n"
 )
 
@@ -107,16 +102,6 @@ def test_overrides_are_texts_or_a_mapping(context):
         sonject.Scene.read("scene.yaml", overrides="injection.seed=1", context=context)
 
 
-def test_objects_are_counted(make_scene):
-    scene = make_scene(objects=[])
-    assert scene.object_count == 0
-    assert scene.add(sonject.Plane(length_m=1, width_m=1)) == 0
-    assert scene.add(sonject.Cylinder(length_m=1, diameter_m=0.2)) == 1
-    assert scene.object_count == 2
-    with pytest.raises(TypeError, match="an Object is wanted"):
-        scene.add("sphere")
-
-
 def test_log_errors_are_raised(amplitude_patch, make_scene):
     lines = []
 
@@ -138,8 +123,7 @@ def test_the_log_tells_device_programs_and_noise_floor():
     answer = run_python(
         "import numpy, sonject\n"
         "with sonject.Context(log=print) as context:\n"
-        "    scene = sonject.Scene(geometry=sonject.Geometry(first_slant_range_m=25.0),\n"
-        "                          objects=[sonject.Sphere(diameter_m=0.5)], context=context)\n"
+        f"    scene = sonject.Scene(**{KEYS}, context=context)\n"
         "    patch = numpy.random.default_rng(1).rayleigh(size=(64, 64)).astype(numpy.float32)\n"
         "    sonject.inject(patch, scene)\n"
     )

@@ -10,7 +10,7 @@ import numpy
 import pytest
 
 import sonject
-from conftest import COLUMNS, ROWS
+from conftest import COLUMNS, GEOMETRY, ROWS
 from sonject import _library
 from sonject._values import library_pixels
 
@@ -71,8 +71,8 @@ def test_truth_and_statistics(patch, make_scene):
 
 
 def test_orders_make_up_the_energy(patch, make_scene):
-    injection = sonject.Injection(interactions=2, order_energies=True)
-    objects = [sonject.Sphere(diameter_m=0.5, material=sonject.Material.named("concrete"))]
+    injection = {"interactions": 2, "order_energies": True}
+    objects = [{"shape": "sphere", "diameter": 0.5, "material": "concrete"}]
     result = sonject.inject(patch, make_scene(injection=injection, objects=objects))
     first, second = result.order_energies
     assert first.dtype == second.dtype == numpy.float32
@@ -85,14 +85,14 @@ def test_orders_make_up_the_energy(patch, make_scene):
 
 def test_orders_are_kept_only_where_asked_for(amplitude_patch, make_scene):
     assert sonject.inject(amplitude_patch, make_scene()).order_energies == []
-    asked = make_scene(injection=sonject.Injection(order_energies=True))
+    asked = make_scene(injection={"order_energies": True})
     result = sonject.inject(amplitude_patch, asked)
     (first,) = result.order_energies
     assert numpy.array_equal(first, result.energy)
 
 
 def test_orders_that_are_not_there_are_refused(amplitude_patch, make_scene):
-    asked = make_scene(injection=sonject.Injection(order_energies=True))
+    asked = make_scene(injection={"order_energies": True})
     result = sonject.inject(amplitude_patch, asked)
     energy = numpy.empty((ROWS, COLUMNS), numpy.float32)
 
@@ -115,7 +115,7 @@ def test_orders_that_are_not_there_are_refused(amplitude_patch, make_scene):
 def test_the_same_input_gives_the_same_bits(patch, make_scene):
     first = sonject.inject(patch, make_scene())
     second = sonject.inject(patch, make_scene())
-    other = sonject.inject(patch, make_scene(injection=sonject.Injection(seed=2)))
+    other = sonject.inject(patch, make_scene(injection={"seed": 2}))
     for name in ("image", "field", "energy", "labels"):
         assert getattr(first, name).tobytes() == getattr(second, name).tobytes(), name
     assert first.image.tobytes() != other.image.tobytes()
@@ -196,7 +196,9 @@ def test_no_patch_is_an_error(make_scene):
 
 
 def test_a_uniform_input_needs_no_patch(make_scene):
-    result = sonject.inject(None, make_scene(input=sonject.Uniform(rows=ROWS, columns=COLUMNS)))
+    scene = make_scene()
+    scene["input.uniform"] = {"rows": ROWS, "columns": COLUMNS}
+    result = sonject.inject(None, scene)
     assert result.image.shape == (ROWS, COLUMNS)
 
 
@@ -271,13 +273,11 @@ def test_calls_release_the_global_lock():
 
 
 def test_levels_are_those_asked_for(amplitude_patch, make_scene):
-    for name, value in (("target_strength_db", -40.0), ("over_seabed_db", 11.0)):
-        scene = make_scene(objects=[sonject.Sphere(diameter_m=0.5, **{name: value})])
+    for name, value in (("target_strength", -40.0), ("over_seabed", 11.0)):
+        scene = make_scene()
+        scene["objects[0].level"] = {name: value}
         truth = sonject.inject(amplitude_patch, scene).objects[0]
-        assert getattr(truth, name) == pytest.approx(value, abs=1e-4)
-        assert truth.level_kind == sonject.LevelKind[name[:-3].upper()]
-    with pytest.raises(ValueError, match="exclude each other"):
-        sonject.Sphere(diameter_m=0.5, over_seabed_db=1.0, target_strength_db=1.0).to_structure()
+        assert getattr(truth, name + "_db") == pytest.approx(value, abs=1e-4)
 
 
 def test_measure_takes_what_inject_gives(amplitude_patch, make_scene):
@@ -293,40 +293,16 @@ def test_measure_takes_what_inject_gives(amplitude_patch, make_scene):
 
 TARGETS = pathlib.Path(__file__).resolve().parents[3] / "tools" / "targets"
 
+
 def test_targets_have_the_pose_that_is_given(amplitude_patch, make_scene):
-    target = sonject.Target(
-        TARGETS / "boulder.yaml", name="stone", position=sonject.Pixels(70, 100), over_seabed_db=9.0
-    )
-    scene = make_scene(objects=[target], input=sonject.Uniform(ROWS, COLUMNS))
+    scene = make_scene(input={"uniform": {"rows": ROWS, "columns": COLUMNS}, "geometry": GEOMETRY})
+    scene["objects[0]"] = {"target": TARGETS / "boulder.yaml", "name": "stone",
+                           "position": {"row": 70, "column": 100}, "level": {"over_seabed": 9}}
     assert "stone" in sonject.check(scene)
     truth = sonject.inject(amplitude_patch, scene).objects[0]
     assert truth.row == pytest.approx(70)
     assert 90 < truth.column < 100  # its centre is above the ground, so nearer
     assert truth.over_seabed_db == pytest.approx(9.0, abs=1e-4)
-
-
-def test_a_refused_target_leaves_the_scene(make_scene, tmp_path):
-    scene = make_scene()
-    bad = tmp_path / "bad.yaml"
-    bad.write_text(
-        "sonject_target: 1\nparts:\n  - {shape: sphere, diameter: 1}\n"
-        f"  - {{shape: mesh, mesh: {TARGETS}/rock.obj}}\n  - {{shape: sphere}}\n"
-    )
-    with pytest.raises(sonject.SonjectError, match=r"bad.yaml:5.*diameter"):
-        scene.add(sonject.Target(bad))
-    with pytest.raises(sonject.SonjectError, match="none.yaml: there is no such target file"):
-        scene.add(sonject.Target(tmp_path / "none.yaml"))
-    with pytest.raises(sonject.SonjectError, match="burial"):
-        scene.add(sonject.Target(TARGETS / "tyre.yaml", burial_fraction=2.0))
-    with pytest.raises(sonject.SonjectError, match="allow-user-shapes"):
-        scene.add(sonject.Target(TARGETS / "boulder_relief.yaml"))
-    with pytest.raises(ValueError, match="file's"):
-        sonject.Target(
-            TARGETS / "tyre.yaml", material=sonject.Material.named("rubber")
-        ).to_structure()
-    assert scene.object_count == 1
-    assert scene.add(sonject.Target(TARGETS / "tyre.yaml")) == 1
-    assert scene.add_mesh(TARGETS / "rock.obj") == 0
 
 
 def test_another_thread_cancels(amplitude_patch, make_scene):

@@ -5,16 +5,16 @@ import subprocess
 
 import pytest
 
-from conftest import PACKAGE
+from conftest import KEYS, PACKAGE
 
-PROGRAM = """
+PROGRAM = f"KEYS = {KEYS}" + """
 import matplotlib
 matplotlib.use("Agg")
 import numpy, sonject
 from sonject import plotting
 
-geometry = sonject.Geometry(first_slant_range_m=25.0)
-scene = sonject.Scene(geometry=geometry, objects=[sonject.Sphere(diameter_m=0.5)])
+geometry = sonject.Geometry(row_spacing_m=0.025, column_spacing_m=0.025, first_slant_range_m=25.0)
+scene = sonject.Scene(**KEYS)
 patch = numpy.random.default_rng(1).rayleigh(size=(96, 128)).astype(numpy.float32)
 patch[0, 0] = 0.0
 result = sonject.inject(patch, scene)

@@ -3,18 +3,16 @@
 import os
 
 import pytest
+
 import sonject
+from conftest import KEYS
 
 
 def make_scene(bandwidth_hz=30e3):
-    scene = sonject.Scene(
-        sonar=sonject.Sonar(bandwidth_hz=bandwidth_hz),
-        geometry=sonject.Geometry(
-            row_spacing_m=0.025, column_spacing_m=0.025, first_slant_range_m=25.0
-        ),
-        input=sonject.Uniform(40, 50),
-        objects=[sonject.Sphere(diameter_m=0.3)],
-    )
+    scene = sonject.Scene(**KEYS)
+    scene["sonar.bandwidth"] = bandwidth_hz
+    scene["input.uniform"] = {"rows": 40, "columns": 50}
+    scene["objects[0].diameter"] = 0.3
     return scene
 
 
@@ -25,8 +23,7 @@ def contents(folder):
 def test_a_scene_in_memory_is_formed_with_the_scene_at_hand(tmp_path):
     impulses = tmp_path / "impulses.sums"
     sonject.trace(make_scene(), impulses)
-    with pytest.raises(sonject.SonjectError, match="give the scene"):
-        sonject.form(impulses, tmp_path / "none")
+    assert sonject.form(impulses, tmp_path / "formed alone")  # the file keeps the scene's text
     for bandwidth_hz in (30e3, 29.9e3):  # the fine grids of both are the same
         scene = make_scene(bandwidth_hz)
         formed = tmp_path / f"formed {bandwidth_hz}"
@@ -34,6 +31,7 @@ def test_a_scene_in_memory_is_formed_with_the_scene_at_hand(tmp_path):
         assert not sonject.form(impulses, formed, scene=scene)
         assert sonject.run(scene, tmp_path / f"run {bandwidth_hz}")
         assert contents(formed) == contents(tmp_path / f"run {bandwidth_hz}")
+    assert contents(tmp_path / "formed alone") == contents(tmp_path / f"run {30e3}")
     # the bandwidth that came last was not the one of this folder's result
     folder = tmp_path / f"formed {30e3}"
     for write in (lambda **options: sonject.form(impulses, folder, scene=scene, **options),
@@ -42,7 +40,7 @@ def test_a_scene_in_memory_is_formed_with_the_scene_at_hand(tmp_path):
             write()
         assert write(overwrites=True)
     other = make_scene()
-    other.add(sonject.Sphere(diameter_m=0.2))
+    other["objects[1]"] = {"shape": "sphere", "diameter": 0.2}
     with pytest.raises(sonject.SonjectError, match="not what was traced"):
         sonject.form(impulses, tmp_path / "other", scene=other)
     with pytest.raises(sonject.SonjectError, match="takes no overrides"):
