@@ -45,19 +45,19 @@ static sonject_status make(sonject_context *context, const void *verb_options,
 {
     const struct campaign_options *options = verb_options;
     sonject_campaign *campaign = NULL;
-    sonject_campaign_read_params reading;
-    sonject_campaign_run_params params;
-    sonject_campaign_read_params_init(&reading);
-    sonject_campaign_run_params_init(&params);
-    reading.allows_user_shapes = options->allows_user_shapes;
+    const sonject_scene_read_params reading = {.struct_size = sizeof(reading),
+                                               .allows_user_shapes = options->allows_user_shapes,
+                                               .overrides = options->overrides.texts,
+                                               .override_count =
+                                                   (uint32_t)options->overrides.count};
+    sonject_campaign_run_params params = {.struct_size = sizeof(params)};
     shard_parse("campaign", options->shard, &params.shard_index, &params.shard_count);
     params.exit_after_s = options->exit_after.value;
     params.only_one = options->only.is_given;
     params.only = options->only.value;
     params.folder = options->stage.output;
     params.overwrites = options->overwrites;
-    sonject_status status = sonject_campaign_read(context, options->path, options->overrides.texts,
-                                                  options->overrides.count, &reading, &campaign);
+    sonject_status status = sonject_campaign_read(context, options->path, &reading, &campaign);
     if (status == SONJECT_OK)
         status = sonject_campaign_run(context, campaign, &params, progress_update, progress,
                                       was_finished);

@@ -23,12 +23,11 @@ static sonject_status describe(sonject_context *context, const struct check_opti
                                char **text)
 {
     sonject_scene *scene = NULL;
-    sonject_scene_read_params params;
-    sonject_scene_read_params_init(&params);
-    params.allows_user_shapes = options->allows_user_shapes;
-    sonject_status status =
-        sonject_scene_read_with(context, options->scene, options->overrides.texts,
-                                options->overrides.count, &params, &scene);
+    const sonject_scene_read_params params = {.struct_size = sizeof(params),
+                                              .allows_user_shapes = options->allows_user_shapes,
+                                              .overrides = options->overrides.texts,
+                                              .override_count = (uint32_t)options->overrides.count};
+    sonject_status status = sonject_scene_read(context, options->scene, &params, &scene);
     if (status == SONJECT_OK)
         status = sonject_check(context, scene, text);
     sonject_scene_release(&scene);

@@ -3,9 +3,8 @@
 
 #include <sonject/sonject.h>
 
-#include "channel_argument.h"
 #include "exit_code.h"
-#include "geometry_argument.h"
+#include "image_arguments.h"
 #include "message.h"
 #include "verbs.h"
 
@@ -58,29 +57,6 @@ static bool read_type(const struct convert_options *options, sonject_convert_par
     return true;
 }
 
-static bool read_geometry(const struct geometry_arguments *given, sonject_convert_params *params)
-{
-    uint32_t is_ground = 0;
-    if (!geometry_parse("convert", given, &is_ground, &params->altitude_m, &params->has_geometry,
-                        &params->geometry))
-        return false;
-    if (given->range_axis)
-        params->range_axis = is_ground ? SONJECT_CONVERT_AXIS_GROUND : SONJECT_CONVERT_AXIS_SLANT;
-    return true;
-}
-
-static bool fill(const struct convert_options *options, sonject_convert_params *params)
-{
-    sonject_convert_params_init(params);
-    params->input = options->input;
-    params->output = options->output;
-    params->into = options->into;
-    params->array = options->array;
-    params->magnitude = options->magnitude;
-    return (!options->channel || channel_parse("convert", options->channel, &params->channel)) &&
-           read_type(options, params) && read_geometry(&options->geometry, params);
-}
-
 static void tell(void *user, const char *line)
 {
     (void)user;
@@ -89,11 +65,23 @@ static void tell(void *user, const char *line)
 
 static int work(const void *verb_options)
 {
-    sonject_convert_params params;
-    if (!fill(verb_options, &params))
+    const struct convert_options *options = verb_options;
+    sonject_convert_params params = {.struct_size = sizeof(params)};
+    char geometry[IMAGE_TEXT];
+    uint32_t is_ground = 0;
+    params.input = options->input;
+    params.output = options->output;
+    params.into = options->into;
+    params.channel = options->channel;
+    params.array = options->array;
+    params.magnitude = options->magnitude;
+    if (!channel_check("convert", options->channel) || !read_type(options, &params) ||
+        !geometry_parse("convert", &options->geometry, &is_ground, &params.altitude_m, geometry,
+                        &params.geometry))
         return EXIT_CODE_USAGE;
-    sonject_context_params context_params;
-    sonject_context_params_init(&context_params);
+    if (options->geometry.range_axis)
+        params.range_axis = is_ground ? SONJECT_CONVERT_AXIS_GROUND : SONJECT_CONVERT_AXIS_SLANT;
+    sonject_context_params context_params = {.struct_size = sizeof(context_params)};
     context_params.log = tell;
     sonject_context *context = NULL;
     sonject_status status = sonject_context_create(&context_params, &context);

@@ -28,8 +28,7 @@ static sonject_status write_series(sonject_context *context, const void *verb_op
     (void)was_finished;
     const struct elements_options *options = verb_options;
     sonject_scene *scene = NULL;
-    sonject_run_params params;
-    sonject_run_params_init(&params);
+    sonject_run_params params = {.struct_size = sizeof(params)};
     params.folder = options->stage.output;
     params.overwrites = options->overwrites;
     sonject_status status = scene_arguments_read(context, &options->scene, &scene);

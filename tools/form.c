@@ -35,8 +35,7 @@ static sonject_status form(sonject_context *context, const void *verb_options,
                            struct progress *progress, int *was_finished)
 {
     const struct form_options *options = verb_options;
-    sonject_form_params params;
-    sonject_form_params_init(&params);
+    sonject_form_params params = {.struct_size = sizeof(params)};
     params.file = options->file;
     params.folder = options->stage.output;
     params.overwrites = options->overwrites;

@@ -8,10 +8,9 @@
 
 #include <sonject/sonject.h>
 
-#include "channel_argument.h"
 #include "exit_code.h"
+#include "image_arguments.h"
 #include "message.h"
-#include "transfer_argument.h"
 #include "verbs.h"
 
 struct measure_options {
@@ -104,30 +103,26 @@ static int print_measurement(const sonject_measurement *measurement, bool wants_
     return finish_output();
 }
 
-/* What is told of the image as text; each keeps what it holds where nothing is told. */
-static bool parse_image(const struct measure_options *options, int32_t *channel,
-                        sonject_transfer_params *transfer)
-{
-    return (!options->channel || channel_parse("measure", options->channel, channel)) &&
-           (!options->transfer || transfer_parse("measure", options->transfer, transfer));
-}
-
-static bool fill(const struct measure_options *options, sonject_measure_params *params)
+/* What is told of the image. text: for its transfer. */
+static bool fill(const struct measure_options *options, sonject_measure_params *params,
+                 char text[IMAGE_TEXT])
 {
     const bool has_band = options->before || options->influence;
-    sonject_measure_params_init(params);
+    memset(params, 0, sizeof(*params));
+    params->struct_size = sizeof(*params);
     params->image = options->image;
     params->before = options->before;
     params->influence = options->influence;
     params->labels = options->labels;
+    params->channel = options->channel;
+    params->array = options->array;
     if (options->wants_seam != has_band) {
         message(has_band ? "measure: --before and --influence are for --seam; give it too"
                          : "measure: --seam needs --before or --influence");
         return false;
     }
-    params->has_transfer = options->transfer != NULL;
-    params->array = options->array;
-    return parse_image(options, &params->channel, &params->transfer);
+    return channel_check("measure", options->channel) &&
+           transfer_parse("measure", options->transfer, text, &params->transfer);
 }
 
 static bool wants_contacts(const struct measure_options *options)
@@ -157,18 +152,16 @@ static bool box_parse(const char *text, sonject_box *box)
     return box->rows > 0 && box->columns > 0;
 }
 
-/* What contacts have in common; boxes: as many as there are options. */
-static bool fill_contacts(const struct measure_options *options,
-                          sonject_contact_file_params *params, sonject_box *boxes)
+/* boxes: as many as there are options. */
+static bool fill_contacts(const struct measure_options *options, sonject_measure_params *params,
+                          sonject_box *boxes)
 {
-    sonject_contact_file_params_init(params);
     for (size_t i = 0; i < options->boxes.count; i++)
         if (!box_parse(options->boxes.texts[i], &boxes[i])) {
             message("measure: --box takes ROW,COLUMN,ROWS,COLUMNS in pixels, not \"",
                     options->boxes.texts[i], "\"");
             return false;
         }
-    params->image = options->image;
     params->truth = options->truth;
     params->boxes = boxes;
     params->box_count = (uint32_t)options->boxes.count;
@@ -176,15 +169,12 @@ static bool fill_contacts(const struct measure_options *options,
     params->find_most = (uint32_t)options->find_most.value;
     params->row_spacing_m = options->row_spacing.value;
     params->column_spacing_m = options->column_spacing.value;
-    params->has_transfer = options->transfer != NULL;
-    params->array = options->array;
-    return parse_image(options, &params->channel, &params->transfer);
+    return true;
 }
 
 /* Contacts, or two sets of them; prints JSON. */
-static int work_on_contacts(const struct measure_options *options)
+static int work_on_contacts(const struct measure_options *options, sonject_measure_params *params)
 {
-    sonject_contact_file_params params;
     sonject_box *boxes = calloc(options->boxes.count + 1, sizeof *boxes);
     sonject_context *context = NULL;
     char *text = NULL;
@@ -192,13 +182,13 @@ static int work_on_contacts(const struct measure_options *options)
     if (!boxes) {
         message("measure: memory is out");
         code = EXIT_CODE_STORAGE;
-    } else if (options->compared || fill_contacts(options, &params, boxes)) {
+    } else if (options->compared || fill_contacts(options, params, boxes)) {
         sonject_status status = sonject_context_create(NULL, &context);
         if (status == SONJECT_OK)
             status = options->compared
                          ? sonject_compare_contacts(context, options->image, options->compared,
                                                     options->picture, &text)
-                         : sonject_measure_contacts(context, &params, &text);
+                         : sonject_measure_contacts(context, params, &text);
         if (text)
             puts(text);
         code = status == SONJECT_OK ? finish_output() : fail_with(context, status);
@@ -247,14 +237,13 @@ static int work(const void *verb_options)
         message(wrong);
         return EXIT_CODE_USAGE;
     }
-    if (options->compared || wants_contacts(options))
-        return work_on_contacts(options);
     sonject_measure_params params;
-    sonject_measurement measurement;
-    if (!fill(options, &params))
+    sonject_measurement measurement = {.struct_size = sizeof(measurement)};
+    char transfer[IMAGE_TEXT];
+    if (!fill(options, &params, transfer))
         return EXIT_CODE_USAGE;
-    memset(&measurement, 0, sizeof(measurement));
-    measurement.struct_size = sizeof(measurement);
+    if (options->compared || wants_contacts(options))
+        return work_on_contacts(options, &params);
     sonject_context *context = NULL;
     sonject_status status = sonject_context_create(NULL, &context);
     if (status == SONJECT_OK)

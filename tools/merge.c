@@ -33,8 +33,7 @@ static const struct argument arguments[] = {
 static sonject_status merge_run(sonject_context *context, const struct merge_options *options,
                                 struct progress *progress, int *was_finished)
 {
-    sonject_merge_params params;
-    sonject_merge_params_init(&params);
+    sonject_merge_params params = {.struct_size = sizeof(params)};
     params.folder = options->stage.output;
     params.allows_user_shapes = options->allows_user_shapes;
     labels_parse("merge", options->labels, &params.labels);

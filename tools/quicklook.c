@@ -4,12 +4,10 @@
 
 #include <sonject/sonject.h>
 
-#include "channel_argument.h"
 #include "exit_code.h"
-#include "geometry_argument.h"
+#include "image_arguments.h"
 #include "message.h"
 #include "number.h"
-#include "transfer_argument.h"
 #include "verbs.h"
 
 struct quicklook_options {
@@ -48,29 +46,20 @@ static bool read_decibels(const char *text, sonject_quicklook_params *params)
     return false;
 }
 
-static bool read_transfer(const char *text, sonject_quicklook_params *params)
-{
-    params->has_transfer = 1;
-    return transfer_parse("quicklook", text, &params->transfer);
-}
-
-static bool fill(const struct quicklook_options *options, sonject_quicklook_params *params)
-{
-    sonject_quicklook_params_init(params);
-    params->image = options->image;
-    params->picture = options->picture;
-    params->array = options->array;
-    return (!options->decibels || read_decibels(options->decibels, params)) &&
-           (!options->transfer || read_transfer(options->transfer, params)) &&
-           (!options->channel || channel_parse("quicklook", options->channel, &params->channel)) &&
-           geometry_parse("quicklook", &options->geometry, &params->range_axis, &params->altitude_m,
-                          &params->has_geometry, &params->geometry);
-}
-
 static int work(const void *verb_options)
 {
-    sonject_quicklook_params params;
-    if (!fill(verb_options, &params))
+    const struct quicklook_options *options = verb_options;
+    sonject_quicklook_params params = {.struct_size = sizeof(params)};
+    char geometry[IMAGE_TEXT], transfer[IMAGE_TEXT];
+    params.image = options->image;
+    params.picture = options->picture;
+    params.channel = options->channel;
+    params.array = options->array;
+    if ((options->decibels && !read_decibels(options->decibels, &params)) ||
+        !transfer_parse("quicklook", options->transfer, transfer, &params.transfer) ||
+        !channel_check("quicklook", options->channel) ||
+        !geometry_parse("quicklook", &options->geometry, &params.range_axis, &params.altitude_m,
+                        geometry, &params.geometry))
         return EXIT_CODE_USAGE;
     sonject_context *context = NULL;
     sonject_status status = sonject_context_create(NULL, &context);

@@ -46,8 +46,7 @@ static sonject_status inject_band(sonject_context *context, const struct run_opt
 {
     struct scene_arguments of_band = options->scene;
     sonject_scene *scene = NULL;
-    sonject_run_params params;
-    sonject_run_params_init(&params);
+    sonject_run_params params = {.struct_size = sizeof(params)};
     params.folder = folder;
     params.overwrites = options->overwrites;
     labels_parse("run", options->labels, &params.labels);

@@ -7,9 +7,11 @@
 sonject_status scene_arguments_bands(sonject_context *context,
                                      const struct scene_arguments *arguments, char **names)
 {
-    return sonject_scene_bands(context, arguments->path,
-                               (const char *const *)arguments->overrides.texts,
-                               arguments->overrides.count, names);
+    const sonject_scene_read_params params = {.struct_size = sizeof(params),
+                                              .overrides = arguments->overrides.texts,
+                                              .override_count =
+                                                  (uint32_t)arguments->overrides.count};
+    return sonject_scene_bands(context, arguments->path, &params, names);
 }
 
 sonject_status scene_arguments_read(sonject_context *context,
@@ -30,11 +32,11 @@ sonject_status scene_arguments_read(sonject_context *context,
         snprintf(band, sizeof(band), "band=%s", arguments->band);
         overrides[count++] = band;
     }
-    sonject_scene_read_params params;
-    sonject_scene_read_params_init(&params);
-    params.allows_user_shapes = arguments->allows_user_shapes;
-    const sonject_status status =
-        sonject_scene_read_with(context, arguments->path, overrides, count, &params, scene);
+    const sonject_scene_read_params params = {.struct_size = sizeof(params),
+                                              .allows_user_shapes = arguments->allows_user_shapes,
+                                              .overrides = overrides,
+                                              .override_count = (uint32_t)count};
+    const sonject_status status = sonject_scene_read(context, arguments->path, &params, scene);
     free(overrides);
     return status;
 }

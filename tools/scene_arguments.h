@@ -43,7 +43,7 @@ struct scene_arguments {
 sonject_status scene_arguments_bands(sonject_context *context,
                                      const struct scene_arguments *arguments, char **names);
 
-/* As sonject_scene_read_with. */
+/* As sonject_scene_read. */
 sonject_status scene_arguments_read(sonject_context *context,
                                     const struct scene_arguments *arguments, sonject_scene **scene);
 

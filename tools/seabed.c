@@ -1,5 +1,5 @@
 /* sonject seabed: a synthetic seabed image with its metadata. */
-#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include <sonject/sonject.h>
@@ -63,79 +63,102 @@ static const struct argument arguments[] = {
      MEMBER(is_complex)},
 };
 
-static void assign(const struct number_argument *number, double *target)
+/* Keys of a scene whose input is the seabed, and the options that set them. */
+static const struct {
+    const char *key;
+    size_t option; /* a struct number_argument */
+    double factor; /* of the key's unit */
+    const char *unit;
+} number_keys[] = {
+    {"input.geometry.row_spacing", MEMBER(row_spacing), 1.0, ""},
+    {"input.geometry.column_spacing", MEMBER(column_spacing), 1.0, ""},
+    {"input.geometry.first_slant_range", MEMBER(first_range), 1.0, ""},
+    {"sonar.altitude", MEMBER(altitude), 1.0, ""},
+    {"sonar.frequency", MEMBER(frequency), 1.0, ""},
+    {"sonar.bandwidth", MEMBER(bandwidth), 1.0, ""},
+    {"input.synthetic.texture_length", MEMBER(texture_length), 1.0, ""},
+    {"input.synthetic.ripple_wavelength", MEMBER(ripple_wavelength), 1.0, ""},
+    {"input.synthetic.ripple_contrast", MEMBER(ripple_contrast), 1.0, ""},
+    {"input.synthetic.ripple_heading", MEMBER(ripple_heading), 3.14159265358979323846 / 180,
+     " rad"},
+    {"input.synthetic.patch_contrast", MEMBER(patch_contrast), 1.0, ""},
+    {"input.synthetic.patch_length", MEMBER(patch_length), 1.0, ""},
+    {"input.synthetic.mean_amplitude", MEMBER(mean_amplitude), 1.0, ""},
+};
+
+static sonject_status set_whole(sonject_scene *scene, const char *key,
+                                const struct whole_argument *number)
 {
-    if (number->is_given)
-        *target = number->value;
+    char text[32];
+    snprintf(text, sizeof(text), "%llu", (unsigned long long)number->value);
+    return number->is_given ? sonject_scene_set(scene, key, text) : SONJECT_OK;
 }
 
-static bool assign_whole(const char *name, const struct whole_argument *number, uint32_t *target)
+static sonject_status set_keys(sonject_scene *scene, const struct seabed_options *options)
 {
-    if (!number->is_given)
-        return true;
-    if (number->value == 0 || number->value > UINT32_MAX) {
-        message("seabed: ", name, " lies outside 1...2^20");
-        return false;
+    char text[48];
+    sonject_status status = set_whole(scene, "input.synthetic.rows", &options->rows);
+    if (status == SONJECT_OK)
+        status = set_whole(scene, "input.synthetic.columns", &options->columns);
+    if (status == SONJECT_OK)
+        status = set_whole(scene, "input.synthetic.seed", &options->seed);
+    if (status == SONJECT_OK && options->speckle_shape)
+        status = sonject_scene_set(scene, "input.synthetic.speckle_shape", options->speckle_shape);
+    if (status == SONJECT_OK && options->is_complex)
+        status = sonject_scene_set(scene, "input.synthetic.complex", "true");
+    for (size_t i = 0; status == SONJECT_OK && i < sizeof(number_keys) / sizeof(number_keys[0]);
+         i++) {
+        struct number_argument number;
+        memcpy(&number, (const char *)options + number_keys[i].option, sizeof(number));
+        if (!number.is_given)
+            continue;
+        snprintf(text, sizeof(text), "%.17g%s", number.value * number_keys[i].factor,
+                 number_keys[i].unit);
+        status = sonject_scene_set(scene, number_keys[i].key, text);
     }
-    *target = (uint32_t)number->value;
-    return true;
+    return status;
 }
 
-static bool read_speckle_shape(const char *text, double *shape)
+static bool is_side(const char *name, const struct whole_argument *number)
 {
-    if (!text || number_parse(text, shape))
+    if (!number->is_given || (number->value > 0 && number->value <= UINT32_MAX))
         return true;
-    if (strcmp(text, "inf") == 0) {
-        *shape = (double)INFINITY;
+    message("seabed: ", name, " lies outside 1...2^20");
+    return false;
+}
+
+static bool is_shape(const char *text)
+{
+    double shape;
+    if (!text || strcmp(text, "inf") == 0 || number_parse(text, &shape))
         return true;
-    }
     message("seabed: --speckle-shape takes a number above 0 or inf, not \"", text, "\"");
     return false;
 }
 
-static bool fill_synthetic(const struct seabed_options *options,
-                           sonject_synthetic_params *synthetic)
-{
-    static const double radians_per_degree = 3.14159265358979323846 / 180;
-    synthetic->complex_pixels = options->is_complex;
-    if (options->seed.is_given)
-        synthetic->seed = options->seed.value;
-    assign(&options->texture_length, &synthetic->texture_length_m);
-    assign(&options->ripple_wavelength, &synthetic->ripple_wavelength_m);
-    assign(&options->ripple_contrast, &synthetic->ripple_contrast);
-    assign(&options->patch_contrast, &synthetic->patch_contrast_db);
-    assign(&options->patch_length, &synthetic->patch_length_m);
-    assign(&options->mean_amplitude, &synthetic->mean_amplitude);
-    if (options->ripple_heading.is_given)
-        synthetic->ripple_heading_rad = options->ripple_heading.value * radians_per_degree;
-    return assign_whole("--rows", &options->rows, &synthetic->rows) &&
-           assign_whole("--columns", &options->columns, &synthetic->columns) &&
-           read_speckle_shape(options->speckle_shape, &synthetic->speckle_shape);
-}
-
-static bool fill(const struct seabed_options *options, sonject_seabed_file_params *params)
-{
-    sonject_seabed_file_params_init(params);
-    params->image = options->image;
-    assign(&options->row_spacing, &params->geometry.row_spacing_m);
-    assign(&options->column_spacing, &params->geometry.column_spacing_m);
-    assign(&options->first_range, &params->geometry.first_slant_range_m);
-    assign(&options->altitude, &params->sonar.altitude_m);
-    assign(&options->frequency, &params->sonar.centre_frequency_hz);
-    assign(&options->bandwidth, &params->sonar.bandwidth_hz);
-    return fill_synthetic(options, &params->synthetic);
-}
-
 static int work(const void *verb_options)
 {
-    sonject_seabed_file_params params;
-    if (!fill(verb_options, &params))
+    const struct seabed_options *options = verb_options;
+    const sonject_scene_read_params params = {
+        .struct_size = sizeof(params),
+        .text = "sonject: 1\n"
+                "input: {synthetic: {rows: 400, columns: 400}, geometry: {row_spacing: 0.025,\n"
+                "  column_spacing: 0.025, first_slant_range: 44}}\n"
+                "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"};
+    if (!is_side("--rows", &options->rows) || !is_side("--columns", &options->columns) ||
+        !is_shape(options->speckle_shape))
         return EXIT_CODE_USAGE;
     sonject_context *context = NULL;
+    sonject_scene *scene = NULL;
     sonject_status status = sonject_context_create(NULL, &context);
     if (status == SONJECT_OK)
-        status = sonject_seabed_write(context, &params);
+        status = sonject_scene_read(context, NULL, &params, &scene);
+    if (status == SONJECT_OK)
+        status = set_keys(scene, options);
+    if (status == SONJECT_OK)
+        status = sonject_seabed_write(context, scene, options->image);
     int code = status == SONJECT_OK ? EXIT_CODE_DONE : fail_with(context, status);
+    sonject_scene_release(&scene);
     sonject_context_release(&context);
     return code;
 }

@@ -18,8 +18,7 @@ int stage_work(const struct stage_options *stage, stage_function function, const
     stop_watch();
     struct progress progress;
     progress_begin(&progress, stage->is_quiet);
-    sonject_context_params params;
-    sonject_context_params_init(&params);
+    sonject_context_params params = {.struct_size = sizeof(params)};
     params.device_name = stage->device;
     params.log = stage->is_quiet ? NULL : stage->is_verbose ? progress_log : log_notes;
     params.log_user = &progress;

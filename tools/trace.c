@@ -28,13 +28,10 @@ static sonject_status trace(sonject_context *context, const void *verb_options,
     (void)was_finished;
     const struct trace_options *options = verb_options;
     sonject_scene *scene = NULL;
-    sonject_trace_params params;
-    sonject_trace_params_init(&params);
-    params.file = options->stage.output;
-    params.export_file = options->export_file;
     sonject_status status = scene_arguments_read(context, &options->scene, &scene);
     if (status == SONJECT_OK)
-        status = sonject_trace(context, scene, &params, progress_update, progress);
+        status = sonject_trace(context, scene, options->stage.output, options->export_file,
+                               progress_update, progress);
     sonject_scene_release(&scene);
     return status;
 }

@@ -3,17 +3,14 @@
  *
  *     sonject::context context;
  *     sonject::scene scene(context);
- *     auto geometry = sonject::defaults<sonject_geometry_params>();
- *     geometry.first_slant_range_m = 44.0;
- *     scene.set(geometry);
- *     auto ball = sonject::defaults<sonject_object_params>();
- *     ball.shape = SONJECT_SHAPE_SPHERE;
- *     ball.diameter_m = 0.5;
- *     scene.add(ball);
+ *     scene.set("sonar", "{frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}");
+ *     scene.set("input.geometry", "{row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 44
+ * m}"); scene.set("objects[0]", "{shape: sphere, diameter: 0.5 m, material: steel}");
  *     sonject::result result = sonject::inject(scene, {pixels.data(), rows, columns});
  *     result.layer(SONJECT_LAYER_IMAGE, sonject::span<float>(pixels));
  *
- * Structures, units, ranges and meanings are those of <sonject/...>. What fails throws
+ * Keys are those of scene files (tools/scenes/KEYS.md); structures, units and meanings those of
+ * <sonject/...>. What fails throws
  * sonject::error (sonject::cancelled where a progress callback asked to stop) with the library's
  * message; nothing is then changed unless the C function says so. An object of these classes
  * belongs to one thread at a time, and must not outlive the context that it was made with; moving a
@@ -30,7 +27,6 @@
 #include <sonject/parameters.hpp>
 #include <sonject/progress.hpp>
 #include <sonject/scene.hpp>
-#include <sonject/scene_content.hpp>
 #include <sonject/sonject.h>
 #include <sonject/span.hpp>
 #include <sonject/stages.hpp>

@@ -15,13 +15,10 @@ SCALARS = {"char": "c_char", "double": "c_double", "float": "c_float", "int": "c
            "size_t": "c_size_t", "int32_t": "c_int32", "uint8_t": "c_uint8",
            "uint32_t": "c_uint32", "uint64_t": "c_uint64"}
 # Enumerations whose name in Python is not that in C.
-ENUMERATION_NAMES = {"sonject_injection_mode": "Mode", "sonject_labels": "LabelFormat",
-                     "sonject_transfer": "TransferKind"}
+ENUMERATION_NAMES = {"sonject_labels": "LabelFormat"}
 # Structures that are classes in Python: name and base, of _parameters.py.
 CLASSES = {
     "sonject_box": ("Box", "BoxBase"),
-    "sonject_geometry_params": ("Geometry", "Parameters"),
-    "sonject_transfer_params": ("Transfer", "Parameters"),
     "sonject_elements_params": ("ElementArray", "Answer"),
     "sonject_element_layout": ("ElementLayout", "ElementLayoutBase"),
     "sonject_device_info": ("Device", "Answer"),

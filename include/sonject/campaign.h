@@ -14,24 +14,16 @@ SONJECT_BEGIN_DECLARATIONS
 
 typedef struct sonject_campaign sonject_campaign;
 
-typedef struct sonject_campaign_read_params {
-    uint32_t struct_size;
-    uint32_t
-        allows_user_shapes; /* as in sonject_scene_read_params, of the base scene and targets */
-} sonject_campaign_read_params;
-
-SONJECT_API void sonject_campaign_read_params_init(sonject_campaign_read_params *params);
-
 /* Reads a campaign file and checks it: keys, distributions, swaths (which are read whole, once) and
- * scenes with the ends of all distributions. path: YAML file. overrides: count strings
- * "key.path=value" that replace or add keys of it. Relative file names are resolved against the
- * campaign file's folder, those that overrides give to scene and swaths against the working
- * directory. params may be NULL (all defaults). Message on failure: file:line:column, the key, what
- * is wrong. On success *campaign is the caller's, for sonject_campaign_release, before its context;
- * on failure NULL. Errors: ARGUMENT, INPUT, STORAGE, UNSUPPORTED, MEMORY. */
+ * scenes with the ends of all distributions. path: YAML file. params: overrides of its keys, and
+ * whether the base scene and targets may hold code; its text must be NULL. Relative file names are
+ * resolved against the campaign file's folder, those that overrides give to scene and swaths
+ * against the working directory. params may be NULL (all defaults). Message on failure:
+ * file:line:column, the key, what is wrong. On success *campaign is the caller's, for
+ * sonject_campaign_release, before its context; on failure NULL. Errors: ARGUMENT, INPUT, STORAGE,
+ * UNSUPPORTED, MEMORY. */
 SONJECT_API sonject_status sonject_campaign_read(sonject_context *context, const char *path,
-                                                 const char *const *overrides, size_t count,
-                                                 const sonject_campaign_read_params *params,
+                                                 const sonject_scene_read_params *params,
                                                  sonject_campaign **campaign);
 
 /* Releases the campaign and sets *campaign to NULL; NULL allowed. */
@@ -79,7 +71,8 @@ SONJECT_API sonject_status sonject_campaign_inject(sonject_context *context,
 
 typedef struct sonject_campaign_run_params {
     uint32_t struct_size;
-    uint32_t shard_index; /* 1...shard_count: only ids with id mod shard_count = shard_index - 1 */
+    uint32_t shard_index; /* 1...shard_count, 0 without: only ids with id mod shard_count =
+                             shard_index - 1 */
     uint32_t shard_count; /* 0 or 1: all images */
     uint32_t only_one;    /* 1: only the image `only`, anew if it is there */
     uint64_t only;        /* id */
@@ -89,8 +82,6 @@ typedef struct sonject_campaign_run_params {
                              shards; 0: they are refused */
     uint32_t reserved;    /* 0 */
 } sonject_campaign_run_params;
-
-SONJECT_API void sonject_campaign_run_params_init(sonject_campaign_run_params *params);
 
 /* Makes the images that are not in the folder yet, each published file by file with its record
  * last, and, if all were asked for, the documents of the whole. A run that was stopped, or killed,

@@ -20,6 +20,9 @@ typedef void (*sonject_log_function)(void *user, const char *line);
  * to cancel: the call then answers SONJECT_CANCELLED. */
 typedef int (*sonject_progress_function)(void *user, double fraction, const char *stage);
 
+/* All 0: the default device, silent. Of every structure of parameters: members that are 0 stand for
+ * their defaults, so that `sonject_run_params params = {.struct_size = sizeof params, .folder =
+ * "out"};` is complete. */
 typedef struct sonject_context_params {
     uint32_t struct_size; /* sizeof(sonject_context_params) */
     uint32_t reserved;    /* 0 */
@@ -35,9 +38,6 @@ typedef struct sonject_context_params {
                                     not start others */
     uint32_t reserved_end;       /* 0 */
 } sonject_context_params;
-
-/* Fills params with the defaults and its size. params: not NULL. */
-SONJECT_API void sonject_context_params_init(sonject_context_params *params);
 
 /* Makes a context. It opens no device yet: that happens at the first call that needs one, so that a
  * missing device is reported with a message. params may be NULL (all defaults); its strings are

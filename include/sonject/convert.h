@@ -6,7 +6,6 @@
 
 #include <sonject/context.h>
 #include <sonject/export.h>
-#include <sonject/image.h>
 #include <sonject/status.h>
 
 SONJECT_BEGIN_DECLARATIONS
@@ -28,25 +27,22 @@ typedef enum sonject_convert_axis {
 
 typedef struct sonject_convert_params {
     uint32_t struct_size;
-    int32_t channel;    /* of an XTF file, SONJECT_CHANNEL_ONLY by default */
+    uint32_t samples;   /* sonject_samples; another type needs a scale */
     const char *input;  /* any image, array or recording that runs read */
     const char *output; /* .tif, .png, .npy, .h5; with `into` any */
     const char *into;   /* NULL, or a file of the output's size and type: the output is a copy of it
                            with the input's samples, all else untouched; not of
                            OpenEXR, PGM, PFM and BMP, whose copies are TIFF */
-    const char *array;  /* in an HDF5 or MATLAB file of several, its name; NULL: the only one */
-    uint32_t samples;   /* sonject_samples; another type needs a scale */
-    uint32_t magnitude; /* 1: of complex samples their magnitude */
-    double scale;       /* with samples: new = old * scale, whole numbers rounded; > 0 */
-    uint32_t range_axis;   /* sonject_convert_axis; columns are resampled to equal steps of it, each
-                              from the nearest column of the input, at the input's column spacing */
-    uint32_t has_geometry; /* 1: geometry below is used instead of the input's own; refused where
-                              that is of ground range */
-    sonject_geometry_params geometry; /* of slant range */
-    double altitude_m;                /* 0: the input's own */
+    const char *channel; /* as of sonject_quicklook_params, like the other two */
+    const char *array;
+    const char *geometry; /* of slant range; NULL: the input's own. Refused where that is of ground
+                             range */
+    double altitude_m;    /* 0: the input's own */
+    double scale;         /* with samples: new = old * scale, whole numbers rounded; 0: 1 */
+    uint32_t magnitude;   /* 1: of complex samples their magnitude */
+    uint32_t range_axis;  /* sonject_convert_axis; columns are resampled to equal steps of it, each
+                             from the nearest column of the input, at the input's column spacing */
 } sonject_convert_params;
-
-SONJECT_API void sonject_convert_params_init(sonject_convert_params *params);
 
 /* Converts a file. Geometry that is known goes with the samples where the format keeps texts (all
  * but .npy; a line of the log tells of it). Channel and array are those of

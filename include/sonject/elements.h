@@ -37,8 +37,8 @@ typedef enum sonject_series_pulse {
                                       lowest to the highest frequency of the band */
 } sonject_series_pulse;
 
-/* Along-track positions are those of the image's geometry; offsets count from the array's origin,
- * along the track. NaN and, where it is no value of its own, 0 ask for the default. */
+/* The scene's section elements, with every default filled in. Along-track positions are those of
+ * the image's geometry; offsets count from the array's origin, along the track. */
 typedef struct sonject_elements_params {
     uint32_t struct_size;
     uint32_t form;        /* sonject_series_form */
@@ -64,21 +64,13 @@ typedef struct sonject_elements_params {
                                 the way to each echo abeam and back; NaN: ratios, see above */
 } sonject_elements_params;
 
-/* One hydrophone, complex baseband, compressed; 10 ms chirp; ratios of pressures; all else by
- * default. */
-SONJECT_API void sonject_elements_params_init(sonject_elements_params *elements);
-
-/* As the other functions sonject_scene_set_... */
-SONJECT_API sonject_status sonject_scene_set_elements(sonject_scene *scene,
-                                                      const sonject_elements_params *elements);
-
 /* Where and when a series is taken. */
 typedef struct sonject_element_layout {
     uint32_t struct_size;
     uint32_t reserved;
-    sonject_elements_params elements; /* with every default filled in */
-    uint64_t samples;                 /* of each hydrophone and ping */
-    double sound_speed_mps;           /* of the delays: the image processor's */
+    sonject_elements_params elements;
+    uint64_t samples;       /* of each hydrophone and ping */
+    double sound_speed_mps; /* of the delays: the image processor's */
     double centre_frequency_hz;
     double bandwidth_hz;
     double along_track_resolution_m; /* of the scene's images */

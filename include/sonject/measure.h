@@ -6,31 +6,40 @@
 
 #include <sonject/context.h>
 #include <sonject/export.h>
-#include <sonject/image.h>
 #include <sonject/result.h>
 #include <sonject/status.h>
 
 SONJECT_BEGIN_DECLARATIONS
 
-/* An image file, and what is told of it. All files have the image's size; of masks, any pixel that
- * is not 0 counts. */
+/* An image, and what is told of it: a file, or pixels in memory. Masks have the image's size; any
+ * pixel that is not 0 counts. */
 typedef struct sonject_measure_params {
     uint32_t struct_size;
-    uint32_t has_transfer; /* 1: transfer below is used; 0: plain amplitude */
-    const char *image;     /* one channel, or two: real and imaginary part */
-    const char *before;    /* the image before the injection; NULL: not told */
-    const char *influence; /* mask of what the injection changed; NULL: the pixels in which image
-                              and before differ, and those within 2 of them */
-    const char *labels;    /* mask of highlights and shadows; NULL: none */
-    sonject_transfer_params transfer;
-    int32_t channel; /* of image and before, where they are XTF; by default SONJECT_CHANNEL_ONLY */
-    uint32_t reserved;
-    const char *array; /* likewise, in HDF5 or MATLAB files of several, its name; NULL: the only one
-                        */
+    uint32_t box_count;
+    const char *image;            /* one channel, or two: real and imaginary part */
+    const sonject_pixels *pixels; /* instead of a file; linear */
+    const char *channel; /* of the file, as of sonject_quicklook_params, like the next two */
+    const char *array;
+    const char *transfer;
+    /* For sonject_measure; each may be NULL. */
+    const char *before;    /* file of the image before the injection */
+    const char *influence; /* file, mask of what the injection changed; NULL: the pixels in which
+                              image and before differ, and those within 2 of them */
+    const char *labels;    /* file, mask of highlights and shadows */
+    const uint8_t *influence_mask; /* the same of pixels: rows x columns bytes */
+    const uint8_t *labels_mask;
+    /* For sonject_measure_contacts. */
+    const char *truth;        /* a run's truth.json: its boxes, and the spacing that they tell; or
+                                 NULL */
+    const sonject_box *boxes; /* box_count of them, beside those of truth; where neither is given,
+                                 contacts are looked for in the whole image */
+    double row_spacing_m;     /* 0: unknown, or as truth tells */
+    double column_spacing_m;  /* of slant range */
+    double find_contrast_db;  /* a contact's brightest mean of 3 x 3 pixels is at least so far over
+                                 the seabed within some 64 pixels of it; 6...100, 0: 12 */
+    uint32_t find_most;       /* of the contacts that are looked for, the brightest; 0: 100 */
+    uint32_t reserved;        /* 0 */
 } sonject_measure_params;
-
-/* Plain amplitude, no masks. */
-SONJECT_API void sonject_measure_params_init(sonject_measure_params *params);
 
 /* What an image says of its seabed, and the seam of an injection. */
 typedef struct sonject_measurement {
@@ -57,30 +66,11 @@ typedef struct sonject_measurement {
     uint64_t background_patches;
 } sonject_measurement;
 
-/* Measures an image file. measurement->struct_size must be set. Errors: ARGUMENT, INPUT, STORAGE,
+/* Measures an image. measurement->struct_size must be set. Errors: ARGUMENT, INPUT, STORAGE,
  * MEMORY, UNSUPPORTED. */
 SONJECT_API sonject_status sonject_measure(sonject_context *context,
                                            const sonject_measure_params *params,
                                            sonject_measurement *measurement);
-
-/* The same of pixels in memory, linear. influence, labels: rows x columns bytes, packed, not 0
- * where they count; either may be NULL. Errors: ARGUMENT, INPUT, MEMORY. */
-SONJECT_API sonject_status sonject_measure_pixels(sonject_context *context,
-                                                  const sonject_pixels *pixels,
-                                                  const uint8_t *influence, const uint8_t *labels,
-                                                  sonject_measurement *measurement);
-
-/* Where a contact is in an image. */
-typedef struct sonject_contact_params {
-    uint32_t struct_size;
-    uint32_t reserved;
-    sonject_box box; /* pixels of the image, around highlight and shadow with some seabed; rows 0:
-                        the whole image, of which the highlight of most energy is taken */
-    double row_spacing_m;    /* 0: unknown, and lengths are known in pixels alone */
-    double column_spacing_m; /* of slant range */
-} sonject_contact_params;
-
-SONJECT_API void sonject_contact_params_init(sonject_contact_params *params);
 
 /* One ruler for measured and injected contacts: what truth (sonject_object_truth, truth.json) tells
  * by these names it has read off the object's expected energies, on plain seabed and without
@@ -168,37 +158,18 @@ typedef struct sonject_contact_measures {
     sonject_box box; /* that was measured */
 } sonject_contact_measures;
 
-/* Measures a contact in pixels in memory, linear. measures->struct_size must be set. Errors:
- * ARGUMENT, INPUT (box outside the image, a dark image), MEMORY. */
+/* Measures a contact in pixels in memory, linear. box: pixels of the image, around highlight and
+ * shadow with some seabed; NULL: the whole image, of which the highlight of most energy is taken.
+ * Spacings, m: 0 where they are unknown, and lengths are known in pixels alone.
+ * measures->struct_size must be set. Errors: ARGUMENT, INPUT (box outside the image, a dark image),
+ * MEMORY. */
 SONJECT_API sonject_status sonject_measure_contact(sonject_context *context,
                                                    const sonject_pixels *pixels,
-                                                   const sonject_contact_params *params,
+                                                   const sonject_box *box, double row_spacing_m,
+                                                   double column_spacing_m,
                                                    sonject_contact_measures *measures);
 
-/* An image file and its contacts. */
-typedef struct sonject_contact_file_params {
-    uint32_t struct_size;
-    uint32_t has_transfer; /* 1: transfer below is used; 0: plain amplitude */
-    const char *image;
-    const char *truth; /* a run's truth.json: its boxes, and the spacing that they tell; or NULL
-                        */
-    const sonject_box *boxes; /* box_count of them, beside those of truth; where neither is given,
-                                 contacts are looked for in the whole image */
-    uint32_t box_count;
-    uint32_t find_most;   /* of the contacts that are looked for, the brightest; 0: 100 */
-    double row_spacing_m; /* 0: unknown, or as truth tells */
-    double column_spacing_m;
-    sonject_transfer_params transfer;
-    double find_contrast_db; /* a contact's brightest mean of 3 x 3 pixels is at least so far over
-                                the seabed within some 64 pixels of it; 6...100, 0: 12 */
-    int32_t channel;         /* of an XTF file, SONJECT_CHANNEL_ONLY by default */
-    uint32_t reserved;
-    const char *array; /* in an HDF5 or MATLAB file of several, its name; NULL: the only one */
-} sonject_contact_file_params;
-
-SONJECT_API void sonject_contact_file_params_init(sonject_contact_file_params *params);
-
-/* Measures contacts of an image file. *text gets JSON, {"contacts": [...], "left_off": N} with the
+/* Measures contacts of an image. *text gets JSON, {"contacts": [...], "left_off": N} with the
  * members of sonject_contact_measures (null where they are not known), the caller's for
  * sonject_text_release; NULL on failure. Contacts are those of boxes, then of truth, in their
  * order. Ones that were looked for come the brightest first; none touches the box of a brighter
@@ -206,7 +177,7 @@ SONJECT_API void sonject_contact_file_params_init(sonject_contact_file_params *p
  * column of a sidescan image and the first return at its end hold none. N tells how many more areas
  * are bright enough. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED. */
 SONJECT_API sonject_status sonject_measure_contacts(sonject_context *context,
-                                                    const sonject_contact_file_params *params,
+                                                    const sonject_measure_params *params,
                                                     char **text);
 
 /* Compares two sets of contacts, files as sonject_measure_contacts writes them (also several such

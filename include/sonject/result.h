@@ -87,6 +87,15 @@ typedef struct sonject_box {
     uint64_t columns;
 } sonject_box;
 
+/* What sets the level of an object's echo. The other two scale all that the object returns by one
+ * factor, so that the largest expected energy of its pixels, speckle averaged out, becomes as told.
+ */
+typedef enum sonject_level_kind {
+    SONJECT_LEVEL_PHYSICAL = 0,        /* its shape and material, against the seabed's strength */
+    SONJECT_LEVEL_TARGET_STRENGTH = 1, /* re 1 m^2 */
+    SONJECT_LEVEL_OVER_SEABED = 2      /* over the local mean seabed */
+} sonject_level_kind;
+
 /* Where an object came to lie in the patch, and how it shows. */
 typedef struct sonject_object_truth {
     uint32_t struct_size;

@@ -29,8 +29,6 @@ typedef struct sonject_run_params {
     uint32_t reserved;    /* 0 */
 } sonject_run_params;
 
-SONJECT_API void sonject_run_params_init(sonject_run_params *params);
-
 /* With shard_count K this call traces one of K parts of all rays and leaves its tallies in
  * params->folder/work, no results; other processes, on other machines too, do the other parts in
  * the same folder, in any order, and sonject_merge makes the result of them, byte for byte that of
@@ -64,8 +62,6 @@ typedef struct sonject_merge_params {
     uint32_t labels;             /* as of sonject_run_params */
     uint32_t reserved;           /* 0 */
 } sonject_merge_params;
-
-SONJECT_API void sonject_merge_params_init(sonject_merge_params *params);
 
 /* Makes the result of all shards of a run, and removes their tallies once it is written. scene: the
  * one that was traced; NULL: that whose text the shards keep (the files that it names are read
@@ -106,19 +102,14 @@ typedef struct sonject_quicklook_params {
     const char *picture; /* PNG to write */
     double minimum_db;   /* of the grey scale, below maximum_db; both 0: chosen from the image */
     double maximum_db;
-    double altitude_m;     /* 0: from the image's metadata */
-    uint32_t has_geometry; /* 1: geometry below is used; 0: the image's metadata, and without any
-                              the axes count pixels */
-    uint32_t has_transfer; /* 1: transfer below is used; 0: plain amplitude */
-    sonject_geometry_params geometry; /* of slant range */
-    sonject_transfer_params transfer;
-    int32_t channel; /* of an XTF file, SONJECT_CHANNEL_ONLY by default; its metadata are those of
-                        all its pings */
-    uint32_t reserved;
-    const char *array; /* in an HDF5 or MATLAB file; NULL: the only one */
+    double altitude_m; /* 0: from the image's metadata */
+    /* As in the section input of scenes; each may be NULL. */
+    const char *channel;  /* "port", "starboard" or a number, of an XTF file of several */
+    const char *array;    /* its name in an HDF5 or MATLAB file of several */
+    const char *transfer; /* "{kind: decibel, parameter: 0.5}"; NULL: plain amplitude */
+    const char *geometry; /* "{row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 40 m}";
+                             NULL: the image's metadata, and without any the axes count pixels */
 } sonject_quicklook_params;
-
-SONJECT_API void sonject_quicklook_params_init(sonject_quicklook_params *params);
 
 /* Draws an image file with axes in metres. Errors: ARGUMENT, INPUT (such as an axis of ground range
  * for an image that has it already, or does not tell where its columns lie), STORAGE, MEMORY,
@@ -126,22 +117,11 @@ SONJECT_API void sonject_quicklook_params_init(sonject_quicklook_params *params)
 SONJECT_API sonject_status sonject_quicklook(sonject_context *context,
                                              const sonject_quicklook_params *params);
 
-typedef struct sonject_seabed_file_params {
-    uint32_t struct_size;
-    uint32_t reserved;
-    const char *image; /* file to write: .tif (float32) or .png (8 bit, amplitude 1 = 255) */
-    sonject_synthetic_params synthetic;
-    sonject_geometry_params geometry;
-    sonject_sonar_params sonar; /* resolution and metadata */
-} sonject_seabed_file_params;
-
-/* The defaults of each structure, and column 0 at 44 m slant range. */
-SONJECT_API void sonject_seabed_file_params_init(sonject_seabed_file_params *params);
-
-/* Writes a synthetic seabed with its geometry as metadata. Errors: ARGUMENT, INPUT, STORAGE,
- * MEMORY, UNSUPPORTED. */
+/* Writes the synthetic seabed that the scene's input is (input.synthetic) with its geometry as
+ * metadata. path: .tif (float32) or .png (8 bit, amplitude 1 = 255). Errors: ARGUMENT, INPUT,
+ * STORAGE, MEMORY, UNSUPPORTED. */
 SONJECT_API sonject_status sonject_seabed_write(sonject_context *context,
-                                                const sonject_seabed_file_params *params);
+                                                const sonject_scene *scene, const char *path);
 
 SONJECT_END_DECLARATIONS
 

@@ -12,23 +12,14 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
-typedef struct sonject_trace_params {
-    uint32_t struct_size;
-    uint32_t reserved;
-    const char *file;        /* to write, for sonject_form */
-    const char *export_file; /* NULL, or the same as arrays of HDF5, described in
-                                lib/inject/impulses.h; builds without it: UNSUPPORTED */
-} sonject_trace_params;
-
-SONJECT_API void sonject_trace_params_init(sonject_trace_params *params);
-
-/* Traces the scene and writes its impulses to params->file, which appears whole or not at all, as
- * does the export. The
- * file keeps the text of a scene that was read from a file, and the names of the files that it
- * names, but not these: they, and the input image, are needed again. Errors: ARGUMENT, INPUT,
- * DEVICE, STORAGE, MEMORY, UNSUPPORTED, CANCELLED. */
+/* Traces the scene and writes its impulses to the file, for sonject_form, and, where it is not
+ * NULL, to export_file as arrays of HDF5, described in lib/inject/impulses.h (builds without
+ * it: UNSUPPORTED). Each appears whole or not at all. The file keeps the scene's text, and the
+ * names of the files that it names, but not these: they, and the input image, are needed again; of
+ * a scene with tables in memory it keeps no text. Errors: ARGUMENT, INPUT, DEVICE, STORAGE, MEMORY,
+ * UNSUPPORTED, CANCELLED. */
 SONJECT_API sonject_status sonject_trace(sonject_context *context, const sonject_scene *scene,
-                                         const sonject_trace_params *params,
+                                         const char *file, const char *export_file,
                                          sonject_progress_function progress, void *user);
 
 typedef struct sonject_form_params {
@@ -46,8 +37,6 @@ typedef struct sonject_form_params {
     uint32_t overwrites;          /* as of sonject_run_params */
     uint32_t reserved;            /* 0 */
 } sonject_form_params;
-
-SONJECT_API void sonject_form_params_init(sonject_form_params *params);
 
 /* Forms the image of the scene that was traced, or of `scene`, which then may differ in the sonar's
  * bandwidth, resolution and response (NULL: the one whose text the file keeps), and writes into

@@ -2,16 +2,10 @@
 #ifndef SONJECT_USER_SHAPE_H
 #define SONJECT_USER_SHAPE_H
 
-#include <stdint.h>
+#define SONJECT_USER_PARAMETERS_CAPACITY 16 /* numbers that are handed to the code, as float */
 
-#include <sonject/export.h>
-
-SONJECT_BEGIN_DECLARATIONS
-
-#define SONJECT_USER_PARAMETERS_CAPACITY 16
-
-/* A shape given by two functions in OpenCL C 1.2, which are compiled as a translation unit of their
- * own and linked to the program that traces:
+/* A shape given by two functions in OpenCL C 1.2 (objects[].user of a scene), which are compiled as
+ * a translation unit of their own and linked to the program that traces:
  *
  *   float shape_distance(float3 point, float3 direction, float nearest, const float *parameters)
  *     {distance in m of the first surface beyond `nearest` on the ray point + distance * direction,
@@ -40,25 +34,5 @@ SONJECT_BEGIN_DECLARATIONS
  * The code is a program: it runs with the rights of the process (on a CPU it can do what the
  * process can), and one that does not come to an end cannot be stopped, it holds the device until
  * the process ends. Take it from nobody whose programs you would not run. */
-typedef struct sonject_user_shape_params {
-    uint32_t struct_size;
-    uint32_t is_open;         /* 1: a surface without inside: the normal turns to the side that the
-                                 ray comes from; 0: the closed surface of a solid */
-    const char *name;         /* of the code, for messages ("name:line: what"): 1 to 255 bytes */
-    const char *code;         /* at most 64 KiB */
-    double bounding_radius_m; /* of a sphere about the origin that holds the shape, above 0 */
-    double half_length_m;     /* half sizes of a box about the origin that holds it too, along x, */
-    double half_width_m;      /* y and z; 0: the bounding radius. An object rests on the seabed */
-    double half_height_m;     /* with what box and sphere have in common */
-    uint32_t first_line;      /* number of the code's first line in messages; 0: 1 */
-    uint32_t parameter_count; /* of parameters that count */
-    double parameters[SONJECT_USER_PARAMETERS_CAPACITY]; /* handed to the code as float, the others
-                                                            as 0 */
-} sonject_user_shape_params;
-
-/* A closed solid without code, name and radius, which have no defaults. */
-SONJECT_API void sonject_user_shape_params_init(sonject_user_shape_params *shape);
-
-SONJECT_END_DECLARATIONS
 
 #endif

@@ -35,33 +35,24 @@ static sonject_status open_campaign(struct sonject_campaign *campaign, const cha
     return campaign_check(campaign);
 }
 
-void sonject_campaign_read_params_init(sonject_campaign_read_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-}
-
 sonject_status sonject_campaign_read(sonject_context *context, const char *path,
-                                     const char *const *overrides, size_t count,
-                                     const sonject_campaign_read_params *params,
+                                     const sonject_scene_read_params *params,
                                      sonject_campaign **campaign)
 {
+    sonject_scene_read_params taken;
     if (!context || !campaign)
         return SONJECT_ERROR_ARGUMENT;
     *campaign = NULL;
     context_begin_call(context);
-    sonject_campaign_read_params taken;
-    sonject_campaign_read_params_init(&taken);
-    sonject_status status = SONJECT_OK;
-    if (params)
-        CHECK(params_take(&context->report, &taken, sizeof taken, params, sizeof taken,
-                          "campaign read parameters"));
-    CHECK(check_overrides(&context->report, path, overrides, count));
+    struct report *report = &context->report;
+    CHECK(scene_read_params_take(report, path, params, &taken));
+    if (taken.text)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT, "a campaign is read from its file");
     struct sonject_campaign *made = allocate_array(1, sizeof *made);
-    CHECK_MEMORY(&context->report, made, "a campaign");
-    made->report = &context->report;
+    CHECK_MEMORY(report, made, "a campaign");
+    made->report = report;
     made->allows_user_shapes = taken.allows_user_shapes != 0;
-    status = open_campaign(made, path, overrides, count);
+    const sonject_status status = open_campaign(made, path, taken.overrides, taken.override_count);
     if (status != SONJECT_OK)
         sonject_campaign_release(&made);
     *campaign = made;
@@ -139,11 +130,16 @@ sonject_status sonject_campaign_scene(sonject_context *context, sonject_campaign
     if (!campaign)
         return null_argument(&context->report, "campaign");
     sonject_status status = campaign_check_id(campaign, id);
-    THEN(status, sonject_scene_create(context, scene));
+    if (status == SONJECT_OK) {
+        *scene = allocate_array(1, sizeof **scene);
+        status = *scene ? SONJECT_OK : report_out_of_memory(&context->report, "a scene");
+    }
     if (status != SONJECT_OK)
         return status;
+    (*scene)->report = &context->report;
+    (*scene)->is_read = true;
+    scene_init(&(*scene)->scene);
     status = image_plan_make(campaign->report, &campaign->campaign, id, &plan);
-    (*scene)->source.takes_pixels = false;
     THEN(status, campaign_read_scene(campaign, &plan, &(*scene)->scene));
     image_plan_clear(&plan);
     if (status != SONJECT_OK)
@@ -182,21 +178,13 @@ sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaig
     return status;
 }
 
-void sonject_campaign_run_params_init(sonject_campaign_run_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-    params->shard_index = 1;
-    params->shard_count = 1;
-}
-
 static sonject_status check_run_params(const struct sonject_campaign *campaign,
                                        sonject_campaign_run_params *params)
 {
     if (!params->folder || !params->folder[0])
         return null_argument(campaign->report, "folder");
-    if (params->shard_count == 0)
-        params->shard_count = 1;
+    if (params->shard_count == 0 && params->shard_index == 0)
+        params->shard_index = params->shard_count = 1;
     if (params->shard_index == 0 || params->shard_index > params->shard_count)
         return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
                               "shard_index must be from 1 to shard_count, %u",
@@ -223,7 +211,6 @@ sonject_status sonject_campaign_run(sonject_context *context, sonject_campaign *
     if (!campaign)
         return null_argument(&context->report, "campaign");
     sonject_campaign_run_params taken;
-    sonject_campaign_run_params_init(&taken);
     CHECK(params_take(&context->report, &taken, sizeof taken, params,
                       offsetof(sonject_campaign_run_params, exit_after_s),
                       "campaign run parameters"));

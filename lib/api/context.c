@@ -79,14 +79,15 @@ sonject_status params_take(struct report *report, void *to, size_t to_size, cons
     const size_t size = size_of(from);
     if (size < smallest)
         return report_failure(report, SONJECT_ERROR_ARGUMENT,
-                              "%s: struct_size is %zu, at least %zu is needed: fill it with its "
-                              "_init function",
+                              "%s: struct_size is %zu, at least %zu is needed: set it to the "
+                              "structure's size",
                               name, size, smallest);
     for (size_t i = to_size; i < size; i++)
         if (((const unsigned char *)from)[i] != 0)
             return report_failure(report, SONJECT_ERROR_ARGUMENT,
                                   "%s sets members that version %s of the library does not know",
                                   name, sonject_version());
+    memset(to, 0, to_size);
     memcpy(to, from, size < to_size ? size : to_size);
     const uint32_t known = (uint32_t)to_size;
     memcpy(to, &known, sizeof known);
@@ -108,20 +109,12 @@ sonject_status params_give(struct report *report, void *to, const void *from, si
     return SONJECT_OK;
 }
 
-void sonject_context_params_init(sonject_context_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-}
-
 static sonject_status copy_params(struct sonject_context *context,
                                   const sonject_context_params *params)
 {
-    sonject_context_params_init(&context->device.params);
     if (!params)
         return SONJECT_OK;
     sonject_context_params taken;
-    sonject_context_params_init(&taken);
     CHECK(params_take(&context->report, &taken, sizeof taken, params,
                       offsetof(sonject_context_params, decodes_in_process), "context parameters"));
     if ((taken.opencl_context == NULL) != (taken.opencl_device == NULL))

@@ -47,14 +47,26 @@ void context_watch(struct sonject_context *context, sonject_progress_function *p
 sonject_status scene_use(struct report *report, const sonject_scene *handle,
                          const struct scene **scene);
 
+/* What a caller says of reading; all 0 where it says nothing. path: of the file, NULL where there
+ * is a text. Errors: ARGUMENT. */
+sonject_status scene_read_params_take(struct report *report, const char *path,
+                                      const sonject_scene_read_params *params,
+                                      sonject_scene_read_params *taken);
+
 /* That neither the path nor one of count overrides is NULL. Errors: ARGUMENT. */
 sonject_status check_overrides(struct report *report, const char *path,
                                const char *const *overrides, size_t count);
 
-/* Copies a caller's parameter structure (which starts with its size) over the library's defaults in
- * `to`, so that programs built against older headers go on working: a shorter one leaves the rest
- * at its defaults, a longer one must be 0 beyond what this library knows. smallest: the size of the
- * first released version. name: for the message. Errors: ARGUMENT. */
+/* What is said of an image file, in the values of a scene's input.channel, transfer and geometry;
+ * each may be NULL. array: borrowed. Errors: INPUT, MEMORY. */
+sonject_status image_options_take(struct report *report, const char *channel, const char *array,
+                                  const char *transfer, const char *geometry,
+                                  struct image_options *options);
+
+/* Copies a caller's parameter structure (which starts with its size) to `to`, the rest of which
+ * becomes 0, so that programs built against older headers go on working, a longer one must be 0
+ * beyond what this library knows. smallest: the size of the first released version. name: for the
+ * message. Errors: ARGUMENT. */
 sonject_status params_take(struct report *report, void *to, size_t to_size, const void *from,
                            size_t smallest, const char *name);
 

@@ -10,20 +10,9 @@
 #include "swath/conversion.h"
 #include "swath/quicklook.h"
 
-void sonject_quicklook_params_init(sonject_quicklook_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-    sonject_geometry_params_init(&params->geometry);
-    sonject_transfer_params_init(&params->transfer);
-    params->channel = SONJECT_CHANNEL_ONLY;
-}
-
-/* Fills in what is not given. */
-static sonject_status check_quicklook(struct report *report, sonject_quicklook_params *params)
+static sonject_status check_quicklook(struct report *report, const sonject_quicklook_params *params)
 {
     const bool has_scale = params->minimum_db != 0.0 || params->maximum_db != 0.0;
-    sonject_status status = SONJECT_OK;
     if (!params->image || !params->picture)
         return null_argument(report, "image and picture");
     if (params->range_axis > SONJECT_AXIS_GROUND)
@@ -36,13 +25,7 @@ static sonject_status check_quicklook(struct report *report, sonject_quicklook_p
     if (!(params->altitude_m >= 0.0) || !isfinite(params->altitude_m))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "altitude must be a number of m above 0, not %g", params->altitude_m);
-    if (params->has_geometry)
-        status = check_geometry(&params->geometry, report, NULL);
-    if (status == SONJECT_OK && params->has_transfer)
-        status = check_transfer(&params->transfer, report, NULL);
-    if (!params->has_transfer)
-        sonject_transfer_params_init(&params->transfer);
-    return status;
+    return SONJECT_OK;
 }
 
 sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklook_params *params)
@@ -52,22 +35,15 @@ sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklo
     context_begin_call(context);
     struct report *report = &context->report;
     sonject_quicklook_params taken;
-    sonject_quicklook_params_init(&taken);
+    struct image_options options;
     CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "quicklook parameters"));
     CHECK(check_quicklook(report, &taken));
-    return draw_quicklook(report, &taken);
+    CHECK(image_options_take(report, taken.channel, taken.array, taken.transfer, taken.geometry,
+                             &options));
+    return draw_quicklook(report, &taken, &options);
 }
 
-void sonject_convert_params_init(sonject_convert_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-    params->channel = SONJECT_CHANNEL_ONLY;
-    params->scale = 1.0;
-    sonject_geometry_params_init(&params->geometry);
-}
-
-static sonject_status check_conversion(struct report *report, const sonject_convert_params *params)
+static sonject_status check_conversion(struct report *report, sonject_convert_params *params)
 {
     if (!params->input || !params->output)
         return null_argument(report, "input and output");
@@ -75,6 +51,8 @@ static sonject_status check_conversion(struct report *report, const sonject_conv
         params->range_axis > SONJECT_CONVERT_AXIS_GROUND)
         return report_failure(report, SONJECT_ERROR_ARGUMENT,
                               "samples or range_axis: no such choice");
+    if (params->scale == 0.0)
+        params->scale = 1.0;
     if (!(params->scale > 0.0) || !isfinite(params->scale))
         return report_failure(report, SONJECT_ERROR_INPUT, "scale must be a number above 0, not %g",
                               params->scale);
@@ -84,7 +62,7 @@ static sonject_status check_conversion(struct report *report, const sonject_conv
     if (params->samples == SONJECT_SAMPLES_KEPT && params->scale != 1.0)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "a scale belongs to a type of samples: say which");
-    return params->has_geometry ? check_geometry(&params->geometry, report, NULL) : SONJECT_OK;
+    return SONJECT_OK;
 }
 
 sonject_status sonject_convert(sonject_context *context, const sonject_convert_params *params)
@@ -93,43 +71,24 @@ sonject_status sonject_convert(sonject_context *context, const sonject_convert_p
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
     sonject_convert_params taken;
-    sonject_convert_params_init(&taken);
+    struct image_options options;
     CHECK(params_take(&context->report, &taken, sizeof taken, params, sizeof taken,
                       "convert parameters"));
     CHECK(check_conversion(&context->report, &taken));
-    return convert_file(&context->report, &taken);
+    CHECK(image_options_take(&context->report, taken.channel, taken.array, NULL, taken.geometry,
+                             &options));
+    return convert_file(&context->report, &taken, &options);
 }
 
-void sonject_seabed_file_params_init(sonject_seabed_file_params *params)
+sonject_status sonject_seabed_write(sonject_context *context, const sonject_scene *scene,
+                                    const char *path)
 {
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-    sonject_synthetic_params_init(&params->synthetic);
-    sonject_geometry_params_init(&params->geometry);
-    params->geometry.first_slant_range_m = 44.0;
-    sonject_sonar_params_init(&params->sonar);
-}
-
-sonject_status sonject_seabed_write(sonject_context *context,
-                                    const sonject_seabed_file_params *params)
-{
+    const struct scene *used;
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
-    struct report *report = &context->report;
-    sonject_seabed_file_params taken;
-    sonject_seabed_file_params_init(&taken);
-    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "seabed parameters"));
-    if (!taken.image)
-        return null_argument(report, "image");
-    CHECK(check_synthetic(&taken.synthetic, report, NULL));
-    CHECK(check_geometry(&taken.geometry, report, NULL));
-    CHECK(check_sonar(&taken.sonar, report, NULL));
-    struct scene scene;
-    scene_init(&scene);
-    scene.sonar = taken.sonar;
-    scene.geometry = taken.geometry;
-    scene.synthetic = taken.synthetic;
-    scene.input_kind = SONJECT_INPUT_SYNTHETIC;
-    return write_seabed(report, &scene, taken.image);
+    if (!path)
+        return null_argument(&context->report, "path");
+    CHECK(scene_use(&context->report, scene, &used));
+    return write_seabed(&context->report, used, path);
 }

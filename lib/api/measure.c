@@ -10,56 +10,6 @@
 #define FIND_MOST     100
 #define FIND_CONTRAST 12.0 /* dB */
 
-void sonject_measure_params_init(sonject_measure_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-    params->channel = SONJECT_CHANNEL_ONLY;
-    sonject_transfer_params_init(&params->transfer);
-}
-
-void sonject_contact_params_init(sonject_contact_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-}
-
-void sonject_contact_file_params_init(sonject_contact_file_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-    sonject_transfer_params_init(&params->transfer);
-    params->find_most = FIND_MOST;
-    params->find_contrast_db = FIND_CONTRAST;
-    params->channel = SONJECT_CHANNEL_ONLY;
-}
-
-static sonject_status take_transfer(struct report *report, bool is_given,
-                                    sonject_transfer_params *transfer)
-{
-    if (!is_given)
-        sonject_transfer_params_init(transfer);
-    return check_transfer(transfer, report, NULL);
-}
-
-sonject_status sonject_measure(sonject_context *context, const sonject_measure_params *params,
-                               sonject_measurement *measurement)
-{
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
-    struct report *report = &context->report;
-    sonject_measure_params taken;
-    sonject_measurement made;
-    sonject_measure_params_init(&taken);
-    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "measure parameters"));
-    if (!taken.image || !measurement)
-        return null_argument(report, "image and measurement");
-    CHECK(take_transfer(report, taken.has_transfer != 0, &taken.transfer));
-    CHECK(measure_file(report, &taken, &made));
-    return params_give(report, measurement, &made, sizeof made, sizeof made, "measurement");
-}
-
 /* Amplitudes of a caller's pixels. */
 static sonject_status take_amplitudes(struct report *report, const sonject_pixels *pixels,
                                       struct measured *measured)
@@ -92,49 +42,64 @@ static sonject_status copy_mask(struct report *report, const uint8_t *mask, size
     return SONJECT_OK;
 }
 
-sonject_status sonject_measure_pixels(sonject_context *context, const sonject_pixels *pixels,
-                                      const uint8_t *influence, const uint8_t *labels,
-                                      sonject_measurement *measurement)
+static sonject_status measure_pixels(struct report *report, const sonject_measure_params *params,
+                                     sonject_measurement *made)
 {
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
-    struct report *report = &context->report;
     struct measured measured;
-    sonject_measurement made;
     memset(&measured, 0, sizeof measured);
-    if (!pixels || !measurement)
-        return null_argument(report, "pixels and measurement");
-    sonject_status status = take_amplitudes(report, pixels, &measured);
+    sonject_status status = take_amplitudes(report, params->pixels, &measured);
     const size_t count = measured.rows * measured.columns;
-    THEN(status, copy_mask(report, influence, count, &measured.influence));
-    THEN(status, copy_mask(report, labels, count, &measured.labels));
-    THEN(status, measure_amplitudes(report, &measured, &made));
-    THEN(status, params_give(report, measurement, &made, sizeof made, sizeof made, "measurement"));
+    THEN(status, copy_mask(report, params->influence_mask, count, &measured.influence));
+    THEN(status, copy_mask(report, params->labels_mask, count, &measured.labels));
+    THEN(status, measure_amplitudes(report, &measured, made));
     measured_clear(&measured);
     return status;
 }
 
-sonject_status sonject_measure_contact(sonject_context *context, const sonject_pixels *pixels,
-                                       const sonject_contact_params *params,
-                                       sonject_contact_measures *measures)
+/* The image and what is said of it. */
+static sonject_status take_image(struct report *report, const sonject_measure_params *params,
+                                 sonject_measure_params *taken, struct image_options *options)
 {
+    CHECK(params_take(report, taken, sizeof *taken, params, sizeof *taken, "measure parameters"));
+    if (!taken->image == !taken->pixels)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT, "give an image file, or pixels");
+    return image_options_take(report, taken->channel, taken->array, taken->transfer, NULL, options);
+}
+
+sonject_status sonject_measure(sonject_context *context, const sonject_measure_params *params,
+                               sonject_measurement *measurement)
+{
+    sonject_measure_params taken;
+    struct image_options options;
+    sonject_measurement made;
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
     struct report *report = &context->report;
-    sonject_contact_params taken;
+    CHECK(take_image(report, params, &taken, &options));
+    CHECK(taken.pixels ? measure_pixels(report, &taken, &made)
+                       : measure_file(report, &taken, &options, &made));
+    return params_give(report, measurement, &made, sizeof made, sizeof made, "measurement");
+}
+
+sonject_status sonject_measure_contact(sonject_context *context, const sonject_pixels *pixels,
+                                       const sonject_box *box, double row_spacing_m,
+                                       double column_spacing_m, sonject_contact_measures *measures)
+{
     sonject_contact_measures found;
     struct measured measured;
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    struct report *report = &context->report;
     memset(&measured, 0, sizeof measured);
-    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "contact parameters"));
     if (!pixels || !measures)
         return null_argument(report, "pixels and measures");
-    sonject_status status = check_spacings(report, taken.row_spacing_m, taken.column_spacing_m);
+    sonject_status status = check_spacings(report, row_spacing_m, column_spacing_m);
     THEN(status, take_amplitudes(report, pixels, &measured));
     THEN(status, measured_square(report, &measured));
     THEN(status, measure_one_contact(report, measured.amplitudes, measured.rows, measured.columns,
-                                     &taken, &found));
+                                     box, row_spacing_m, column_spacing_m, &found));
     THEN(status,
          params_give(report, measures, &found, sizeof found, sizeof found, "contact measures"));
     measured_clear(&measured);
@@ -142,12 +107,14 @@ sonject_status sonject_measure_contact(sonject_context *context, const sonject_p
 }
 
 /* Fills in what 0 stands for. */
-static sonject_status check_contacts(struct report *report, sonject_contact_file_params *params)
+static sonject_status check_contacts(struct report *report, sonject_measure_params *params)
 {
     if (params->find_most == 0)
         params->find_most = FIND_MOST;
     if (params->find_contrast_db == 0.0)
         params->find_contrast_db = FIND_CONTRAST;
+    if (params->box_count > 0 && !params->boxes)
+        return null_argument(report, "boxes");
     if (params->box_count > BOXES_MAX || params->find_most > BOXES_MAX)
         return report_failure(report, SONJECT_ERROR_INPUT, "at most %d contacts are measured",
                               BOXES_MAX);
@@ -155,25 +122,29 @@ static sonject_status check_contacts(struct report *report, sonject_contact_file
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "contacts are looked for by contrasts of 6...100 dB, not %g dB",
                               params->find_contrast_db);
-    CHECK(take_transfer(report, params->has_transfer != 0, &params->transfer));
     return check_spacings(report, params->row_spacing_m, params->column_spacing_m);
 }
 
 sonject_status sonject_measure_contacts(sonject_context *context,
-                                        const sonject_contact_file_params *params, char **text)
+                                        const sonject_measure_params *params, char **text)
 {
+    sonject_measure_params taken;
+    struct image_options options;
+    struct measured measured;
     if (!context || !text)
         return SONJECT_ERROR_ARGUMENT;
     *text = NULL;
     context_begin_call(context);
     struct report *report = &context->report;
-    sonject_contact_file_params taken;
-    sonject_contact_file_params_init(&taken);
-    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "contact parameters"));
-    if (!taken.image || (taken.box_count > 0 && !taken.boxes))
-        return null_argument(report, "image and boxes");
+    memset(&measured, 0, sizeof measured);
+    CHECK(take_image(report, params, &taken, &options));
     CHECK(check_contacts(report, &taken));
-    return measure_contact_file(report, &taken, text);
+    sonject_status status = taken.pixels ? take_amplitudes(report, taken.pixels, &measured)
+                                         : read_amplitudes(report, &taken, &options, &measured);
+    THEN(status, measured_square(report, &measured));
+    THEN(status, measure_listed_contacts(report, &taken, &measured, text));
+    measured_clear(&measured);
+    return status;
 }
 
 sonject_status sonject_compare_contacts(sonject_context *context, const char *first,

@@ -9,30 +9,6 @@
 #include "api/handles.h"
 #include "dataset/run.h"
 
-void sonject_run_params_init(sonject_run_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-}
-
-void sonject_merge_params_init(sonject_merge_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-}
-
-void sonject_trace_params_init(sonject_trace_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-}
-
-void sonject_form_params_init(sonject_form_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-}
-
 /* A call that works on files, and what is told of it. */
 static void begin(sonject_context *context, struct run_request *request,
                   sonject_progress_function progress, void *user, int *was_finished)
@@ -87,7 +63,7 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
                            void *user, int *was_finished)
 {
     struct run_request request;
-    sonject_run_params taken = {0};
+    sonject_run_params taken;
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     begin(context, &request, progress, user, was_finished);
@@ -113,7 +89,7 @@ sonject_status sonject_merge(sonject_context *context, const sonject_scene *scen
                              void *user, int *was_finished)
 {
     struct run_request request;
-    sonject_merge_params taken = {0};
+    sonject_merge_params taken;
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     begin(context, &request, progress, user, was_finished);
@@ -129,25 +105,20 @@ sonject_status sonject_merge(sonject_context *context, const sonject_scene *scen
     return run_scene(report, &context->device, &request, was_finished);
 }
 
-sonject_status sonject_trace(sonject_context *context, const sonject_scene *scene,
-                             const sonject_trace_params *params, sonject_progress_function progress,
+sonject_status sonject_trace(sonject_context *context, const sonject_scene *scene, const char *file,
+                             const char *export_file, sonject_progress_function progress,
                              void *user)
 {
     struct run_request request;
-    sonject_trace_params taken = {0};
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     begin(context, &request, progress, user, NULL);
     struct report *report = &context->report;
-    if (!scene)
-        return null_argument(report, "scene");
-    CHECK(params_take(report, &taken, sizeof taken, params,
-                      offsetof(sonject_trace_params, export_file), "trace parameters"));
-    if (!taken.file || !taken.file[0])
+    if (!file || !file[0])
         return null_argument(report, "file");
     CHECK(scene_use(report, scene, &request.scene));
-    return trace_scene(report, &context->device, request.scene, &scene->source, &taken,
-                       request.progress, request.user);
+    request.source = &scene->source;
+    return trace_scene(report, &context->device, &request, file, export_file);
 }
 
 sonject_status sonject_form(sonject_context *context, const sonject_scene *scene,
@@ -155,7 +126,7 @@ sonject_status sonject_form(sonject_context *context, const sonject_scene *scene
                             void *user, int *was_finished)
 {
     struct run_request request;
-    sonject_form_params taken = {0};
+    sonject_form_params taken;
     const struct scene *used = NULL;
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
@@ -178,7 +149,7 @@ sonject_status sonject_elements_run(sonject_context *context, const sonject_scen
                                     sonject_progress_function progress, void *user)
 {
     struct run_request request;
-    sonject_run_params taken = {0};
+    sonject_run_params taken;
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     begin(context, &request, progress, user, NULL);

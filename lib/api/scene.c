@@ -16,10 +16,13 @@ sonject_status sonject_scene_create(sonject_context *context, sonject_scene **sc
     if (!*scene)
         return report_out_of_memory(&context->report, "a scene");
     (*scene)->report = &context->report;
-    (*scene)->is_read = true; /* the defaults, until something is set */
     (*scene)->source.takes_pixels = true;
     scene_init(&(*scene)->scene);
-    return SONJECT_OK;
+    const sonject_status status = scene_source_keep(&(*scene)->source, &context->report, "scene",
+                                                    copy_text("sonject: 1\n"), NULL, 0);
+    if (status != SONJECT_OK)
+        sonject_scene_release(scene);
+    return status;
 }
 
 void sonject_scene_release(sonject_scene **scene)
@@ -43,38 +46,6 @@ sonject_status check_overrides(struct report *report, const char *path,
     return SONJECT_OK;
 }
 
-sonject_status sonject_scene_bands(sonject_context *context, const char *path,
-                                   const char *const *overrides, size_t count, char **names)
-{
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
-    struct report *report = &context->report;
-    if (!names)
-        return null_argument(report, "names");
-    *names = NULL;
-    char *text;
-    size_t bytes;
-    sonject_status status = check_overrides(report, path, overrides, count);
-    THEN(status, scene_file_load(report, path, &text, &bytes));
-    if (status != SONJECT_OK)
-        return status;
-    const struct scene_text source = {.path = path,
-                                      .text = text,
-                                      .bytes = bytes,
-                                      .overrides = overrides,
-                                      .override_count = count};
-    status = scene_text_bands(report, &source, names);
-    free(text);
-    return status;
-}
-
-void sonject_scene_read_params_init(sonject_scene_read_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-}
-
 /* Text and overrides of a scene, from its file where no text is given. */
 static sonject_status take_source(struct report *report, const char *path,
                                   const sonject_scene_read_params *params,
@@ -92,23 +63,35 @@ static sonject_status take_source(struct report *report, const char *path,
                              params->override_count);
 }
 
+sonject_status scene_read_params_take(struct report *report, const char *path,
+                                      const sonject_scene_read_params *params,
+                                      sonject_scene_read_params *taken)
+{
+    memset(taken, 0, sizeof *taken);
+    if (params)
+        CHECK(params_take(report, taken, sizeof *taken, params,
+                          offsetof(sonject_scene_read_params, text), "scene read parameters"));
+    return check_overrides(report, path ? path : taken->text, taken->overrides,
+                           taken->override_count);
+}
+
 sonject_status sonject_scene_read(sonject_context *context, const char *path,
                                   const sonject_scene_read_params *params, sonject_scene **scene)
 {
+    sonject_scene_read_params taken;
     if (!context || !scene)
         return SONJECT_ERROR_ARGUMENT;
     *scene = NULL;
     context_begin_call(context);
     struct report *report = &context->report;
-    sonject_scene_read_params taken = {.struct_size = sizeof taken};
-    sonject_scene *made;
-    if (params)
-        CHECK(params_take(report, &taken, sizeof taken, params,
-                          offsetof(sonject_scene_read_params, text), "scene read parameters"));
-    CHECK(check_overrides(report, path ? path : taken.text, taken.overrides, taken.override_count));
-    CHECK(sonject_scene_create(context, &made));
+    CHECK(scene_read_params_take(report, path, params, &taken));
+    sonject_scene *made = allocate_array(1, sizeof *made);
+    CHECK_MEMORY(report, made, "a scene");
+    made->report = report;
+    scene_init(&made->scene);
     sonject_status status = take_source(report, path, &taken, &made->source);
     THEN(status, scene_source_read(&made->source, report, &made->scene));
+    made->is_read = true;
     if (status == SONJECT_OK)
         *scene = made;
     else
@@ -116,16 +99,21 @@ sonject_status sonject_scene_read(sonject_context *context, const char *path,
     return status;
 }
 
-sonject_status sonject_scene_read_with(sonject_context *context, const char *path,
-                                       const char *const *overrides, size_t count,
-                                       const sonject_scene_read_params *params,
-                                       sonject_scene **scene)
+sonject_status sonject_scene_bands(sonject_context *context, const char *path,
+                                   const sonject_scene_read_params *params, char **names)
 {
-    sonject_scene_read_params all = {.struct_size = sizeof all};
-    all.allows_user_shapes = params ? params->allows_user_shapes : 0;
-    all.overrides = overrides;
-    all.override_count = (uint32_t)count;
-    return sonject_scene_read(context, path, &all, scene);
+    struct scene_source source;
+    sonject_scene_read_params taken;
+    if (!context || !names)
+        return SONJECT_ERROR_ARGUMENT;
+    *names = NULL;
+    context_begin_call(context);
+    CHECK(scene_read_params_take(&context->report, path, params, &taken));
+    memset(&source, 0, sizeof source);
+    sonject_status status = take_source(&context->report, path, &taken, &source);
+    THEN(status, scene_source_bands(&source, &context->report, names));
+    scene_source_clear(&source);
+    return status;
 }
 
 sonject_status scene_use(struct report *report, const sonject_scene *handle,
@@ -149,9 +137,6 @@ static sonject_status begin_setting(sonject_scene *scene, bool has_arguments)
     scene->report->message[0] = '\0';
     if (!has_arguments)
         return null_argument(scene->report, "key and value");
-    if (!scene->source.text && scene->source.takes_pixels) /* created, and empty so far */
-        return scene_source_keep(&scene->source, scene->report, "scene", copy_text("sonject: 1\n"),
-                                 NULL, 0);
     if (!scene->source.text)
         return report_failure(scene->report, SONJECT_ERROR_ARGUMENT,
                               "a campaign's scene stays as it is: set keys of its scene file");
@@ -197,4 +182,41 @@ sonject_status sonject_keys(sonject_context *context, char **json)
     *json = NULL;
     context_begin_call(context);
     return scene_keys_json(&context->report, json);
+}
+
+sonject_status sonject_scene_object_count(const sonject_scene *scene, uint32_t *count)
+{
+    const struct scene *used;
+    if (!scene || !count)
+        return SONJECT_ERROR_ARGUMENT;
+    scene->report->message[0] = '\0';
+    CHECK(scene_use(scene->report, scene, &used));
+    *count = used->object_count;
+    return SONJECT_OK;
+}
+
+/* A scene that has them is made, so that they mean what they do there. */
+sonject_status image_options_take(struct report *report, const char *channel, const char *array,
+                                  const char *transfer, const char *geometry,
+                                  struct image_options *options)
+{
+    static const char text[] =
+        "sonject: 1\nsonar: {frequency: 1e5, bandwidth: 1e4, altitude: 1}\ninput: {path: image, "
+        "geometry: {row_spacing: 1, column_spacing: 1, first_slant_range: 1}}\n";
+    const char *const keys[] = {"input.channel", "input.transfer", "input.geometry"};
+    const char *const values[] = {channel, transfer, geometry};
+    struct scene_source source;
+    struct scene scene;
+    memset(&source, 0, sizeof source);
+    scene_init(&scene);
+    sonject_status status = scene_source_keep(&source, report, "options", copy_text(text), NULL, 0);
+    for (int i = 0; i < 3; i++)
+        if (values[i])
+            THEN(status, scene_source_set(&source, report, keys[i], values[i]));
+    THEN(status, scene_source_read(&source, report, &scene));
+    *options = (struct image_options){scene.channel, array, scene.transfer, geometry != NULL,
+                                      scene.geometry};
+    scene_clear(&scene);
+    scene_source_clear(&source);
+    return status;
 }

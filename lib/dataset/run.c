@@ -272,13 +272,11 @@ static sonject_status write_lines(void *taker, const struct impulse_lines *lines
 }
 
 static sonject_status trace_swath(struct report *report, struct device_slot *slot,
-                                  const struct scene *scene, const struct scene_source *kept,
-                                  const struct swath *swath, const sonject_trace_params *params,
-                                  sonject_progress_function progress, void *user)
+                                  const struct run_request *request, const struct swath *swath,
+                                  const char *file, const char *export_file)
 {
+    const struct scene *scene = request->scene;
     const char *image_path = scene->input_path ? scene->input_path : "";
-    const char *export_file =
-        params->export_file && *params->export_file ? params->export_file : NULL;
     const struct injection_input input = swath_input(swath);
     struct device *device;
     struct sums_head head;
@@ -288,30 +286,28 @@ static sonject_status trace_swath(struct report *report, struct device_slot *slo
     const struct impulse_sink sink = {write_lines, &files};
     memset(&writer, 0, sizeof writer);
     sonject_status status = describe(report, scene, swath, &head, &facts);
-    THEN(status, sums_writer_begin(&writer, report, params->file, NULL));
-    if (status == SONJECT_OK && export_file)
+    THEN(status, sums_writer_begin(&writer, report, file, NULL));
+    if (status == SONJECT_OK && export_file && *export_file)
         status = impulse_export_begin(report, export_file, &files.export);
     THEN(status, device_slot_open(report, slot, &device));
-    THEN(status,
-         injection_trace(report, device, scene, &input, &sink, progress, user, &facts.counts));
+    THEN(status, injection_trace(report, device, scene, &input, &sink, request->progress,
+                                 request->user, &facts.counts));
     if (status == SONJECT_OK && files.export)
         status = impulse_export_publish(files.export, scene, &input, &facts, head.identity.scene,
                                         image_path);
-    THEN(status, impulse_file_publish(&writer, &head, kept, &facts, image_path));
+    THEN(status, impulse_file_publish(&writer, &head, request->source, &facts, image_path));
     impulse_export_release(&files.export);
     sums_writer_clear(&writer);
     return status;
 }
 
 sonject_status trace_scene(struct report *report, struct device_slot *slot,
-                           const struct scene *scene, const struct scene_source *source,
-                           const sonject_trace_params *params, sonject_progress_function progress,
-                           void *user)
+                           const struct run_request *request, const char *file,
+                           const char *export_file)
 {
     struct swath swath;
-    CHECK(swath_open(report, scene, &swath));
-    const sonject_status status =
-        trace_swath(report, slot, scene, source, &swath, params, progress, user);
+    CHECK(swath_open(report, request->scene, &swath));
+    const sonject_status status = trace_swath(report, slot, request, &swath, file, export_file);
     swath_close(&swath);
     return status;
 }

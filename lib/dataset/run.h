@@ -22,11 +22,11 @@ sonject_status run_scene(struct report *report, struct device_slot *slot,
 void tell_noise_floor(struct report *report, const struct scene *scene,
                       const sonject_statistics *statistics);
 
-/* Traces the scene and writes its impulses: sonject_trace. source: of the scene. */
+/* Traces the request's scene and writes its impulses to the file, and to export_file where it is
+ * neither NULL nor "": sonject_trace. */
 sonject_status trace_scene(struct report *report, struct device_slot *slot,
-                           const struct scene *scene, const struct scene_source *source,
-                           const sonject_trace_params *params, sonject_progress_function progress,
-                           void *user);
+                           const struct run_request *request, const char *file,
+                           const char *export_file);
 
 /* Forms the image of what was traced: sonject_form. scene: NULL for that whose text is kept. The
  * request has the folder, and what is asked of it. */

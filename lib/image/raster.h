@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include <sonject/image.h>
+#include "scene/params.h"
 
 #include "base/report.h"
 

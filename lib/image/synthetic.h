@@ -2,7 +2,7 @@
 #ifndef SONJECT_IMAGE_SYNTHETIC_H
 #define SONJECT_IMAGE_SYNTHETIC_H
 
-#include <sonject/image.h>
+#include "scene/params.h"
 
 #include "base/report.h"
 

@@ -406,6 +406,9 @@ sonject_status write_seabed(struct report *report, const struct scene *scene, co
     const bool is_complex = scene->synthetic.complex_pixels != 0;
     struct geometry_notes notes;
     struct injection_input input;
+    if (scene->input_kind != SONJECT_INPUT_SYNTHETIC)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the scene's input is no synthetic seabed: set input.synthetic");
     if (!is_png && !ends_with(path, ".tif"))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: a synthetic seabed is written as .tif or .png", path);

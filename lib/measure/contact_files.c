@@ -167,7 +167,7 @@ static sonject_status find_contacts(struct report *report, const struct contact_
 
 /* The contacts of an image whose intensities are at hand. */
 static sonject_status measure_all(struct report *report, const struct contact_list *list,
-                                  const sonject_contact_file_params *params, const float *intensity,
+                                  const sonject_measure_params *params, const float *intensity,
                                   size_t rows, size_t columns, char **text)
 {
     const bool looks = !params->truth && list->count == 0;
@@ -178,20 +178,20 @@ static sonject_status measure_all(struct report *report, const struct contact_li
     sonject_contact_measures *measures = allocate_array(count, sizeof *measures);
     sonject_status status = contact_image_create(&image, report, intensity, rows, columns);
     if (status == SONJECT_OK && !measures)
-        status = report_out_of_memory(report, params->image);
+        status = report_out_of_memory(report, "contacts");
     THEN(status,
          looks ? find_contacts(report, list, contrast, &image, count, measures, &count, &left_off)
                : measure_list(report, list, &image, measures));
     THEN(status, contacts_add_seabed(report, &image, measures, count));
-    THEN(status, write_list(report, params->image, measures, count, left_off, text));
+    THEN(status,
+         write_list(report, params->image ? params->image : "", measures, count, left_off, text));
     contact_image_clear(&image);
     free(measures);
     return status;
 }
 
 static sonject_status take_boxes(struct contact_list *list, struct report *report,
-                                 const sonject_contact_file_params *params, size_t rows,
-                                 size_t columns)
+                                 const sonject_measure_params *params, size_t rows, size_t columns)
 {
     list->row_spacing_m = params->row_spacing_m;
     list->column_spacing_m = params->column_spacing_m;
@@ -203,18 +203,14 @@ static sonject_status take_boxes(struct contact_list *list, struct report *repor
     return params->truth ? take_truth(list, report, params->truth, rows, columns) : SONJECT_OK;
 }
 
-sonject_status measure_contact_file(struct report *report,
-                                    const sonject_contact_file_params *params, char **text)
+sonject_status measure_listed_contacts(struct report *report, const sonject_measure_params *params,
+                                       const struct measured *intensities, char **text)
 {
-    const struct measured_image image = {params->image, NULL, params->channel, params->array};
     struct contact_list list = {NULL, 0, 0.0, 0.0};
-    float *intensity = NULL;
-    size_t rows, columns;
     sonject_status status =
-        read_intensities(report, &image, &params->transfer, &rows, &columns, &intensity);
-    THEN(status, take_boxes(&list, report, params, rows, columns));
-    THEN(status, measure_all(report, &list, params, intensity, rows, columns, text));
-    free(intensity);
+        take_boxes(&list, report, params, intensities->rows, intensities->columns);
+    THEN(status, measure_all(report, &list, params, intensities->amplitudes, intensities->rows,
+                             intensities->columns, text));
     free(list.boxes);
     return status;
 }

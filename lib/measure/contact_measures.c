@@ -208,18 +208,16 @@ sonject_status contacts_add_seabed(struct report *report, const struct contact_i
 }
 
 sonject_status measure_one_contact(struct report *report, const float *intensity, size_t rows,
-                                   size_t columns, const sonject_contact_params *params,
-                                   sonject_contact_measures *found)
+                                   size_t columns, const sonject_box *box, double row_spacing_m,
+                                   double column_spacing_m, sonject_contact_measures *found)
 {
     const sonject_box whole = {0, 0, rows, columns};
     struct contact_place place;
     struct contact_image image;
-    CHECK(
-        place_in_box(report, params->box.rows > 0 ? &params->box : &whole, rows, columns, &place));
-    place.is_near = params->box.rows == 0;
+    CHECK(place_in_box(report, box ? box : &whole, rows, columns, &place));
+    place.is_near = !box;
     sonject_status status = contact_image_create(&image, report, intensity, rows, columns);
-    THEN(status, contact_measure(report, &image, &place, params->row_spacing_m,
-                                 params->column_spacing_m, found));
+    THEN(status, contact_measure(report, &image, &place, row_spacing_m, column_spacing_m, found));
     THEN(status, contacts_add_seabed(report, &image, found, 1));
     contact_image_clear(&image);
     return status;

@@ -79,6 +79,14 @@ sonject_status measure_amplitudes(struct report *report, struct measured *measur
     return SONJECT_OK;
 }
 
+/* What of a file is measured, as of swath_file_open_beside. */
+struct measured_image {
+    const char *path;
+    const char *other; /* NULL: none */
+    int32_t channel;
+    const char *array;
+};
+
 /* All of an image; *stored is for free(). */
 static sonject_status read_stored(struct report *report, const struct measured_image *image,
                                   struct raster_layout *layout, void **stored)
@@ -179,15 +187,15 @@ static void mark_near(struct measured *measured, size_t i)
 
 /* The image before, and where no mask tells it, what changed since. */
 static sonject_status read_before(struct report *report, const sonject_measure_params *params,
-                                  struct measured *measured)
+                                  const struct image_options *options, struct measured *measured)
 {
     const char *path = params->before;
     struct measured before;
     if (!path)
         return SONJECT_OK;
-    const struct measured_image image = {path, params->image, params->channel, params->array};
+    const struct measured_image image = {path, params->image, options->channel, options->array};
     memset(&before, 0, sizeof before);
-    sonject_status status = read_image(report, &image, &params->transfer, &before);
+    sonject_status status = read_image(report, &image, &options->transfer, &before);
     measured->before = before.amplitudes;
     if (status == SONJECT_OK &&
         (before.rows != measured->rows || before.columns != measured->columns)) {
@@ -206,30 +214,23 @@ static sonject_status read_before(struct report *report, const sonject_measure_p
     return SONJECT_OK;
 }
 
-sonject_status read_intensities(struct report *report, const struct measured_image *image,
-                                const sonject_transfer_params *transfer, size_t *rows,
-                                size_t *columns, float **intensity)
+sonject_status read_amplitudes(struct report *report, const sonject_measure_params *params,
+                               const struct image_options *options, struct measured *measured)
 {
-    struct measured measured;
-    memset(&measured, 0, sizeof measured);
-    const sonject_status status = read_image(report, image, transfer, &measured);
-    *rows = measured.rows;
-    *columns = measured.columns;
-    *intensity = measured.amplitudes;
-    return status == SONJECT_OK ? measured_square(report, &measured) : status;
+    const struct measured_image image = {params->image, params->before, options->channel,
+                                         options->array};
+    return read_image(report, &image, &options->transfer, measured);
 }
 
 sonject_status measure_file(struct report *report, const sonject_measure_params *params,
-                            sonject_measurement *measurement)
+                            const struct image_options *options, sonject_measurement *measurement)
 {
-    const struct measured_image image = {params->image, params->before, params->channel,
-                                         params->array};
     struct measured measured;
     memset(&measured, 0, sizeof measured);
-    sonject_status status = read_image(report, &image, &params->transfer, &measured);
+    sonject_status status = read_amplitudes(report, params, options, &measured);
     THEN(status, read_mask(report, params->labels, &measured, &measured.labels));
     THEN(status, read_mask(report, params->influence, &measured, &measured.influence));
-    THEN(status, read_before(report, params, &measured));
+    THEN(status, read_before(report, params, options, &measured));
     THEN(status, measure_amplitudes(report, &measured, measurement));
     measured_clear(&measured);
     return status;

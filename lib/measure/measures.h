@@ -8,6 +8,7 @@
 
 #include "base/report.h"
 #include "measure/contacts.h"
+#include "scene/params.h"
 
 #define BOXES_MAX 100000 /* contacts that are measured at once */
 
@@ -44,19 +45,24 @@ sonject_status measured_square(struct report *report, struct measured *measured)
 sonject_status measure_amplitudes(struct report *report, struct measured *measured,
                                   sonject_measurement *measurement);
 
-/* The same of a file: sonject_measure, whose parameters are checked. */
+/* The same of a file: sonject_measure. */
 sonject_status measure_file(struct report *report, const sonject_measure_params *params,
-                            sonject_measurement *measurement);
+                            const struct image_options *options, sonject_measurement *measurement);
 
-/* Contacts of a file as JSON: sonject_measure_contacts. Parameters have no zeros left that stand
- * for something else. */
-sonject_status measure_contact_file(struct report *report,
-                                    const sonject_contact_file_params *params, char **text);
+/* Amplitudes of the file alone; measured: all zeros. Errors: INPUT, STORAGE, MEMORY, UNSUPPORTED.
+ */
+sonject_status read_amplitudes(struct report *report, const sonject_measure_params *params,
+                               const struct image_options *options, struct measured *measured);
+
+/* Contacts of intensities as JSON: sonject_measure_contacts. Parameters have no zeros left that
+ * stand for something else. */
+sonject_status measure_listed_contacts(struct report *report, const sonject_measure_params *params,
+                                       const struct measured *intensities, char **text);
 
 /* One contact of intensities: sonject_measure_contact. */
 sonject_status measure_one_contact(struct report *report, const float *intensity, size_t rows,
-                                   size_t columns, const sonject_contact_params *params,
-                                   sonject_contact_measures *found);
+                                   size_t columns, const sonject_box *box, double row_spacing_m,
+                                   double column_spacing_m, sonject_contact_measures *found);
 
 /* {row, column, rows, columns}; null where it is empty. */
 json_t *box_document(const sonject_box *box);
@@ -64,20 +70,6 @@ json_t *box_document(const sonject_box *box);
 /* Two files of contacts: sonject_compare_contacts. */
 sonject_status compare_contact_files(struct report *report, const char *first, const char *second,
                                      const char *picture, char **text);
-
-/* What of a file is measured, as of swath_file_open_beside. */
-struct measured_image {
-    const char *path;
-    const char *other; /* NULL: none */
-    int32_t channel;
-    const char *array;
-};
-
-/* Those of a whole image. transfer: how amplitudes became stored numbers. Errors: INPUT, STORAGE,
- * MEMORY, UNSUPPORTED. */
-sonject_status read_intensities(struct report *report, const struct measured_image *image,
-                                const sonject_transfer_params *transfer, size_t *rows,
-                                size_t *columns, float **intensity);
 
 /* A member of sonject_contact_measures that is a number. */
 struct contact_number {

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include <sonject/medium.h>
+#include "scene/params.h"
 
 #include "base/report.h"
 

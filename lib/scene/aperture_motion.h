@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include <sonject/motion.h>
+#include "scene/params.h"
 
 #include "base/report.h"
 

@@ -8,8 +8,7 @@
 
 #include <stdbool.h>
 
-#include <sonject/pulse.h>
-#include <sonject/sonar.h>
+#include "scene/params.h"
 
 #include "base/report.h"
 #include "scene/response_table.h"

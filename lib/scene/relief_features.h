@@ -6,8 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include <sonject/object.h>
-#include <sonject/relief.h>
+#include "scene/params.h"
 
 #include "base/report.h"
 

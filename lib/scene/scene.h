@@ -7,12 +7,12 @@
 #include <stdint.h>
 
 #include <sonject/elements.h>
-#include <sonject/scene.h>
 
 #include "base/report.h"
 #include "medium/water.h"
 #include "mesh/mesh.h"
 #include "scene/aperture_motion.h"
+#include "scene/params.h"
 #include "scene/relief_features.h"
 #include "scene/response_table.h"
 #include "scene/user_shapes.h"

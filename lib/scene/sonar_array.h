@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include <sonject/sonar.h>
+#include "scene/params.h"
 
 /* Rows: the long side, which points ahead in the view, the beam, and the other side, in the view's
  * axes. is_mirrored: the view's. */

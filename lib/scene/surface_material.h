@@ -2,7 +2,7 @@
 #ifndef SONJECT_SCENE_SURFACE_MATERIAL_H
 #define SONJECT_SCENE_SURFACE_MATERIAL_H
 
-#include <sonject/surface.h>
+#include "scene/params.h"
 
 /* The surface's material, with a number for a glossy_albedo that is NaN: all that lambert leaves of
  * what roughness takes from the mirror. */

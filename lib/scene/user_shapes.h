@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include <sonject/user_shape.h>
+#include "scene/params.h"
 
 #include "base/report.h"
 #include "user/snippet.h"

@@ -73,6 +73,13 @@ static void forget_tree(struct scene_source *source)
     source->tree.file = NULL;
 }
 
+sonject_status scene_source_bands(const struct scene_source *source, struct report *report,
+                                  char **names)
+{
+    const struct scene_text text = whole_text(source);
+    return scene_text_bands(report, &text, names);
+}
+
 /* The tree of text and overrides, made where it is not there. */
 static sonject_status make_tree(struct scene_source *source, struct report *report)
 {

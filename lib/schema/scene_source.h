@@ -44,6 +44,10 @@ sonject_status scene_source_set_array(struct scene_source *source, struct report
 sonject_status scene_source_read(const struct scene_source *source, struct report *report,
                                  struct scene *scene);
 
+/* The names of the bands that are left to be chosen: as of scene_text_bands. */
+sonject_status scene_source_bands(const struct scene_source *source, struct report *report,
+                                  char **names);
+
 /* The text with all that was set in its place, a line a section; for free(). Errors: MEMORY. */
 sonject_status scene_source_text(struct scene_source *source, struct report *report, char **text);
 

@@ -31,21 +31,22 @@ static const char *type_name(const struct raster_layout *layout)
 /* What the file, and before it the parameters, say of where the pixels lie. */
 static sonject_status take_geometry(struct report *report, struct conversion *conversion,
                                     const struct swath_file *file,
-                                    const sonject_convert_params *params)
+                                    const sonject_convert_params *params,
+                                    const struct image_options *options)
 {
     struct noted_geometry *geometry = &conversion->geometry;
     geometry_notes_read(file, geometry);
-    if (params->has_geometry) {
+    if (options->has_geometry) {
         if (geometry->axis == RANGE_GROUND)
             return input_failure(report, params->input,
                                  "says that it is in ground range, and a first slant range is "
                                  "given: take the geometry out");
         geometry->axis = RANGE_SLANT;
-        geometry->row_spacing_m = params->geometry.row_spacing_m;
-        geometry->column_spacing_m = params->geometry.column_spacing_m;
-        geometry->first_along_track_m = params->geometry.first_along_track_m;
-        geometry->first_range_m = params->geometry.first_slant_range_m;
-        geometry->side = params->geometry.side;
+        geometry->row_spacing_m = options->geometry.row_spacing_m;
+        geometry->column_spacing_m = options->geometry.column_spacing_m;
+        geometry->first_along_track_m = options->geometry.first_along_track_m;
+        geometry->first_range_m = options->geometry.first_slant_range_m;
+        geometry->side = options->geometry.side;
         geometry->knows_side = true;
     }
     if (params->altitude_m > 0.0)
@@ -206,10 +207,11 @@ static sonject_status resample(struct report *report, struct conversion *convers
 }
 
 /* What is asked for but has nothing to do. */
-static sonject_status check_uses(struct report *report, const sonject_convert_params *params)
+static sonject_status check_uses(struct report *report, const sonject_convert_params *params,
+                                 const struct image_options *options)
 {
     const bool keeps_geometry = !params->into && raster_format_keeps_attributes(params->output);
-    if ((params->has_geometry || params->altitude_m > 0.0) && !keeps_geometry &&
+    if ((options->has_geometry || params->altitude_m > 0.0) && !keeps_geometry &&
         params->range_axis == SONJECT_CONVERT_AXIS_KEPT)
         return input_failure(report, params->output,
                              "keeps no geometry or altitude: take them out, or write .tif");
@@ -217,13 +219,13 @@ static sonject_status check_uses(struct report *report, const sonject_convert_pa
 }
 
 static sonject_status read_input(struct report *report, const sonject_convert_params *params,
-                                 struct conversion *conversion)
+                                 const struct image_options *options, struct conversion *conversion)
 {
     struct swath_file *file = NULL;
     size_t bytes = 0;
     sonject_status status;
-    CHECK(swath_file_open_beside(report, params->input, params->into, params->channel,
-                                 params->array, &file));
+    CHECK(swath_file_open_beside(report, params->input, params->into, options->channel,
+                                 options->array, &file));
     struct raster_layout *layout = &conversion->layout;
     swath_file_layout(file, layout);
     const struct region whole = {0, 0, layout->rows, layout->columns};
@@ -235,19 +237,20 @@ static sonject_status read_input(struct report *report, const sonject_convert_pa
         status = report_out_of_memory(report, params->input);
     else
         status = swath_file_read(report, file, &whole, conversion->pixels);
-    THEN(status, take_geometry(report, conversion, file, params));
+    THEN(status, take_geometry(report, conversion, file, params, options));
     swath_file_close(&file);
     return status;
 }
 
 static sonject_status write_into(struct report *report, const sonject_convert_params *params,
+                                 const struct image_options *options,
                                  const struct conversion *conversion)
 {
     struct swath_file *file = NULL;
     struct raster_layout layout;
     sonject_status status;
-    CHECK(swath_file_open_beside(report, params->into, params->input, params->channel,
-                                 params->array, &file));
+    CHECK(swath_file_open_beside(report, params->into, params->input, options->channel,
+                                 options->array, &file));
     swath_file_layout(file, &layout);
     const struct raster_layout *ours = &conversion->layout;
     const struct region whole = {0, 0, layout.rows, layout.columns};
@@ -288,19 +291,20 @@ static sonject_status write_new(struct report *report, const sonject_convert_par
     return status;
 }
 
-sonject_status convert_file(struct report *report, const sonject_convert_params *params)
+sonject_status convert_file(struct report *report, const sonject_convert_params *params,
+                            const struct image_options *options)
 {
     struct conversion conversion;
     memset(&conversion, 0, sizeof conversion);
-    sonject_status status = check_uses(report, params);
-    THEN(status, read_input(report, params, &conversion));
+    sonject_status status = check_uses(report, params, options);
+    THEN(status, read_input(report, params, options, &conversion));
     if (params->magnitude)
         THEN(status, to_magnitude(report, &conversion, params->input));
     if (params->range_axis != SONJECT_CONVERT_AXIS_KEPT)
         THEN(status, resample(report, &conversion, params));
     if (params->samples != SONJECT_SAMPLES_KEPT)
         THEN(status, to_type(report, &conversion, params));
-    THEN(status, params->into ? write_into(report, params, &conversion)
+    THEN(status, params->into ? write_into(report, params, options, &conversion)
                               : write_new(report, params, &conversion));
     free(conversion.pixels);
     return status;

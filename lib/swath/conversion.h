@@ -8,6 +8,7 @@
 #include "swath/geometry_notes.h"
 
 /* sonject_convert, whose choices are checked. */
-sonject_status convert_file(struct report *report, const sonject_convert_params *params);
+sonject_status convert_file(struct report *report, const sonject_convert_params *params,
+                            const struct image_options *options);
 
 #endif

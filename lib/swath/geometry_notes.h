@@ -3,8 +3,7 @@
 #ifndef SONJECT_SWATH_GEOMETRY_NOTES_H
 #define SONJECT_SWATH_GEOMETRY_NOTES_H
 
-#include <sonject/image.h>
-#include <sonject/sonar.h>
+#include "scene/params.h"
 
 #include "scene/scene.h"
 #include "swath/raster_file.h"

@@ -151,16 +151,17 @@ static sonject_status draw(struct report *report, const struct plot_frame *frame
 /* Axes: what the caller says, else what the file says, else pixels. Returns which range axis it is.
  */
 static enum range_axis fill_frame(struct plot_frame *frame, const sonject_quicklook_params *params,
+                                  const struct image_options *options,
                                   const struct swath_file *file, const struct view_image *image,
                                   double *altitude)
 {
-    sonject_geometry_params geometry = params->geometry;
+    sonject_geometry_params geometry = options->geometry;
     struct noted_geometry noted;
     geometry_notes_read(file, &noted);
-    const bool is_ground = noted.axis == RANGE_GROUND && !params->has_geometry;
+    const bool is_ground = noted.axis == RANGE_GROUND && !options->has_geometry;
     if (is_ground) /* such numbers are checked as slant ranges are */
         noted.axis = RANGE_SLANT;
-    const bool has_metres = params->has_geometry || geometry_notes_tell(&noted, &geometry);
+    const bool has_metres = options->has_geometry || geometry_notes_tell(&noted, &geometry);
     *altitude = params->altitude_m > 0.0 ? params->altitude_m
                 : noted.altitude_m > 0.0 ? noted.altitude_m
                                          : 0.0;
@@ -179,16 +180,17 @@ static enum range_axis fill_frame(struct plot_frame *frame, const sonject_quickl
     return is_ground ? RANGE_GROUND : has_metres ? RANGE_SLANT : RANGE_UNKNOWN;
 }
 
-sonject_status draw_quicklook(struct report *report, const sonject_quicklook_params *params)
+sonject_status draw_quicklook(struct report *report, const sonject_quicklook_params *params,
+                              const struct image_options *options)
 {
     struct swath_file *file = NULL;
     struct view_image image = {0, 0, 1, NULL};
     struct plot_frame frame;
     double altitude = 0.0;
-    CHECK(swath_file_open_array(report, params->image, params->channel, params->array, &file));
-    sonject_status status = read_reduced(report, params->image, file, &params->transfer, &image);
+    CHECK(swath_file_open_array(report, params->image, options->channel, options->array, &file));
+    sonject_status status = read_reduced(report, params->image, file, &options->transfer, &image);
     if (status == SONJECT_OK) {
-        const enum range_axis axis = fill_frame(&frame, params, file, &image, &altitude);
+        const enum range_axis axis = fill_frame(&frame, params, options, file, &image, &altitude);
         if (params->range_axis == SONJECT_AXIS_GROUND)
             status = to_ground_range(report, params->image, axis, &image, &frame, altitude);
     }

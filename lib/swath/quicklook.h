@@ -5,8 +5,10 @@
 #include <sonject/run.h>
 
 #include "base/report.h"
+#include "scene/params.h"
 
 /* sonject_quicklook, whose parameters are checked. */
-sonject_status draw_quicklook(struct report *report, const sonject_quicklook_params *params);
+sonject_status draw_quicklook(struct report *report, const sonject_quicklook_params *params,
+                              const struct image_options *options);
 
 #endif

@@ -6,7 +6,7 @@
 #ifndef SONJECT_SWATH_XTF_FILE_H
 #define SONJECT_SWATH_XTF_FILE_H
 
-#include <sonject/image.h>
+#include "scene/params.h"
 
 #include <stdbool.h>
 #include <stdint.h>

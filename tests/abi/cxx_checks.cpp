@@ -20,54 +20,42 @@ static void expect(bool is_good, const char *what)
 
 static sonject::scene scene_with_ball(const sonject::context &context)
 {
-    sonject::scene scene(context);
-    auto geometry = sonject::defaults<sonject_geometry_params>();
-    geometry.first_slant_range_m = 30.0;
-    scene.set(geometry);
-    auto ball = sonject::defaults<sonject_object_params>();
-    ball.shape = SONJECT_SHAPE_SPHERE;
-    ball.diameter_m = 0.3;
-    ball.material = sonject::material("steel");
-    expect(scene.add(ball) == 0 && scene.object_count() == 1, "objects are counted");
-    try {
-        scene.add_target("there/is/none.yaml", ball);
-        expect(false, "missing files of targets throw");
-    } catch (const sonject::error &error) {
-        expect(error.status() == SONJECT_ERROR_INPUT && scene.object_count() == 1,
-               "and leave the scene");
-    }
+    sonject::scene scene = sonject::scene_of_text(
+        context, "sonject: 1\n"
+                 "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
+                 "input: {geometry: {row_spacing: 2.5 cm, column_spacing: 2.5 cm, "
+                 "first_slant_range: 30}}\n");
+    scene.set("objects[0]", "{shape: sphere, diameter: 30 cm, material: steel}");
+    expect(scene.object_count() == 1, "objects are counted");
     return scene;
 }
 
 static void check_errors(const sonject::context &context)
 {
-    sonject::scene scene(context);
-    auto sonar = sonject::defaults<sonject_sonar_params>();
-    sonar.altitude_m = -1.0;
+    sonject::scene scene = scene_with_ball(context);
     try {
-        scene.set(sonar);
-        expect(false, "bad values throw");
+        scene.set("sonar.altitud", 3.0);
+        expect(false, "unknown keys throw");
     } catch (const sonject::error &error) {
         expect(error.status() == SONJECT_ERROR_INPUT, "the status is in the exception");
-        expect(std::string(error.what()).find("altitude") != std::string::npos,
+        expect(std::string(error.what()).find("'altitude'") != std::string::npos,
                "and the library's message");
     }
+    scene.set("sonar.altitude", 0.1);
+    expect(scene.text().find("0.1000000000000000") != std::string::npos, "numbers keep digits");
+    scene.set("sonar.altitude", -1.0);
     try {
-        sonject::material("unobtainium");
-        expect(false, "unknown materials throw");
-    } catch (const sonject::error &) {
-    }
-    try {
-        const std::vector<double> bottoms = {0.0, 5.0}, speeds = {1500.0};
-        scene.set_water_layers(bottoms, speeds);
-        expect(false, "sizes that differ throw");
-    } catch (const sonject::error &) {
+        scene.object_count();
+        expect(false, "bad values throw where the scene is used");
+    } catch (const sonject::error &error) {
+        expect(std::string(error.what()).find("set sonar.altitude: ") == 0, "and tell the key");
     }
     try {
         sonject::scene missing(context, "there/is/none.yaml");
         expect(false, "missing scene files throw");
     } catch (const sonject::error &) {
     }
+    expect(sonject::keys(context).find("sonar.altitude") != std::string::npos, "keys are listed");
 }
 
 static void check_results(const sonject::context &context)
@@ -93,44 +81,29 @@ static void check_results(const sonject::context &context)
     }
 }
 
-/* Tables of samples whose numbers differ, and what they do to a scene. */
 static void check_tables(const sonject::context &context)
 {
-    const std::vector<double> places = {-0.2, -0.1, 0.0, 0.1, 0.2}, few = {1.0};
-    const std::vector<double> samples = {0.0, 0.5, 1.0, 0.5, 0.0};
+    const std::vector<double> sway = {0.0, 1e-4, 1.0, 2e-4}, odd = {0.0, 1e-4, 1.0};
+    const std::vector<double> heights = {0.0, 0.1, 0.0, 0.1, 0.0, 0.2};
     sonject::scene scene = scene_with_ball(context);
-    scene.set_pulse_table(SONJECT_PULSE_AXIS_RANGE, places, samples, samples);
-    scene.set(sonject::defaults<sonject_pulse_params>());
-    scene.set_cross_range_table(places, samples);
-    scene.set_cross_range_table(sonject::span<const double>(), sonject::span<const double>());
-    scene.set_motion_table(places, samples);
-    auto motion = sonject::defaults<sonject_motion_params>();
-    motion.random_rms_m = 1e-4;
-    scene.set(motion);
-    int refused = 0;
-    for (int number = 0; number < 4; number++)
-        try {
-            if (number == 0)
-                scene.set_pulse_table(SONJECT_PULSE_AXIS_RANGE, places, few);
-            else if (number == 1)
-                scene.set_pulse_table(SONJECT_PULSE_AXIS_RANGE, places, samples, few);
-            else if (number == 2)
-                scene.set_cross_range_table(few, samples);
-            else
-                scene.set_motion_table(places, few);
-        } catch (const sonject::error &error) {
-            refused += error.status() == SONJECT_ERROR_ARGUMENT;
-        }
-    expect(refused == 4, "tables of other sizes throw");
+    scene.set_table("sonar.motion.file", "along_track_m, sway_m", sway);
+    scene.set("seabed.relief[0].heights",
+              "{unit: m, row_spacing: 5, column_spacing: 5, first_ground_range: 20}");
+    scene.set_table("seabed.relief[0].heights.file", "", heights, 3);
+    expect(scene.object_count() == 1, "tables are taken");
+    try {
+        scene.set_table("sonar.motion.file", "along_track_m, sway_m", odd);
+        expect(false, "tables of other sizes throw");
+    } catch (const sonject::error &error) {
+        expect(error.status() == SONJECT_ERROR_ARGUMENT, "as bad arguments");
+    }
 }
 
 static void check_elements(const sonject::context &context)
 {
     const std::vector<float> seabed(32 * 40, 0.1f);
     sonject::scene scene = scene_with_ball(context);
-    auto elements = sonject::defaults<sonject_elements_params>();
-    elements.hydrophones = 2;
-    scene.set(elements);
+    scene.set("elements.hydrophones.count", "2");
     const sonject_element_layout layout = scene.describe_elements(32, 40);
     const std::vector<float> series = sonject::element_series(scene, {seabed.data(), 32, 40});
     expect(series.size() == 2 * 2 * layout.elements.pings * layout.samples, "series fill a layout");
@@ -157,9 +130,8 @@ static void check_measures(const sonject::context &context)
         expect(false, "masks of another size throw");
     } catch (const sonject::error &) {
     }
-    auto contact = sonject::defaults<sonject_contact_params>();
-    contact.row_spacing_m = contact.column_spacing_m = 0.1;
-    expect(sonject::measure_contact(context, {image.data(), 64, 64}, contact).seabed_db < 0.0,
+    expect(sonject::measure_contact(context, {image.data(), 64, 64}, nullptr, 0.1, 0.1).seabed_db <
+               0.0,
            "the seabed's level");
 }
 
@@ -203,41 +175,38 @@ static void check_files(const sonject::context &context)
     }
 }
 
-/* A transfer counts where it is said to be there. */
+/* What a file's numbers mean is said as in scenes. */
 static void check_transfer(const sonject::context &context)
 {
-    auto seabed = sonject::defaults<sonject_seabed_file_params>();
-    seabed.image = "swath.tif";
-    seabed.synthetic.rows = seabed.synthetic.columns = 64;
+    sonject::scene seabed = scene_with_ball(context);
+    seabed.set("input.synthetic", "{rows: 64, columns: 64}");
     try {
-        context.write_seabed(seabed);
+        seabed.write_seabed("swath.tif");
     } catch (const sonject::error &error) {
         expect(error.status() == SONJECT_ERROR_UNSUPPORTED, "without image files alone");
         return;
     }
     auto measuring = sonject::defaults<sonject_measure_params>();
-    auto contacts = sonject::defaults<sonject_contact_file_params>();
-    contacts.image = measuring.image = "swath.tif";
+    measuring.image = "swath.tif";
     const sonject_measurement plain = sonject::measure(context, measuring);
-    const std::string found = sonject::measure_contacts(context, contacts);
-    contacts.transfer.kind = measuring.transfer.kind = SONJECT_TRANSFER_GAMMA;
-    contacts.transfer.parameter = measuring.transfer.parameter = 0.0;
+    expect(sonject::measure_contacts(context, measuring).find("contacts") != std::string::npos,
+           "contacts are measured");
+    measuring.transfer = "{kind: gamma, parameter: 2}";
     expect(std::abs(sonject::measure(context, measuring).intensity_contrast -
-                    plain.intensity_contrast) <= 0.0,
-           "measures of plain amplitudes");
-    expect(sonject::measure_contacts(context, contacts) == found, "and contacts");
-    measuring.has_transfer = contacts.has_transfer = 1;
+                    plain.intensity_contrast) > 0.1,
+           "a transfer counts");
+    measuring.transfer = "{kind: gamma, parameter: 0}";
     int refused = 0;
     for (int number = 0; number < 2; number++)
         try {
             if (number == 0)
                 sonject::measure(context, measuring);
             else
-                sonject::measure_contacts(context, contacts);
+                sonject::measure_contacts(context, measuring);
         } catch (const sonject::error &error) {
             refused += error.status() == SONJECT_ERROR_INPUT;
         }
-    expect(refused == 2, "transfers that are given are checked");
+    expect(refused == 2, "and is checked");
 }
 
 static void check_progress(const sonject::context &context)

@@ -14,7 +14,7 @@ from test_interface import LIBRARY, SOURCE, exported_symbols
 READERS = os.environ.get("SONJECT_READERS")
 PACKAGE = SOURCE / "bindings" / "python" / "sonject"
 MODULES = {f"sonject/{path.name}" for path in PACKAGE.iterdir() if path.suffix in (".py", ".typed")}
-MODULES |= {f"sonject/{name}.py" for name in ("_interface", "_classes", "enumerations")}  # made
+MODULES |= {f"sonject/{name}.py" for name in ("_interface", "_classes", "enumerations", "keys")}  # made
 CORE = ["-Dopenimageio=disabled", "-Dhdf5=disabled", "-Dtests=disabled",
         "-Dstatic=disabled", "-Dbuildtype=debug", "-Db_sanitize=none"]
 # What pip asks meson-python for. The build folder is said, so that none is made among the sources.

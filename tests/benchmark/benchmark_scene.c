@@ -15,12 +15,11 @@ void benchmark_fail(const struct report *report, const char *what)
 
 void benchmark_begin(struct benchmark_scene *set, size_t pixels)
 {
-    sonject_context_params params;
+    sonject_context_params params = {.struct_size = sizeof params};
     memset(set, 0, sizeof *set);
     scene_init(&set->scene);
     set->scene.sonar.aperture_rad = 0.0;
     set->scene.geometry.first_slant_range_m = 50.0 - 0.0125 * (double)pixels;
-    sonject_context_params_init(&params);
     set->tracer.report = &set->report;
     set->tracer.scene = &set->scene;
     if (device_open(&set->report, &params, &set->tracer.device) != SONJECT_OK)

@@ -189,9 +189,8 @@ static double build_mesh(struct bench_set *set, uint32_t around, uint32_t across
 
 static void set_up(struct bench_set *set)
 {
-    sonject_context_params params;
+    sonject_context_params params = {.struct_size = sizeof params};
     double build_s;
-    sonject_context_params_init(&params);
     if (device_open(&set->report, &params, &set->device) != SONJECT_OK)
         benchmark_fail(&set->report, "device");
     const double ready_s = build_mesh(set, 730, 366);

@@ -174,28 +174,19 @@ static void time_hierarchy(const char *path, struct stopwatch *topology_s,
 /* A scene with the mesh of a file, or with a torus where there is none. */
 static sonject_scene *make_scene(sonject_context *context, const char *path, int is_rough)
 {
+    char text[1200], shape[600] = "torus, diameter: 2, height: 0.7";
+    const sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
     sonject_scene *scene;
-    sonject_geometry_params geometry;
-    sonject_object_params object;
-    expect(context, sonject_scene_create(context, &scene));
-    sonject_geometry_params_init(&geometry);
-    geometry.first_slant_range_m = 45.0;
-    expect(context, sonject_scene_set_geometry(scene, &geometry));
-    expect(context, sonject_scene_set_input_uniform(scene, PIXELS, PIXELS));
-    sonject_object_params_init(&object);
-    object.shape = path ? SONJECT_SHAPE_MESH : SONJECT_SHAPE_TORUS;
-    object.diameter_m = path ? 0.0 : 2.0;
-    object.height_m = path ? 0.0 : 0.7;
-    if (is_rough) {
-        object.material.reflection = 0.0;
-        object.material.lambert = 0.1;
-    }
-    if (path) {
-        sonject_mesh_params mesh;
-        sonject_mesh_params_init(&mesh);
-        expect(context, sonject_scene_add_mesh(scene, path, &mesh, &object.mesh));
-    }
-    expect(context, sonject_scene_add_object(scene, &object, NULL));
+    if (path)
+        snprintf(shape, sizeof shape, "mesh, mesh: \"%s\"", path);
+    snprintf(text, sizeof text,
+             "sonject: 1\n"
+             "input: {uniform: {rows: %d, columns: %d}, geometry: {row_spacing: 0.025,\n"
+             "  column_spacing: 0.025, first_slant_range: 45}}\n"
+             "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+             "objects: [{shape: %s%s}]\n",
+             PIXELS, PIXELS, shape, is_rough ? ", material: {reflection: 0, lambert: 0.1}" : "");
+    expect(context, sonject_scene_read(context, NULL, &params, &scene));
     return scene;
 }
 

@@ -35,28 +35,16 @@ static void expect(sonject_status status, const sonject_context *context)
 
 static sonject_scene *make_scene(sonject_context *context)
 {
+    const sonject_scene_read_params params = {
+        .struct_size = sizeof params,
+        .text = "sonject: 1\n"
+                "input: {geometry: {row_spacing: 0.025, column_spacing: 0.025, first_slant_range: "
+                "43.6}}\n"
+                "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+                "objects: [{shape: capsule, length: 2.3, diameter: 0.3, heading: 0.6 rad, burial: "
+                "0.1}]\n"};
     sonject_scene *scene;
-    sonject_geometry_params geometry;
-    sonject_sonar_params sonar;
-    sonject_object_params capsule;
-    sonject_geometry_params_init(&geometry);
-    geometry.row_spacing_m = 0.025;
-    geometry.column_spacing_m = 0.025;
-    geometry.first_slant_range_m = 43.6;
-    sonject_sonar_params_init(&sonar);
-    sonar.centre_frequency_hz = 100e3;
-    sonar.bandwidth_hz = 30e3;
-    sonar.altitude_m = 10.0;
-    sonject_object_params_init(&capsule);
-    capsule.shape = SONJECT_SHAPE_CAPSULE;
-    capsule.length_m = 2.3;
-    capsule.diameter_m = 0.3;
-    capsule.heading_rad = 0.6;
-    capsule.burial_m = 0.1;
-    expect(sonject_scene_create(context, &scene), context);
-    expect(sonject_scene_set_sonar(scene, &sonar), context);
-    expect(sonject_scene_set_geometry(scene, &geometry), context);
-    expect(sonject_scene_add_object(scene, &capsule, NULL), context);
+    expect(sonject_scene_read(context, NULL, &params, &scene), context);
     return scene;
 }
 

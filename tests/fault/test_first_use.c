@@ -11,7 +11,6 @@
 
 #include <sonject/sonject.h>
 
-#define SIDE     16
 #define THREADS  4
 #define CONTEXTS 100
 #ifndef RUNS
@@ -44,20 +43,14 @@ static sonject_status inject(sonject_context *context)
 {
     sonject_scene *scene = NULL;
     sonject_result *result = NULL;
-    sonject_object_params ball;
-    sonject_object_params_init(&ball);
-    ball.shape = SONJECT_SHAPE_SPHERE;
-    ball.diameter_m = 0.3;
-    sonject_geometry_params geometry;
-    sonject_geometry_params_init(&geometry);
-    geometry.first_slant_range_m = 20.0;
-    sonject_status status = sonject_scene_create(context, &scene);
-    if (status == SONJECT_OK)
-        status = sonject_scene_set_geometry(scene, &geometry);
-    if (status == SONJECT_OK)
-        status = sonject_scene_set_input_uniform(scene, SIDE, SIDE);
-    if (status == SONJECT_OK)
-        status = sonject_scene_add_object(scene, &ball, NULL);
+    const sonject_scene_read_params params = {
+        .struct_size = sizeof params,
+        .text = "sonject: 1\n"
+                "input: {uniform: {rows: 16, columns: 16}, geometry: {row_spacing: 0.025,\n"
+                "  column_spacing: 0.025, first_slant_range: 20}}\n"
+                "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+                "objects: [{shape: sphere, diameter: 0.3}]\n"};
+    sonject_status status = sonject_scene_read(context, NULL, &params, &scene);
     if (status == SONJECT_OK)
         status = sonject_inject(context, scene, NULL, NULL, NULL, &result);
     sonject_result_release(&result);

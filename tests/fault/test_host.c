@@ -139,26 +139,15 @@ static struct opencl use_opencl(void)
 
 static sonject_scene *make_scene(sonject_context *context)
 {
+    const sonject_scene_read_params params = {
+        .struct_size = sizeof params,
+        .text = "sonject: 1\n"
+                "input: {uniform: {rows: 32, columns: 32}, geometry: {row_spacing: 0.05,\n"
+                "  column_spacing: 0.05, first_slant_range: 25}}\n"
+                "sonar: {frequency: 100e3, bandwidth: 15e3, altitude: 10}\n"
+                "objects: [{shape: sphere, diameter: 0.4}]\n"};
     sonject_scene *scene;
-    sonject_geometry_params geometry;
-    sonject_sonar_params sonar;
-    sonject_object_params ball;
-    assert_int_equal(sonject_scene_create(context, &scene), SONJECT_OK);
-    sonject_geometry_params_init(&geometry);
-    geometry.row_spacing_m = 0.05;
-    geometry.column_spacing_m = 0.05;
-    geometry.first_slant_range_m = 25.0;
-    assert_int_equal(sonject_scene_set_geometry(scene, &geometry), SONJECT_OK);
-    sonject_sonar_params_init(&sonar);
-    sonar.centre_frequency_hz = 100e3;
-    sonar.bandwidth_hz = 15e3;
-    sonar.altitude_m = 10.0;
-    assert_int_equal(sonject_scene_set_sonar(scene, &sonar), SONJECT_OK);
-    assert_int_equal(sonject_scene_set_input_uniform(scene, SIDE, SIDE), SONJECT_OK);
-    sonject_object_params_init(&ball);
-    ball.shape = SONJECT_SHAPE_SPHERE;
-    ball.diameter_m = 0.4;
-    assert_int_equal(sonject_scene_add_object(scene, &ball, NULL), SONJECT_OK);
+    assert_int_equal(sonject_scene_read(context, NULL, &params, &scene), SONJECT_OK);
     return scene;
 }
 
@@ -166,19 +155,17 @@ static sonject_scene *make_scene(sonject_context *context)
 static void work(const struct opencl *opencl, const char *folder)
 {
     char results[TEMPORARY_CAPACITY + 16];
-    sonject_context_params params;
+    sonject_context_params params = {.struct_size = sizeof params};
     sonject_context *context;
-    sonject_run_params run;
+    sonject_run_params run = {.struct_size = sizeof run};
     sonject_scene *none;
     char *text = NULL;
-    sonject_context_params_init(&params);
     params.opencl_context = opencl->context;
     params.opencl_device = opencl->device;
     assert_int_equal(sonject_context_create(&params, &context), SONJECT_OK);
     assert_int_equal(sonject_scene_read(context, "there is none.yaml", NULL, &none),
                      SONJECT_ERROR_INPUT);
     sonject_scene *scene = make_scene(context);
-    sonject_run_params_init(&run);
     snprintf(results, sizeof results, "%s/results", folder);
     run.folder = results;
     if (sonject_run(context, scene, &run, NULL, NULL, NULL) != SONJECT_OK)

@@ -34,43 +34,26 @@ static bool note(struct worker *worker, sonject_context *context, sonject_status
 }
 
 /* A sphere, whose glint is weak, or a cylinder, in different places. */
-static sonject_status fill_scene(sonject_scene *scene, unsigned kind)
+static sonject_status make_scene(sonject_context *context, unsigned kind, sonject_scene **scene)
 {
-    sonject_geometry_params geometry;
-    sonject_sonar_params sonar;
-    sonject_injection_params injection;
-    sonject_object_params object;
-    sonject_geometry_params_init(&geometry);
-    geometry.row_spacing_m = 0.06;
-    geometry.column_spacing_m = 0.06;
-    geometry.first_slant_range_m = 20.0 + kind;
-    sonject_sonar_params_init(&sonar);
-    sonar.centre_frequency_hz = 100e3;
-    sonar.bandwidth_hz = 15e3;
-    sonar.altitude_m = 8.0;
-    sonject_injection_params_init(&injection);
-    injection.seed = 7 + kind;
-    sonject_object_params_init(&object);
-    object.shape = kind == 1 ? SONJECT_SHAPE_CYLINDER : SONJECT_SHAPE_SPHERE;
-    object.diameter_m = 0.3;
-    object.length_m = kind == 1 ? 0.5 : 0.0;
-    sonject_status status = sonject_scene_set_geometry(scene, &geometry);
-    if (status == SONJECT_OK)
-        status = sonject_scene_set_sonar(scene, &sonar);
-    if (status == SONJECT_OK)
-        status = sonject_scene_set_injection(scene, &injection);
-    if (status == SONJECT_OK)
-        status = sonject_scene_set_input_uniform(scene, SIDE, SIDE);
-    return status == SONJECT_OK ? sonject_scene_add_object(scene, &object, NULL) : status;
+    char text[500];
+    const sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
+    snprintf(text, sizeof text,
+             "sonject: 1\n"
+             "input: {uniform: {rows: %d, columns: %d}, geometry: {row_spacing: 0.06,\n"
+             "  column_spacing: 0.06, first_slant_range: %u}}\n"
+             "sonar: {frequency: 100e3, bandwidth: 15e3, altitude: 8}\n"
+             "injection: {seed: %u}\n"
+             "objects: [{shape: %s, diameter: 0.3}]\n",
+             SIDE, SIDE, 20 + kind, 7 + kind, kind == 1 ? "cylinder, length: 0.5" : "sphere");
+    return sonject_scene_read(context, NULL, &params, scene);
 }
 
 static bool inject(struct worker *worker, sonject_context *context, unsigned kind, float *pixels)
 {
     sonject_scene *scene = NULL;
     sonject_result *result = NULL;
-    sonject_status status = sonject_scene_create(context, &scene);
-    if (status == SONJECT_OK)
-        status = fill_scene(scene, kind);
+    sonject_status status = make_scene(context, kind, &scene);
     if (status == SONJECT_OK)
         status = sonject_inject(context, scene, NULL, NULL, NULL, &result);
     if (status == SONJECT_OK)

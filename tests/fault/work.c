@@ -78,8 +78,7 @@ static void set_path(struct work *work, char path[WORK_PATH], const char *name)
 
 static sonject_status begin(struct work *work, sonject_context **context)
 {
-    sonject_context_params params;
-    sonject_context_params_init(&params);
+    sonject_context_params params = {.struct_size = sizeof params};
     work->message[0] = '\0';
     work->digest = UINT64_C(0xCBF29CE484222325);
     return sonject_context_create(&params, context);
@@ -90,8 +89,7 @@ static sonject_status begin_scene(struct work *work, sonject_context **context,
 {
     *scene = NULL;
     const sonject_status status = begin(work, context);
-    return status == SONJECT_OK ? sonject_scene_read(*context, work->scene, NULL, scene)
-                                : status;
+    return status == SONJECT_OK ? sonject_scene_read(*context, work->scene, NULL, scene) : status;
 }
 
 static sonject_status end(struct work *work, sonject_status status, sonject_context **context,
@@ -108,15 +106,16 @@ static sonject_status end(struct work *work, sonject_status status, sonject_cont
 static sonject_status write_seabed(struct work *work, const char *image)
 {
     sonject_context *context;
-    sonject_seabed_file_params params;
-    sonject_seabed_file_params_init(&params);
-    params.image = image;
-    params.synthetic.rows = 40;
-    params.synthetic.columns = 40;
-    sonject_status status = begin(work, &context);
+    sonject_scene *scene;
+    sonject_status status = begin_scene(work, &context, &scene);
     if (status == SONJECT_OK)
-        status = sonject_seabed_write(context, &params);
-    return end(work, status, &context, NULL);
+        status =
+            sonject_scene_set(scene, "input",
+                              "{synthetic: {rows: 40, columns: 40}, geometry: {row_spacing: 0.025, "
+                              "column_spacing: 0.025, first_slant_range: 44}}");
+    if (status == SONJECT_OK)
+        status = sonject_seabed_write(context, scene, image);
+    return end(work, status, &context, &scene);
 }
 
 int work_prepare(void **state)
@@ -196,9 +195,8 @@ sonject_status work_inject(struct work *work)
 sonject_status work_measure(struct work *work)
 {
     sonject_context *context;
-    sonject_measure_params params;
+    sonject_measure_params params = {.struct_size = sizeof params};
     sonject_measurement measurement = {.struct_size = sizeof measurement};
-    sonject_measure_params_init(&params);
     params.image = work->seabed;
     sonject_status status = begin(work, &context);
     if (status == SONJECT_OK)
@@ -226,8 +224,7 @@ sonject_status work_run(struct work *work)
 {
     sonject_context *context;
     sonject_scene *scene;
-    sonject_run_params params;
-    sonject_run_params_init(&params);
+    sonject_run_params params = {.struct_size = sizeof params};
     params.folder = work->results;
     sonject_status status = begin_scene(work, &context, &scene);
     if (status == SONJECT_OK)
@@ -240,10 +237,8 @@ static sonject_status do_shard(struct work *work, uint32_t shard)
 {
     sonject_context *context;
     sonject_scene *scene = NULL;
-    sonject_run_params params;
-    sonject_merge_params merging;
-    sonject_run_params_init(&params);
-    sonject_merge_params_init(&merging);
+    sonject_run_params params = {.struct_size = sizeof params};
+    sonject_merge_params merging = {.struct_size = sizeof merging};
     params.folder = merging.folder = work->results;
     params.shard_index = shard;
     params.shard_count = 2;
@@ -272,12 +267,11 @@ sonject_status work_campaign(struct work *work)
 {
     sonject_context *context;
     sonject_campaign *campaign = NULL;
-    sonject_campaign_run_params params;
-    sonject_campaign_run_params_init(&params);
+    sonject_campaign_run_params params = {.struct_size = sizeof params};
     params.folder = work->results;
     sonject_status status = begin(work, &context);
     if (status == SONJECT_OK)
-        status = sonject_campaign_read(context, work->campaign, NULL, 0, NULL, &campaign);
+        status = sonject_campaign_read(context, work->campaign, NULL, &campaign);
     if (status == SONJECT_OK)
         status = sonject_campaign_run(context, campaign, &params, NULL, NULL, NULL);
     if (status != SONJECT_OK && context)
@@ -290,20 +284,16 @@ sonject_status work_trace(struct work *work)
 {
     sonject_context *context;
     sonject_scene *scene;
-    sonject_trace_params params;
-    sonject_trace_params_init(&params);
-    params.file = work->impulses;
     sonject_status status = begin_scene(work, &context, &scene);
     if (status == SONJECT_OK)
-        status = sonject_trace(context, scene, &params, NULL, NULL);
+        status = sonject_trace(context, scene, work->impulses, NULL, NULL, NULL);
     return end(work, status, &context, &scene);
 }
 
 sonject_status work_form(struct work *work)
 {
     sonject_context *context;
-    sonject_form_params params;
-    sonject_form_params_init(&params);
+    sonject_form_params params = {.struct_size = sizeof params};
     params.file = work->impulses;
     params.folder = work->results;
     sonject_status status = begin(work, &context);
@@ -316,8 +306,7 @@ sonject_status work_quicklook(struct work *work)
 {
     char picture[WORK_PATH + 16];
     sonject_context *context;
-    sonject_quicklook_params params;
-    sonject_quicklook_params_init(&params);
+    sonject_quicklook_params params = {.struct_size = sizeof params};
     snprintf(picture, sizeof picture, "%s/look.png", work->results);
     params.image = work->image;
     params.picture = picture;

@@ -4,7 +4,7 @@
 #ifndef SONJECT_TESTS_REFERENCE_SOLIDS_H
 #define SONJECT_TESTS_REFERENCE_SOLIDS_H
 
-#include <sonject/object.h>
+#include "scene/params.h"
 
 #include "random_rays.h"
 

@@ -463,8 +463,7 @@ static void compare_device(const char *name, unsigned width, const struct mesh *
     struct device *device;
     struct probe_device probe;
     char what[160];
-    sonject_context_params params;
-    sonject_context_params_init(&params);
+    sonject_context_params params = {.struct_size = sizeof params};
     params.device_name = name;
     EXPECT_OK(&report, device_open(&report, &params, &device));
     probe_device_begin(&probe, &report, device, width, mesh);

@@ -10,6 +10,7 @@
 
 #include "bench.h"
 #include "inject/injection.h"
+#include "scene/params.h"
 
 /* ---- claims ---- */
 

@@ -262,33 +262,52 @@ static void expect_ok(sonject_context *context, sonject_status status)
         fail_msg("%s", sonject_context_message(context));
 }
 
+/* A length of the object's shape; nothing where that has none. */
+static size_t add_key(char *text, size_t capacity, size_t length, const char *key, double value)
+{
+    return value > 0.0 ? length + (size_t)snprintf(text + length, capacity - length, ", %s: %.17g",
+                                                   key, value)
+                       : length;
+}
+
+static void set_object(sonject_context *context, sonject_scene *scene,
+                       const sonject_object_params *object)
+{
+    char text[800];
+    size_t length = (size_t)snprintf(
+        text, sizeof text,
+        "{shape: %s, position: {row: %.17g, column: %.17g}, heading: %.17g rad, pitch: %.17g rad, "
+        "roll: %.17g rad, burial: %.17g, level: {over_seabed: %.17g}, material: {reflection: "
+        "%.17g}",
+        object->shape == SONJECT_SHAPE_BOX ? "box" : "truncated_cone", object->position_along,
+        object->position_range, object->heading_rad, object->pitch_rad, object->roll_rad,
+        object->burial_m, object->level_db, object->material.reflection);
+    length = add_key(text, sizeof text, length, "length", object->length_m);
+    length = add_key(text, sizeof text, length, "width", object->width_m);
+    length = add_key(text, sizeof text, length, "height", object->height_m);
+    length = add_key(text, sizeof text, length, "diameter", object->diameter_m);
+    length = add_key(text, sizeof text, length, "top_diameter", object->top_diameter_m);
+    snprintf(text + length, sizeof text - length, "}");
+    expect_ok(context, sonject_scene_set(scene, "objects[0]", text));
+}
+
+/* aperture none: no penumbra, for closed forms are of one aspect. */
 static sonject_scene *make_scene(sonject_context *context, uint64_t seed)
 {
     sonject_scene *scene = NULL;
-    sonject_sonar_params sonar;
-    sonject_geometry_params geometry;
-    sonject_synthetic_params seabed;
-    sonject_injection_params injection;
-    sonject_sonar_params_init(&sonar);
-    sonject_geometry_params_init(&geometry);
-    sonject_synthetic_params_init(&seabed);
-    sonject_injection_params_init(&injection);
-    sonar.altitude_m = ALTITUDE;
-    sonar.aperture_rad = 0.0; /* no penumbra: closed forms are of one aspect */
-    geometry.row_spacing_m = geometry.column_spacing_m = SPACING;
-    geometry.first_slant_range_m = FIRST;
-    seabed.rows = ROWS;
-    seabed.columns = COLUMNS;
-    seabed.seed = seed;
-    seabed.speckle_shape = INFINITY;
-    seabed.ripple_contrast = 0.0;
-    seabed.patch_contrast_db = 0.0;
-    injection.seed = seed;
-    expect_ok(context, sonject_scene_create(context, &scene));
-    expect_ok(context, sonject_scene_set_sonar(scene, &sonar));
-    expect_ok(context, sonject_scene_set_geometry(scene, &geometry));
-    expect_ok(context, sonject_scene_set_injection(scene, &injection));
-    expect_ok(context, sonject_scene_set_input_synthetic(scene, &seabed));
+    char text[800];
+    const sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
+    snprintf(text, sizeof text,
+             "sonject: 1\n"
+             "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: %.17g, aperture: none}\n"
+             "input: {geometry: {row_spacing: %.17g, column_spacing: %.17g, first_slant_range: "
+             "%.17g},\n"
+             "  synthetic: {rows: %d, columns: %d, seed: %llu, speckle_shape: inf,\n"
+             "    ripple_contrast: 0, patch_contrast: 0}}\n"
+             "injection: {seed: %llu}\n",
+             ALTITUDE, SPACING, SPACING, FIRST, ROWS, COLUMNS, (unsigned long long)seed,
+             (unsigned long long)seed);
+    expect_ok(context, sonject_scene_read(context, NULL, &params, &scene));
     return scene;
 }
 
@@ -341,25 +360,22 @@ static void measure(sonject_context *context, const struct pose *pose, uint64_t 
     sonject_scene *scene = make_scene(context, seed);
     sonject_result *result = NULL;
     sonject_object_truth truth;
-    sonject_contact_params params;
     static float image[ROWS * COLUMNS];
-    expect_ok(context, sonject_scene_add_object(scene, &pose->object, NULL));
+    set_object(context, scene, &pose->object);
     expect_ok(context, sonject_inject(context, scene, NULL, NULL, NULL, &result));
     truth.struct_size = sizeof truth;
     expect_ok(context, sonject_result_object(result, 0, &truth));
     expect_ok(context, sonject_result_layer(result, SONJECT_LAYER_IMAGE, image, sizeof image));
     const sonject_pixels pixels = {sizeof pixels, SONJECT_PIXELS_AMPLITUDE, ROWS, COLUMNS, 0,
                                    image};
-    sonject_contact_params_init(&params);
-    params.box = truth.both;
+    sonject_box box = truth.both;
     assert_true(truth.both.first_row >= 6 && truth.both.first_column >= 6);
-    params.box.first_row -= 6;
-    params.box.first_column -= 6;
-    params.box.rows += 12;
-    params.box.columns += 12;
-    params.row_spacing_m = params.column_spacing_m = SPACING;
+    box.first_row -= 6;
+    box.first_column -= 6;
+    box.rows += 12;
+    box.columns += 12;
     measures->struct_size = sizeof *measures;
-    expect_ok(context, sonject_measure_contact(context, &pixels, &params, measures));
+    expect_ok(context, sonject_measure_contact(context, &pixels, &box, SPACING, SPACING, measures));
     assert_true(fabs(measures->dim_range_m - measures->dim_range_pixels * SPACING) < 1e-9);
     add_agreement(&truth, measures);
     sonject_result_release(&result);
@@ -423,12 +439,11 @@ static void add_pose(struct tally *tally, const struct pose *pose,
 
 static struct tally measure_poses(const char *what, void (*draw_pose)(struct pose *), int poses)
 {
-    sonject_context_params params;
+    sonject_context_params params = {.struct_size = sizeof params};
     sonject_context *context = NULL;
     struct tally tally;
     memset(&tally, 0, sizeof tally);
     memset(disagreements, 0, sizeof disagreements);
-    sonject_context_params_init(&params);
     params.device_name = claim_device();
     assert_int_equal(sonject_context_create(&params, &context), SONJECT_OK);
     random_state = SEED;

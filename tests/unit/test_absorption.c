@@ -1,7 +1,7 @@
 /* The absorption of sea water. */
 #include "claims.h"
 
-#include <sonject/medium.h>
+#include <sonject/scene.h>
 
 struct water {
     double temperature, salinity, depth, ph;

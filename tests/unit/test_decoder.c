@@ -393,7 +393,7 @@ static void a_run_may_be_ended_while_its_image_is_read(void **state)
         "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n";
     sonject_context *context = NULL;
     sonject_scene *scene = NULL;
-    sonject_run_params params;
+    sonject_run_params params = {.struct_size = sizeof params};
     char *told = NULL;
     int asked = 0;
     make_file(temporary_file(*state, "a.h5"), 0);
@@ -405,7 +405,6 @@ static void a_run_may_be_ended_while_its_image_is_read(void **state)
     EXPECT_OK(&context->report, sonject_check(context, scene, &told));
     sonject_text_release(&told);
     assert_int_equal(kill((pid_t)context->decoder.process, SIGSTOP), 0);
-    sonject_run_params_init(&params);
     params.folder = temporary_file(*state, "result");
     assert_int_equal(sonject_run(context, scene, &params, stop_now, &asked, NULL),
                      SONJECT_CANCELLED);

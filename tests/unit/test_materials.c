@@ -1,7 +1,7 @@
 /* Materials by name. */
 #include "claims.h"
 
-#include <sonject/material.h>
+#include "scene/params.h"
 
 #include "first_key.h"
 #include "scene/scene.h"

@@ -1,4 +1,4 @@
-/* Layers of water and sound-speed profiles, as the C interface takes them. */
+/* Layers of water, and those that sound-speed profiles become. */
 #include "api/handles.h"
 #include "claims.h"
 
@@ -39,29 +39,27 @@ static void expect_message(const sonject_scene *scene, const char *message)
         fail_msg("the message is\n%s\nand not\n%s", scene->report->message, message);
 }
 
-/* ---- layers ---- */
-
-static void test_layers_are_copied(void **state)
+static sonject_status set_layers(sonject_scene *scene, struct water_layer *layers, size_t count)
 {
-    sonject_scene *scene = scene_of(state);
-    double bottoms[] = {0.0, 12.0, 16.5}, speeds[] = {1490.0, 100.0, 10000.0};
-    const double densities[] = {1025.0, 1024.0, 1020.0};
-    assert_int_equal(sonject_scene_set_water_layers(scene, bottoms, speeds, densities, 3),
-                     SONJECT_OK);
-    bottoms[1] = speeds[1] = 0.0;
-    assert_int_equal(scene->scene.water_layer_count, 3);
-    const struct water_layer *layers = scene->scene.water_layers;
-    assert_true(layers[1].bottom_m == 12.0 && layers[1].speed_mps == 100.0);
-    assert_true(layers[1].density == 1024.0 && layers[2].speed_mps == 10000.0);
-    assert_int_equal(sonject_scene_set_water_layers(scene, bottoms, speeds, NULL, 1), SONJECT_OK);
-    assert_int_equal(scene->scene.water_layer_count, 1);
-    assert_true(scene->scene.water_layers[0].density == 1.0);
-    assert_int_equal(sonject_scene_set_water_layers(scene, NULL, NULL, NULL, 0), SONJECT_OK);
-    assert_null(scene->scene.water_layers);
-    assert_int_equal(scene->scene.water_layer_count, 0);
+    free(scene->scene.water_layers);
+    scene->scene.water_layers = layers;
+    scene->scene.water_layer_count = count;
+    return SONJECT_OK;
 }
 
-static void test_wrong_layers_change_nothing(void **state)
+static sonject_status set_profile(sonject_scene *scene, const double *heights, const double *speeds,
+                                  size_t count)
+{
+    struct water_layer *layers = NULL;
+    size_t layer_count = 0;
+    CHECK(check_sound_speed_profile(heights, speeds, count, scene->report, NULL));
+    CHECK(layers_of_profile(heights, speeds, count, scene->report, &layers, &layer_count));
+    return set_layers(scene, layers, layer_count);
+}
+
+/* ---- layers ---- */
+
+static void test_wrong_layers_are_refused(void **state)
 {
     static const struct {
         double bottoms[3], speeds[3], densities[3];
@@ -117,43 +115,17 @@ static void test_wrong_layers_change_nothing(void **state)
          "layers[2].density must be 1e-06...1e+06, not nan"},
     };
     sonject_scene *scene = scene_of(state);
-    const double bottoms[] = {0.0, 12.0}, speeds[] = {1490.0, 1510.0};
-    assert_int_equal(sonject_scene_set_water_layers(scene, bottoms, speeds, NULL, 2), SONJECT_OK);
-    const struct water_layer *before = scene->scene.water_layers;
     for (size_t i = 0; i < COUNT(wrong); i++) {
-        assert_int_equal(sonject_scene_set_water_layers(scene, wrong[i].bottoms, wrong[i].speeds,
-                                                        wrong[i].densities, 3),
+        struct water_layer layers[3];
+        for (size_t j = 0; j < COUNT(layers); j++) {
+            layers[j].bottom_m = wrong[i].bottoms[j];
+            layers[j].speed_mps = wrong[i].speeds[j];
+            layers[j].density = wrong[i].densities[j];
+        }
+        assert_int_equal(check_water_layers(layers, COUNT(layers), scene->report, NULL),
                          SONJECT_ERROR_INPUT);
         expect_message(scene, wrong[i].message);
     }
-    assert_int_equal(sonject_scene_set_water_layers(scene, NULL, speeds, NULL, 2),
-                     SONJECT_ERROR_ARGUMENT);
-    assert_int_equal(sonject_scene_set_water_layers(scene, bottoms, NULL, NULL, 2),
-                     SONJECT_ERROR_ARGUMENT);
-    assert_int_equal(sonject_scene_set_water_layers(NULL, bottoms, speeds, NULL, 2),
-                     SONJECT_ERROR_ARGUMENT);
-    assert_ptr_equal(scene->scene.water_layers, before);
-    assert_int_equal(scene->scene.water_layer_count, 2);
-    assert_true(before[1].bottom_m == 12.0 && before[1].speed_mps == 1510.0);
-}
-
-static void test_the_number_of_layers_is_limited(void **state)
-{
-    static double bottoms[WATER_LAYERS_MAX + 1], speeds[WATER_LAYERS_MAX + 1];
-    sonject_scene *scene = scene_of(state);
-    for (size_t i = 0; i < COUNT(bottoms); i++) {
-        bottoms[i] = (double)i;
-        speeds[i] = 1500.0 + (double)(i % 2);
-    }
-    assert_int_equal(sonject_scene_set_water_layers(scene, bottoms, speeds, NULL, 4096),
-                     SONJECT_OK);
-    assert_int_equal(scene->scene.water_layer_count, 4096);
-    assert_int_equal(sonject_scene_set_water_layers(scene, bottoms, speeds, NULL, 4097),
-                     SONJECT_ERROR_INPUT);
-    expect_message(scene, "layers: 4097 of them; at most 4096 are possible");
-    /* nothing is read of more than there can be */
-    assert_int_equal(sonject_scene_set_water_layers(scene, bottoms, speeds, NULL, SIZE_MAX),
-                     SONJECT_ERROR_INPUT);
 }
 
 /* ---- profiles ---- */
@@ -183,8 +155,7 @@ static double speed_at(const struct profile *profile, double height)
 static void expect_layers(void **state, const struct profile *profile, size_t count)
 {
     sonject_scene *scene = scene_of(state);
-    EXPECT_OK(scene->report, sonject_scene_set_sound_speed_profile(
-                                 scene, profile->heights, profile->speeds, profile->count));
+    EXPECT_OK(scene->report, set_profile(scene, profile->heights, profile->speeds, profile->count));
     const struct water_layer *layers = scene->scene.water_layers;
     assert_int_equal(scene->scene.water_layer_count, count);
     assert_true(layers[0].bottom_m == 0.0);
@@ -256,20 +227,13 @@ static void test_wrong_profiles_change_nothing(void **state)
     };
     sonject_scene *scene = scene_of(state);
     const double heights[] = {0.0, 10.0}, speeds[] = {1490.0, 1490.0};
-    assert_int_equal(sonject_scene_set_sound_speed_profile(scene, heights, speeds, 2), SONJECT_OK);
+    assert_int_equal(set_profile(scene, heights, speeds, 2), SONJECT_OK);
     const struct water_layer *before = scene->scene.water_layers;
     for (size_t i = 0; i < COUNT(wrong); i++) {
-        assert_int_equal(sonject_scene_set_sound_speed_profile(scene, wrong[i].heights,
-                                                               wrong[i].speeds, wrong[i].count),
+        assert_int_equal(set_profile(scene, wrong[i].heights, wrong[i].speeds, wrong[i].count),
                          SONJECT_ERROR_INPUT);
         expect_message(scene, wrong[i].message);
     }
-    assert_int_equal(sonject_scene_set_sound_speed_profile(scene, NULL, speeds, 2),
-                     SONJECT_ERROR_ARGUMENT);
-    assert_int_equal(sonject_scene_set_sound_speed_profile(scene, heights, NULL, 2),
-                     SONJECT_ERROR_ARGUMENT);
-    assert_int_equal(sonject_scene_set_sound_speed_profile(NULL, heights, speeds, 2),
-                     SONJECT_ERROR_ARGUMENT);
     assert_ptr_equal(scene->scene.water_layers, before);
     assert_int_equal(scene->scene.water_layer_count, 1);
 }
@@ -279,7 +243,7 @@ static void test_steep_profiles_keep_rising(void **state)
 {
     sonject_scene *scene = scene_of(state);
     const double heights[] = {999999.0, 999999.000001}, speeds[] = {1400.0, 1660.0};
-    if (sonject_scene_set_sound_speed_profile(scene, heights, speeds, 2) == SONJECT_OK)
+    if (set_profile(scene, heights, speeds, 2) == SONJECT_OK)
         for (size_t i = 1; i < scene->scene.water_layer_count; i++)
             assert_true(scene->scene.water_layers[i].bottom_m >
                         scene->scene.water_layers[i - 1].bottom_m);
@@ -288,7 +252,6 @@ static void test_steep_profiles_keep_rising(void **state)
                               "1e-06 m, not at 999999 m");
 }
 
-TEST_PROGRAM(make_scene, remove_scene, TEST(test_layers_are_copied),
-             TEST(test_wrong_layers_change_nothing), TEST(test_the_number_of_layers_is_limited),
+TEST_PROGRAM(make_scene, remove_scene, TEST(test_wrong_layers_are_refused),
              TEST(test_profiles_become_thin_layers), TEST(test_wrong_profiles_change_nothing),
              TEST(test_steep_profiles_keep_rising))

@@ -4,8 +4,6 @@
 
 #include "claims.h"
 
-#include <sonject/sonject.h>
-
 #include "scene_folder.h"
 
 #define RESPONSE                                                                                   \
@@ -189,66 +187,5 @@ static void test_normalisation(void **state)
     response_table_clear(&table);
 }
 
-static void expect_message(sonject_context *context, sonject_status status, const char *message)
-{
-    assert_int_equal(status, SONJECT_ERROR_INPUT);
-    assert_string_equal(sonject_context_message(context), message);
-}
-
-static void test_public_functions(void **state)
-{
-    const double x[] = {-1.0, 0.0, 0.5, 1.0};
-    const double y[] = {0.0, 1.0, 0.5, 0.0};
-    sonject_context *context = NULL;
-    sonject_scene *scene = NULL;
-    sonject_pulse_params pulse;
-    sonject_motion_params motion;
-    assert_int_equal(sonject_context_create(NULL, &context), SONJECT_OK);
-    assert_int_equal(sonject_scene_create(context, &scene), SONJECT_OK);
-    sonject_pulse_params_init(&pulse);
-    pulse.kind = SONJECT_PULSE_TABLE;
-    expect_message(context, sonject_scene_set_pulse(scene, &pulse),
-                   "kind of the pulse is a table, but the scene has none: set it first");
-    expect_message(context, sonject_scene_set_pulse_table(scene, 2, x, y, NULL, 4),
-                   "axis of the pulse table must be 0 or 1, not 2");
-    expect_message(context, sonject_scene_set_pulse_table(scene, 0, x, y, NULL, 3),
-                   "pulse table must have 4...65536 samples, not 3");
-    expect_message(context, sonject_scene_set_cross_range_table(scene, y, y, NULL, 4),
-                   "cross-range table: sample 2: its position must be above that of the sample "
-                   "before");
-    expect_message(context, sonject_scene_set_motion_table(scene, x, y, 1),
-                   "motion table: sample 1: must have 2...65536 samples");
-    assert_int_equal(sonject_scene_set_pulse_table(scene, 0, x, NULL, NULL, 4),
-                     SONJECT_ERROR_ARGUMENT);
-    assert_int_equal(sonject_scene_set_pulse_table(NULL, 0, x, y, NULL, 4), SONJECT_ERROR_ARGUMENT);
-    assert_int_equal(sonject_scene_set_pulse_table(scene, 0, x, y, NULL, 4), SONJECT_OK);
-    assert_int_equal(sonject_scene_set_pulse(scene, &pulse), SONJECT_OK);
-    assert_int_equal(sonject_scene_set_pulse_table(scene, 0, NULL, NULL, NULL, 0), SONJECT_OK);
-    assert_int_equal(sonject_scene_set_pulse(scene, &pulse), SONJECT_ERROR_INPUT);
-    assert_int_equal(sonject_scene_set_cross_range_table(scene, x, y, y, 4), SONJECT_OK);
-    assert_int_equal(sonject_scene_set_cross_range_table(scene, NULL, NULL, NULL, 0), SONJECT_OK);
-    sonject_motion_params_init(&motion);
-    motion.sway_count = 9;
-    assert_int_equal(sonject_scene_set_motion(scene, &motion), SONJECT_ERROR_INPUT);
-    motion.sway_count = 8;
-    assert_int_equal(sonject_scene_set_motion(scene, &motion), SONJECT_OK);
-    assert_int_equal(sonject_scene_set_motion_table(scene, x, y, 4), SONJECT_OK);
-    assert_int_equal(sonject_scene_set_motion_table(scene, NULL, NULL, 0), SONJECT_OK);
-    motion.yaw_count = 1;
-    expect_message(context, sonject_scene_set_motion(scene, &motion),
-                   "yaw.advance must be 0.1...1000 m, not 0");
-    motion.yaw_advance_m = 0.5;
-    assert_int_equal(sonject_scene_set_motion(scene, &motion), SONJECT_OK);
-    motion.yaw_count = 9;
-    assert_int_equal(sonject_scene_set_motion(scene, &motion), SONJECT_ERROR_INPUT);
-    expect_message(context, sonject_scene_set_yaw_table(scene, x, y, 4),
-                   "yaw table: sample 1: its yaw must be within +-0.1 rad");
-    assert_int_equal(sonject_scene_set_yaw_table(scene, x, NULL, 4), SONJECT_ERROR_ARGUMENT);
-    assert_int_equal(sonject_scene_set_yaw_table(scene, NULL, NULL, 0), SONJECT_OK);
-    sonject_scene_release(&scene);
-    sonject_context_release(&context);
-}
-
 TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_hostile_tables),
-             TEST(test_hostile_keys), TEST(test_interpolation), TEST(test_normalisation),
-             TEST(test_public_functions))
+             TEST(test_hostile_keys), TEST(test_interpolation), TEST(test_normalisation))

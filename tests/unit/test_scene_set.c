@@ -159,6 +159,29 @@ static void values_are_checked_by_the_call_that_uses_the_scene(void **state)
     sonject_scene_release(&scene);
 }
 
+/* Code in a target's file is a program as much as in the scene's own. */
+static void a_target_is_that_of_a_file_and_its_code_needs_consent(void **state)
+{
+    static const char relief[] = "{target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml}";
+    sonject_context *context = *state;
+    sonject_scene *careful = NULL;
+    sonject_scene_read_params params = {.struct_size = sizeof params, .text = HEAD};
+    uint32_t count;
+    sonject_scene *scene = read_text(context, HEAD);
+    set(context, scene, "objects[0]",
+        "{target: " SOURCE_ROOT "/tools/targets/crab_pot_frame.yaml, burial: {fraction: 0.25}}");
+    set(context, scene, "objects[1]", relief);
+    expect_same(context, scene,
+                read_text(context, HEAD "objects:\n  - {target: " SOURCE_ROOT
+                                        "/tools/targets/crab_pot_frame.yaml, burial: {fraction: "
+                                        "0.25}}\n  - {target: " SOURCE_ROOT
+                                        "/tools/targets/boulder_relief.yaml}\n"));
+    EXPECT_OK(&context->report, sonject_scene_read(context, NULL, &params, &careful));
+    set(context, careful, "objects[0]", relief);
+    assert_int_equal(sonject_scene_object_count(careful, &count), SONJECT_ERROR_INPUT);
+    sonject_scene_release(&careful);
+}
+
 static void the_text_of_a_scene_is_the_scene(void **state)
 {
     sonject_context *context = *state;
@@ -280,5 +303,6 @@ TEST_PROGRAM(make_context, release_context,
              TEST(what_is_set_replaces_what_was_used_before),
              TEST(keys_that_are_none_are_refused_at_once),
              TEST(values_are_checked_by_the_call_that_uses_the_scene),
+             TEST(a_target_is_that_of_a_file_and_its_code_needs_consent),
              TEST(the_text_of_a_scene_is_the_scene), TEST(a_table_in_memory_is_that_of_a_file),
              TEST(heights_in_memory_are_a_relief), TEST(tables_that_are_none_are_refused))

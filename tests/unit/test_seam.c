@@ -1,7 +1,7 @@
 /* The seam: chance where there is none, told where there is one. */
 #include "claims.h"
 
-#include <sonject/image.h>
+#include "scene/params.h"
 
 #include "image/synthetic.h"
 #include "measure/seam.h"

@@ -2,7 +2,7 @@
  */
 #include "claims.h"
 
-#include <sonject/image.h>
+#include "scene/params.h"
 
 #include "image/statistics.h"
 #include "image/synthetic.h"

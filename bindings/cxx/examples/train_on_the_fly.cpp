@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <random>
+#include <string>
 #include <vector>
 
 #include <sonject.hpp>
@@ -19,7 +20,6 @@ namespace
 {
 
 constexpr std::uint32_t side = 128; /* pixels of a patch */
-constexpr double spacing = 0.05;    /* m */
 constexpr int features = 5;         /* with the constant one */
 using sample = std::array<double, features>;
 
@@ -37,22 +37,23 @@ sonject::scene make_scene(const sonject::context &context, std::mt19937 &random)
 {
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     sonject::scene scene(context);
-    auto geometry = sonject::defaults<sonject_geometry_params>();
-    geometry.row_spacing_m = geometry.column_spacing_m = spacing;
-    geometry.first_slant_range_m = 30.0 + 40.0 * unit(random);
-    scene.set(geometry);
-    auto injection = sonject::defaults<sonject_injection_params>();
-    injection.seed = random();
-    scene.set(injection);
-    auto target = sonject::defaults<sonject_object_params>();
-    target.shape = unit(random) < 0.5 ? SONJECT_SHAPE_CYLINDER : SONJECT_SHAPE_TRUNCATED_CONE;
-    target.length_m = 1.0 + unit(random);
-    target.diameter_m = 0.4 + 0.4 * unit(random);
-    target.top_diameter_m = 0.5 * target.diameter_m;
-    target.height_m = 0.4;
-    target.heading_rad = 6.283 * unit(random);
-    target.burial_m = 0.1 * unit(random);
-    scene.add(target);
+    scene.set("sonar", "{frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}");
+    scene.set("input.geometry", "{row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 0}");
+    scene.set("input.geometry.first_slant_range", 30.0 + 40.0 * unit(random));
+    scene.set("injection.seed", std::to_string(random()));
+    if (unit(random) < 0.5) {
+        scene.set("objects[0].shape", "cylinder");
+        scene.set("objects[0].length", 1.0 + unit(random));
+        scene.set("objects[0].diameter", 0.4 + 0.4 * unit(random));
+    } else {
+        scene.set("objects[0].shape", "truncated_cone");
+        scene.set("objects[0].height", "40 cm");
+        const double diameter = 0.4 + 0.4 * unit(random);
+        scene.set("objects[0].diameter", diameter);
+        scene.set("objects[0].top_diameter", 0.5 * diameter);
+    }
+    scene.set("objects[0].heading", 360.0 * unit(random));
+    scene.set("objects[0].burial", 0.1 * unit(random));
     return scene;
 }
 

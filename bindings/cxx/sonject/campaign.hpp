@@ -25,12 +25,15 @@ class campaign
     /* overrides: "key.path=value" of the campaign's keys. */
     campaign(const context &context, const std::string &path,
              const std::vector<std::string> &overrides = std::vector<std::string>(),
-             const sonject_campaign_read_params &params = defaults<sonject_campaign_read_params>())
+             bool allows_user_shapes = false)
         : context_(context.get()), handle_(nullptr)
     {
         const std::vector<const char *> texts = detail::pointers_to(overrides);
-        check(sonject_campaign_read(context_, path.c_str(), texts.data(), texts.size(), &params,
-                                    &handle_));
+        sonject_scene_read_params params = defaults<sonject_scene_read_params>();
+        params.allows_user_shapes = allows_user_shapes;
+        params.overrides = texts.data();
+        params.override_count = static_cast<std::uint32_t>(texts.size());
+        check(sonject_campaign_read(context_, path.c_str(), &params, &handle_));
     }
     campaign(campaign &&other) noexcept : context_(other.context_), handle_(other.handle_)
     {

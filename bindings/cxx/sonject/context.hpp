@@ -36,8 +36,8 @@ class context
     explicit context(context_options options = context_options())
         : log_(new sonject::log(std::move(options.log))), handle_(nullptr)
     {
-        sonject_context_params params;
-        sonject_context_params_init(&params);
+        sonject_context_params params = sonject_context_params();
+        params.struct_size = sizeof params;
         params.device_name = options.device_name.empty() ? nullptr : options.device_name.c_str();
         params.opencl_context = options.opencl_context;
         params.opencl_device = options.opencl_device;
@@ -95,12 +95,6 @@ class context
     void convert(const sonject_convert_params &params) const
     {
         check(sonject_convert(handle_, &params));
-    }
-
-    /* Writes a synthetic seabed. */
-    void write_seabed(const sonject_seabed_file_params &params) const
-    {
-        check(sonject_seabed_write(handle_, &params));
     }
 
     /* Throws what a status of a call on this context means. */

@@ -9,6 +9,7 @@
 #include <sonject/error.hpp>
 #include <sonject/injection.hpp>
 #include <sonject/measure.h>
+#include <sonject/parameters.hpp>
 #include <sonject/span.hpp>
 #include <sonject/text.hpp>
 
@@ -30,19 +31,17 @@ inline sonject_measurement measure(const context &context, const pixels &image,
                                    span<const std::uint8_t> labels = span<const std::uint8_t>())
 {
     const std::uint64_t size = image.value.rows * image.value.columns;
-    sonject_measurement measurement = {};
-    measurement.struct_size = sizeof measurement;
+    sonject_measure_params params = defaults<sonject_measure_params>();
     if ((influence.size() && influence.size() != size) || (labels.size() && labels.size() != size))
         throw error(SONJECT_ERROR_ARGUMENT, "a mask needs rows x columns bytes");
-    context.check(sonject_measure_pixels(context.get(), &image.value,
-                                         influence.size() ? influence.data() : nullptr,
-                                         labels.size() ? labels.data() : nullptr, &measurement));
-    return measurement;
+    params.pixels = &image.value;
+    params.influence_mask = influence.size() ? influence.data() : nullptr;
+    params.labels_mask = labels.size() ? labels.data() : nullptr;
+    return measure(context, params);
 }
 
-/* Contacts of an image file as JSON; see sonject_measure_contacts. */
-inline std::string measure_contacts(const context &context,
-                                    const sonject_contact_file_params &params)
+/* Contacts of an image as JSON; see sonject_measure_contacts. */
+inline std::string measure_contacts(const context &context, const sonject_measure_params &params)
 {
     detail::text text;
     context.check(sonject_measure_contacts(context.get(), &params, text.out()));
@@ -60,13 +59,16 @@ inline std::string compare_contacts(const context &context, const std::string &f
     return text.copy();
 }
 
-/* Lengths and levels of a contact; see sonject_measure_contact. */
+/* Lengths and levels of a contact; see sonject_measure_contact. box: nullptr for the brightest. */
 inline sonject_contact_measures measure_contact(const context &context, const pixels &image,
-                                                const sonject_contact_params &params)
+                                                const sonject_box *box = nullptr,
+                                                double row_spacing_m = 0.0,
+                                                double column_spacing_m = 0.0)
 {
     sonject_contact_measures measures = {};
     measures.struct_size = sizeof measures;
-    context.check(sonject_measure_contact(context.get(), &image.value, &params, &measures));
+    context.check(sonject_measure_contact(context.get(), &image.value, box, row_spacing_m,
+                                          column_spacing_m, &measures));
     return measures;
 }
 

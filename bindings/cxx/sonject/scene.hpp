@@ -5,46 +5,109 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <sonject/context.hpp>
 #include <sonject/elements.h>
+#include <sonject/error.hpp>
 #include <sonject/parameters.hpp>
 #include <sonject/progress.hpp>
 #include <sonject/run.h>
 #include <sonject/scene.h>
-#include <sonject/scene_content.hpp>
+#include <sonject/span.hpp>
 #include <sonject/stages.h>
 #include <sonject/text.hpp>
 
 namespace sonject
 {
 
-/* Sonar, water, seabed, objects and where the image comes from. */
-class scene : public scene_content
+/* Sonar, water, seabed, objects and where the image comes from, by the keys of scene files. */
+class scene
 {
   public:
-    /* An empty one with all defaults. */
-    explicit scene(const context &context) : scene_content(context.get(), nullptr)
+    /* An empty one. */
+    explicit scene(const context &context) : context_(context.get()), handle_(nullptr)
     {
         check(sonject_scene_create(context_, &handle_));
     }
 
-    /* Reads a scene file; overrides: "key.path=value". */
+    /* Reads a scene file; overrides: "key.path=value". Of params all but these counts. */
     scene(const context &context, const std::string &path,
           const std::vector<std::string> &overrides = std::vector<std::string>(),
-          const sonject_scene_read_params &params = defaults<sonject_scene_read_params>())
-        : scene_content(context.get(), nullptr)
+          sonject_scene_read_params params = defaults<sonject_scene_read_params>())
+        : context_(context.get()), handle_(nullptr)
     {
         const std::vector<const char *> texts = detail::pointers_to(overrides);
-        check(sonject_scene_read_with(context_, path.c_str(), texts.data(), texts.size(), &params,
-                                      &handle_));
+        params.overrides = texts.data();
+        params.override_count = static_cast<std::uint32_t>(texts.size());
+        check(sonject_scene_read(context_, path.c_str(), &params, &handle_));
     }
 
     /* Takes over what the C interface made with that context. */
-    scene(sonject_context *context, sonject_scene *handle) noexcept : scene_content(context, handle)
+    scene(sonject_context *context, sonject_scene *handle) noexcept
+        : context_(context), handle_(handle)
     {
+    }
+    scene(scene &&other) noexcept : context_(other.context_), handle_(other.handle_)
+    {
+        other.handle_ = nullptr;
+    }
+    scene &operator=(scene &&other) noexcept
+    {
+        std::swap(context_, other.context_);
+        std::swap(handle_, other.handle_);
+        return *this;
+    }
+    scene(const scene &) = delete;
+    scene &operator=(const scene &) = delete;
+    ~scene()
+    {
+        sonject_scene_release(&handle_);
+    }
+
+    sonject_scene *get() const noexcept
+    {
+        return handle_;
+    }
+    sonject_context *context_handle() const noexcept
+    {
+        return context_;
+    }
+
+    /* Sets a key of the scene, one of tools/scenes/KEYS.md: "sonar.altitude", "10 m". */
+    void set(const std::string &key, const std::string &value)
+    {
+        check(sonject_scene_set(handle_, key.c_str(), value.c_str()));
+    }
+    /* The same of a number, in the key's SI unit (angles: degrees), with all its digits. */
+    void set(const std::string &key, double value)
+    {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.17g", value);
+        set(key, std::string(text));
+    }
+    /* Numbers in place of a table's file: rows of as many columns as are named, separated by
+     * commas; of heights, without names, column_count. See sonject_scene_set_table. */
+    void set_table(const std::string &key, const std::string &columns, span<const double> values,
+                   std::size_t column_count = 0)
+    {
+        if (!columns.empty())
+            column_count =
+                1 + static_cast<std::size_t>(std::count(columns.begin(), columns.end(), ','));
+        if (column_count == 0 || values.size() % column_count != 0)
+            throw error(SONJECT_ERROR_ARGUMENT, "a table needs whole rows of its columns");
+        check(sonject_scene_set_table(handle_, key.c_str(),
+                                      columns.empty() ? nullptr : columns.c_str(), values.data(),
+                                      values.size() / column_count, column_count));
+    }
+    std::uint32_t object_count() const
+    {
+        std::uint32_t count = 0;
+        check(sonject_scene_object_count(handle_, &count));
+        return count;
     }
 
     /* Checks the scene against its input and describes the geometry. */
@@ -110,11 +173,9 @@ class scene : public scene_content
     void trace(const std::string &file, const progress &callback = progress(),
                const std::string &export_file = std::string()) const
     {
-        sonject_trace_params params = defaults<sonject_trace_params>();
-        params.file = file.c_str();
-        params.export_file = export_file.empty() ? nullptr : export_file.c_str();
         detail::tell_progress(context_, callback, [&](sonject_progress_function tell, void *user) {
-            return sonject_trace(context_, handle_, &params, tell, user);
+            return sonject_trace(context_, handle_, file.c_str(),
+                                 export_file.empty() ? nullptr : export_file.c_str(), tell, user);
         });
     }
 
@@ -139,9 +200,31 @@ class scene : public scene_content
         });
     }
 
+    /* Writes the synthetic seabed that is the scene's input. */
+    void write_seabed(const std::string &path) const
+    {
+        check(sonject_seabed_write(context_, handle_, path.c_str()));
+    }
+
   private:
-    using scene_content::check;
+    void check(sonject_status status) const
+    {
+        detail::check(context_, status);
+    }
+    sonject_context *context_;
+    sonject_scene *handle_;
 };
+
+/* The scene that a text describes, YAML or JSON; name: for messages, and where names of files are
+ * meant from. */
+inline scene scene_of_text(const context &context, const std::string &text,
+                           const std::string &name = "scene", bool allows_user_shapes = false)
+{
+    sonject_scene_read_params params = defaults<sonject_scene_read_params>();
+    params.text = text.c_str();
+    params.allows_user_shapes = allows_user_shapes;
+    return scene(context, name, std::vector<std::string>(), params);
+}
 
 /* All keys that scenes have, as JSON; see sonject_keys. */
 inline std::string keys(const context &context)
@@ -157,9 +240,11 @@ inline std::vector<std::string> bands(
     const std::vector<std::string> &overrides = std::vector<std::string>())
 {
     const std::vector<const char *> texts = detail::pointers_to(overrides);
+    sonject_scene_read_params params = defaults<sonject_scene_read_params>();
     detail::text lines;
-    context.check(
-        sonject_scene_bands(context.get(), path.c_str(), texts.data(), texts.size(), lines.out()));
+    params.overrides = texts.data();
+    params.override_count = static_cast<std::uint32_t>(texts.size());
+    context.check(sonject_scene_bands(context.get(), path.c_str(), &params, lines.out()));
     const std::string all = lines.copy();
     std::vector<std::string> names;
     for (std::size_t start = 0; start < all.size();) {

@@ -16,8 +16,8 @@ ranges). Results are in m, radians, Hz, as the names of their members say.
 from . import keys
 from ._library import load as _load
 from ._classes import (
-    Box, CampaignImage, ContactMeasures, Device, ElementLayout, Geometry, Measurement, ObjectTruth,
-    Statistics, Transfer,
+    Box, CampaignImage, ContactMeasures, Device, ElementLayout, Measurement, ObjectTruth,
+    Statistics,
 )
 from .actions import (
     absorption, check, convert, element_layout, element_series, form, inject, measure,
@@ -26,7 +26,7 @@ from .actions import (
 from .campaign import Campaign, merge_campaign
 from .context import Context, Progress, default_context, devices
 from .enumerations import (
-    ConvertAxis, LabelFormat, RangeAxis, Samples, SeriesForm, Side, Status, TransferKind,
+    ConvertAxis, LabelFormat, RangeAxis, Samples, SeriesForm, Status,
 )
 from .errors import Cancelled, SonjectError
 from .result import Result
@@ -40,9 +40,9 @@ def version() -> str:
 
 __all__ = [
     "Box", "Campaign", "CampaignImage", "Cancelled", "ContactMeasures", "Context", "ConvertAxis",
-    "Device", "ElementLayout", "Geometry", "LabelFormat", "Measurement", "ObjectTruth",
-    "Progress", "RangeAxis", "Result", "Samples", "Scene", "SeriesForm", "Side", "SonjectError",
-    "Statistics", "Status", "Transfer", "TransferKind", "absorption", "check", "convert",
+    "Device", "ElementLayout", "LabelFormat", "Measurement", "ObjectTruth",
+    "Progress", "RangeAxis", "Result", "Samples", "Scene", "SeriesForm", "SonjectError",
+    "Statistics", "Status", "absorption", "check", "convert",
     "default_context", "devices", "element_layout", "element_series", "form", "inject", "keys",
     "measure", "measure_contact", "merge", "merge_campaign", "quicklook", "run", "run_elements", "trace",
     "version",

@@ -2,13 +2,13 @@
 
 import ctypes
 import enum
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import Any, ClassVar, Type, TypeVar
 
 import numpy
 import numpy.typing
 
-from ._values import choice, filled, text
+from ._values import text
 
 Self = TypeVar("Self", bound="Mirror")
 Array = numpy.typing.NDArray[Any]
@@ -36,19 +36,6 @@ class Mirror:
 
 class Answer(Mirror):
     """What the library tells."""
-
-
-@dataclass(kw_only=True)
-class Parameters(Mirror):
-    """What the library is given."""
-
-    def to_structure(self) -> Any:
-        """The C structure. Raises TypeError or ValueError where a value does not fit into it."""
-        values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        for entry in fields(self):
-            if isinstance(entry.type, type) and issubclass(entry.type, enum.IntEnum):
-                values[entry.name] = choice(entry.name, entry.type, values[entry.name])
-        return filled(self._structure, **values)
 
 
 class BoxBase(Answer):

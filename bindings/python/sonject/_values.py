@@ -14,7 +14,6 @@ from typing import Any, Iterable, Mapping, Optional, Tuple, Type, TypeVar, Union
 import numpy
 
 from . import _interface as s
-from ._library import load
 from .enumerations import PixelKind
 
 PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
@@ -105,15 +104,6 @@ def optional_file_name(name: str, value: Any) -> Optional[bytes]:
     return None if value is None else file_name(name, value)
 
 
-def channel_number(channel: Union[str, int, None]) -> int:
-    """A channel of an XTF file as the library counts them: port, starboard, its number there, or
-    None for the only one."""
-    words: dict[Any, int] = {
-        "port": s.CHANNEL_PORT, "starboard": s.CHANNEL_STARBOARD, None: s.CHANNEL_ONLY,
-    }
-    return words[channel] if channel in words else whole_number("channel", channel, 63)
-
-
 def key_text(name: str, value: Any) -> str:
     """The value of a scene's key as JSON, which is YAML, too."""
     return json.dumps(_plain(name, value), ensure_ascii=False, allow_nan=False)
@@ -137,11 +127,9 @@ def _plain(name: str, value: Any) -> Any:
 
 
 def initialised(kind: Type[AnyStructure]) -> AnyStructure:
-    """A structure with the library's defaults, zeros where it has none, and its size."""
+    """A structure of zeros, which stand for defaults, with its size."""
     structure = kind()
-    if kind.__name__ + "_init" in s.FUNCTIONS:
-        getattr(load(), kind.__name__ + "_init")(ctypes.byref(structure))
-    elif hasattr(structure, "struct_size"):
+    if hasattr(structure, "struct_size"):
         structure.struct_size = ctypes.sizeof(kind)
     return structure
 
@@ -168,12 +156,8 @@ def filled(kind: Type[AnyStructure], /, **values: Any) -> AnyStructure:
 
 
 def given(**values: Any) -> dict[str, Any]:
-    """Those that are not None; parameters as their structures."""
-    return {
-        name: value.to_structure() if hasattr(value, "to_structure") else value
-        for name, value in values.items()
-        if value is not None
-    }
+    """Those that are not None."""
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def shard_values(shard: Tuple[int, int]) -> dict[str, int]:

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import ctypes
 import itertools
-from typing import Any, Iterable, Optional, Tuple, Union
+from typing import Any, Iterable, Mapping, Optional, Tuple, Union
 
 import numpy
 
 from . import _interface as s
-from ._classes import ElementLayout, Geometry, Transfer
+from ._classes import ElementLayout
 from ._library import load
 from ._values import (
     Overrides,
     PathLike,
-    channel_number,
     choice,
     file_name,
     filled,
     given,
     initialised,
+    key_text,
     library_pixels,
     optional_file_name,
     override_texts,
@@ -159,10 +159,8 @@ def trace(
     export_file: the same as HDF5 arrays, for other programs.
     """
     context = scene.context
-    params = filled(s.sonject_trace_params, file=file_name("file", file))
-    if export_file is not None:
-        params.export_file = file_name("export_file", export_file)
-    context.work("sonject_trace", context, scene, ctypes.byref(params), progress=progress)
+    context.work("sonject_trace", context, scene, file_name("file", file),
+                 optional_file_name("export_file", export_file), progress=progress)
 
 
 def form(
@@ -213,8 +211,8 @@ def quicklook(
     decibels: Optional[tuple[float, float]] = None,
     range_axis: RangeAxis = RangeAxis.SLANT,
     altitude_m: Optional[float] = None,
-    geometry: Optional[Geometry] = None,
-    transfer: Optional[Transfer] = None,
+    geometry: Optional[Mapping[str, Any]] = None,
+    transfer: Optional[Mapping[str, Any]] = None,
     channel: Union[str, int, None] = None,
     array: Optional[str] = None,
     context: Optional[Context] = None,
@@ -223,7 +221,8 @@ def quicklook(
     an HDF5 or MATLAB file, as a PNG.
 
     decibels: ends of the grey scale, None: chosen from the image; altitude_m, geometry: None for
-    what the image's metadata says; transfer: None for plain amplitudes.
+    what the image's metadata says; transfer: None for plain amplitudes. The latter two have the keys
+    of input.geometry and input.transfer of scenes.
     """
     context = default_context() if context is None else context
     minimum = maximum = None
@@ -236,17 +235,8 @@ def quicklook(
         image=file_name("image", image),
         picture=file_name("picture", picture),
         range_axis=choice("range_axis", RangeAxis, range_axis),
-        channel=channel_number(channel),
-        array=None if array is None else plain_text("array", array),
-        has_geometry=geometry is not None,
-        has_transfer=transfer is not None,
-        **given(
-            minimum_db=minimum,
-            maximum_db=maximum,
-            altitude_m=altitude_m,
-            geometry=geometry,
-            transfer=transfer,
-        ),
+        **_image_keys(channel=channel, array=array, geometry=geometry, transfer=transfer),
+        **given(minimum_db=minimum, maximum_db=maximum, altitude_m=altitude_m),
     )
     context.call("sonject_quicklook", context, ctypes.byref(params))
 
@@ -262,7 +252,7 @@ def convert(
     samples: Samples = Samples.KEPT,
     scale: float = 1.0,
     range_axis: ConvertAxis = ConvertAxis.KEPT,
-    geometry: Optional[Geometry] = None,
+    geometry: Optional[Mapping[str, Any]] = None,
     altitude_m: Optional[float] = None,
     context: Optional[Context] = None,
 ) -> None:
@@ -278,16 +268,23 @@ def convert(
         input=file_name("source", source),
         output=file_name("output", output),
         into=optional_file_name("into", into),
-        channel=channel_number(channel),
-        array=None if array is None else plain_text("array", array),
+        **_image_keys(channel=channel, array=array, geometry=geometry),
         magnitude=bool(magnitude),
         samples=choice("samples", Samples, samples),
         scale=scale,
         range_axis=choice("range_axis", ConvertAxis, range_axis),
-        has_geometry=geometry is not None,
-        **given(geometry=geometry, altitude_m=altitude_m),
+        **given(altitude_m=altitude_m),
     )
     context.call("sonject_convert", context, ctypes.byref(params))
+
+
+def _image_keys(**values: Any) -> dict[str, Optional[bytes]]:
+    """What is said of an image file, as texts; None where nothing is."""
+    return {
+        name: None if value is None else plain_text(
+            name, value if isinstance(value, str) else key_text(name, value))
+        for name, value in values.items()
+    }
 
 
 def _mask(name: str, mask: Any, shape: tuple[int, ...]) -> Any:
@@ -318,14 +315,10 @@ def measure(
         None if mask is None else mask.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8))
         for mask in masks
     ]
+    params = filled(s.sonject_measure_params, pixels=ctypes.pointer(pixels),
+                    influence_mask=pointers[0], labels_mask=pointers[1])
     measurement = initialised(s.sonject_measurement)
-    context.call(
-        "sonject_measure_pixels",
-        context,
-        ctypes.byref(pixels),
-        *pointers,
-        ctypes.byref(measurement),
-    )
+    context.call("sonject_measure", context, ctypes.byref(params), ctypes.byref(measurement))
     del array, masks
     return Measurement.from_structure(measurement)
 
@@ -345,18 +338,17 @@ def measure_contact(
     """
     context = default_context() if context is None else context
     pixels, array = library_pixels(image)
-    params = filled(
-        s.sonject_contact_params, row_spacing_m=row_spacing_m, column_spacing_m=column_spacing_m
-    )
-    if box is not None:
-        for name in ("first_row", "first_column", "rows", "columns"):
-            setattr(params.box, name, whole_number(name, getattr(box, name), 2**31))
+    place = None if box is None else s.sonject_box(*(
+        whole_number(name, getattr(box, name), 2**31)
+        for name in ("first_row", "first_column", "rows", "columns")))
     measures = initialised(s.sonject_contact_measures)
     context.call(
         "sonject_measure_contact",
         context,
         ctypes.byref(pixels),
-        ctypes.byref(params),
+        None if place is None else ctypes.byref(place),
+        real_number("row_spacing_m", row_spacing_m),
+        real_number("column_spacing_m", column_spacing_m),
         ctypes.byref(measures),
     )
     del array

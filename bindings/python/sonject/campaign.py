@@ -42,14 +42,13 @@ class Campaign(Handle):
         context = default_context() if context is None else context
         texts = override_texts(overrides)
         consent = bool(allows_user_shapes)
-        params = filled(s.sonject_campaign_read_params, allows_user_shapes=consent)
+        params = filled(s.sonject_scene_read_params, allows_user_shapes=consent, override_count=len(texts),
+                        overrides=ctypes.cast(texts, ctypes.POINTER(ctypes.c_char_p)))
         pointer = context.make(
             s.sonject_campaign,
             "sonject_campaign_read",
             context,
             file_name("path", path),
-            texts,
-            len(texts),
             ctypes.byref(params),
         )
         super().__init__(context, pointer)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import importlib
-from typing import Any, Optional
+from typing import Any, Mapping, Optional
 
 import numpy
 
-from ._classes import Geometry
 from .result import Result
 
 # Of the brightest thousandth to what is hardly seen beside it.
@@ -24,15 +23,15 @@ def _decibels(image: Any) -> Any:
         return 20.0 * numpy.log10(numpy.abs(numpy.asarray(image)).astype(numpy.float64))
 
 
-def _extent(shape: tuple[int, int], geometry: Geometry) -> tuple[float, float, float, float]:
+def _extent(shape: tuple[int, int], geometry: Mapping[str, float]) -> tuple[float, float, float, float]:
     """Outer edges of the pixels in m: first and last slant range, last and first track position."""
     rows, columns = shape
-    left = geometry.first_slant_range_m - 0.5 * geometry.column_spacing_m
-    top = geometry.first_along_track_m - 0.5 * geometry.row_spacing_m
+    left = geometry["first_slant_range"] - 0.5 * geometry["column_spacing"]
+    top = geometry.get("first_along_track", 0.0) - 0.5 * geometry["row_spacing"]
     return (
         left,
-        left + columns * geometry.column_spacing_m,
-        top + rows * geometry.row_spacing_m,
+        left + columns * geometry["column_spacing"],
+        top + rows * geometry["row_spacing"],
         top,
     )
 
@@ -40,14 +39,14 @@ def _extent(shape: tuple[int, int], geometry: Geometry) -> tuple[float, float, f
 def draw(
     image: Any,
     *,
-    geometry: Optional[Geometry] = None,
+    geometry: Optional[Mapping[str, float]] = None,
     decibels: Optional[tuple[float, float]] = None,
     axes: Any = None,
 ) -> Any:
     """Draws an image's magnitudes in dB; gives matplotlib's AxesImage.
 
     image: rows (track positions) x columns (slant ranges), amplitudes or complex pixels; geometry:
-    labels the axes in metres, None: in pixels; decibels: ends of the grey scale, None: 50 dB up to
+    as input.geometry of scenes, numbers in m, labels the axes; None: in pixels; decibels: ends of the grey scale, None: 50 dB up to
     the brightest thousandth; axes: matplotlib's to draw in, None: the current ones.
     """
     axes = _pyplot().gca() if axes is None else axes
@@ -75,7 +74,7 @@ def draw_result(
     patch: Any,
     result: Result,
     *,
-    geometry: Optional[Geometry] = None,
+    geometry: Optional[Mapping[str, float]] = None,
     decibels: Optional[tuple[float, float]] = None,
     figure: Any = None,
 ) -> Any:

@@ -81,9 +81,10 @@ class Scene(Handle):
         """Names of the bands that a scene file, with overrides as for ``read``, leaves to be chosen."""
         texts = override_texts(overrides)
         context = default_context() if context is None else context
-        return context.text(
-            "sonject_scene_bands", context, file_name("path", path), texts, len(texts)
-        ).split()
+        params = filled(s.sonject_scene_read_params, override_count=len(texts),
+                        overrides=ctypes.cast(texts, ctypes.POINTER(ctypes.c_char_p)))
+        return context.text("sonject_scene_bands", context, file_name("path", path),
+                            ctypes.byref(params)).split()
 
     def __setitem__(self, key: str, value: Any) -> None:
         """Sets a key, a whole section or an entry: ``scene["objects[1]"] = {...}``.

@@ -9,7 +9,7 @@ import sonject
 def test_an_array_becomes_an_image_and_comes_back(tmp_path):
     pixels = numpy.arange(12, dtype=numpy.uint16).reshape(3, 4)
     numpy.save(tmp_path / "a.npy", pixels)
-    geometry = sonject.Geometry(row_spacing_m=0.1, column_spacing_m=0.25, first_slant_range_m=5.0)
+    geometry = {"row_spacing": 0.1, "column_spacing": "25 cm", "first_slant_range": 5.0}
     sonject.convert(tmp_path / "a.npy", tmp_path / "b.tif", geometry=geometry, altitude_m=3.0)
     assert b"sonject:first_slant_range_m=5\n" in (tmp_path / "b.tif").read_bytes()
     sonject.convert(tmp_path / "b.tif", tmp_path / "c.npy", samples=sonject.Samples.FLOAT32,

@@ -52,17 +52,17 @@ def test_layout_is_the_compilers(tmp_path):
 
 
 @pytest.mark.parametrize("found, put, reason", [
-    ("    double full_scale;", "    double full_scale, other;", "not understood: double full_scale,"),
-    ("} sonject_side;", "} other;", "a typedef is not understood"),
-    ("    double offset;", "    double offset[3];", "no field for"),
+    ("    double minimum_db;", "    double minimum_db, other;", "not understood: double minimum_db,"),
+    ("} sonject_range_axis;", "} other;", "a typedef is not understood"),
+    ("    double maximum_db;", "    double maximum_db[3];", "no field for"),
     ("SONJECT_END_DECLARATIONS", "SONJECT_API void *(*sonject_odd(void))(void);", "a function is not understood"),
 ])
 def test_what_is_not_understood_is_refused(tmp_path, found, put, reason):
     for header in HEADERS.glob("*.h"):
         (tmp_path / header.name).write_text(header.read_text())
-    image = tmp_path / "image.h"
-    assert found in image.read_text()
-    image.write_text(image.read_text().replace(found, put))
+    changed = tmp_path / "run.h"
+    assert found in changed.read_text()
+    changed.write_text(changed.read_text().replace(found, put))
     answer = subprocess.run([sys.executable, DOCUMENTS / "generate.py", tmp_path, KEYS_PAGE,
                              *sorted(tmp_path.glob("*.h"))], capture_output=True, text=True, check=False)
     assert answer.returncode != 0 and reason in answer.stderr

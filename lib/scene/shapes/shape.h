@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include <sonject/object.h>
+#include "scene/params.h"
 
 #include "base/report.h"
 #include "kernels/layout.h"

@@ -1,0 +1,63 @@
+/* What verbs that work on image files are told of these: geometry that their metadata lack, a
+ * transfer function, a channel. Texts become those that scenes have as input.geometry and so on. */
+#ifndef SONJECT_TOOLS_IMAGE_ARGUMENTS_H
+#define SONJECT_TOOLS_IMAGE_ARGUMENTS_H
+
+#include <sonject/sonject.h>
+
+#include "arguments.h"
+
+#define IMAGE_TEXT 200 /* bytes of such a text */
+
+struct geometry_arguments {
+    const char *range_axis;
+    struct number_argument altitude;
+    struct number_argument row_spacing;
+    struct number_argument column_spacing;
+    struct number_argument first_range;
+};
+
+/* Lines of a verb's arguments, whose options are a structure with a struct geometry_arguments
+ * `geometry`. axis: what the verb does with the range axis. */
+#define GEOMETRY_NUMBER(structure, name, unit, help, member)                                       \
+    {                                                                                              \
+        name, NULL, unit, help, ARGUMENT_NUMBER, false, offsetof(structure, geometry.member)       \
+    }
+#define GEOMETRY_ARGUMENTS(structure, axis)                                                        \
+    {"--range-axis",                                                                               \
+     NULL,                                                                                         \
+     "slant|ground",                                                                               \
+     axis,                                                                                         \
+     ARGUMENT_TEXT,                                                                                \
+     false,                                                                                        \
+     offsetof(structure, geometry.range_axis)},                                                    \
+        GEOMETRY_NUMBER(structure, "--altitude", "M", "height of the sonar over the seabed",       \
+                        altitude),                                                                 \
+        GEOMETRY_NUMBER(structure, "--row-spacing", "M", "along-track distance of rows",           \
+                        row_spacing),                                                              \
+        GEOMETRY_NUMBER(structure, "--column-spacing", "M", "slant range distance of columns",     \
+                        column_spacing),                                                           \
+        GEOMETRY_NUMBER(structure, "--first-range", "M", "slant range of the first column",        \
+                        first_range)
+
+#define TRANSFER_NOTES                                                                             \
+    "Transfer functions: amplitude, intensity, decibel:DB_PER_UNIT[:OFFSET_DB], gamma:EXPONENT,\n" \
+    "schlick:B."
+
+/* Fills what was given: *is_ground 0 or 1, *altitude_m, and *geometry with the text; the rest
+ * stays. false after a message that begins with the verb's name, as below. */
+bool geometry_parse(const char *verb, const struct geometry_arguments *arguments,
+                    uint32_t *is_ground, double *altitude_m, char text[IMAGE_TEXT],
+                    const char **geometry);
+
+/* --transfer KIND[:P[:OFFSET]], NULL: none was given, and none is there. */
+bool transfer_parse(const char *verb, const char *argument, char text[IMAGE_TEXT],
+                    const char **transfer);
+
+/* --channel port, starboard or a number, NULL likewise. */
+bool channel_check(const char *verb, const char *argument);
+
+/* Copies the piece of text up to the colon and gives what follows it, NULL at the end. */
+const char *next_piece(const char *text, char *piece, size_t capacity);
+
+#endif
