@@ -58,4 +58,4 @@ def test_the_reference_of_the_interface_is_made_without_warnings(tmp_path):
         assert f"{name}()</h2>" in pages, name
     # what stands before a declaration and what stands behind one
     assert "Forgets" not in pages and "Puts the scene's objects into a patch" in pages
-    assert "height of the track over the mean seabed" in pages
+    assert "of the centre over the mean seabed" in pages
