@@ -6,7 +6,7 @@
 #include "first_key.h"
 #include "scene/scene.h"
 
-/* Those that sonject/material.h promises. */
+/* Those that materials.c has. */
 static const char *const promised[] = {"steel",     "concrete", "rubber",      "wood",
                                        "rock",      "gravel",   "coarse sand", "medium sand",
                                        "fine sand", "silt",     "clay"};
