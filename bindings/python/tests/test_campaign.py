@@ -115,5 +115,5 @@ def test_a_data_set_stops_by_itself_and_one_image_is_made_alone(campaign, tmp_pa
 
 
 def test_mistakes_say_where(tmp_path, campaign):
-    with pytest.raises(sonject.SonjectError, match="images: must be at most"):
+    with pytest.raises(sonject.SonjectError, match="images: must be 1"):
         sonject.Campaign(tmp_path / "campaign.yaml", {"images": 10**18})

@@ -52,15 +52,15 @@ def test_layout_is_the_compilers(tmp_path):
 
 
 @pytest.mark.parametrize("found, put, reason", [
-    ("    double minimum_db;", "    double minimum_db, other;", "not understood: double minimum_db,"),
-    ("} sonject_range_axis;", "} other;", "a typedef is not understood"),
-    ("    double maximum_db;", "    double maximum_db[3];", "no field for"),
+    ("    double burial_m;", "    double burial_m, other;", "not understood: double burial_m,"),
+    ("} sonject_level_kind;", "} other;", "a typedef is not understood"),
+    ("    double grazing_rad;", "    double grazing_rad[3];", "no field for"),
     ("SONJECT_END_DECLARATIONS", "SONJECT_API void *(*sonject_odd(void))(void);", "a function is not understood"),
 ])
 def test_what_is_not_understood_is_refused(tmp_path, found, put, reason):
     for header in HEADERS.glob("*.h"):
         (tmp_path / header.name).write_text(header.read_text())
-    changed = tmp_path / "run.h"
+    changed = tmp_path / "result.h"
     assert found in changed.read_text()
     changed.write_text(changed.read_text().replace(found, put))
     answer = subprocess.run([sys.executable, DOCUMENTS / "generate.py", tmp_path, KEYS_PAGE,
