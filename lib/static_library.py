@@ -21,7 +21,8 @@ def main():
         # Groups that linkers fold with those of other files would take names that are local here.
         subprocess.run([*compiler, "-r", "-nostdlib", "-Wl,--force-group-allocation",
                         "-Wl,--whole-archive", *archives, "-o", whole], check=True)
-        subprocess.run([objcopy, "--wildcard", "--keep-global-symbol=sonject_*", whole], check=True)
+        subprocess.run([objcopy, "--localize-hidden", "--wildcard", "--keep-global-symbol=sonject_*",
+                        whole], check=True)
         subprocess.run([ar, "rcsD", output, whole], check=True)
 
 

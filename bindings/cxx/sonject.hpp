@@ -4,17 +4,17 @@
  *     sonject::context context;
  *     sonject::scene scene(context);
  *     scene.set("sonar", "{frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}");
- *     scene.set("input.geometry", "{row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 44
- * m}"); scene.set("objects[0]", "{shape: sphere, diameter: 0.5 m, material: steel}");
+ *     scene.set("input.geometry",
+ *               "{row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 44 m}");
+ *     scene.set("objects[0]", "{shape: sphere, diameter: 0.5 m, material: steel}");
  *     sonject::result result = sonject::inject(scene, {pixels.data(), rows, columns});
  *     result.layer(SONJECT_LAYER_IMAGE, sonject::span<float>(pixels));
  *
  * Keys are those of scene files (tools/scenes/KEYS.md); structures, units and meanings those of
- * <sonject/...>. What fails throws
- * sonject::error (sonject::cancelled where a progress callback asked to stop) with the library's
- * message; nothing is then changed unless the C function says so. An object of these classes
- * belongs to one thread at a time, and must not outlive the context that it was made with; moving a
- * context is fine. */
+ * <sonject/...>. What fails throws sonject::error (sonject::cancelled where a progress callback
+ * asked to stop) with the library's message; nothing is then changed unless the C function says so.
+ * An object of these classes belongs to one thread at a time, and must not outlive the context that
+ * it was made with; moving a context is fine. */
 #ifndef SONJECT_HPP
 #define SONJECT_HPP
 
