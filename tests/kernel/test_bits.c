@@ -542,6 +542,7 @@ static void on_scenes_with(unsigned flags, body *run)
     for (size_t i = 0; i < COUNT(scenes); i++)
         if (scenes[i].flags & flags) {
             scene_clear(&bench.scene);
+            scene_init(&bench.scene);
             bench_set_layers(&bench, NULL, 0);
             bench_move(&bench, 18.0);
             run(&bench, &scenes[i]);

@@ -181,6 +181,7 @@ static void test_corner_tallies(void **state)
         print_message("width %u\n", (unsigned)widths[w]);
         for (size_t i = 0; i < COUNT(variants); i++) {
             scene_clear(&bench.scene);
+            scene_init(&bench.scene);
             bench_set_layers(&bench, NULL, 0);
             bench_move(&bench, 18.0);
             compare_variant(&bench, &variants[i]);
