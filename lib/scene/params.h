@@ -379,9 +379,9 @@ typedef enum sonject_shape {
     SONJECT_SHAPE_TRUNCATED_CONE = 9, /* diameter (below) and top_diameter x height */
     SONJECT_SHAPE_TORUS = 10, /* diameter x height, lying flat when pose is level; its height is
                                  the thickness of the ring */
-    SONJECT_SHAPE_PARTS = 11, /* the union of parts, see sonject_scene_add_part; no sizes */
-    SONJECT_SHAPE_MESH = 12,  /* triangles, see sonject_scene_add_mesh; no sizes */
-    SONJECT_SHAPE_USER = 13   /* code, see sonject_scene_add_user_shape; no sizes */
+    SONJECT_SHAPE_PARTS = 11, /* the union of parts, see struct scene_part; no sizes */
+    SONJECT_SHAPE_MESH = 12,  /* triangles, see struct mesh; no sizes */
+    SONJECT_SHAPE_USER = 13   /* code, see struct user_shape; no sizes */
 } sonject_shape;
 
 /* An end of a cylinder. With an open end the cylinder is a tube: its wall is thin and reflects on
@@ -496,8 +496,6 @@ void sonject_part_params_init(sonject_part_params *part);
 void sonject_object_params_init(sonject_object_params *object);
 
 /* Shapes that are written by users, in OpenCL C. */
-
-
 
 /* A shape by code, whose contract is in sonject/user_shape.h. */
 typedef struct sonject_user_shape_params {

@@ -78,24 +78,8 @@ sonject_status scene_append_part(struct scene *scene, struct report *report,
     return SONJECT_OK;
 }
 
-struct scene_counts scene_count(const struct scene *scene)
-{
-    return (struct scene_counts){scene->object_count, scene->part_count, scene->mesh_count,
-                                 scene->user_shapes.count, scene->user_shapes.snippet_count};
-}
-
-/* Room stays: a power of two that holds more will do for fewer. */
-void scene_cut_back(struct scene *scene, const struct scene_counts *counts)
-{
-    scene->object_count = counts->objects;
-    scene->part_count = counts->parts;
-    while (scene->mesh_count > counts->meshes)
-        give_up_mesh(scene, &scene->meshes[--scene->mesh_count]);
-    user_shapes_cut_back(&scene->user_shapes, counts->user_shapes, counts->snippets);
-}
-
-sonject_status scene_append_mesh(struct scene *scene, struct report *report, const char *path,
-                                 const struct mesh_options *options, bool allows_open)
+static sonject_status append_mesh(struct scene *scene, struct report *report, const char *path,
+                                  const struct mesh_options *options, bool allows_open)
 {
     struct file_identity file;
     if (scene->mesh_count >= SCENE_MESHES_MAX)
@@ -127,5 +111,5 @@ sonject_status scene_share_mesh(struct scene *scene, struct report *report, cons
         if (mesh_is_of(&scene->meshes[*number], &file, options))
             return allows_open ? SONJECT_OK
                                : mesh_require_closed(report, path, &scene->meshes[*number]);
-    return scene_append_mesh(scene, report, path, options, allows_open);
+    return append_mesh(scene, report, path, options, allows_open);
 }

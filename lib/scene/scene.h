@@ -86,20 +86,9 @@ sonject_status scene_append_object(struct scene *scene, struct report *report,
 sonject_status scene_append_part(struct scene *scene, struct report *report,
                                  const struct scene_part *part);
 
-/* How much was appended, to take back what comes after. */
-struct scene_counts {
-    uint32_t objects, parts, meshes, user_shapes, snippets;
-};
-struct scene_counts scene_count(const struct scene *scene);
-void scene_cut_back(struct scene *scene, const struct scene_counts *counts);
-
-/* Reads and appends a mesh. Errors: as mesh_load, INPUT also where it is open or there are too
- * many. */
-sonject_status scene_append_mesh(struct scene *scene, struct report *report, const char *path,
-                                 const struct mesh_options *options, bool allows_open);
-
 /* The number of the mesh that the scene already has from that file, as it now is, with those
- * options; else reads and appends it. Errors: the same. */
+ * options; else reads and appends it. Errors: as mesh_load, INPUT also where it is open or there
+ * are too many. */
 sonject_status scene_share_mesh(struct scene *scene, struct report *report, const char *path,
                                 const struct mesh_options *options, bool allows_open,
                                 uint32_t *number);

@@ -36,9 +36,6 @@ sonject_status check_user_shape(const sonject_user_shape_params *shape, struct r
 sonject_status user_shapes_append(struct user_shapes *shapes, struct report *report,
                                   const sonject_user_shape_params *shape);
 
-/* Keeps the first shapes and codes alone. */
-void user_shapes_cut_back(struct user_shapes *shapes, uint32_t count, uint32_t snippet_count);
-
 void user_shapes_clear(struct user_shapes *shapes);
 
 #endif

@@ -409,67 +409,6 @@ static sonject_status read_target_parts(struct reader *reader, const struct targ
     return of_parts == SONJECT_OK ? status : of_parts;
 }
 
-/* Place, pose and level of an object, and what it is called, where that is said. */
-static void take_placing(sonject_object_params *to, const sonject_object_params *from)
-{
-    if (from->name[0])
-        memcpy(to->name, from->name, sizeof to->name);
-    if (from->class_name[0])
-        memcpy(to->class_name, from->class_name, sizeof to->class_name);
-    to->position_kind = from->position_kind;
-    to->position_along = from->position_along;
-    to->position_range = from->position_range;
-    to->heading_rad = from->heading_rad;
-    to->pitch_rad = from->pitch_rad;
-    to->roll_rad = from->roll_rad;
-    to->burial_kind = from->burial_kind;
-    to->burial_m = from->burial_m;
-    to->burial_fraction = from->burial_fraction;
-    to->proud_height_m = from->proud_height_m;
-    to->level_kind = from->level_kind;
-    to->level_db = from->level_db;
-}
-
-static sonject_status append_target(struct reader *reader, struct target_text *target,
-                                    const sonject_object_params *placing)
-{
-    static const struct tree_place nowhere;
-    sonject_status status = read_target_file(reader, nowhere, target);
-    if (status == SONJECT_OK) {
-        take_placing(&target->object, placing);
-        status = check_object(&target->object, reader->report, NULL);
-    }
-    status = read_target_parts(reader, target, status);
-    THEN(status, scene_append_object(reader->scene, reader->report, &target->object));
-    return status;
-}
-
-sonject_status scene_append_target(struct scene *scene, struct report *report, const char *path,
-                                   bool allows_user_shapes, const sonject_object_params *placing)
-{
-    char excerpt[400];
-    struct target_text target;
-    struct mistakes mistakes = {NULL, 0, 0, 0};
-    struct tree tree = {.mistakes = &mistakes};
-    struct reader reader = {
-        .report = report, .tree = &tree, .scene = scene, .allows_user_shapes = allows_user_shapes};
-    const struct scene_counts before = scene_count(scene);
-    if (!file_exists(path))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: there is no such target file; check its name",
-                              text_excerpt(excerpt, sizeof excerpt, path));
-    memset(&target, 0, sizeof target);
-    start_shape(&target.object, NULL);
-    target.file = copy_text(path);
-    CHECK_MEMORY(report, target.file, "a path");
-    const sonject_status status =
-        mistakes_tell(&mistakes, report, append_target(&reader, &target, placing));
-    target_text_clear(&target);
-    if (status != SONJECT_OK)
-        scene_cut_back(scene, &before);
-    return status;
-}
-
 /* ---- Objects. */
 
 static const struct field position_fields[] = {PLACE_FIELDS("as the image shows it", -1.0)};

@@ -57,11 +57,6 @@ sonject_status scene_text_bands(struct report *report, const struct scene_text *
 /* Whether a band may have this name, which is a folder's. */
 bool is_band_name(const char *text);
 
-/* Appends the target of a file as an object. placing: what sonject_scene_add_target takes of an
- * object. On failure the scene is as before. Errors: INPUT, STORAGE, MEMORY. */
-sonject_status scene_append_target(struct scene *scene, struct report *report, const char *path,
-                                   bool allows_user_shapes, const sonject_object_params *placing);
-
 /* All keys as a JSON array, in the tables' order, for free(): objects with path
  * ("objects[].heading"), section (the path of the section that it is in, "" at the top), meaning,
  * kind (quantity, count, flag, word, name, text, file, section, list or special), unit (as users

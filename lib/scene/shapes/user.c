@@ -97,13 +97,6 @@ sonject_status user_shapes_append(struct user_shapes *shapes, struct report *rep
     return SONJECT_OK;
 }
 
-void user_shapes_cut_back(struct user_shapes *shapes, uint32_t count, uint32_t snippet_count)
-{
-    shapes->count = count;
-    while (shapes->snippet_count > snippet_count)
-        snippet_clear(&shapes->snippets[--shapes->snippet_count]);
-}
-
 void user_shapes_clear(struct user_shapes *shapes)
 {
     for (uint32_t i = 0; i < shapes->snippet_count; i++)
