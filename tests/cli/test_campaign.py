@@ -470,8 +470,8 @@ def test_the_example_runs_as_it_says(ground, environment):
 
 
 HOSTILE = [
-    (["images=1000000000000000000"], "images", "at most"),
-    (["images=0"], "images", "at least 1"),
+    (["images=1000000000000000000"], "images", "1...10000000"),
+    (["images=0"], "images", "1...10000000"),
     (["images=-3"], "images", "whole number"),
     (["scene=nowhere.yaml"], "nowhere.yaml", "there is no such scene file"),
     (["swaths[1].path=nowhere.png"], "nowhere.png", "there is no"),
@@ -494,7 +494,7 @@ HOSTILE = [
       'sonar.resolution: {uniform: [3 cm, 4 cm], steps: 1000000}, '
       'sonar.frequency: {uniform: [90 kHz, 91 kHz], steps: 1000000}}'], "grid", "more than"),
     (["chip.rows=200"], "swath0.png", "too few for images of 200 x 64"),
-    (["chip.rows=0"], "chip.rows", "at least 16"),
+    (["chip.rows=0"], "chip.rows", "16...8192"),
     (["swaths[0].avoid=[{row: 0, column: 0, rows: 1099511627776, columns: 1099511627776}]"],
      "swath0.png", "leave no room"),
     (["chip.slant_range=[60 m, 70 m]"], "swath0.png", "60 to 70 m"),
@@ -506,7 +506,7 @@ HOSTILE = [
     (["splits={train: 0.5}"], "splits", "add up to 0.5"),
     (["targets[0].class=''"], "class", "1 to"),
     (["targets[0].object={shape: sphere, diamter: 1 m}"], "diamter", "did you mean 'diameter'?"),
-    (["empty=1.5"], "empty", "from 0 to 1"),
+    (["empty=1.5"], "empty", "0...1"),
     (["clutter.number=51"], "clutter.number", "0 to 50"),
     (["outputs=[shadows]"], "outputs", "did you mean 'shadow'?"),
     (["draw={seabed.lambert: {choice: [" + "0.1, " * 20000 + "0.1]}}"], "campaign.yaml",
