@@ -196,7 +196,17 @@ sonject_status scene_file_load(struct report *report, const char *path, char **t
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: there is no such scene file; check its name",
                               text_excerpt(excerpt, sizeof excerpt, path));
-    return file_read_whole(report, path, TREE_BYTES_MAX, text, bytes);
+    CHECK(file_read_whole(report, path, TREE_BYTES_MAX, text, bytes));
+    if (strlen(*text) == *bytes)
+        return SONJECT_OK;
+    /* Nothing behind a zero byte would be read; YAML has none, and says where it is. */
+    struct tree tree;
+    tree_init(&tree, report, path);
+    const sonject_status status = tree_parse(&tree, *text, *bytes);
+    tree_clear(&tree);
+    free(*text);
+    *text = NULL;
+    return status != SONJECT_OK ? status : input_failure(report, path, "has a zero byte within it");
 }
 
 /* The place of every key, for what is found wrong when the image is known. */
@@ -235,32 +245,6 @@ sonject_status scene_text_read(struct report *report, const struct scene_text *s
     tree_clear(&tree);
     if (status != SONJECT_OK)
         scene_clear(scene);
-    return status;
-}
-
-sonject_status scene_file_read(struct report *report, const char *path,
-                               const char *const *overrides, size_t count, struct scene *scene)
-{
-    return scene_file_read_with(report, path, overrides, count, false, scene);
-}
-
-sonject_status scene_file_read_with(struct report *report, const char *path,
-                                    const char *const *overrides, size_t count,
-                                    bool allows_user_shapes, struct scene *scene)
-{
-    char *text;
-    size_t bytes;
-    sonject_status status = scene_file_load(report, path, &text, &bytes);
-    if (status != SONJECT_OK)
-        return status;
-    const struct scene_text source = {.path = path,
-                                      .text = text,
-                                      .bytes = bytes,
-                                      .overrides = overrides,
-                                      .override_count = count,
-                                      .allows_user_shapes = allows_user_shapes};
-    status = scene_text_read(report, &source, scene);
-    free(text);
     return status;
 }
 

@@ -10,22 +10,11 @@
 #include "schema/tables.h"
 #include "schema/yaml_tree.h"
 
-/* Reads path, applies count overrides "key.path=value" and fills scene, which must be all zeros
- * or as scene_init leaves it; on failure it is left empty. Contract and errors as of
- * sonject_scene_read. */
-sonject_status scene_file_read(struct report *report, const char *path,
-                               const char *const *overrides, size_t count, struct scene *scene);
-
-/* The same for a file that may describe shapes by code: scene_file_read refuses them. */
-sonject_status scene_file_read_with(struct report *report, const char *path,
-                                    const char *const *overrides, size_t count,
-                                    bool allows_user_shapes, struct scene *scene);
-
-/* The text of a scene file, *bytes long, to be given to free(). Errors: INPUT (there is none, too
- * large), STORAGE, MEMORY. */
+/* The text of a scene file, *bytes long without the 0 at its end, to be given to free(). Errors:
+ * INPUT (there is none, too large, a zero byte within it), STORAGE, MEMORY. */
 sonject_status scene_file_load(struct report *report, const char *path, char **text, size_t *bytes);
 
-/* What scene_file_read_with does with the text of a file. */
+/* What a scene is read from. */
 struct scene_text {
     const char *path; /* of the file */
     const char *text;

@@ -212,3 +212,10 @@ def test_a_seabed_beyond_all_sizes(sonject, tmp_path):
     assert answer.returncode in (2, 3)
     assert len(answer.stderr.splitlines()) == 1
     assert not list(tmp_path.iterdir())
+
+
+def test_a_zero_byte_in_a_scene_is_told(sonject, scene, tmp_path):
+    """What comes behind it would not be read."""
+    scene.write_bytes(scene.read_bytes() + b"injection: {seed: 1}\nsurface:\0 {depth: 20 m}\n")
+    line = scene.read_bytes().count(b"\n")
+    refuse(sonject, scene, 3, f":{line}:9: not UTF-8 text")

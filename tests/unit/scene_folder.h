@@ -10,6 +10,26 @@
 
 #include "new_file.h"
 #include "schema/scene_file.h"
+#include "schema/scene_source.h"
+
+/* Reads a scene file as the library's calls do. */
+static inline sonject_status read_scene_file(struct report *report, const char *path,
+                                             const char *const *overrides, size_t count,
+                                             bool allows_user_shapes, struct scene *scene)
+{
+    struct scene_source source;
+    char *text;
+    size_t bytes;
+    memset(&source, 0, sizeof source);
+    source.allows_user_shapes = allows_user_shapes;
+    sonject_status status = scene_file_load(report, path, &text, &bytes);
+    if (status == SONJECT_OK)
+        status = scene_source_keep(&source, report, path, text, overrides, count);
+    if (status == SONJECT_OK)
+        status = scene_source_read(&source, report, scene);
+    scene_source_clear(&source);
+    return status;
+}
 
 #define SCENE_FOLDER_CAPACITY 1024
 
@@ -94,7 +114,7 @@ static inline sonject_status read_scene(struct scene_folder *folder, const char 
 {
     scene_clear(&folder->scene);
     memset(&folder->report, 0, sizeof folder->report);
-    return scene_file_read(&folder->report, folder->file, overrides, count, &folder->scene);
+    return read_scene_file(&folder->report, folder->file, overrides, count, false, &folder->scene);
 }
 
 static inline void expect_scene_taken(struct scene_folder *folder, const char *text)

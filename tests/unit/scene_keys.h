@@ -622,7 +622,7 @@ static inline sonject_status read_case(struct scene_folder *folder, const struct
     write_scene(folder, base_of(key), strlen(base_of(key)));
     scene_clear(&folder->scene);
     memset(&folder->report, 0, sizeof folder->report);
-    return scene_file_read_with(&folder->report, folder->file, overrides, count, true,
+    return read_scene_file(&folder->report, folder->file, overrides, count, true,
                                 &folder->scene);
 }
 

@@ -537,7 +537,7 @@ static void test_a_missing_file_is_named(void **state)
     struct scene scene;
     (void)state;
     scene_init(&scene);
-    assert_int_equal(scene_file_read(&report, "/tmp/absent-scene.yaml", NULL, 0, &scene),
+    assert_int_equal(read_scene_file(&report, "/tmp/absent-scene.yaml", NULL, 0, false, &scene),
                      SONJECT_ERROR_INPUT);
     assert_string_equal(report.message,
                         "/tmp/absent-scene.yaml: there is no such scene file; check its name");

@@ -39,7 +39,7 @@ static sonject_status read_with_code(struct scene_folder *folder)
 {
     scene_clear(&folder->scene);
     memset(&folder->report, 0, sizeof folder->report);
-    return scene_file_read_with(&folder->report, folder->file, NULL, 0, true, &folder->scene);
+    return read_scene_file(&folder->report, folder->file, NULL, 0, true, &folder->scene);
 }
 
 /* A mutated name may be that of a folder. */

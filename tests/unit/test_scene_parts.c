@@ -343,8 +343,8 @@ static void test_the_library_of_targets(void **state)
     struct scene scene;
     (void)state;
     scene_init(&scene);
-    if (scene_file_read(&report, SOURCE_ROOT "/tools/scenes/targets.yaml", NULL, 0, &scene) !=
-        SONJECT_OK)
+    if (read_scene_file(&report, SOURCE_ROOT "/tools/scenes/targets.yaml", NULL, 0, false,
+                        &scene) != SONJECT_OK)
         fail_msg("%s", report.message);
     assert_int_equal(scene.object_count, 11);
     assert_int_equal(scene.mesh_count, 1);

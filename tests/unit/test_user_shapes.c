@@ -191,7 +191,7 @@ static sonject_status read_with_consent(struct scene_folder *folder, const char 
     write_scene(folder, text, strlen(text));
     scene_clear(&folder->scene);
     memset(&folder->report, 0, sizeof folder->report);
-    return scene_file_read_with(&folder->report, folder->file, NULL, 0, true, &folder->scene);
+    return read_scene_file(&folder->report, folder->file, NULL, 0, true, &folder->scene);
 }
 
 static void expect_refused_with_consent(struct scene_folder *folder, const char *text,
