@@ -183,8 +183,10 @@ sonject_status read_existing_path(struct reader *reader, const struct tree_node 
     const sonject_status status = read_path(reader, node, path);
     if (status != SONJECT_OK || file_exists(*path))
         return status;
-    return refuse_value(reader, node, "there is no file %s; check its name",
-                        text_excerpt(excerpt, sizeof excerpt, *path));
+    text_excerpt(excerpt, sizeof excerpt, *path);
+    free(*path);
+    *path = NULL;
+    return refuse_value(reader, node, "there is no file %s; check its name", excerpt);
 }
 
 static sonject_status read_owned_text(struct reader *reader, const struct tree_node *node,
