@@ -1,15 +1,23 @@
-/* Small images in the making, and what is read from them. */
+/* Small files of every format that holds a swath, in the making. To be included first. */
 #ifndef SONJECT_TESTS_FILE_DRAFTS_H
 #define SONJECT_TESTS_FILE_DRAFTS_H
 
-#include "damaged_files.h"
+#define _GNU_SOURCE
+#define _FILE_OFFSET_BITS 64
 
-#define ROWS    3
-#define COLUMNS 4
+#include <zlib.h>
 
-#ifndef MUTATIONS
-#define MUTATIONS 600
-#endif
+#include "base/byte_order.h"
+#include "base/hdf5_values.h"
+#include "claims.h"
+#include "swath/decoder.h"
+#include "swath/swath_file.h"
+#include "temporary_folder.h"
+
+#define ROWS         3
+#define COLUMNS      4
+#define SAMPLES      (ROWS * COLUMNS)
+#define LARGEST_FILE 65536
 
 /* A file in the making. */
 struct draft {
@@ -31,75 +39,315 @@ static inline void add_number(struct draft *draft, uint64_t number, size_t size)
     add(draft, bytes, size);
 }
 
-static inline const char *file_in(const char *folder, const char *name)
+static inline void add_float(struct draft *draft, double sample, bool is_big_endian)
 {
-    static char path[2][512];
-    static int turn;
-    turn = !turn;
-    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
-    return path[turn];
+    const float single = (float)sample;
+    unsigned char bytes[4];
+    uint32_t word;
+    memcpy(&word, &single, sizeof word);
+    number_to_bytes(word, bytes, 4, is_big_endian);
+    add(draft, bytes, 4);
 }
 
-static inline struct swath_file *open_draft(const char *folder, const char *name, const char *array,
-                                            const struct draft *draft)
+static inline void put(struct draft *draft, size_t place, uint64_t number, size_t size)
 {
-    struct report report = {{0}, NULL, &host};
-    struct swath_file *file = NULL;
-    const char *path = file_in(folder, name);
-    if (draft)
-        write_file(path, draft->bytes, draft->count);
-    if (swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, array, &file) != SONJECT_OK)
-        fail_msg("%s", report.message);
-    return file;
+    number_to_bytes(number, draft->bytes + place, size, false);
 }
 
-static inline void expect_refused(const char *folder, const char *name, const char *array,
-                                  const struct draft *draft, const char *words)
+/* What every draft holds: 0, 1, 2, 3, 10, 11... or 0.1, 0.2, 0.3, 0.4, 1.1, 1.2... */
+static inline double sample_at(bool is_whole, size_t row, size_t column)
 {
-    struct report report = {{0}, NULL, &host};
-    struct swath_file *file = NULL;
-    const char *path = file_in(folder, name);
-    if (draft)
-        write_file(path, draft->bytes, draft->count);
-    assert_int_equal(swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, array, &file),
-                     SONJECT_ERROR_INPUT);
-    if (!strstr(report.message, words))
-        fail_msg("'%s' is not in '%s'", words, report.message);
+    return is_whole ? 10.0 * (double)row + (double)column
+                    : (double)row + 0.1 * (double)(column + 1);
 }
 
-static inline void expect_layout(const struct swath_file *file, uint32_t channels,
-                                 enum pixel_type type)
+static inline void make_npy(struct draft *draft, int how)
 {
-    struct raster_layout layout;
-    swath_file_layout(file, &layout);
-    assert_int_equal(layout.rows, ROWS);
-    assert_int_equal(layout.columns, COLUMNS);
-    assert_int_equal(layout.channels, channels);
-    assert_int_equal(layout.type, type);
+    static const char head[] = "\x93NUMPY\1\0\x46\0"
+                               "{'descr': '<f4', 'fortran_order': False, 'shape': (3, 4), }";
+    (void)how;
+    memset(draft->bytes, ' ', 80);
+    memcpy(draft->bytes, head, sizeof head - 1);
+    draft->count = 80;
+    for (size_t i = 0; i < SAMPLES; i++)
+        add_float(draft, sample_at(false, i / COLUMNS, i % COLUMNS), false);
 }
 
-static const struct region inside = {1, 2, 2, 2};
-
-/* Replaces the samples inside, reads the copy as a file, and gives its bytes. */
-static inline void patch(struct swath_file *file, const char *folder, const char *copy,
-                         const void *samples, struct draft *back)
+/* Port, whose samples run from far to near, and starboard, of 16 bits. */
+static inline void make_xtf(struct draft *draft, int how)
 {
-    struct report report = {{0}, NULL, &host};
-    const char *path = file_in(folder, copy);
-    if (swath_file_copy_with_patch(&report, file, path, &inside, samples, NULL, NULL) != SONJECT_OK)
-        fail_msg("%s", report.message);
-    FILE *stream = fopen(path, "rb");
-    assert_non_null(stream);
-    back->count = fread(back->bytes, 1, sizeof back->bytes, stream);
-    fclose(stream);
+    const size_t ping_bytes = 256 + 2 * (64 + 2 * COLUMNS);
+    (void)how;
+    memset(draft, 0, sizeof *draft);
+    draft->count = 1024 + ROWS * ping_bytes;
+    put(draft, 0, 0x17B, 2);
+    put(draft, 166, 2, 2);
+    for (size_t i = 0; i < 2; i++) {
+        put(draft, 256 + 128 * i, 1 + i, 1);
+        put(draft, 256 + 128 * i + 4, 1, 2);
+        put(draft, 256 + 128 * i + 6, 2, 2);
+    }
+    for (size_t ping = 0; ping < ROWS; ping++) {
+        const size_t packet = 1024 + ping * ping_bytes;
+        put(draft, packet, 0xFACE, 2);
+        put(draft, packet + 4, 2, 2);
+        put(draft, packet + 10, ping_bytes, 4);
+        for (size_t i = 0; i < 2; i++) {
+            const size_t channel = packet + 256 + i * (64 + 2 * COLUMNS);
+            put(draft, channel, i, 2);
+            put(draft, channel + 4, 0x41F00000, 4); /* 30 m */
+            put(draft, channel + 42, COLUMNS, 4);
+            for (size_t k = 0; k < COLUMNS; k++)
+                put(draft, channel + 64 + 2 * k,
+                    1000 * i + (size_t)sample_at(true, ping, COLUMNS - 1 - k), 2);
+        }
+    }
 }
 
-static inline void read_all(struct swath_file *file, void *samples)
+/* As MATLAB numbers the types of elements. */
+enum {
+    MAT_INT8 = 1,
+    MAT_UINT8 = 2,
+    MAT_UINT16 = 4,
+    MAT_INT32 = 5,
+    MAT_UINT32 = 6,
+    MAT_DOUBLE = 9,
+    MAT_MATRIX = 14,
+    MAT_COMPRESSED = 15
+};
+#define MAT_HEADER_BYTES 128
+
+static inline void begin_mat(struct draft *draft)
 {
-    struct report report = {{0}, NULL, &host};
-    const struct region whole = {0, 0, ROWS, COLUMNS};
-    if (swath_file_read(&report, file, &whole, samples) != SONJECT_OK)
-        fail_msg("%s", report.message);
+    memset(draft->bytes, ' ', 116);
+    memcpy(draft->bytes, "MATLAB 5.0 MAT-file", 19);
+    memset(draft->bytes + 116, 0, 8);
+    memcpy(draft->bytes + 124, "\x00\x01IM", 4);
+    draft->count = MAT_HEADER_BYTES;
+}
+
+static inline void add_element(struct draft *draft, uint32_t type, const void *bytes, size_t count)
+{
+    static const unsigned char zeros[8];
+    add_number(draft, type, 4);
+    add_number(draft, count, 4);
+    add(draft, bytes, count);
+    add(draft, zeros, (8 - count % 8) % 8);
+}
+
+/* parts: one or two, of rows x columns numbers of the stored type. */
+static inline void add_variable(struct draft *draft, const char *name, uint32_t kind, uint32_t rows,
+                                uint32_t columns, uint32_t type, const void *const *parts)
+{
+    const size_t start = draft->count;
+    const size_t size = type == MAT_DOUBLE ? 8 : type == MAT_UINT16 ? 2 : 1;
+    const uint32_t flags[2] = {kind | (parts[1] ? 0x800u : 0), 0};
+    const uint32_t sides[2] = {rows, columns};
+    add_element(draft, MAT_MATRIX, "", 0);
+    add_element(draft, MAT_UINT32, flags, sizeof flags);
+    add_element(draft, MAT_INT32, sides, sizeof sides);
+    add_element(draft, MAT_INT8, name, strlen(name));
+    for (int i = 0; i < 2 && parts[i]; i++)
+        add_element(draft, type, parts[i], rows * columns * size);
+    put(draft, start + 4, draft->count - start - 8, 4);
+}
+
+/* Bytes of the variable at a place. */
+static inline size_t variable_bytes(const struct draft *draft, size_t place)
+{
+    return 8 + (size_t)number_from_bytes(draft->bytes + place + 4, 4, false);
+}
+
+static inline void add_compressed(struct draft *draft, const unsigned char *bytes, size_t count)
+{
+    unsigned char deflated[2048];
+    uLongf deflated_bytes = sizeof deflated;
+    assert_int_equal(compress2(deflated, &deflated_bytes, bytes, (uLong)count, 6), Z_OK);
+    add_number(draft, MAT_COMPRESSED, 4);
+    add_number(draft, deflated_bytes, 4);
+    add(draft, deflated, deflated_bytes);
+}
+
+/* What MATLAB and HDF5 files may be. */
+enum {
+    MATLAB = 1,
+    CHUNKS = 2,
+    PAIRS = 4,  /* complex numbers */
+    LATEST = 8, /* the format of HDF5 with checksums */
+    HDF5_KINDS = 16,
+    COMPRESSED = 16
+};
+
+/* A scalar, "img" of doubles, "packed" of doubles that lie in bytes, and a text. */
+static inline void make_mat(struct draft *draft, int how)
+{
+    static const double rate = 48000.0;
+    double numbers[2][SAMPLES];
+    uint8_t packed[SAMPLES];
+    for (size_t i = 0; i < SAMPLES; i++) {
+        numbers[0][i] = sample_at(false, i % ROWS, i / ROWS);
+        numbers[1][i] = -numbers[0][i];
+        packed[i] = (uint8_t)sample_at(true, i % ROWS, i / ROWS);
+    }
+    begin_mat(draft);
+    add_variable(draft, "rate", 6, 1, 1, MAT_DOUBLE, (const void *const[]){&rate, NULL});
+    add_variable(draft, "img", 6, ROWS, COLUMNS, MAT_DOUBLE,
+                 (const void *const[]){numbers[0], how & PAIRS ? numbers[1] : NULL});
+    add_variable(draft, "packed", 6, ROWS, COLUMNS, MAT_UINT8, (const void *const[]){packed, NULL});
+    add_variable(draft, "note", 4, 1, 4, MAT_UINT16, (const void *const[]){"t\0e\0x\0t", NULL});
+    if (how & COMPRESSED) {
+        static struct draft plain;
+        plain = *draft;
+        begin_mat(draft);
+        for (size_t place = MAT_HEADER_BYTES; place < plain.count;
+             place += variable_bytes(&plain, place))
+            add_compressed(draft, plain.bytes + place, variable_bytes(&plain, place));
+    }
+}
+
+#ifdef HAS_HDF5
+/* A data set of 3 x 4 doubles, or pairs of them. */
+static inline void put_set(hid_t parent, const char *name, int how)
+{
+    static const char *const names[2][2] = {{"r", "i"}, {"real", "imag"}};
+    const hsize_t sides[2] = {how & MATLAB ? COLUMNS : ROWS, how & MATLAB ? ROWS : COLUMNS};
+    const size_t parts = how & PAIRS ? 2 : 1;
+    double numbers[2 * SAMPLES];
+    for (size_t i = 0; i < SAMPLES; i++) {
+        const size_t row = how & MATLAB ? i % ROWS : i / COLUMNS;
+        const size_t column = how & MATLAB ? i / ROWS : i % COLUMNS;
+        numbers[parts * i + parts - 1] = -sample_at(false, row, column);
+        numbers[parts * i] = sample_at(false, row, column);
+    }
+    const hid_t space = H5Screate_simple(2, sides, NULL);
+    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+    const hid_t type = parts == 2 ? H5Tcreate(H5T_COMPOUND, 16) : H5Tcopy(H5T_NATIVE_DOUBLE);
+    for (size_t i = 0; i < 2 && parts == 2; i++)
+        H5Tinsert(type, names[how & MATLAB][i], 8 * i, H5T_NATIVE_DOUBLE);
+    if (how & CHUNKS) {
+        H5Pset_chunk(creation, 2, (const hsize_t[]){2, 2});
+        H5Pset_shuffle(creation);
+        H5Pset_deflate(creation, 4);
+        H5Pset_fletcher32(creation);
+    }
+    const hid_t set = H5Dcreate2(parent, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    assert_true(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers) >= 0);
+    assert_true(hdf5_write_text(set, "sonject:range_axis", "slant"));
+    assert_true(!(how & MATLAB) || hdf5_write_text(set, "MATLAB_class", "double"));
+    H5Dclose(set);
+    H5Tclose(type);
+    H5Pclose(creation);
+    H5Sclose(space);
+}
+
+/* "deep/img" in a group; where is_full, "other" and a link to another file as well. */
+static inline void write_hdf5(const char *path, int how, bool is_full)
+{
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
+    if (how & LATEST)
+        H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+    if (how & MATLAB)
+        H5Pset_userblock(creation, 512);
+    const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, creation, access);
+    const hid_t group = H5Gcreate2(file, "deep", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    put_set(group, "img", how);
+    if (is_full) {
+        put_set(file, "other", how);
+        H5Lcreate_external("elsewhere.h5", "/img", file, "outside", H5P_DEFAULT, H5P_DEFAULT);
+    }
+    H5Gclose(group);
+    H5Pclose(creation);
+    H5Pclose(access);
+    assert_true(H5Fclose(file) >= 0);
+}
+#endif
+
+static inline void make_pgm(struct draft *draft, int how)
+{
+    static const char head[] = "P5\n# a note\n4 3 # width, height\n255\n";
+    (void)how;
+    draft->count = 0;
+    add(draft, head, sizeof head - 1);
+    for (size_t i = 0; i < SAMPLES; i++)
+        add_number(draft, (uint64_t)sample_at(true, i / COLUMNS, i % COLUMNS), 1);
+}
+
+/* The file's first row is the image's last. */
+static inline void make_pfm(struct draft *draft, int is_big_endian)
+{
+    const char *head = is_big_endian ? "Pf\n4 3\n1.0\n" : "Pf\n4 3\n-1.0\n";
+    draft->count = 0;
+    add(draft, head, strlen(head));
+    for (size_t i = 0; i < SAMPLES; i++)
+        add_float(draft, sample_at(false, ROWS - 1 - i / COLUMNS, i % COLUMNS), is_big_endian);
+}
+
+/* From the last row up. */
+static inline void make_bmp(struct draft *draft, int how)
+{
+    static const struct {
+        uint32_t number;
+        size_t bytes;
+    } head[] = {{54 + 1024 + SAMPLES, 4},
+                {0, 4},
+                {54 + 1024, 4},
+                {40, 4},
+                {COLUMNS, 4},
+                {ROWS, 4},
+                {1, 2},
+                {8, 2},
+                {0, 8},
+                {0, 8},
+                {0, 8}};
+    (void)how;
+    draft->count = 0;
+    add(draft, "BM", 2);
+    for (size_t i = 0; i < COUNT(head); i++)
+        add_number(draft, head[i].number, head[i].bytes);
+    for (unsigned i = 0; i < 256; i++)
+        add_number(draft, i * 0x010101, 4);
+    for (size_t i = 0; i < SAMPLES; i++)
+        add_number(draft, (uint64_t)sample_at(true, ROWS - 1 - i / COLUMNS, i % COLUMNS), 1);
+}
+
+/* Without compression, so without any check of the samples. */
+static inline void make_exr(struct draft *draft, int how)
+{
+    static const unsigned char channel[19] = {'Y', 0, 2, [10] = 1, [14] = 1};
+    static const unsigned char window[16] = {[8] = COLUMNS - 1, [12] = ROWS - 1};
+    static const unsigned char zeros[8] = {0};
+    static const struct {
+        const char *name, *kind;
+        const void *content;
+        size_t count;
+    } attributes[] = {{"channels", "chlist", channel, sizeof channel},
+                      {"compression", "compression", zeros, 1},
+                      {"dataWindow", "box2i", window, sizeof window},
+                      {"displayWindow", "box2i", window, sizeof window},
+                      {"lineOrder", "lineOrder", zeros, 1},
+                      {"pixelAspectRatio", "float", "\0\0\x80\x3F", 4},
+                      {"screenWindowCenter", "v2f", zeros, 8},
+                      {"screenWindowWidth", "float", "\0\0\x80\x3F", 4}};
+    (void)how;
+    draft->count = 0;
+    add(draft, "\x76\x2F\x31\x01\x02\0\0\0", 8);
+    for (size_t i = 0; i < COUNT(attributes); i++) {
+        add(draft, attributes[i].name, strlen(attributes[i].name) + 1);
+        add(draft, attributes[i].kind, strlen(attributes[i].kind) + 1);
+        add_number(draft, attributes[i].count, 4);
+        add(draft, attributes[i].content, attributes[i].count);
+    }
+    add(draft, zeros, 1);
+    const size_t first = draft->count + (size_t)8 * ROWS;
+    for (size_t row = 0; row < ROWS; row++)
+        add_number(draft, first + row * (8 + 4 * COLUMNS), 8);
+    for (size_t row = 0; row < ROWS; row++) {
+        add_number(draft, row, 4);
+        add_number(draft, 4 * COLUMNS, 4);
+        for (size_t column = 0; column < COLUMNS; column++)
+            add_float(draft, sample_at(false, row, column), false);
+    }
 }
 
 #endif

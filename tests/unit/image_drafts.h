@@ -1,13 +1,177 @@
-/* TIFF files of every build that sonject reads, written by libtiff, and what it would not write:
- * entries of their directories that are changed. */
-#ifndef TIFF_BUILDER_H
-#define TIFF_BUILDER_H
+/* Images in the making, and what they must be when they are read: TIFF files of every build that
+ * sonject reads, by libtiff, and what it would not write. To be included first. */
+#ifndef SONJECT_TESTS_IMAGE_DRAFTS_H
+#define SONJECT_TESTS_IMAGE_DRAFTS_H
+
+#define _POSIX_C_SOURCE   200809L
+#define _FILE_OFFSET_BITS 64
 
 #include <tiffio.h>
 
 #include "base/byte_order.h"
-#include "image/raster.h"
+#include "claims.h"
+#include "swath/raster_file.h"
+#include "swath/swath_file.h"
 #include "temporary_folder.h"
+
+#define ROWS       53
+#define COLUMNS    71
+#define BYTES_MOST 200000 /* of an image or a file */
+
+static const struct raster_layout grey8 = {ROWS, COLUMNS, 1, PIXEL_UINT8};
+static const struct raster_layout grey16 = {ROWS, COLUMNS, 1, PIXEL_UINT16};
+static const struct raster_layout real32 = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
+static const struct raster_layout complex32 = {ROWS, COLUMNS, 2, PIXEL_FLOAT32};
+static const struct region patch_region = {17, 23, 20, 31};
+
+static struct temporary_folder *folder;
+
+/* One decoder for all, as a context has it. */
+static struct decoder decoder;
+static const struct report_host host = {.decoder = &decoder};
+static struct report report = {{0}, NULL, &host};
+
+/* Memory that is valid while thirty others are asked for. */
+static inline unsigned char *scratch(void)
+{
+    static unsigned char all[32][BYTES_MOST];
+    static unsigned turn;
+    unsigned char *bytes = all[turn++ % COUNT(all)];
+    memset(bytes, 0, BYTES_MOST);
+    return bytes;
+}
+
+static inline const char *file_in(const char *name)
+{
+    return strcpy((char *)scratch(), temporary_file(folder, name));
+}
+
+static inline unsigned char *load(const char *path, size_t *count)
+{
+    unsigned char *bytes = scratch();
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    *count = fread(bytes, 1, BYTES_MOST, file);
+    fclose(file);
+    return bytes;
+}
+
+static inline struct region whole_of(const struct raster_layout *layout)
+{
+    return (struct region){0, 0, layout->rows, layout->columns};
+}
+
+static inline size_t pixel_size(const struct raster_layout *layout)
+{
+    return layout->channels * pixel_bytes(layout->type);
+}
+
+/* Pixels of a region; noisy, so that compression has to work. */
+static inline unsigned char *make_pixels(const struct raster_layout *layout,
+                                         const struct region *region, uint32_t seed)
+{
+    size_t bytes = 0;
+    unsigned char *pixels = scratch();
+    assert_true(region_bytes(layout, region, &bytes) && bytes <= BYTES_MOST);
+    for (size_t i = 0; i < bytes; i++) {
+        seed = seed * 1664525u + 1013904223u;
+        if (layout->type == PIXEL_FLOAT32 && i % 4 == 0)
+            ((float *)(void *)pixels)[i / 4] = (float)(seed >> 8) * 1e-5f - 60.0f;
+        else if (layout->type != PIXEL_FLOAT32)
+            pixels[i] = (unsigned char)(seed >> 24);
+    }
+    return pixels;
+}
+
+static inline unsigned char *make_image(const struct raster_layout *layout)
+{
+    const struct region whole = whole_of(layout);
+    return make_pixels(layout, &whole, 1);
+}
+
+static inline sonject_status write_image(const char *path, const struct raster_layout *layout,
+                                         const void *pixels)
+{
+    return raster_file_write(&report, path, layout, NULL, NULL, 0, pixels);
+}
+
+static inline sonject_status open_image(const char *path, struct swath_file **file)
+{
+    return swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, NULL, file);
+}
+
+static inline sonject_status copy_with_patch(const char *source, const char *path,
+                                             const struct region *region, const void *pixels,
+                                             sonject_progress_function progress, void *user)
+{
+    struct swath_file *file;
+    sonject_status status = open_image(source, &file);
+    if (status == SONJECT_OK)
+        status = swath_file_copy_with_patch(&report, file, path, region, pixels, progress, user);
+    swath_file_close(&file);
+    return status;
+}
+
+static inline unsigned char *read_file(const char *path, const struct raster_layout *expected,
+                                       const struct region *region)
+{
+    struct swath_file *file;
+    struct raster_layout layout;
+    unsigned char *pixels = scratch();
+    EXPECT_OK(&report, open_image(path, &file));
+    swath_file_layout(file, &layout);
+    assert_int_equal(layout.rows, expected->rows);
+    assert_int_equal(layout.columns, expected->columns);
+    assert_int_equal(layout.channels, expected->channels);
+    assert_int_equal(layout.type, expected->type);
+    EXPECT_OK(&report, swath_file_read(&report, file, region, pixels));
+    swath_file_close(&file);
+    assert_null(file);
+    return pixels;
+}
+
+/* The file's pixels are those of whole, but in region those of patch (NULL: no patch). */
+static inline void expect_pixels(const char *path, const struct raster_layout *layout,
+                                 const unsigned char *whole, const struct region *region,
+                                 const unsigned char *patch)
+{
+    const struct region everything = whole_of(layout);
+    const size_t size = pixel_size(layout);
+    unsigned char *expected = memcpy(scratch(), whole, layout->rows * layout->columns * size);
+    for (uint64_t row = 0; patch && row < region->rows; row++)
+        memcpy(expected +
+                   ((region->first_row + row) * layout->columns + region->first_column) * size,
+               patch + row * region->columns * size, region->columns * size);
+    const unsigned char *pixels = read_file(path, layout, &everything);
+    for (uint64_t i = 0; i < layout->rows * layout->columns * size; i++)
+        if (pixels[i] != expected[i])
+            fail_msg("%s: the pixel at row %d, column %d is wrong", path,
+                     (int)(i / size / layout->columns), (int)(i / size % layout->columns));
+}
+
+static inline void expect_message(const char *path, const char *part)
+{
+    if (!strstr(report.message, path) || !strstr(report.message, part))
+        fail_msg("'%s' does not name '%s' and '%s'", report.message, path, part);
+}
+
+static inline void expect_no_open(const char *path, const char *part)
+{
+    struct swath_file *file = (struct swath_file *)&report;
+    if (open_image(path, &file) != SONJECT_ERROR_INPUT)
+        fail_msg("%s was not refused (%s)", path, part);
+    assert_null(file);
+    expect_message(path, part);
+}
+
+static inline int begin(void **state)
+{
+    const int result = make_temporary_folder(state);
+    folder = *state;
+    return result;
+}
+
+#define CLEAN(test) cmocka_unit_test_setup_teardown(test, begin, remove_temporary_folder)
 
 #define TIFF_PRIVATE_TAG  65000
 #define TIFF_PRIVATE_TEXT "what only the maker of this file knows"
