@@ -7,33 +7,44 @@
 #include <string.h>
 #include <unistd.h>
 
-void benchmark_fail(const struct report *report, const char *what)
+#include "base/memory.h"
+
+void benchmark_expect(const struct report *report, sonject_status status)
 {
-    fprintf(stderr, "%s: %s\n", what, report->message);
+    if (status == SONJECT_OK)
+        return;
+    fprintf(stderr, "%s\n", report->message);
     exit(1);
+}
+
+void *benchmark_array(size_t count, size_t bytes)
+{
+    void *array = allocate_array(count, bytes);
+    if (!array)
+        exit(1);
+    return array;
 }
 
 void benchmark_begin(struct benchmark_scene *set, size_t pixels)
 {
-    sonject_context_params params = {.struct_size = sizeof params};
+    const sonject_context_params params = {.struct_size = sizeof params};
     memset(set, 0, sizeof *set);
     scene_init(&set->scene);
     set->scene.sonar.aperture_rad = 0.0;
     set->scene.geometry.first_slant_range_m = 50.0 - 0.0125 * (double)pixels;
     set->tracer.report = &set->report;
     set->tracer.scene = &set->scene;
-    if (device_open(&set->report, &params, &set->tracer.device) != SONJECT_OK)
-        benchmark_fail(&set->report, "device");
+    benchmark_expect(&set->report, device_open(&set->report, &params, &set->tracer.device));
 }
 
 void benchmark_place(struct benchmark_scene *set, size_t pixels)
 {
-    if (scene_lay_water(&set->scene, &set->report, &set->water) != SONJECT_OK ||
-        patch_view_init(&set->tracer.view, &set->report, &set->scene, &set->water, 0.0, 0.0, pixels,
-                        pixels) != SONJECT_OK ||
-        placements_init(&set->placed, &set->report, &set->scene, &set->tracer.view, 0.0, 0.0) !=
-            SONJECT_OK)
-        benchmark_fail(&set->report, "set-up");
+    sonject_status status = scene_lay_water(&set->scene, &set->report, &set->water);
+    THEN(status, patch_view_init(&set->tracer.view, &set->report, &set->scene, &set->water, 0.0,
+                                 0.0, pixels, pixels));
+    THEN(status,
+         placements_init(&set->placed, &set->report, &set->scene, &set->tracer.view, 0.0, 0.0));
+    benchmark_expect(&set->report, status);
     set->tracer.placements = set->placed.parts;
     set->tracer.part_count = set->placed.part_count;
     set->tracer.objects = set->placed.objects;
@@ -44,14 +55,15 @@ void benchmark_set_up(struct benchmark_scene *set, size_t pixels)
 {
     sonject_object_params capsule;
     benchmark_begin(set, pixels);
+    printf("device: %s, %u lanes, %u cores\n", set->tracer.device->name,
+           (unsigned)set->tracer.device->width, (unsigned)set->tracer.device->compute_units);
     sonject_object_params_init(&capsule);
     capsule.shape = SONJECT_SHAPE_CAPSULE;
     capsule.length_m = 2.3;
     capsule.diameter_m = 0.3;
     capsule.heading_rad = 0.6;
     capsule.burial_m = 0.1;
-    if (scene_append_object(&set->scene, &set->report, &capsule) != SONJECT_OK)
-        benchmark_fail(&set->report, "set-up");
+    benchmark_expect(&set->report, scene_append_object(&set->scene, &set->report, &capsule));
     benchmark_place(set, pixels);
 }
 
@@ -69,11 +81,32 @@ unsigned benchmark_threads(const struct device *device)
     return cores < 1 ? 1 : cores < THREADS_MAX ? (unsigned)cores : THREADS_MAX;
 }
 
-void benchmark_run_threads(void *(*work)(void *), void *elements, size_t size, unsigned threads)
+struct share {
+    benchmark_work *work;
+    const void *what;
+    unsigned thread;
+    uint32_t first, last;
+};
+
+static void *run_share(void *argument)
+{
+    const struct share *share = argument;
+    share->work(share->what, share->thread, share->first, share->last);
+    return NULL;
+}
+
+void benchmark_share_out(benchmark_work *work, const void *what, unsigned threads, uint32_t count,
+                         uint32_t grain)
 {
     pthread_t workers[THREADS_MAX];
-    for (unsigned i = 0; i < threads; i++)
-        pthread_create(&workers[i], NULL, work, (char *)elements + i * size);
+    struct share shares[THREADS_MAX];
+    const uint64_t grains = count / grain;
+    for (unsigned i = 0; i < threads; i++) {
+        const uint32_t first = (uint32_t)(grains * i / threads) * grain;
+        const uint32_t last = (uint32_t)(grains * (i + 1) / threads) * grain;
+        shares[i] = (struct share){work, what, i, first, last};
+        pthread_create(&workers[i], NULL, run_share, &shares[i]);
+    }
     for (unsigned i = 0; i < threads; i++)
         pthread_join(workers[i], NULL);
 }

@@ -1,5 +1,5 @@
 /* The scene that benchmarks run on: a capsule on a Lambert seabed, as in the paper's Figures 6 and
- * 7, on the default device. */
+ * 7, on the default device. What fails ends the program. */
 #ifndef SONJECT_TESTS_BENCHMARK_SCENE_H
 #define SONJECT_TESTS_BENCHMARK_SCENE_H
 
@@ -15,19 +15,26 @@ struct benchmark_scene {
     struct water water;
 };
 
-/* Lays a patch of pixels x pixels around 50 m. Ends the program where something fails. */
+/* Lays a patch of pixels x pixels around 50 m. */
 void benchmark_set_up(struct benchmark_scene *set, size_t pixels);
 
 /* The same in two steps, for other objects: they are appended to the scene in between. */
 void benchmark_begin(struct benchmark_scene *set, size_t pixels);
 void benchmark_place(struct benchmark_scene *set, size_t pixels);
 void benchmark_clear(struct benchmark_scene *set);
-void benchmark_fail(const struct report *report, const char *what);
+
+void benchmark_expect(const struct report *report, sonject_status status);
+
+/* Zeros, for free(). */
+void *benchmark_array(size_t count, size_t bytes);
 
 /* Threads for the native side: a CPU's cores, beside a GPU the host's. */
 unsigned benchmark_threads(const struct device *device);
 
-/* Runs work on each of `threads` elements of `size` bytes, and waits for all. */
-void benchmark_run_threads(void *(*work)(void *), void *elements, size_t size, unsigned threads);
+/* Shares out `count` elements, a multiple of the grain, among threads, whole grains to each, and
+ * waits for all. */
+typedef void benchmark_work(const void *what, unsigned thread, uint32_t first, uint32_t last);
+void benchmark_share_out(benchmark_work *work, const void *what, unsigned threads, uint32_t count,
+                         uint32_t grain);
 
 #endif

@@ -10,44 +10,146 @@
 #include <string.h>
 #include <time.h>
 
-#include "base/memory.h"
 #include "base/report.h"
 #include "benchmark_scene.h"
 #include "kernel/mesh_native.h"
 #include "kernel/mesh_probe.h"
 #include "kernel/mesh_samples.h"
 #include "kernel/probe_device.h"
-#include "mesh_embree.h"
+
+#ifdef HAS_EMBREE
+#include <embree3/rtcore.h>
+#endif
 
 #define REPEATS 7
 #define SIDE    1024 /* strips, and rays a strip */
 
-enum tracer_kind {
-    TRACE_NATIVE,
-    TRACE_EMBREE
+/* The same rays through Embree, where it is installed; embree_open gives NULL where it is not. */
+struct embree_scene;
+
+#ifndef HAS_EMBREE
+
+static struct embree_scene *embree_open(const struct mesh *mesh, double *build_s)
+{
+    (void)mesh;
+    *build_s = 0.0;
+    return NULL;
+}
+
+static void embree_close(struct embree_scene *scene)
+{
+    (void)scene;
+}
+
+static void embree_trace(struct embree_scene *scene, bool is_coherent, const float *input,
+                         float *output, uint32_t rays, uint32_t first, uint32_t last)
+{
+    (void)scene, (void)is_coherent, (void)input, (void)output;
+    (void)rays, (void)first, (void)last;
+}
+
+#else
+
+/* Embree does not look behind a ray's origin. It is put where the ray begins, at most so far before
+ * the mesh's middle, m. */
+#define BEFORE 3.0f
+
+struct embree_scene {
+    RTCDevice device;
+    RTCScene scene;
 };
 
-/* Rays for one thread. */
-struct share {
+static struct embree_scene *embree_open(const struct mesh *mesh, double *build_s)
+{
+    struct embree_scene *scene = calloc(1, sizeof *scene);
+    if (!scene)
+        return NULL;
+    scene->device = rtcNewDevice("threads=1");
+    scene->scene = rtcNewScene(scene->device);
+    const RTCGeometry geometry = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    void *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                             12, mesh->vertex_count);
+    void *corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                            12, mesh->triangle_count);
+    memcpy(vertices, mesh->vertices, 12 * mesh->vertex_count);
+    memcpy(corners, mesh->corners, 12 * mesh->triangle_count);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene->scene, geometry);
+    rtcReleaseGeometry(geometry);
+    const double start = clock_seconds();
+    rtcCommitScene(scene->scene);
+    *build_s = clock_seconds() - start;
+    return scene;
+}
+
+static void embree_close(struct embree_scene *scene)
+{
+    if (!scene)
+        return;
+    rtcReleaseScene(scene->scene);
+    rtcReleaseDevice(scene->device);
+    free(scene);
+}
+
+static void embree_trace(struct embree_scene *scene, bool is_coherent, const float *input,
+                         float *output, uint32_t rays, uint32_t first, uint32_t last)
+{
+    struct RTCIntersectContext context;
+    int valid[16] __attribute__((aligned(64)));
+    rtcInitIntersectContext(&context);
+    context.flags =
+        is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    memset(valid, 0xff, sizeof valid);
+    for (uint32_t ray = first; ray < last; ray += 16) {
+        struct RTCRayHit16 packet __attribute__((aligned(64)));
+        for (uint32_t i = 0; i < 16; i++) {
+            const float *at = input + ray + i;
+            const float minimum = at[PROBE_MINIMUM * rays];
+            const float start = minimum < -BEFORE ? -BEFORE : minimum;
+            packet.ray.org_x[i] = at[0] + start * at[PROBE_DIRECTION * rays];
+            packet.ray.org_y[i] = at[rays] + start * at[(PROBE_DIRECTION + 1) * rays];
+            packet.ray.org_z[i] = at[2 * rays] + start * at[(PROBE_DIRECTION + 2) * rays];
+            packet.ray.dir_x[i] = at[PROBE_DIRECTION * rays];
+            packet.ray.dir_y[i] = at[(PROBE_DIRECTION + 1) * rays];
+            packet.ray.dir_z[i] = at[(PROBE_DIRECTION + 2) * rays];
+            packet.ray.tnear[i] = 0.0f;
+            packet.ray.tfar[i] = FAR_AWAY;
+            packet.ray.time[i] = 0.0f;
+            packet.ray.mask[i] = ~0u;
+            packet.ray.flags[i] = 0;
+            packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        rtcIntersect16(valid, scene->scene, &context, &packet);
+        for (uint32_t i = 0; i < 16; i++) {
+            const bool is_hit = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+            const int32_t triangle = is_hit ? (int32_t)packet.hit.primID[i] : -1;
+            output[PROBE_DISTANCE * rays + ray + i] = packet.ray.tfar[i];
+            memcpy(&output[PROBE_TRIANGLE * rays + ray + i], &triangle, sizeof triangle);
+        }
+    }
+}
+
+#endif
+
+struct rays {
     const struct mesh *mesh;
-    struct embree_scene *embree;
-    enum tracer_kind kind;
+    struct embree_scene *embree; /* NULL: native C */
     bool is_coherent;
     const float *input;
     float *output;
-    uint32_t rays, first, last;
+    uint32_t count;
 };
 
-static void *run_share(void *argument)
+static void trace_rays(const void *what, unsigned thread, uint32_t first, uint32_t last)
 {
-    const struct share *share = argument;
-    if (share->kind == TRACE_EMBREE)
-        embree_trace(share->embree, share->is_coherent, share->input, share->output, share->rays,
-                     share->first, share->last);
+    const struct rays *rays = what;
+    (void)thread;
+    if (rays->embree)
+        embree_trace(rays->embree, rays->is_coherent, rays->input, rays->output, rays->count, first,
+                     last);
     else
-        mesh_native_wide(share->mesh, MESH_NEAREST, share->input, share->output, share->rays,
-                         share->first, share->last);
-    return NULL;
+        mesh_native_wide(rays->mesh, MESH_NEAREST, rays->input, rays->output, rays->count, first,
+                         last);
 }
 
 /* Of all threads together. */
@@ -57,20 +159,13 @@ static double processor_seconds(void)
 }
 
 /* Best time of REPEATS, s. */
-static double time_shares(const struct share *work, unsigned threads)
+static double time_rays(const struct rays *rays, unsigned threads)
 {
-    struct share shares[THREADS_MAX];
-    double best = 1e9;
-    for (unsigned i = 0; i < threads; i++) {
-        shares[i] = *work;
-        shares[i].first = (uint32_t)((uint64_t)work->rays / 16 * i / threads * 16);
-        shares[i].last = (uint32_t)((uint64_t)work->rays / 16 * (i + 1) / threads * 16);
-    }
+    double best = INFINITY;
     for (int i = 0; i < REPEATS; i++) {
         const double start = processor_seconds();
-        benchmark_run_threads(run_share, shares, sizeof *shares, threads);
-        const double taken = (processor_seconds() - start) / threads;
-        best = taken < best ? taken : best;
+        benchmark_share_out(trace_rays, rays, threads, rays->count, 16);
+        best = fmin(best, (processor_seconds() - start) / threads);
     }
     return best;
 }
@@ -147,13 +242,10 @@ struct bench_set {
 static int compare(struct bench_set *set, const char *name, bool is_coherent, const float *input,
                    float *output, uint32_t rays)
 {
-    float *native = allocate_array(rays, PROBE_OUTPUTS * sizeof *native);
-    if (!native)
-        exit(1);
+    float *native = benchmark_array(rays, PROBE_OUTPUTS * sizeof *native);
     const double device_s = probe_device_run(&set->probe, "nearest", input, output, rays, REPEATS);
-    struct share work = {&set->mesh, set->embree, TRACE_NATIVE, is_coherent, input, native, rays, 0,
-                         0};
-    const double native_s = time_shares(&work, set->threads);
+    struct rays work = {&set->mesh, NULL, is_coherent, input, native, rays};
+    const double native_s = time_rays(&work, set->threads);
     const int differs = memcmp(native, output, 2 * (size_t)rays * sizeof *native) != 0;
     uint32_t hits = 0;
     for (uint32_t ray = 0; ray < rays; ray++)
@@ -161,8 +253,8 @@ static int compare(struct bench_set *set, const char *name, bool is_coherent, co
     printf("%s rays (%.0f %% hit): %.1f Mrays/s on the device, %.1f native C", name,
            100.0 * hits / rays, 1e-6 * rays / device_s, 1e-6 * rays / native_s);
     if (set->embree) {
-        work.kind = TRACE_EMBREE;
-        const double embree_s = time_shares(&work, set->threads);
+        work.embree = set->embree;
+        const double embree_s = time_rays(&work, set->threads);
         printf(", %.1f Embree; device over Embree %.2f", 1e-6 * rays / embree_s,
                embree_s / device_s);
     }
@@ -179,9 +271,9 @@ static double build_mesh(struct bench_set *set, uint32_t around, uint32_t across
     mesh_options_init(&options);
     sample_ring(&sample, around, across);
     const double start = clock_seconds();
-    if (mesh_from_arrays(&set->report, "ring", sample.positions, sample.vertices, sample.corners,
-                         sample.triangles, &options, &set->mesh) != SONJECT_OK)
-        benchmark_fail(&set->report, "mesh");
+    benchmark_expect(&set->report,
+                     mesh_from_arrays(&set->report, "ring", sample.positions, sample.vertices,
+                                      sample.corners, sample.triangles, &options, &set->mesh));
     const double taken = clock_seconds() - start;
     sample_clear(&sample);
     return taken;
@@ -191,8 +283,7 @@ static void set_up(struct bench_set *set)
 {
     sonject_context_params params = {.struct_size = sizeof params};
     double build_s;
-    if (device_open(&set->report, &params, &set->device) != SONJECT_OK)
-        benchmark_fail(&set->report, "device");
+    benchmark_expect(&set->report, device_open(&set->report, &params, &set->device));
     const double ready_s = build_mesh(set, 730, 366);
     printf("mesh of %zu triangles: ready after %.2f s on one core", set->mesh.triangle_count,
            ready_s);
@@ -232,11 +323,9 @@ int main(void)
 {
     static struct bench_set set;
     const uint32_t rays = SIDE * SIDE;
-    float *input = allocate_array(rays, PROBE_INPUTS * sizeof *input);
-    float *output = allocate_array(rays, PROBE_OUTPUTS * sizeof *output);
+    float *input = benchmark_array(rays, PROBE_INPUTS * sizeof *input);
+    float *output = benchmark_array(rays, PROBE_OUTPUTS * sizeof *output);
     set_up(&set);
-    if (!input || !output)
-        return 1;
     lay_fan(input, rays);
     int differs = compare(&set, "primary", true, input, output, rays);
     probe_device_run(&set.probe, "surface", input, output, rays, 1);

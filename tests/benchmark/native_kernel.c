@@ -8,30 +8,18 @@
 
 #include "native_kernel.h"
 
-void native_trace_rough(const struct fan_record *fan, const struct object_record *objects,
-                        const float *map, int64_t *seabed, int64_t *tiles, int first, int last,
-                        struct outcome_record *outcomes)
-{
-    for (int strip = first; strip < last; strip++)
-        for (int segment = 0; segment < fan->segments; segment++)
-            outcomes[strip] =
-                trace_rough_strip(fan, NULL, objects, map, seabed, tiles, strip, segment);
-}
+#define OVER_STRIPS(name, outcome)                                                                 \
+    void name(const struct fan_record *fan, void *const *buffers, uint32_t first, uint32_t last,   \
+              struct outcome_record *outcomes)                                                     \
+    {                                                                                              \
+        for (int strip = (int)first; strip < (int)last; strip++)                                   \
+            for (int segment = 0; segment < fan->segments; segment++)                              \
+                outcomes[strip] = outcome;                                                         \
+    }
 
-void native_trace_smooth(const struct fan_record *fan, const struct object_record *objects,
-                         int64_t *tally, int first, int last, struct outcome_record *outcomes)
-{
-    for (int strip = first; strip < last; strip++)
-        for (int segment = 0; segment < fan->segments; segment++)
-            outcomes[strip] = trace_smooth_strip(fan, NULL, objects, tally, strip, segment);
-}
-
-void native_trace_chains(const struct fan_record *fan, const struct chain_record *chains,
-                         const struct object_record *objects, const struct sphere_record *spheres,
-                         int64_t *tallies, int first, int last, struct outcome_record *outcomes)
-{
-    for (int strip = first; strip < last; strip++)
-        for (int segment = 0; segment < fan->segments; segment++)
-            outcomes[strip] = trace_chains_strip(fan, NULL, chains, objects, spheres, NULL, tallies,
-                                                 strip, segment);
-}
+OVER_STRIPS(native_trace_rough, trace_rough_strip(fan, NULL, buffers[0], buffers[1], buffers[2],
+                                                  buffers[3], strip, segment))
+OVER_STRIPS(native_trace_smooth,
+            trace_smooth_strip(fan, NULL, buffers[0], buffers[1], strip, segment))
+OVER_STRIPS(native_trace_chains, trace_chains_strip(fan, NULL, buffers[0], buffers[1], buffers[2],
+                                                    buffers[3], buffers[4], strip, segment))

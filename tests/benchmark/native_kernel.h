@@ -2,23 +2,13 @@
 #ifndef SONJECT_TESTS_NATIVE_KERNEL_H
 #define SONJECT_TESTS_NATIVE_KERNEL_H
 
-#include <stdint.h>
+#include "kernels/layout.h"
 
-struct chain_record;
-struct fan_record;
-struct object_record;
-struct outcome_record;
-struct sphere_record;
+/* Over strips [first, last) of a launch, with its buffers in its order. Threads must not share the
+ * tallies that they fill. */
+typedef void native_program(const struct fan_record *fan, void *const *buffers, uint32_t first,
+                            uint32_t last, struct outcome_record *outcomes);
 
-/* As trace_rough_strip and trace_smooth_strip, over the strips [first, last) of the launch. */
-void native_trace_rough(const struct fan_record *fan, const struct object_record *objects,
-                        const float *map, int64_t *seabed, int64_t *tiles, int first, int last,
-                        struct outcome_record *outcomes);
-void native_trace_smooth(const struct fan_record *fan, const struct object_record *objects,
-                         int64_t *tally, int first, int last, struct outcome_record *outcomes);
-/* As trace_chains_strip; several threads must not share tallies. */
-void native_trace_chains(const struct fan_record *fan, const struct chain_record *chains,
-                         const struct object_record *objects, const struct sphere_record *spheres,
-                         int64_t *tallies, int first, int last, struct outcome_record *outcomes);
+native_program native_trace_rough, native_trace_smooth, native_trace_chains;
 
 #endif

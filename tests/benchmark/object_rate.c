@@ -1,18 +1,16 @@
 /* What clutter costs: 1...1000 parts strewn over a patch, once all of one size and once all
- * together of one area. Prints a table of seconds and ns a ray: the rough part, glints, two
- * interactions, and the whole injection of these with its share of image formation. */
+ * together of one area. Prints a table: ns a ray of the rough part, and of two interactions from
+ * the seabed; seconds of the whole injection of these, with its share of image formation. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "base/memory.h"
 #include "base/report.h"
 #include "benchmark_scene.h"
 #include "inject/injection.h"
 #include "trace/chains.h"
-#include "trace/glints.h"
 #include "trace/rough.h"
 
 #define PIXELS      512
@@ -66,11 +64,9 @@ static void strew(struct benchmark_scene *set, uint32_t parts, double size)
             for (int axis = 0; axis < 3; axis++)
                 part.axes[axis][axis] = 1.0;
             part.centre[k % 2] = (k < 2 ? -0.8 : 0.8) * size;
-            if (scene_append_part(&set->scene, &set->report, &part) != SONJECT_OK)
-                benchmark_fail(&set->report, "part");
+            benchmark_expect(&set->report, scene_append_part(&set->scene, &set->report, &part));
         }
-        if (scene_append_object(&set->scene, &set->report, &object) != SONJECT_OK)
-            benchmark_fail(&set->report, "object");
+        benchmark_expect(&set->report, scene_append_object(&set->scene, &set->report, &object));
     }
 }
 
@@ -82,99 +78,47 @@ static double seconds_of(const struct benchmark_scene *set)
                           : clock_seconds();
 }
 
-struct cost {
-    double seconds, rays;
-};
-
-static void print_cost(const struct cost *cost)
-{
-    printf(" | %8.3f %7.1f", cost->seconds, 1e9 * cost->seconds / fmax(cost->rays, 1.0));
-}
-
-static struct cost since(double start, const struct benchmark_scene *set, uint64_t rays)
-{
-    const struct cost cost = {seconds_of(set) - start, (double)(set->tracer.counts.rays - rays)};
-    return cost;
-}
-
-static struct cost cost_of_rough(struct benchmark_scene *set)
+static double ns_of_rough_rays(struct benchmark_scene *set)
 {
     static struct rough_trace trace;
     struct tracer *tracer = &set->tracer;
     const uint64_t rays = tracer->counts.rays;
     const double start = seconds_of(set);
-    if (rough_trace_begin(&trace, tracer, NULL) != SONJECT_OK)
-        benchmark_fail(&set->report, "rough part");
-    float *energy = allocate_array(line_grid_cells(&trace.grid), sizeof *energy);
-    if (!energy || rough_trace_strips(&trace, tracer, trace.grid.strips, energy) != SONJECT_OK)
-        benchmark_fail(&set->report, "rough part");
-    const struct cost cost = since(start, set, rays);
+    benchmark_expect(&set->report, rough_trace_begin(&trace, tracer, NULL));
+    float *energy = benchmark_array(line_grid_cells(&trace.grid), sizeof *energy);
+    benchmark_expect(&set->report, rough_trace_strips(&trace, tracer, trace.grid.strips, energy));
+    const double taken = seconds_of(set) - start;
     free(energy);
     rough_trace_end(&trace);
-    return cost;
+    return 1e9 * taken / (double)(tracer->counts.rays - rays);
 }
 
-static void trace_glints_of(struct benchmark_scene *set, uint32_t part)
-{
-    struct glints glints;
-    if (glints_begin(&glints, &set->tracer, part) != SONJECT_OK)
-        benchmark_fail(&set->report, "glints");
-    const size_t chunk = (size_t)glints.chunk * (size_t)glints.grid.bins.count;
-    float *field = allocate_array(2 * chunk, sizeof *field);
-    const int32_t end = glints.grid.strips.first + glints.grid.strips.count;
-    struct span strips = {glints.grid.strips.first, glints.chunk};
-    for (; strips.first < end; strips.first += strips.count) {
-        if (strips.count > end - strips.first)
-            strips.count = end - strips.first;
-        if (!field ||
-            glints_trace(&glints, &set->tracer, strips, field, field + chunk) != SONJECT_OK)
-            benchmark_fail(&set->report, "glints");
-    }
-    free(field);
-    glints_end(&glints);
-}
-
-static struct cost cost_of_glints(struct benchmark_scene *set)
-{
-    const uint64_t rays = set->tracer.counts.rays;
-    const double start = seconds_of(set);
-    for (uint32_t i = 0; i < set->tracer.part_count; i++)
-        trace_glints_of(set, i);
-    return since(start, set, rays);
-}
-
-/* Fan 0 begins on the seabed, the others on the objects. */
-static struct cost cost_of_chains(struct benchmark_scene *set, uint32_t first_fan, uint32_t end)
+/* Of fan 0, which begins on the seabed. */
+static double ns_of_seabed_chains(struct benchmark_scene *set)
 {
     struct tracer *tracer = &set->tracer;
     struct chain_trace trace;
-    if (chain_trace_begin(&trace, tracer, NULL) != SONJECT_OK)
-        benchmark_fail(&set->report, "chains");
+    struct chain_fan fan;
+    benchmark_expect(&set->report, chain_trace_begin(&trace, tracer, NULL));
     const uint64_t rays = tracer->counts.rays;
     const double start = seconds_of(set);
-    for (uint32_t i = first_fan; i < end && i < chain_fan_count(tracer); i++) {
-        struct chain_fan fan;
-        if (chain_fan_init(&fan, tracer, &trace.grid, false, i) != SONJECT_OK ||
-            chain_trace_strips(&trace, tracer, &fan, fan.strips) != SONJECT_OK)
-            benchmark_fail(&set->report, "chains");
-    }
-    const struct cost cost = since(start, set, rays);
+    benchmark_expect(&set->report, chain_fan_init(&fan, tracer, &trace.grid, false, 0));
+    benchmark_expect(&set->report, chain_trace_strips(&trace, tracer, &fan, fan.strips));
+    const double taken = seconds_of(set) - start;
     chain_trace_end(&trace);
-    return cost;
+    return 1e9 * taken / (double)(tracer->counts.rays - rays);
 }
 
 static void print_injection(struct benchmark_scene *set)
 {
     struct injection_result result;
-    struct injection_input input = {PIXELS, PIXELS, 0.0, 0.0, false, false, NULL, NULL};
-    float *pixels = allocate_array((size_t)PIXELS * PIXELS, sizeof *pixels);
-    for (size_t i = 0; pixels && i < (size_t)PIXELS * PIXELS; i++)
+    float *pixels = benchmark_array((size_t)PIXELS * PIXELS, sizeof *pixels);
+    const struct injection_input input = {.rows = PIXELS, .columns = PIXELS, .pixels = pixels};
+    for (size_t i = 0; i < (size_t)PIXELS * PIXELS; i++)
         pixels[i] = 1.0f;
-    input.pixels = pixels;
     const double start = seconds_of(set);
-    if (!pixels || injection_run(&set->report, set->tracer.device, &set->scene, &input, NULL, NULL,
-                                 &result) != SONJECT_OK)
-        benchmark_fail(&set->report, "injection");
+    benchmark_expect(&set->report, injection_run(&set->report, set->tracer.device, &set->scene,
+                                                 &input, NULL, NULL, &result));
     printf(" | %8.3f %8.3f %8.3f\n", seconds_of(set) - start, result.statistics.trace_s,
            result.statistics.form_s);
     injection_result_clear(&result);
@@ -188,16 +132,9 @@ static void print_row(uint32_t parts, double size)
     strew(&set, parts, size);
     set.scene.injection.interactions = 2;
     benchmark_place(&set, PIXELS);
-    cost_of_rough(&set); /* programs are built */
-    const struct cost rough = cost_of_rough(&set);
-    const struct cost glints = cost_of_glints(&set);
-    const struct cost seabed = cost_of_chains(&set, 0, 1);
-    const struct cost objects = cost_of_chains(&set, 1, UINT32_MAX);
-    printf("%5u %6.3f", (unsigned)parts, size);
-    print_cost(&rough);
-    print_cost(&glints);
-    print_cost(&seabed);
-    print_cost(&objects);
+    ns_of_rough_rays(&set); /* programs are built */
+    printf("%5u %6.3f | %7.1f", (unsigned)parts, size, ns_of_rough_rays(&set));
+    printf(" | %9.1f", ns_of_seabed_chains(&set));
     print_injection(&set);
     fflush(stdout);
     benchmark_clear(&set);
@@ -208,8 +145,7 @@ int main(int argc, char **argv)
     /* another range of numbers: from, to */
     const uint32_t least = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 1;
     const uint32_t most = argc > 2 ? (uint32_t)strtoul(argv[2], NULL, 10) : 1000;
-    printf("parts size m |  rough s  ns/ray | glints s  ns/ray | seabed's s   ns | objects' s   ns "
-           "| inject s  trace s   form s\n");
+    printf("parts size m |  ns/ray | seabed's ns | inject s  trace s   form s\n");
     for (uint32_t parts = least; parts <= most; parts *= 10)
         print_row(parts, SIZE_M);
     for (uint32_t parts = least; parts <= most; parts *= 10)

@@ -1,12 +1,12 @@
 """Times with warm program caches, one line each. Figure 6 of the paper, from process start to files,
 beside the time that the process needs to do nothing (list the devices); the injection alone, by the
-C interface through the Python bindings, for a 512 x 512 patch; and, where HDF5 is, forming an image
-anew at two thirds of the bandwidth, beside a whole run at that bandwidth: figure 7 with three
-interactions, and the same with so many rays that tracing is nearly all of a run."""
+C interface through the Python bindings, for a 512 x 512 patch, and of a mesh of a million triangles
+from its file to an image of 400 x 400; and forming an image anew at two thirds of the bandwidth, beside
+a whole run at that bandwidth: figure 7 with three interactions, and the same with so many rays that
+tracing is nearly all of a run."""
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 import time
 
@@ -15,6 +15,7 @@ import sonject
 
 SCENES = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "tools" / "scenes"
 COMMAND = os.environ["SONJECT_COMMAND"]
+SONAR = {"frequency": 100e3, "bandwidth": 30e3, "altitude": 10}
 
 
 def best_time(action, repeats=5):
@@ -42,7 +43,7 @@ def time_figure6(folder, swath):
 def time_injection():
     patch = numpy.random.default_rng(1).rayleigh(size=(512, 512)).astype(numpy.float32)
     scene = sonject.Scene(
-        sonar={"frequency": 100e3, "bandwidth": 30e3, "altitude": 10},
+        sonar=SONAR,
         input={"geometry": {"row_spacing": 0.025, "column_spacing": 0.025, "first_slant_range": 43.6}},
         objects=[{"shape": "capsule", "length": 2.3, "diameter": 0.3, "heading": "0.6 rad", "burial": 0.1}])
     sonject.inject(patch, scene)
@@ -50,10 +51,37 @@ def time_injection():
     print(f"injection of a capsule into 512 x 512 pixels: {taken:.3f} s")
 
 
+def write_ring(path, around=1000, across=500):
+    """A ring with bumps and hollows, 2 x around x across triangles, as binary STL."""
+    u, v = numpy.meshgrid(*(2 * numpy.pi * numpy.arange(n + 1) / n for n in (around, across)), indexing="ij")
+    tube = 0.25 + 0.02 * numpy.sin(7 * u) * numpy.cos(5 * v)
+    points = numpy.stack([(0.65 + tube * numpy.cos(v)) * numpy.cos(u), (0.65 + tube * numpy.cos(v)) * numpy.sin(u),
+                          tube * numpy.sin(v)], axis=-1)
+    corners = points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]
+    facets = numpy.zeros((2, around, across), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    facets["corners"][0] = numpy.stack([corners[i] for i in (0, 1, 2)], axis=-2)
+    facets["corners"][1] = numpy.stack([corners[i] for i in (0, 2, 3)], axis=-2)
+    path.write_bytes(bytes(80) + numpy.uint32(facets.size).tobytes() + facets.tobytes())
+
+
+def time_mesh(folder):
+    write_ring(folder / "ring.stl")
+    for name, shape in (("a mesh of 1,000,000 triangles, STL file", {"shape": "mesh", "mesh": str(folder / "ring.stl")}),
+                        ("a torus", {"shape": "torus", "diameter": 1.8, "height": 0.5})):
+        def inject(_, shape=shape):
+            sonject.inject(None, sonject.Scene(
+                sonar=SONAR, objects=[{**shape, "material": {"reflection": 0, "lambert": 0.1}}],
+                input={"uniform": {"rows": 400, "columns": 400},
+                       "geometry": {"row_spacing": 0.025, "column_spacing": 0.025, "first_slant_range": 45}}))
+
+        inject(0)
+        print(f"{name} to an image of 400 x 400: {best_time(inject, 3):.2f} s")
+
+
 def time_stages(folder, swath, rays):
     chosen = {"input.path": swath, "injection.interactions": 3, "injection.rays": rays}
     narrower = {"sonar.bandwidth": "20 kHz"}
-    impulses = folder / f"{rays}.h5"
+    impulses = folder / f"{rays}.sums"
     sonject.trace(sonject.Scene.read(SCENES / "figure7.yaml", chosen), impulses)
     whole = best_time(lambda number: sonject.run(
         sonject.Scene.read(SCENES / "figure7.yaml", {**chosen, **narrower}),
@@ -70,5 +98,6 @@ with tempfile.TemporaryDirectory() as name:
                     "--first-range", "43.6125"], check=True)
     time_figure6(folder, swath)
     time_injection()
-    for rays in (1, 64) if "stages" in sys.argv else ():
+    time_mesh(folder)
+    for rays in (1, 64):
         time_stages(folder, swath, rays)
