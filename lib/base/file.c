@@ -384,6 +384,23 @@ char *path_join(const char *folder, const char *name)
     return path;
 }
 
+sonject_status path_in(struct report *report, char path[PATH_CAPACITY], const char *folder,
+                       const char *format, ...)
+{
+    char name[PATH_CAPACITY];
+    va_list values;
+    va_start(values, format);
+    const int length = vsnprintf(name, sizeof name, format, values);
+    va_end(values);
+    const size_t own = strlen(folder);
+    const bool is_alone = own == 0 || name[0] == '/';
+    const char *slash = is_alone || folder[own - 1] == '/' ? "" : "/";
+    const int whole = snprintf(path, PATH_CAPACITY, "%s%s%s", is_alone ? "" : folder, slash, name);
+    if (length < 0 || length >= PATH_CAPACITY || whole < 0 || whole >= PATH_CAPACITY)
+        return file_failure(report, folder, "name a file below", ENAMETOOLONG);
+    return SONJECT_OK;
+}
+
 char *working_folder(void)
 {
     for (size_t bytes = 256; bytes <= PATH_BYTES_MAX; bytes *= 2) {

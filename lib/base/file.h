@@ -117,6 +117,12 @@ void folder_names_clear(struct folder_names *list);
  * name. NULL when memory is out. */
 char *path_join(const char *folder, const char *name);
 
+#define PATH_CAPACITY 4096 /* the system opens no longer one */
+
+/* Writes the same of a name that is formatted. Errors: STORAGE (it is too long). */
+sonject_status path_in(struct report *report, char path[PATH_CAPACITY], const char *folder,
+                       const char *format, ...) REPORT_FORMAT(4);
+
 /* The working folder, to be given to free(); NULL with errno where it has no name. */
 char *working_folder(void);
 

@@ -97,6 +97,26 @@ char *json_document_text(const json_t *document, size_t flags)
     return growing_text_end(&text);
 }
 
+sonject_status json_document_hash(struct report *report, const json_t *document, size_t flags,
+                                  char text[HASH_TEXT_CAPACITY])
+{
+    char *whole = json_document_text(document, flags);
+    struct hash *hash = hash_begin();
+    const bool has_memory = whole && hash;
+    if (hash) {
+        hash_add_text(hash, whole);
+        hash_end(hash, text);
+    }
+    free(whole);
+    return has_memory ? SONJECT_OK : report_out_of_memory(report, "a hash");
+}
+
+const char *member_text(const json_t *object, const char *key)
+{
+    const char *text = json_string_value(json_object_get(object, key));
+    return text ? text : "";
+}
+
 sonject_status json_document_write(struct report *report, json_t *document, size_t digits,
                                    const char *path)
 {

@@ -45,6 +45,14 @@ void json_append(json_t **array, json_t *value);
  * json_dumps overlooks among keys, or where the document is NULL. */
 char *json_document_text(const json_t *document, size_t flags);
 
+/* Digest of the document's text by those flags. Errors: MEMORY (also where the document is NULL).
+ */
+sonject_status json_document_hash(struct report *report, const json_t *document, size_t flags,
+                                  char text[HASH_TEXT_CAPACITY]);
+
+/* The text of a member, "" if there is none. */
+const char *member_text(const json_t *object, const char *key);
+
 /* Writes the document, indented, numbers with so many digits, whole or not at all, and releases it.
  * Errors: STORAGE, MEMORY (also where the document is NULL). */
 sonject_status json_document_write(struct report *report, json_t *document, size_t digits,

@@ -86,30 +86,15 @@ uint32_t distribution_steps(const struct distribution *distribution);
 const char *distribution_step(const struct distribution *distribution, uint32_t step,
                               char text[DISTRIBUTION_TEXT_CAPACITY]);
 
-/* First pixels of chips, in bands of rows that have the same columns. */
-struct column_range {
-    uint64_t first, count;
-};
-
-struct row_band {
-    uint64_t first_row, rows;
-    uint64_t columns; /* of all its ranges */
-    size_t first_range, ranges;
-};
-
 /* Where in a swath chips may lie: inside, and touching no box that is to be avoided. */
 struct chip_room {
-    struct row_band *bands; /* owned */
-    struct column_range *ranges;
-    size_t band_count, range_count;
+    struct region chips;  /* the first pixels that a chip may have if nothing is to be avoided */
+    struct region *boxes; /* those that it may not have, which may reach beyond, sorted by their
+                             first column; owned */
+    size_t box_count;
     uint64_t places; /* 0: there is no room */
 };
 
-/* chips: the first pixels that a chip may have if nothing is to be avoided; avoid: those that it
- * may not have, count boxes, which may reach beyond. room: for chip_room_clear, also on failure.
- * Errors: MEMORY. */
-sonject_status chip_room_init(struct chip_room *room, struct report *report,
-                              const struct region *chips, const struct region *avoid, size_t count);
 void chip_room_clear(struct chip_room *room);
 
 /* The place that two deviates of [0, 1) choose: rows by the number of places that they have, and

@@ -155,13 +155,8 @@ static sonject_status make_inputs(struct sonject_campaign *campaign, struct hash
         json_add(&campaign->inputs, name, json_string(campaign->swath_hashes[i]));
     }
     json_add(&campaign->inputs, "files that scene or targets name", json_string(trials));
-    char *text = json_document_text(campaign->inputs, JSON_COMPACT | JSON_SORT_KEYS);
-    hash_add_text(hash, text);
-    hash_restart(hash, campaign->hash);
-    const bool has_memory = campaign->inputs && text;
-    free(text);
-    return has_memory ? SONJECT_OK
-                      : report_out_of_memory(campaign->report, "the campaign's inputs");
+    return json_document_hash(campaign->report, campaign->inputs, JSON_COMPACT | JSON_SORT_KEYS,
+                              campaign->hash);
 }
 
 sonject_status campaign_check(struct sonject_campaign *campaign)

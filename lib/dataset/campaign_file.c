@@ -330,27 +330,21 @@ static sonject_status read_splits(struct reader *reader, const struct tree_node 
     return status;
 }
 
-static sonject_status read_range_end(struct reader *reader, const struct tree_node *node,
-                                     void *structure)
-{
-    struct campaign *campaign = structure;
-    campaign->nearest_range_m = campaign->farthest_range_m;
-    return read_quantity(reader, node, QUANTITY_LENGTH, &campaign->farthest_range_m);
-}
-
 static sonject_status read_range(struct reader *reader, const struct tree_node *node,
                                  void *structure)
 {
-    static const struct list ends = {2, "", read_range_end};
     struct campaign *campaign = structure;
     if (node->kind != TREE_LIST || node->count != 2)
         return refuse_value(reader, node, "must be two slant ranges, [nearest, farthest]");
-    sonject_status status = read_list(reader, node, &ends, campaign);
-    if (status == SONJECT_OK && !(campaign->nearest_range_m < campaign->farthest_range_m))
-        status = refuse_value(reader, node, "begins at %g m, which is not below its end, %g m",
-                              campaign->nearest_range_m, campaign->farthest_range_m);
+    CHECK(read_quantity(reader, &node->entries[0].value, QUANTITY_LENGTH,
+                        &campaign->nearest_range_m));
+    CHECK(read_quantity(reader, &node->entries[1].value, QUANTITY_LENGTH,
+                        &campaign->farthest_range_m));
     campaign->has_range = true;
-    return status;
+    if (campaign->nearest_range_m < campaign->farthest_range_m)
+        return SONJECT_OK;
+    return refuse_value(reader, node, "begins at %g m, which is not below its end, %g m",
+                        campaign->nearest_range_m, campaign->farthest_range_m);
 }
 
 /* Of enum output, from the first that a user chooses on; labels begin with yolo. */

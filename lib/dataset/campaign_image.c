@@ -1,4 +1,6 @@
-/* One image of a campaign: made and written. */
+/* One image of a campaign: made and written, and whether its files are as they were written: what a
+ * record says is believed where its own hash holds. */
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +16,31 @@
 #include "schema/scene_file.h"
 #include "swath/geometry_notes.h"
 #include "swath/raster_file.h"
+
+#define IMAGE_NAME_CAPACITY 48
+
+const struct output_kind output_kinds[OUTPUT_KINDS] = {
+    [OUTPUT_IMAGE] = {"images", NULL},
+    [OUTPUT_TRUTH] = {"truth", ".json"},
+    [OUTPUT_HIGHLIGHT] = {"highlight", ".png"},
+    [OUTPUT_SHADOW] = {"shadow", ".png"},
+    [OUTPUT_MASKS] = {"masks", ".png"},
+    [OUTPUT_ENERGY] = {"energy", ".tif"},
+    [OUTPUT_FIELD] = {"field", ".tif"},
+    [OUTPUT_YOLO] = {"labels", ".txt"},
+    [OUTPUT_VOC] = {"voc", ".xml"},
+    [OUTPUT_RECORD] = {"records", ".json"},
+};
+
+/* The file's name within its split, "images/00000007.png". extension: of pixels. Returns name. */
+static const char *image_file_name(uint64_t id, enum output output, const char *extension,
+                                   char name[IMAGE_NAME_CAPACITY])
+{
+    const struct output_kind *kind = &output_kinds[output];
+    snprintf(name, IMAGE_NAME_CAPACITY, "%s/%08" PRIu64 "%s", kind->folder, id,
+             kind->extension ? kind->extension : extension);
+    return name;
+}
 
 void campaign_image_clear(struct campaign_image *image)
 {
@@ -190,7 +217,8 @@ struct image_parts {
     struct scene scene;
     struct swath swath;
     struct image_labels labels;
-    struct image_files files;
+    char folder[PATH_CAPACITY]; /* of the split */
+    const char *extension;      /* of pixels */
 };
 
 static json_t *record_of(const struct sonject_campaign *campaign,
@@ -226,11 +254,23 @@ static sonject_status write_record(struct sonject_campaign *campaign,
                                    const struct image_parts *parts, const char *path)
 {
     char hash[HASH_TEXT_CAPACITY];
-    json_t *list;
+    char name[IMAGE_NAME_CAPACITY];
     CHECK(scene_hash(campaign->report, &image->scene, image->swath.identity, hash));
-    CHECK(image_files_list(&parts->files, campaign->report, &list));
-    return json_document_write(campaign->report, record_of(campaign, image, parts, hash, list), 9,
-                               path);
+    sonject_status status = SONJECT_OK;
+    json_t *list = json_array();
+    for (int i = 0; i < OUTPUT_RECORD; i++)
+        if (campaign->campaign.outputs & OUTPUT_BIT(i))
+            THEN(status, file_list_add(&list, campaign->report, parts->folder,
+                                       image_file_name(image->plan.id, (enum output)i,
+                                                       parts->extension, name),
+                                       false));
+    json_t *record = record_of(campaign, image, parts, hash, list);
+    THEN(status, json_document_hash(campaign->report, record, JSON_COMPACT, hash));
+    json_add(&record, "xxh3", json_string(hash));
+    if (status == SONJECT_OK)
+        return json_document_write(campaign->report, record, 9, path);
+    json_decref(record);
+    return status;
 }
 
 static sonject_status write_file(struct sonject_campaign *campaign, struct campaign_image *image,
@@ -272,31 +312,100 @@ static sonject_status write_file(struct sonject_campaign *campaign, struct campa
 sonject_status campaign_image_write(struct sonject_campaign *campaign, struct campaign_image *image,
                                     const char *folder)
 {
+    struct report *report = campaign->report;
+    const uint64_t id = image->plan.id;
     struct image_parts parts;
     char name[IMAGE_NAME_CAPACITY];
-    char image_name[IMAGE_NAME_CAPACITY];
-    memset(&parts, 0, sizeof parts);
+    char path[PATH_CAPACITY];
+    CHECK(path_in(report, parts.folder, folder, "%s",
+                  campaign->campaign.splits[image->plan.split].name));
     take_alone(image, &parts.scene, &parts.swath);
     const struct raster_layout *layout = &parts.swath.layout;
     const bool is_grey = layout->type == PIXEL_UINT8 && !parts.swath.is_complex;
-    sonject_status status = image_files_init(
-        &parts.files, campaign->report, folder, campaign->campaign.splits[image->plan.split].name,
-        image->plan.id, campaign->campaign.outputs, is_grey ? ".png" : ".tif");
+    parts.extension = is_grey ? ".png" : ".tif";
+    char image_name[IMAGE_NAME_CAPACITY];
     const struct label_request request = {
-        &parts.scene,      &image->result,  image_file_name(&parts.files, OUTPUT_IMAGE, image_name),
-        layout->rows,      layout->columns, parts.swath.patch,
+        &parts.scene,
+        &image->result,
+        image_file_name(id, OUTPUT_IMAGE, parts.extension, image_name),
+        layout->rows,
+        layout->columns,
+        parts.swath.patch,
         &parts.swath.track};
-    THEN(status, image_labels_find(&parts.labels, campaign->report, &request, &campaign->classes));
-    for (int i = 0; status == SONJECT_OK && i < OUTPUT_KINDS; i++) {
-        const enum output output = (enum output)i;
-        if (!(parts.files.outputs & OUTPUT_BIT(output)))
-            continue;
-        char *path = path_join(parts.files.folder, image_file_name(&parts.files, output, name));
-        status = path ? write_file(campaign, image, &parts, output, path)
-                      : report_out_of_memory(campaign->report, "a file name");
-        free(path);
-    }
-    free(parts.files.folder);
+    CHECK(image_labels_find(&parts.labels, report, &request, &campaign->classes));
+    sonject_status status = SONJECT_OK;
+    for (int i = 0; status == SONJECT_OK && i < OUTPUT_KINDS; i++)
+        if (campaign->campaign.outputs & OUTPUT_BIT(i)) {
+            status = path_in(report, path, parts.folder, "%s",
+                             image_file_name(id, (enum output)i, parts.extension, name));
+            THEN(status, write_file(campaign, image, &parts, (enum output)i, path));
+        }
     image_labels_clear(&parts.labels);
+    return status;
+}
+
+/* Errors: INPUT (it was changed, or is another image's), MEMORY. */
+static sonject_status check_record(const struct data_set *set, size_t split, uint64_t id,
+                                   json_t *record, const char *path)
+{
+    char told[HASH_TEXT_CAPACITY], hash[HASH_TEXT_CAPACITY];
+    char name[IMAGE_NAME_CAPACITY];
+    const char *image = member_text(record, "image");
+    snprintf(told, sizeof told, "%s", member_text(record, "xxh3"));
+    json_object_del(record, "xxh3");
+    CHECK(json_document_hash(set->report, record, JSON_COMPACT, hash));
+    image_file_name(id, OUTPUT_IMAGE, strstr(image, ".tif") ? ".tif" : ".png", name);
+    if (strcmp(told, hash) == 0 && strcmp(image, name) == 0 &&
+        strcmp(member_text(record, "campaign_hash"), member_text(set->head, "hash")) == 0 &&
+        strcmp(member_text(record, "split"), set->split_names[split]) == 0)
+        return SONJECT_OK;
+    return input_failure(
+        set->report, path,
+        "was changed, or is another image's; remove it and run the campaign again");
+}
+
+sonject_status data_set_record(const struct data_set *set, size_t split, uint64_t id,
+                               json_t **record)
+{
+    char path[PATH_CAPACITY];
+    char name[IMAGE_NAME_CAPACITY];
+    *record = NULL;
+    CHECK(path_in(set->report, path, set->folder, "%s/%s", set->split_names[split],
+                  image_file_name(id, OUTPUT_RECORD, NULL, name)));
+    CHECK(json_document_read(set->report, path, record));
+    const sonject_status status = check_record(set, split, id, *record, path);
+    if (status != SONJECT_OK) {
+        json_decref(*record);
+        *record = NULL;
+    }
+    return status;
+}
+
+sonject_status data_set_has_image(const struct data_set *set, size_t split, uint64_t id,
+                                  char changed[PATH_CAPACITY], bool *has)
+{
+    char folder[PATH_CAPACITY], path[PATH_CAPACITY];
+    char record_name[IMAGE_NAME_CAPACITY];
+    json_t *record;
+    const char *name = NULL; /* of the first file that is not as it was written */
+    *has = false;
+    CHECK(path_in(set->report, folder, set->folder, "%s", set->split_names[split]));
+    CHECK(path_in(set->report, path, folder, "%s",
+                  image_file_name(id, OUTPUT_RECORD, NULL, record_name)));
+    if (!file_exists(path))
+        return SONJECT_OK;
+    sonject_status status = data_set_record(set, split, id, &record);
+    if (status == SONJECT_ERROR_INPUT) {
+        set->report->message[0] = '\0';
+        status = SONJECT_OK;
+        name = record_name;
+    } else {
+        THEN(status,
+             file_list_check(json_object_get(record, "files"), set->report, folder, true, &name));
+    }
+    *has = status == SONJECT_OK && !name;
+    if (status == SONJECT_OK && name && changed && !*changed)
+        status = path_in(set->report, changed, folder, "%s", name);
+    json_decref(record);
     return status;
 }

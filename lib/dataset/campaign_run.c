@@ -105,35 +105,26 @@ static sonject_status make_missing(struct sweep *sweep)
     return status;
 }
 
-static sonject_status make_folders(struct sweep *sweep)
+/* Images whose shapes are code depend on the device. */
+static sonject_status begin_set(struct sweep *sweep)
 {
-    struct sonject_campaign *campaign = sweep->campaign;
-    const char *folder = sweep->params->folder;
     struct device *device = NULL;
-    sonject_status status = SONJECT_OK;
-    if (campaign->has_user_shapes)
-        status = device_slot_open(sweep->campaign->report, sweep->slot, &device);
-    THEN(status, folder_make(campaign->report, folder));
-    THEN(status, data_set_begin(campaign, device, folder, sweep->params->overwrites != 0));
-    THEN(status, data_set_open(&sweep->set, campaign->report, folder));
-    for (size_t i = 0; status == SONJECT_OK && i < campaign->campaign.split_count; i++)
-        status = split_folders_make(campaign->report, folder, campaign->campaign.splits[i].name,
-                                    campaign->campaign.outputs);
-    return status;
+    if (sweep->campaign->has_user_shapes)
+        CHECK(device_slot_open(sweep->campaign->report, sweep->slot, &device));
+    return data_set_begin(&sweep->set, sweep->campaign, device, sweep->params->folder,
+                          sweep->params->overwrites != 0);
 }
 
 /* Times are the only thing that differs from run to run, and so in a file of their own. */
 static sonject_status write_times(const struct sweep *sweep)
 {
     const double elapsed = clock_seconds() - sweep->start_s;
-    char *path = path_join(sweep->params->folder, "times.json");
-    CHECK_MEMORY(sweep->campaign->report, path, "a file name");
+    char path[PATH_CAPACITY];
+    CHECK(path_in(sweep->campaign->report, path, sweep->params->folder, "times.json"));
     json_t *document = JSON_OBJECT(
         {"images_made", json_count(sweep->made)}, {"seconds", json_number(elapsed)},
         {"images_per_second", json_number(elapsed > 0.0 ? (double)sweep->made / elapsed : 0.0)});
-    const sonject_status status = json_document_write(sweep->campaign->report, document, 9, path);
-    free(path);
-    return status;
+    return json_document_write(sweep->campaign->report, document, 9, path);
 }
 
 static sonject_status finish_whole(struct sweep *sweep, int *was_finished)
@@ -154,7 +145,7 @@ static sonject_status finish_whole(struct sweep *sweep, int *was_finished)
 static sonject_status run_sweep(struct sweep *sweep, int *was_finished)
 {
     const bool is_whole = sweep->params->shard_count == 1 && !sweep->params->only_one;
-    sonject_status status = make_folders(sweep);
+    sonject_status status = begin_set(sweep);
     THEN(status, find_missing(sweep));
     sweep->start_s = clock_seconds();
     THEN(status, make_missing(sweep));

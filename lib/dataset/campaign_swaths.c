@@ -154,17 +154,11 @@ sonject_status campaign_split(struct report *report, struct campaign *campaign,
     return status;
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    const uint64_t first = *(const uint64_t *)a;
-    const uint64_t second = *(const uint64_t *)b;
-    return (first > second) - (first < second);
-}
-
 static int compare_starts(const void *a, const void *b)
 {
-    return compare_numbers(&((const struct region *)a)->first_column,
-                           &((const struct region *)b)->first_column);
+    const uint64_t first = ((const struct region *)a)->first_column;
+    const uint64_t second = ((const struct region *)b)->first_column;
+    return (first > second) - (first < second);
 }
 
 static uint64_t clip(uint64_t value, uint64_t low, uint64_t high)
@@ -172,71 +166,44 @@ static uint64_t clip(uint64_t value, uint64_t low, uint64_t high)
     return value < low ? low : value > high ? high : value;
 }
 
-/* Adds the columns of a band of rows that no box takes; boxes are sorted by their first column. */
-static void add_band(struct chip_room *room, const struct region *chips, const struct region *avoid,
-                     size_t count, uint64_t row, uint64_t end_row)
+/* How many first columns a chip may have in a row; *column becomes the wanted-th of them, if there
+ * is one. */
+static uint64_t free_columns(const struct chip_room *room, uint64_t row, uint64_t wanted,
+                             uint64_t *column)
 {
-    const uint64_t end = chips->first_column + chips->columns;
-    uint64_t next = chips->first_column; /* that may be free */
-    struct row_band band = {row, end_row - row, 0, room->range_count, 0};
-    for (size_t i = 0; i <= count; i++) {
-        if (i < count && (avoid[i].first_row > row || avoid[i].first_row + avoid[i].rows <= row))
+    const uint64_t end = room->chips.first_column + room->chips.columns;
+    uint64_t next = room->chips.first_column; /* that may be free */
+    uint64_t count = 0;
+    for (size_t i = 0; i <= room->box_count; i++) {
+        const struct region *box = &room->boxes[i];
+        const bool is_last = i == room->box_count;
+        if (!is_last && (box->first_row > row || box->first_row + box->rows <= row))
             continue;
-        const uint64_t taken = i < count ? clip(avoid[i].first_column, next, end) : end;
-        if (taken > next) {
-            const struct column_range range = {next, taken - next};
-            room->ranges[room->range_count++] = range;
-            band.columns += range.count;
-            band.ranges++;
-        }
-        if (i < count && avoid[i].first_column + avoid[i].columns > next)
-            next = clip(avoid[i].first_column + avoid[i].columns, next, end);
+        const uint64_t taken = is_last ? end : clip(box->first_column, next, end);
+        if (wanted >= count && wanted - count < taken - next)
+            *column = next + (wanted - count);
+        count += taken - next;
+        next = is_last ? end : clip(box->first_column + box->columns, next, end);
     }
-    if (band.columns > 0)
-        room->bands[room->band_count++] = band;
-    room->places += band.rows * band.columns;
+    return count;
 }
 
-sonject_status chip_room_init(struct chip_room *room, struct report *report,
-                              const struct region *chips, const struct region *avoid, size_t count)
+/* The first row behind `row` in which other boxes lie, or that no chip has. */
+static uint64_t band_end(const struct chip_room *room, uint64_t row)
 {
-    const uint64_t end = chips->first_row + chips->rows;
-    const size_t edge_count = 2 * count + 2;
-    size_t ranges;
-    memset(room, 0, sizeof *room);
-    uint64_t *edges = allocate_array(edge_count, sizeof *edges);
-    struct region *sorted = allocate_array(count, sizeof *sorted);
-    room->bands = allocate_array(2 * count + 1, sizeof *room->bands);
-    room->ranges = size_multiply(2 * count + 1, count + 1, &ranges)
-                       ? allocate_array(ranges, sizeof *room->ranges)
-                       : NULL;
-    const bool has_memory = edges && sorted && room->bands && room->ranges;
-    if (has_memory) {
-        memcpy(sorted, avoid, count * sizeof *sorted);
-        qsort(sorted, count, sizeof *sorted, compare_starts);
-        for (size_t i = 0; i < count; i++) {
-            edges[2 * i] = clip(avoid[i].first_row, chips->first_row, end);
-            edges[2 * i + 1] = clip(avoid[i].first_row + avoid[i].rows, chips->first_row, end);
-        }
-        edges[2 * count] = chips->first_row;
-        edges[2 * count + 1] = end;
-        qsort(edges, edge_count, sizeof *edges, compare_numbers);
-        for (size_t i = 0; i + 1 < edge_count; i++)
-            if (edges[i + 1] > edges[i])
-                add_band(room, chips, sorted, count, edges[i], edges[i + 1]);
-        struct column_range *fitting =
-            realloc(room->ranges, (room->range_count + 1) * sizeof *room->ranges);
-        room->ranges = fitting ? fitting : room->ranges;
+    uint64_t end = room->chips.first_row + room->chips.rows;
+    for (size_t i = 0; i < room->box_count; i++) {
+        const uint64_t edges[] = {room->boxes[i].first_row,
+                                  room->boxes[i].first_row + room->boxes[i].rows};
+        for (int k = 0; k < 2; k++)
+            end = edges[k] > row && edges[k] < end ? edges[k] : end;
     }
-    free(edges);
-    free(sorted);
-    return has_memory ? SONJECT_OK : report_out_of_memory(report, "the places for images");
+    return end;
 }
 
 void chip_room_clear(struct chip_room *room)
 {
-    free(room->bands);
-    free(room->ranges);
+    free(room->boxes);
     memset(room, 0, sizeof *room);
 }
 
@@ -250,15 +217,18 @@ void chip_room_choose(const struct chip_room *room, double along_track, double r
                       uint64_t *column)
 {
     uint64_t place = part_of(room->places, along_track);
-    const struct row_band *band = room->bands;
-    for (; place >= band->rows * band->columns; band++)
-        place -= band->rows * band->columns;
-    *row = band->first_row + place / band->columns;
-    uint64_t left = part_of(band->columns, range);
-    const struct column_range *free_columns = room->ranges + band->first_range;
-    for (; left >= free_columns->count; free_columns++)
-        left -= free_columns->count;
-    *column = free_columns->first + left;
+    uint64_t columns;
+    *row = room->chips.first_row;
+    while (true) {
+        const uint64_t rows = band_end(room, *row) - *row;
+        columns = free_columns(room, *row, 0, column);
+        if (place < rows * columns)
+            break;
+        place -= rows * columns;
+        *row += rows;
+    }
+    *row += place / columns;
+    free_columns(room, *row, part_of(columns, range), column);
 }
 
 static double column_at(const sonject_geometry_params *geometry, double range_m)
@@ -317,21 +287,28 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
                             "begins beyond the sonar's altitude, up to %g m",
                             plan->written, campaign->nearest_range_m, campaign->farthest_range_m,
                             altitude_m);
-    struct region *forbidden = allocate_array(plan->avoid_count, sizeof *forbidden);
-    CHECK_MEMORY(report, forbidden, "the places for images");
+    struct chip_room *room = &plan->room;
+    chip_room_clear(room);
+    room->chips = chips;
+    room->box_count = plan->avoid_count;
+    room->boxes = allocate_array(room->box_count + 1, sizeof *room->boxes);
+    CHECK_MEMORY(report, room->boxes, "the places for images");
     for (size_t i = 0; i < plan->avoid_count; i++) {
         const struct region *box = &plan->avoid[i];
-        forbid(campaign, campaign->chip_rows, box->first_row, box->rows, &forbidden[i].first_row,
-               &forbidden[i].rows);
+        struct region *forbidden = &room->boxes[i];
+        forbid(campaign, campaign->chip_rows, box->first_row, box->rows, &forbidden->first_row,
+               &forbidden->rows);
         forbid(campaign, campaign->chip_columns, box->first_column, box->columns,
-               &forbidden[i].first_column, &forbidden[i].columns);
+               &forbidden->first_column, &forbidden->columns);
     }
-    chip_room_clear(&plan->room);
-    const sonject_status status =
-        chip_room_init(&plan->room, report, &chips, forbidden, plan->avoid_count);
-    free(forbidden);
-    if (status != SONJECT_OK || plan->room.places > 0)
-        return status;
+    qsort(room->boxes, room->box_count, sizeof *room->boxes, compare_starts);
+    uint64_t column;
+    for (uint64_t row = chips.first_row, end; row < chips.first_row + chips.rows; row = end) {
+        end = band_end(room, row);
+        room->places += (end - row) * free_columns(room, row, 0, &column);
+    }
+    if (room->places > 0)
+        return SONJECT_OK;
     return tree_failure(&campaign->tree, plan->place, "swaths",
                         "the %zu contacts to avoid in %s leave no room for images of %u x %u that "
                         "stay %u pixels away from them",

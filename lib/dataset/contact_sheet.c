@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
+#include "base/json_document.h"
 #include "base/memory.h"
 #include "dataset/data_set.h"
 #include "image/canvas.h"
@@ -132,30 +132,25 @@ static void draw_thumbnail(struct canvas *canvas, const struct thumbnail *small,
         }
 }
 
-/* False where there is no box. */
-static bool find_box(const json_t *box, double scale, int64_t sides[4])
-{
-    static const char *const keys[] = {"column", "row", "columns", "rows"};
-    for (size_t i = 0; i < 4; i++) {
-        const double side = scale * (double)json_integer_value(json_object_get(box, keys[i]));
-        sides[i] = (int64_t)(i < 2 ? side : ceil(side));
-    }
-    return json_is_object(box);
-}
-
-static void draw_boxes(struct canvas *canvas, const json_t *truth, const struct thumbnail *small,
-                       const char *target, int64_t x, int64_t y)
+/* The boxes of COCO's annotations; object 1 is the target, where there is one. */
+static void draw_boxes(struct canvas *canvas, const json_t *annotations, double scale,
+                       bool has_target, int64_t x, int64_t y)
 {
     static const struct colour of_targets = {255, 160, 0};
     static const struct colour of_others = {80, 180, 255};
     size_t i;
-    const json_t *object;
-    json_array_foreach(json_object_get(truth, "objects"), i, object)
+    const json_t *annotation;
+    json_array_foreach(annotations, i, annotation)
     {
         int64_t sides[4]; /* column, row, columns, rows */
-        if (find_box(json_object_get(object, "box"), small->scale, sides))
-            canvas_frame(canvas, x + sides[0], y + sides[1], sides[2], sides[3],
-                         i == 0 && *target ? of_targets : of_others);
+        for (size_t k = 0; k < 4; k++) {
+            const json_t *box = json_object_get(annotation, "bbox");
+            const double side = scale * (double)json_integer_value(json_array_get(box, k));
+            sides[k] = (int64_t)fmin(fmax(k < 2 ? side : ceil(side), 0.0), CELL_SIDE);
+        }
+        const bool is_first = json_integer_value(json_object_get(annotation, "object_id")) == 1;
+        canvas_frame(canvas, x + sides[0], y + sides[1], sides[2], sides[3],
+                     is_first && has_target ? of_targets : of_others);
     }
 }
 
@@ -163,16 +158,18 @@ static sonject_status draw_cell(const struct data_set *set, struct canvas *canva
                                 uint64_t id, int64_t x, int64_t y)
 {
     static const struct colour black = {0, 0, 0};
-    json_t *record, *truth;
+    json_t *record;
     struct thumbnail small = {0, 0, 0.0, NULL};
     char caption[96];
-    char *path;
-    CHECK(data_set_image(set, split, id, &record, &truth, &path));
-    sonject_status status = load_thumbnail(set->report, path, &small);
+    char path[PATH_CAPACITY];
+    CHECK(data_set_record(set, split, id, &record));
+    sonject_status status = path_in(set->report, path, set->folder, "%s/%s",
+                                    set->split_names[split], member_text(record, "image"));
+    THEN(status, load_thumbnail(set->report, path, &small));
     if (status == SONJECT_OK) {
         const char *target = member_text(record, "target");
         draw_thumbnail(canvas, &small, x, y);
-        draw_boxes(canvas, truth, &small, target, x, y);
+        draw_boxes(canvas, json_object_get(record, "annotations"), small.scale, *target, x, y);
         snprintf(caption, sizeof caption, "%llu %s", (unsigned long long)id, target);
         size_t length = strlen(caption);
         while (length > 0 && text_length(caption, length) > CELL_SIDE)
@@ -181,9 +178,7 @@ static sonject_status draw_cell(const struct data_set *set, struct canvas *canva
                   black);
     }
     free(small.values);
-    free(path);
     json_decref(record);
-    json_decref(truth);
     return status;
 }
 
@@ -209,18 +204,16 @@ sonject_status write_contact_sheet(const struct data_set *set)
     const uint32_t across = cells < CELLS_ACROSS ? cells : CELLS_ACROSS;
     const uint32_t down = (cells + CELLS_ACROSS - 1) / CELLS_ACROSS;
     struct canvas canvas;
-    char *path = path_join(set->folder, "contact_sheet.png");
-    if (!path || !canvas_create(&canvas, CELL_GAP + down * (CELL_SIDE + CAPTION + CELL_GAP),
-                                CELL_GAP + across * (CELL_SIDE + CELL_GAP), white)) {
-        free(path);
+    char path[PATH_CAPACITY];
+    CHECK(path_in(set->report, path, set->folder, "contact_sheet.png"));
+    if (!canvas_create(&canvas, CELL_GAP + down * (CELL_SIDE + CAPTION + CELL_GAP),
+                       CELL_GAP + across * (CELL_SIDE + CELL_GAP), white))
         return report_out_of_memory(set->report, "the contact sheet");
-    }
     sonject_status status = draw_cells(set, &canvas, cells);
     if (status == SONJECT_OK) {
         const struct raster_layout layout = {canvas.height, canvas.width, 3, PIXEL_UINT8};
         status = raster_file_write(set->report, path, &layout, NULL, NULL, 0, canvas.rgb);
     }
     free(canvas.rgb);
-    free(path);
     return status;
 }

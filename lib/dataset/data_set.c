@@ -13,7 +13,6 @@
 
 #include <sonject/version.h>
 
-#include "base/file.h"
 #include "base/json_document.h"
 #include "base/text.h"
 #include "dataset/earlier_result.h"
@@ -24,48 +23,33 @@
 #define LAST_FILE      "dataset.json"
 
 /* The documents that are the same for every folder. */
-static const char *const documents[] = {"classes.txt", "contact_sheet.png", "report.html"};
-
-#define DOCUMENTS (sizeof documents / sizeof *documents)
+static const char *const documents[] = {"classes.txt", "contact_sheet.png"};
 
 /* Calls on each folder of a split. */
 static sonject_status each_folder(struct report *report, const char *folder, const char *split,
                                   uint32_t outputs,
                                   sonject_status (*call)(struct report *report, const char *path))
 {
-    sonject_status status = SONJECT_OK;
-    char *base = path_join(folder, split);
-    CHECK_MEMORY(report, base, "a file name");
-    for (int i = 0; status == SONJECT_OK && i < OUTPUT_KINDS; i++) {
-        if (!(outputs & OUTPUT_BIT(i)))
-            continue;
-        char *path = path_join(base, output_kinds[i].folder);
-        status = path ? call(report, path) : report_out_of_memory(report, "a file name");
-        free(path);
-    }
-    free(base);
-    return status;
-}
-
-sonject_status split_folders_make(struct report *report, const char *folder, const char *split,
-                                  uint32_t outputs)
-{
-    return each_folder(report, folder, split, outputs, folder_make);
+    char path[PATH_CAPACITY];
+    for (int i = 0; i < OUTPUT_KINDS; i++)
+        if (outputs & OUTPUT_BIT(i)) {
+            CHECK(path_in(report, path, folder, "%s/%s", split, output_kinds[i].folder));
+            CHECK(call(report, path));
+        }
+    return SONJECT_OK;
 }
 
 /* Files named as images are, and the folder where that is all. */
 static sonject_status remove_images(struct report *report, const char *path)
 {
     struct folder_names list;
+    char file[PATH_CAPACITY];
     if (folder_names_read(&list, report, path, "") != SONJECT_OK)
         return SONJECT_OK;
-    for (size_t i = 0; i < list.count; i++) {
-        const bool is_image = strspn(list.names[i], "0123456789") == 8 && list.names[i][8] == '.';
-        char *file = is_image ? path_join(path, list.names[i]) : NULL;
-        if (file)
+    for (size_t i = 0; i < list.count; i++)
+        if (strspn(list.names[i], "0123456789") == 8 && list.names[i][8] == '.' &&
+            path_in(report, file, path, "%s", list.names[i]) == SONJECT_OK)
             file_discard(file);
-        free(file);
-    }
     folder_names_clear(&list);
     rmdir(path);
     return SONJECT_OK;
@@ -80,28 +64,27 @@ static sonject_status tidy(struct report *report, const char *path)
 
 static void discard(const char *folder, const char *name)
 {
-    char *path = path_join(folder, name);
-    if (path)
+    struct report ignored = {{0}, NULL, NULL};
+    char path[PATH_CAPACITY];
+    if (path_in(&ignored, path, folder, "%s", name) == SONJECT_OK)
         file_discard(path);
-    free(path);
 }
 
 /* Removes the images and documents, campaign.json last. */
 static void remove_all(const struct data_set *set)
 {
     struct report ignored = {{0}, NULL, NULL};
+    char path[PATH_CAPACITY];
     discard(set->folder, LAST_FILE);
-    for (size_t i = 0; i < DOCUMENTS; i++)
+    for (size_t i = 0; i < COUNT(documents); i++)
         discard(set->folder, documents[i]);
     discard(set->folder, "times.json");
     for (size_t i = 0; i < set->split_count; i++) {
-        char *path = path_join(set->folder, set->split_names[i]);
         each_folder(&ignored, set->folder, set->split_names[i], UINT32_MAX, remove_images);
-        if (path) {
+        if (path_in(&ignored, path, set->folder, "%s", set->split_names[i]) == SONJECT_OK) {
             discard(path, "coco.json");
             rmdir(path);
         }
-        free(path);
     }
     discard(set->folder, HEAD_FILE);
 }
@@ -154,25 +137,37 @@ static sonject_status check_head(struct sonject_campaign *campaign, const json_t
     return status;
 }
 
-sonject_status data_set_begin(struct sonject_campaign *campaign, const struct device *device,
-                              const char *folder, bool overwrites)
+sonject_status data_set_begin(struct data_set *set, struct sonject_campaign *campaign,
+                              const struct device *device, const char *folder, bool overwrites)
 {
     struct report *report = campaign->report;
+    const struct campaign *plan = &campaign->campaign;
     bool is_same = false;
+    char path[PATH_CAPACITY];
+    CHECK(folder_make(report, folder));
+    CHECK(path_in(report, path, folder, HEAD_FILE));
     json_t *inputs = device ? json_object() : json_incref(campaign->inputs);
-    char *path = path_join(folder, HEAD_FILE);
     if (device) /* json_copy would not tell what it had no memory for */
         json_add(&inputs, "device",
                  json_object_update(inputs, campaign->inputs) == 0 ? device_document(device)
                                                                    : NULL);
-    sonject_status status = path && inputs ? SONJECT_OK : report_out_of_memory(report, "inputs");
+    sonject_status status = inputs ? SONJECT_OK : report_out_of_memory(report, "inputs");
     if (status == SONJECT_OK && file_exists(path))
         status = check_head(campaign, inputs, folder, overwrites, &is_same);
     if (status == SONJECT_OK && !is_same)
         status = json_document_write(report, head_of(campaign, device, inputs), 9, path);
     json_decref(inputs);
-    free(path);
+    THEN(status, data_set_open(set, report, folder));
+    for (size_t i = 0; status == SONJECT_OK && i < plan->split_count; i++)
+        status = each_folder(report, folder, plan->splits[i].name, plan->outputs, folder_make);
     return status;
+}
+
+/* Whether a member is a text that may stand in documents and on terminals, and is not empty. */
+static bool has_plain(const json_t *object, const char *key)
+{
+    const char *text = member_text(object, key);
+    return *text && text_is_printable(text);
 }
 
 /* Names and numbers of images, one split after the other. */
@@ -195,18 +190,25 @@ static bool take_splits(struct data_set *set, const json_t *splits)
     return set->images > 0;
 }
 
-static bool is_class_name(const struct data_set *set, const json_t *name)
+static bool are_classes(const json_t *classes)
 {
-    (void)set;
-    return json_is_string(name) && *json_string_value(name) &&
-           text_is_printable(json_string_value(name));
+    for (size_t i = 0; i < json_array_size(classes); i++) {
+        const char *name = json_string_value(json_array_get(classes, i));
+        if (!name || !*name || !text_is_printable(name))
+            return false;
+    }
+    return json_is_array(classes) && json_array_size(classes) <= CLASSES_MAX;
 }
 
-static bool is_swath(const struct data_set *set, const json_t *swath)
+static bool are_swaths(const json_t *swaths)
 {
-    (void)set;
-    return has_plain(swath, "path") && has_plain(swath, "hash") &&
-           is_split_name(member_text(swath, "split"));
+    for (size_t i = 0; i < json_array_size(swaths); i++) {
+        const json_t *swath = json_array_get(swaths, i);
+        if (!has_plain(swath, "path") || !has_plain(swath, "hash") ||
+            !is_split_name(member_text(swath, "split")))
+            return false;
+    }
+    return json_is_array(swaths);
 }
 
 static bool is_side(json_int_t pixels)
@@ -221,7 +223,6 @@ static bool read_head(struct data_set *set)
     const json_t *name;
     const json_t *outputs = json_object_get(set->head, "outputs");
     const json_t *device = json_object_get(set->head, "device");
-    const json_t *classes = json_object_get(set->head, "classes");
     set->outputs = OUTPUT_ALWAYS;
     json_array_foreach(outputs, i, name)
     {
@@ -234,29 +235,25 @@ static bool read_head(struct data_set *set)
     return json_integer_value(json_object_get(set->head, "sonject_campaign")) == FORMAT_VERSION &&
            has_plain(set->head, "sonject") && has_plain(set->head, "hash") && is_side(set->rows) &&
            is_side(set->columns) && json_is_array(outputs) &&
-           all_are(set, json_object_get(set->head, "swaths"), is_swath) &&
+           are_swaths(json_object_get(set->head, "swaths")) &&
            (json_is_null(device) || json_is_object(device)) &&
-           all_are(set, classes, is_class_name) && json_array_size(classes) <= CLASSES_MAX &&
+           are_classes(json_object_get(set->head, "classes")) &&
            take_splits(set, json_object_get(set->head, "splits")) &&
            json_integer_value(json_object_get(set->head, "images")) == (json_int_t)set->images;
 }
 
 sonject_status data_set_open(struct data_set *set, struct report *report, const char *folder)
 {
-    char *path = path_join(folder, HEAD_FILE);
+    char path[PATH_CAPACITY];
     set->report = report;
     set->folder = folder;
-    CHECK_MEMORY(report, path, "a file name");
-    sonject_status status = SONJECT_OK;
+    CHECK(path_in(report, path, folder, HEAD_FILE));
     if (!file_exists(path))
-        status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "%s: holds no campaign: there is no campaign.json", folder);
-    THEN(status, json_document_read(report, path, &set->head));
-    if (status == SONJECT_OK && !read_head(set))
-        status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "%s: damaged; remove it and run the campaign again", path);
-    free(path);
-    return status;
+        return input_failure(report, folder, "holds no campaign: there is no campaign.json");
+    CHECK(json_document_read(report, path, &set->head));
+    return read_head(set)
+               ? SONJECT_OK
+               : input_failure(report, path, "damaged; remove it and run the campaign again");
 }
 
 void data_set_clear(struct data_set *set)
@@ -273,7 +270,7 @@ sonject_status data_set_is_finished(const struct data_set *set, bool *is_finishe
     const json_t *files = json_object_get(document, "files");
     THEN(status, file_list_check(files, set->report, set->folder, true, &changed));
     *is_finished = status == SONJECT_OK && !changed &&
-                   json_array_size(files) == DOCUMENTS + set->split_count &&
+                   json_array_size(files) == COUNT(documents) + set->split_count &&
                    strcmp(member_text(document, "hash"), member_text(set->head, "hash")) == 0;
     json_decref(document);
     return status;
@@ -312,13 +309,13 @@ static void add_missing(struct missing *missing, uint64_t id)
 static sonject_status check_complete(const struct data_set *set)
 {
     struct missing missing;
-    char *changed = NULL;
+    char changed[PATH_CAPACITY] = "";
     sonject_status status = SONJECT_OK;
     memset(&missing, 0, sizeof missing);
     for (size_t i = 0; i < set->split_count; i++)
         for (uint64_t k = 0; status == SONJECT_OK && k < set->split_images[i]; k++) {
             bool has = false;
-            status = data_set_has_image(set, i, set->split_first[i] + k, &changed, &has);
+            status = data_set_has_image(set, i, set->split_first[i] + k, changed, &has);
             if (status == SONJECT_OK && !has)
                 add_missing(&missing, set->split_first[i] + k);
         }
@@ -326,14 +323,12 @@ static sonject_status check_complete(const struct data_set *set)
         tell_range(&missing);
     char *ids = growing_text_end(&missing.text);
     if (status == SONJECT_OK && missing.count > 0)
-        status = report_failure(set->report, SONJECT_ERROR_INPUT,
-                                "%s: %llu of %llu images are missing%s: %s%s%s; run the campaign "
-                                "or its shards again",
-                                set->folder, (unsigned long long)missing.count,
-                                (unsigned long long)set->images, changed ? " or changed" : "",
-                                ids ? ids : "", changed ? "; not as it was written: " : "",
-                                changed ? changed : "");
-    free(changed);
+        status =
+            input_failure(set->report, set->folder,
+                          "%" PRIu64 " of %" PRIu64
+                          " images are missing%s: %s%s%s; run the campaign or its shards again",
+                          missing.count, set->images, *changed ? " or changed" : "", ids ? ids : "",
+                          *changed ? "; not as it was written: " : "", changed);
     free(ids);
     return status;
 }
@@ -377,7 +372,7 @@ static sonject_status add_image(struct coco_file *coco, uint64_t id, bool has_an
 {
     json_t *record;
     const struct data_set *set = coco->set;
-    CHECK(data_set_image(set, coco->split, id, &record, NULL, NULL));
+    CHECK(data_set_record(set, coco->split, id, &record));
     sonject_status status = SONJECT_OK;
     const json_t *list = has_annotations ? json_object_get(record, "annotations") : NULL;
     if (!has_annotations)
@@ -430,25 +425,20 @@ static sonject_status write_split(struct coco_file *coco)
 
 static sonject_status write_coco(const struct data_set *set, size_t split)
 {
-    char *folder = path_join(set->folder, set->split_names[split]);
-    char *path = folder ? path_join(folder, "coco.json") : NULL;
-    char *part = path ? file_part_name(path) : NULL;
-    struct coco_file coco = {set, split, part ? fopen(part, "wb") : NULL, 0};
-    sonject_status status = SONJECT_OK;
-    if (!part)
-        status = report_out_of_memory(set->report, "a file name");
-    else if (!coco.file)
-        status = file_failure(set->report, path, "write", errno);
-    THEN(status, write_split(&coco));
+    char path[PATH_CAPACITY];
+    CHECK(path_in(set->report, path, set->folder, "%s/coco.json", set->split_names[split]));
+    char *part = file_part_name(path);
+    CHECK_MEMORY(set->report, part, "a file name");
+    struct coco_file coco = {set, split, fopen(part, "wb"), 0};
+    sonject_status status =
+        coco.file ? write_split(&coco) : file_failure(set->report, path, "write", errno);
     if (coco.file && fclose(coco.file) != 0 && status == SONJECT_OK)
         status = file_failure(set->report, path, "write", errno);
     if (status == SONJECT_OK)
         status = file_publish(set->report, part, path);
-    else if (part)
+    else
         file_discard(part);
     free(part);
-    free(path);
-    free(folder);
     return status;
 }
 
@@ -458,15 +448,13 @@ static sonject_status write_classes(const struct data_set *set)
     size_t i;
     const json_t *name;
     struct growing_text text = {NULL, 0, 0, false};
-    char *path = path_join(set->folder, "classes.txt");
-    CHECK_MEMORY(set->report, path, "classes.txt");
+    char path[PATH_CAPACITY];
+    CHECK(path_in(set->report, path, set->folder, "classes.txt"));
     json_array_foreach(json_object_get(set->head, "classes"), i, name)
     {
         growing_text_add(&text, "%s\n", json_string_value(name));
     }
-    const sonject_status status = growing_text_write(set->report, &text, path);
-    free(path);
-    return status;
+    return growing_text_write(set->report, &text, path);
 }
 
 /* What the whole is, with size and hash of the documents of splits and of the whole. */
@@ -475,44 +463,39 @@ static sonject_status write_last(const struct data_set *set)
     static const char *const kept[] = {"sonject", "hash",   "device",  "images",  "rows",
                                        "columns", "splits", "classes", "outputs", "swaths"};
     char name[SPLIT_NAME_CAPACITY + 16];
+    char path[PATH_CAPACITY];
     json_t *files = json_array();
     json_t *document = json_object();
-    char *path = path_join(set->folder, LAST_FILE);
-    sonject_status status = path ? SONJECT_OK : report_out_of_memory(set->report, "a file name");
-    for (size_t i = 0; status == SONJECT_OK && i < set->split_count + DOCUMENTS; i++) {
-        if (i < set->split_count)
-            snprintf(name, sizeof name, "%s/coco.json", set->split_names[i]);
-        status =
-            file_list_add(&files, set->report, set->folder,
-                          i < set->split_count ? name : documents[i - set->split_count], false);
+    sonject_status status = path_in(set->report, path, set->folder, LAST_FILE);
+    for (size_t i = 0; i < set->split_count; i++) {
+        snprintf(name, sizeof name, "%s/coco.json", set->split_names[i]);
+        THEN(status, file_list_add(&files, set->report, set->folder, name, false));
     }
-    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++)
+    for (size_t i = 0; i < COUNT(documents); i++)
+        THEN(status, file_list_add(&files, set->report, set->folder, documents[i], false));
+    for (size_t i = 0; i < COUNT(kept); i++)
         json_add(&document, kept[i], json_incref(json_object_get(set->head, kept[i])));
     json_add(&document, "files", files);
     if (status == SONJECT_OK)
-        status = json_document_write(set->report, document, 9, path);
-    else
-        json_decref(document);
-    free(path);
+        return json_document_write(set->report, document, 9, path);
+    json_decref(document);
     return status;
 }
 
 sonject_status data_set_finish(struct data_set *set)
 {
+    struct report silent = {{0}, NULL, NULL};
+    char path[PATH_CAPACITY];
     CHECK(check_complete(set));
     for (size_t i = 0; i < set->split_count; i++)
         CHECK(write_coco(set, i));
     CHECK(write_classes(set));
     CHECK(write_contact_sheet(set));
-    CHECK(write_report_page(set));
     CHECK(write_last(set));
-    struct report silent = {{0}, NULL, NULL};
     for (size_t i = 0; i < set->split_count; i++) {
-        char *path = path_join(set->folder, set->split_names[i]);
         each_folder(&silent, set->folder, set->split_names[i], set->outputs, tidy);
-        if (path)
+        if (path_in(&silent, path, set->folder, "%s", set->split_names[i]) == SONJECT_OK)
             folder_tidy(path);
-        free(path);
     }
     folder_tidy(set->folder);
     return SONJECT_OK;

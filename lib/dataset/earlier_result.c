@@ -13,25 +13,23 @@
 sonject_status earlier_document(struct report *report, const char *folder, const char *name,
                                 json_t **document)
 {
-    char *path = path_join(folder, name);
+    char path[PATH_CAPACITY];
     *document = NULL;
-    sonject_status status = path ? SONJECT_OK : report_out_of_memory(report, "a file name");
-    if (status == SONJECT_OK && file_exists(path))
-        status = json_document_read(report, path, document);
-    if (status == SONJECT_ERROR_INPUT) {
-        report->message[0] = '\0';
-        status = SONJECT_OK;
-    }
-    free(path);
-    return status;
+    CHECK(path_in(report, path, folder, "%s", name));
+    if (!file_exists(path))
+        return SONJECT_OK;
+    const sonject_status status = json_document_read(report, path, document);
+    if (status != SONJECT_ERROR_INPUT)
+        return status;
+    report->message[0] = '\0';
+    return SONJECT_OK;
 }
 
 static bool has_document(const char *folder, const char *name)
 {
-    char *path = path_join(folder, name);
-    const bool is_there = path && file_exists(path);
-    free(path);
-    return is_there;
+    struct report ignored = {{0}, NULL, NULL};
+    char path[PATH_CAPACITY];
+    return path_in(&ignored, path, folder, "%s", name) == SONJECT_OK && file_exists(path);
 }
 
 bool folder_has_result(const char *folder)
@@ -139,15 +137,14 @@ sonject_status earlier_check_merged(struct report *report, const char *folder,
     THEN(status,
          file_list_check(json_object_get(document, "files"), report, folder, true, &changed));
     if (status == SONJECT_OK && lacks_labels)
-        status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "%s: is merged already, without those labels: run its scene into "
-                                "it once more with them",
-                                folder);
+        status = input_failure(report, folder,
+                               "is merged already, without those labels: run its scene into it "
+                               "once more with them");
     else if (status == SONJECT_OK && changed)
-        status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "%s: is merged already, but %s is not as it was written: run its "
-                                "scene into it once more",
-                                folder, changed);
+        status = input_failure(report, folder,
+                               "is merged already, but %s is not as it was written: run its scene "
+                               "into it once more",
+                               changed);
     json_decref(document);
     return status;
 }
@@ -158,11 +155,10 @@ json_t *earlier_withdraw(const char *folder, const char *document)
     json_t *earlier = NULL;
     earlier_document(&ignored, folder, document, &earlier);
     json_t *files = json_incref(json_object_get(earlier, "files"));
-    char *path = path_join(folder, document);
-    if (path)
+    char path[PATH_CAPACITY];
+    if (path_in(&ignored, path, folder, "%s", document) == SONJECT_OK)
         file_discard(path);
     json_decref(earlier);
-    free(path);
     return files;
 }
 

@@ -91,19 +91,10 @@ static sonject_status find_inputs(struct report *report, const struct scene *sce
                                   json_t **inputs)
 {
     char digest[HASH_TEXT_CAPACITY];
-    sonject_status status = scene_inputs(report, scene, swath->identity, digest, inputs);
-    struct hash *hash = hash_begin();
-    char *text = json_document_text(document, JSON_COMPACT | JSON_REAL_PRECISION(17));
-    if (hash && text)
-        hash_add_text(hash, text);
-    else if (status == SONJECT_OK)
-        status = report_out_of_memory(report, "a hash");
-    if (hash)
-        hash_end(hash, digest);
-    free(text);
-    if (status == SONJECT_OK)
-        json_add(inputs, "elements", json_string(digest));
-    return status != SONJECT_OK || *inputs ? status : report_out_of_memory(report, "inputs");
+    CHECK(scene_inputs(report, scene, swath->identity, digest, inputs));
+    CHECK(json_document_hash(report, document, JSON_COMPACT | JSON_REAL_PRECISION(17), digest));
+    json_add(inputs, "elements", json_string(digest));
+    return *inputs ? SONJECT_OK : report_out_of_memory(report, "inputs");
 }
 
 /* elements.json comes last: a folder that has one is complete. Gives up the document. */
@@ -113,17 +104,14 @@ static sonject_status write_files(struct report *report, const struct scene *sce
 {
     const uint64_t shape[3] = {layout->elements.pings, layout->elements.hydrophones,
                                layout->samples};
-    char *series_path = path_join(folder, SERIES_FILE);
-    char *document_path = path_join(folder, DOCUMENT);
-    json_t *earlier = NULL;
+    char series_path[PATH_CAPACITY], document_path[PATH_CAPACITY];
+    sonject_status status = path_in(report, series_path, folder, SERIES_FILE);
+    THEN(status, path_in(report, document_path, folder, DOCUMENT));
+    THEN(status, folder_make(report, folder));
+    json_t *earlier = status == SONJECT_OK ? earlier_withdraw(folder, DOCUMENT) : NULL;
     json_t *files = json_array();
-    sonject_status status = series_path && document_path ? folder_make(report, folder)
-                                                         : report_out_of_memory(report, "a path");
-    if (status == SONJECT_OK) {
-        earlier = earlier_withdraw(folder, DOCUMENT);
-        status = npy_write(report, series_path, PIXEL_FLOAT32,
-                           layout->elements.form == SONJECT_SERIES_BASEBAND, shape, 3, series);
-    }
+    THEN(status, npy_write(report, series_path, PIXEL_FLOAT32,
+                           layout->elements.form == SONJECT_SERIES_BASEBAND, shape, 3, series));
     THEN(status, file_list_add(&files, report, folder, SERIES_FILE, true));
     THEN(status, earlier_describe(report, &document, inputs, files, scene));
     if (status == SONJECT_OK)
@@ -132,8 +120,6 @@ static sonject_status write_files(struct report *report, const struct scene *sce
         json_decref(document);
     earlier_tidy(folder, earlier, files);
     json_decref(files);
-    free(series_path);
-    free(document_path);
     return status;
 }
 

@@ -13,8 +13,6 @@
 #include "schema/scene_file.h"
 #include "trace/sums_file.h"
 
-#define CHOICE "band=" /* the override that chooses a band */
-
 /* How many shards the work in a folder speaks of; 0: there is none. */
 static sonject_status count_shards(struct report *report, const char *folder, uint64_t *shards)
 {
@@ -22,133 +20,6 @@ static sonject_status count_shards(struct report *report, const char *folder, ui
     const sonject_status status = work ? sums_folder_shards(report, work, 0, shards)
                                        : report_out_of_memory(report, "a file name");
     free(work);
-    return status;
-}
-
-/* The bands of the scene that the band's shards keep, where they were traced with this one chosen.
- */
-static sonject_status list_kept(struct report *report, const struct kept_scene *kept,
-                                const char *band, char **names)
-{
-    bool is_chosen = false;
-    struct scene_text source;
-    memset(&source, 0, sizeof source);
-    if (!kept->text)
-        return SONJECT_OK;
-    const char **others = allocate_array(kept->override_count, sizeof *others);
-    CHECK_MEMORY(report, others, "the names of bands");
-    for (size_t i = 0; i < kept->override_count; i++)
-        if (strncmp(kept->overrides[i], CHOICE, strlen(CHOICE)) == 0)
-            is_chosen = strcmp(kept->overrides[i] + strlen(CHOICE), band) == 0;
-        else
-            others[source.override_count++] = kept->overrides[i];
-    source.path = kept->path;
-    source.text = kept->text;
-    source.bytes = strlen(kept->text);
-    source.overrides = others;
-    const sonject_status status = is_chosen ? scene_text_bands(report, &source, names) : SONJECT_OK;
-    free(others);
-    return status;
-}
-
-static sonject_status find_in_shards(struct report *report, const char *folder, const char *band,
-                                     char **names)
-{
-    struct sums_folder first;
-    char *work = checkpoints_folder(folder);
-    CHECK_MEMORY(report, work, "a file name");
-    sonject_status status = sums_folder_read(&first, report, work, 0, 1, false);
-    if (status == SONJECT_OK && first.count > 0)
-        status = list_kept(report, &first.files[0].scene, band, names);
-    sums_folder_clear(&first);
-    free(work);
-    return status;
-}
-
-/* From the band's run.json. */
-static sonject_status find_in_result(struct report *report, const char *folder, const char *band,
-                                     char **names)
-{
-    struct growing_text text = {NULL, 0, 0, false};
-    size_t i;
-    const json_t *name;
-    json_t *document;
-    CHECK(earlier_document(report, folder, RUN_DOCUMENT, &document));
-    const char *own = json_string_value(json_object_get(document, "band"));
-    const bool is_of_band = own && strcmp(own, band) == 0;
-    if (is_of_band) {
-        json_array_foreach(json_object_get(document, "bands"), i, name)
-        {
-            if (json_is_string(name) && is_band_name(json_string_value(name)))
-                growing_text_add(&text, "%s\n", json_string_value(name));
-        }
-        *names = growing_text_end(&text);
-    }
-    json_decref(document);
-    return is_of_band && !*names ? report_out_of_memory(report, "the names of bands") : SONJECT_OK;
-}
-
-/* The names of all bands of the scene of which a folder below this one, which has a band's name,
- * holds shards or a result: one a line, for free(); "" where there is none, or where this folder
- * itself holds a run. Errors: INPUT, STORAGE, MEMORY. */
-static sonject_status find_bands(struct report *report, const char *folder, char **names)
-{
-    struct folder_names below;
-    uint64_t shards;
-    *names = NULL;
-    sonject_status status = count_shards(report, folder, &shards);
-    THEN(status, folder_names_read(&below, report, folder, ""));
-    if (status != SONJECT_OK)
-        return status;
-    const bool is_run = shards > 0 || folder_has_result(folder);
-    for (size_t i = 0; status == SONJECT_OK && !is_run && !*names && i < below.count; i++) {
-        if (!is_band_name(below.names[i]))
-            continue;
-        char *path = path_join(folder, below.names[i]);
-        status = path ? find_in_shards(report, path, below.names[i], names)
-                      : report_out_of_memory(report, "a file name");
-        if (status == SONJECT_OK && !*names)
-            status = find_in_result(report, path, below.names[i], names);
-        free(path);
-    }
-    folder_names_clear(&below);
-    if (status == SONJECT_OK && !*names)
-        *names = copy_text("");
-    return status == SONJECT_OK && !*names ? report_out_of_memory(report, "the names of bands")
-                                           : status;
-}
-
-/* The next of the names, for free(); NULL where memory is out. There must be one. */
-static char *take_band(const char **names)
-{
-    const size_t length = strcspn(*names, "\n");
-    char *name = allocate_array(length + 1, 1);
-    if (name)
-        memcpy(name, *names, length);
-    *names += length + ((*names)[length] == '\n');
-    return name;
-}
-
-/* Whether there is a shard or a result of each. Errors: INPUT (names one that has none), STORAGE,
- * MEMORY. */
-static sonject_status check_bands_begun(struct report *report, const char *folder,
-                                        const char *names)
-{
-    sonject_status status = SONJECT_OK;
-    while (status == SONJECT_OK && *names) {
-        uint64_t shards = 0;
-        char *band = take_band(&names);
-        char *path = band ? path_join(folder, band) : NULL;
-        status = path ? count_shards(report, path, &shards)
-                      : report_out_of_memory(report, "a file name");
-        if (status == SONJECT_OK && shards == 0 && !folder_has_result(path))
-            status = report_failure(report, SONJECT_ERROR_INPUT,
-                                    "%s: holds no shards of band %s: run them with --shard I/K "
-                                    "first",
-                                    folder, band);
-        free(band);
-        free(path);
-    }
     return status;
 }
 
@@ -170,58 +41,72 @@ static sonject_status merge_kept(struct report *report, struct device_slot *slot
                                  const struct run_request *asked, bool allows_user_shapes,
                                  int *was_finished)
 {
-    struct run_request of_kept = *asked;
-    struct run_request *request = &of_kept;
+    struct run_request request = *asked;
     struct sums_folder folder;
     struct scene scene;
-    scene_init(&scene);
-    char *work = checkpoints_folder(request->folder);
+    char *work = checkpoints_folder(asked->folder);
     CHECK_MEMORY(report, work, "a file name");
+    scene_init(&scene);
     sonject_status status = sums_folder_read(&folder, report, work, 0, SIZE_MAX, false);
-    const bool is_merged =
-        status == SONJECT_OK && folder.count == 0 && folder_has_result(request->folder);
-    if (status == SONJECT_OK && folder.count == 0 && !is_merged)
-        status =
-            report_failure(report, SONJECT_ERROR_INPUT,
-                           "%s: holds no shards of a run, and there is no campaign: run them with "
-                           "--shard I/K first",
-                           work);
-    if (status == SONJECT_OK && !is_merged)
+    const bool has_shards = status == SONJECT_OK && folder.count > 0;
+    if (has_shards)
         status = read_kept_scene(report, &folder.files[0], allows_user_shapes, &scene);
     sums_folder_clear(&folder);
-    request->scene = &scene;
-    if (is_merged)
-        status = earlier_check_merged(report, request->folder, request->label_formats);
-    if (is_merged && was_finished)
-        *was_finished = status == SONJECT_OK;
-    if (status == SONJECT_OK && !is_merged)
-        status = run_scene(report, slot, request, was_finished);
+    request.scene = &scene;
+    if (has_shards) {
+        THEN(status, run_scene(report, slot, &request, was_finished));
+    } else if (status == SONJECT_OK && folder_has_result(asked->folder)) {
+        status = earlier_check_merged(report, asked->folder, asked->label_formats);
+        if (was_finished)
+            *was_finished = status == SONJECT_OK;
+    } else if (status == SONJECT_OK) {
+        status = input_failure(report, work,
+                               "holds no shards of a run, and there is no campaign: run them with "
+                               "--shard I/K first");
+    }
     scene_clear(&scene);
     free(work);
     return status;
 }
 
-/* Each of the names, one a line, in its folder; *was_finished is 1 if all were. */
-static sonject_status merge_bands(struct report *report, struct device_slot *slot,
-                                  const struct run_request *asked, bool allows_user_shapes,
-                                  const char *names, int *was_finished)
+/* Whether a folder below, which has a band's name, holds shards, or that band's result. */
+static sonject_status find_band(struct report *report, const char *folder, const char *band,
+                                char path[PATH_CAPACITY], bool *is_there)
 {
-    bool were_finished = true;
-    sonject_status status = check_bands_begun(report, asked->folder, names);
-    while (status == SONJECT_OK && *names) {
-        int was_band_finished = 0;
-        struct run_request of_band = *asked;
-        char *band = take_band(&names);
-        char *folder = band ? path_join(asked->folder, band) : NULL;
-        of_band.folder = folder;
-        status = folder ? merge_kept(report, slot, &of_band, allows_user_shapes, &was_band_finished)
-                        : report_out_of_memory(report, "a file name");
-        were_finished = were_finished && was_band_finished;
-        free(band);
-        free(folder);
+    uint64_t shards;
+    json_t *document;
+    CHECK(path_in(report, path, folder, "%s", band));
+    CHECK(count_shards(report, path, &shards));
+    CHECK(earlier_document(report, path, RUN_DOCUMENT, &document));
+    const char *own = json_string_value(json_object_get(document, "band"));
+    *is_there = shards > 0 || (own && strcmp(own, band) == 0);
+    json_decref(document);
+    return SONJECT_OK;
+}
+
+/* Whether all bands are there that the result of one of them names. Errors: INPUT (one is not),
+ * STORAGE, MEMORY. */
+static sonject_status check_bands(struct report *report, const char *folder, const char *merged)
+{
+    size_t i;
+    const json_t *name;
+    json_t *document;
+    char path[PATH_CAPACITY];
+    sonject_status status = SONJECT_OK;
+    CHECK(earlier_document(report, merged, RUN_DOCUMENT, &document));
+    json_array_foreach(json_object_get(document, "bands"), i, name)
+    {
+        const char *band = json_string_value(name);
+        bool is_there = true;
+        if (band && is_band_name(band))
+            THEN(status, find_band(report, folder, band, path, &is_there));
+        if (!is_there)
+            THEN(status, input_failure(report, folder,
+                                       "holds no shards of band %s: run them with --shard I/K "
+                                       "first",
+                                       band));
     }
-    if (was_finished)
-        *was_finished = status == SONJECT_OK && were_finished;
+    json_decref(document);
     return status;
 }
 
@@ -229,11 +114,34 @@ sonject_status merge_folder(struct report *report, struct device_slot *slot,
                             const struct run_request *request, bool allows_user_shapes,
                             int *was_finished)
 {
-    char *bands;
-    CHECK(find_bands(report, request->folder, &bands));
-    sonject_status status =
-        *bands ? merge_bands(report, slot, request, allows_user_shapes, bands, was_finished)
-               : merge_kept(report, slot, request, allows_user_shapes, was_finished);
-    free(bands);
+    uint64_t shards;
+    struct folder_names below;
+    char path[PATH_CAPACITY];
+    size_t bands = 0;
+    int were_finished = 1;
+    CHECK(count_shards(report, request->folder, &shards));
+    if (shards > 0 || folder_has_result(request->folder))
+        return merge_kept(report, slot, request, allows_user_shapes, was_finished);
+    CHECK(folder_names_read(&below, report, request->folder, ""));
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < below.count; i++) {
+        int was_band_finished = 0;
+        bool is_there = false;
+        struct run_request of_band = *request;
+        of_band.folder = path;
+        if (is_band_name(below.names[i]))
+            status = find_band(report, request->folder, below.names[i], path, &is_there);
+        if (!is_there)
+            continue;
+        THEN(status, merge_kept(report, slot, &of_band, allows_user_shapes, &was_band_finished));
+        if (bands++ == 0)
+            THEN(status, check_bands(report, request->folder, path));
+        were_finished = were_finished && was_band_finished;
+    }
+    folder_names_clear(&below);
+    if (bands == 0)
+        THEN(status, merge_kept(report, slot, request, allows_user_shapes, was_finished));
+    else if (was_finished)
+        *was_finished = status == SONJECT_OK && were_finished;
     return status;
 }

@@ -60,21 +60,16 @@ static void tell_clipped(struct report *report, const sonject_statistics *statis
 static sonject_status write_documents(struct report *report, struct run_facts *facts,
                                       const char *folder, double run_start, double write_start)
 {
-    char *truth = path_join(folder, "truth.json");
-    char *run = path_join(folder, RUN_DOCUMENT);
-    sonject_status status = truth && run ? SONJECT_OK : report_out_of_memory(report, "a path");
-    THEN(status, write_truth(report, facts, truth));
-    THEN(status, file_list_add(&facts->files, report, folder, "truth.json", true));
-    THEN(status, write_labels(report, facts, folder));
-    if (status == SONJECT_OK) {
-        const double now = clock_seconds();
-        facts->write_s = now - write_start;
-        facts->total_s = now - run_start;
-        status = write_run(report, facts, run);
-    }
-    free(truth);
-    free(run);
-    return status;
+    char path[PATH_CAPACITY];
+    CHECK(path_in(report, path, folder, "truth.json"));
+    CHECK(write_truth(report, facts, path));
+    CHECK(file_list_add(&facts->files, report, folder, "truth.json", true));
+    CHECK(write_labels(report, facts, folder));
+    const double now = clock_seconds();
+    facts->write_s = now - write_start;
+    facts->total_s = now - run_start;
+    CHECK(path_in(report, path, folder, RUN_DOCUMENT));
+    return write_run(report, facts, path);
 }
 
 /* An earlier result stays whole until this one is there to be written. A folder with run.json is
@@ -86,14 +81,13 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
 {
     const double start = clock_seconds();
     struct stage_progress writing = {progress, user, WRITE_START, 1.0 - WRITE_START};
-    char *path = path_join(folder, facts->image_name);
-    CHECK_MEMORY(report, path, "a path");
+    char path[PATH_CAPACITY];
+    CHECK(path_in(report, path, folder, "%s", facts->image_name));
     json_t *earlier = earlier_withdraw(folder, RUN_DOCUMENT);
     facts->files = json_array();
     sonject_status status = write_layers(report, facts, folder);
     THEN(status, swath_write(report, facts->scene, facts->swath, result, path, tell_stage, &writing,
                              &result->statistics.output_clipped));
-    free(path);
     if (status == SONJECT_OK && facts->scene->input_kind == SONJECT_INPUT_FILE &&
         facts->swath->new_extension)
         report_news(report,

@@ -460,17 +460,16 @@ sonject_status write_layers(struct report *report, struct run_facts *facts, cons
     for (uint32_t i = 0; status == SONJECT_OK && i < COUNT(layers) + SCENE_INTERACTIONS_MAX; i++) {
         const uint32_t order = i < COUNT(layers) ? 0 : i - (uint32_t)COUNT(layers) + 1;
         char name[32];
+        char path[PATH_CAPACITY];
         snprintf(name, sizeof name, "energy_order_%u.tif", (unsigned)order);
         const char *file = order == 0 ? layers[i].name : name;
-        char *path = path_join(folder, file);
-        CHECK_MEMORY(report, path, "a path");
+        CHECK(path_in(report, path, folder, "%s", file));
         if (order > result->orders)
             file_discard(path);
         else if (order > 0)
             status = write_float_layer(report, facts, 1, result->order_energy[order - 1], path);
         else
             status = write_layer(report, facts, layers[i].kind, layers[i].pixels, path);
-        free(path);
         if (order <= result->orders)
             THEN(status, file_list_add(&facts->files, report, folder, file, true));
     }
@@ -497,20 +496,17 @@ sonject_status write_labels(struct report *report, struct run_facts *facts, cons
         swath->layout.columns, swath->patch,  &swath->track};
     struct image_labels labels;
     struct class_names classes = {NULL, 0};
+    char path[PATH_CAPACITY];
     sonject_status status = image_labels_find(&labels, report, &request, &classes);
     for (int file = 0; status == SONJECT_OK && file < LABEL_FILES; file++) {
         const uint32_t format = label_files[file].format;
-        char *path = path_join(folder, label_files[file].name);
-        if (!path) {
-            status = report_out_of_memory(report, "a path");
-        } else if (format && !(format & facts->label_formats)) {
+        status = path_in(report, path, folder, "%s", label_files[file].name);
+        if (status == SONJECT_OK && format && !(format & facts->label_formats)) {
             file_discard(path);
-        } else {
-            status = labels_write(report, &labels, &classes, (enum label_file)file, path);
-            THEN(status,
-                 file_list_add(&facts->files, report, folder, label_files[file].name, true));
+            continue;
         }
-        free(path);
+        THEN(status, labels_write(report, &labels, &classes, (enum label_file)file, path));
+        THEN(status, file_list_add(&facts->files, report, folder, label_files[file].name, true));
     }
     class_names_clear(&classes);
     image_labels_clear(&labels);

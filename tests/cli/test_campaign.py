@@ -1,9 +1,7 @@
 """Campaigns: what the data set holds, and that it is the same however it came about."""
 
-import base64
 import json
 import random
-import re
 import shutil
 import signal
 import subprocess
@@ -115,7 +113,7 @@ def of_image(record, kind, extension):
 def test_every_image_has_its_files(whole):
     found = records(whole)
     assert sorted(record["id"] for record in found) == list(range(IMAGES))
-    expected = {"campaign.json", "dataset.json", "report.html", "contact_sheet.png",
+    expected = {"campaign.json", "dataset.json", "contact_sheet.png",
                 "train/coco.json", "test/coco.json", "classes.txt"}
     for record in found:
         assert record["image"] == f"images/{record['id']:08d}.png"
@@ -205,17 +203,6 @@ def test_coco_is_what_truth_and_masks_say(whole):
             assert [int(line.split()[0]) + 1 for line in lines] == [
                 entry["category_id"] for entry in mine]
     assert (whole / "classes.txt").read_text().splitlines() == [*TARGETS, "stone"]
-
-
-def test_the_report_holds_no_markup_of_classes(whole):
-    page = (whole / "report.html").read_text()
-    assert "&#60;b&#62;" in page and "<b>" not in page
-    pictures = re.findall(r"data:image/svg\+xml;base64,([^\"]+)", page)
-    plots = [base64.b64decode(picture).decode() for picture in pictures]
-    assert len(plots) > 8 and "<script" not in page
-    # of one key in two units
-    assert [sum(f">objects[].burial, {unit}<" in plot for plot in plots)
-            for unit in ("cm", "mm")] == [1, 1]
 
 
 def test_a_finished_data_set_is_left_alone(command, whole):
@@ -384,7 +371,7 @@ def test_what_was_changed_is_named_by_merge_and_made_again(command, damaged, who
 
 
 @pytest.mark.parametrize("name", ["train/coco.json", "classes.txt", "contact_sheet.png",
-                                  "report.html", "dataset.json"])
+                                  "dataset.json"])
 def test_documents_that_were_changed_are_made_again(command, damaged, whole, name):
     for change in (harm, lambda path: path.unlink()):
         change(damaged / name)

@@ -2,6 +2,7 @@
 
 import json
 import random
+import shutil
 import signal
 import subprocess
 import time
@@ -199,12 +200,15 @@ def test_shards_of_bands_are_merged_at_once(sonject, scene, tmp_path):
     folder, low, high = (tmp_path / name for name in ("parts", "parts/low", "parts/high"))
     command(sonject, "run", scene, "-o", "whole", *bands)
     command(sonject, "run", scene, "-o", "parts", *bands, "--shard", "2/2")
-    high.rename(tmp_path / "away")
-    assert_refused(sonject("merge", "parts"), 3, "parts: holds no shards of band high")
-    (tmp_path / "away").rename(high)
-    assert_refused(sonject("merge", "parts"), 3, "parts/low/work: missing of 2 shards: 1;")
+    assert_refused(sonject("merge", "parts"), 3, "parts/high/work: missing of 2 shards: 1;")
     assert [path.name for path in folder.glob("*/*")] == ["work", "work"]
     command(sonject, "run", scene, "-o", "parts", *bands, "--shard", "1/2")
+    high.rename(tmp_path / "away")
+    assert_refused(sonject("merge", "parts"), 3, "parts: holds no shards of band high")
+    shutil.copytree(low, high)  # a result, but of the other band
+    assert_refused(sonject("merge", "parts"), 3, "parts: holds no shards of band high")
+    shutil.rmtree(high)
+    (tmp_path / "away").rename(high)
     command(sonject, "merge", "parts")
     for band in (low, high):
         assert {path.name for path in band.iterdir()} == RESULTS
@@ -212,5 +216,3 @@ def test_shards_of_bands_are_merged_at_once(sonject, scene, tmp_path):
         assert json.loads((band / "run.json").read_text())["band"] == band.name
     answer = sonject("merge", "parts")
     assert answer.returncode == 0 and "already holds" in answer.stderr
-    high.rename(tmp_path / "away")
-    assert_refused(sonject("merge", "parts"), 3, "parts: holds no shards of band high")
