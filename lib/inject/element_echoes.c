@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "elements/elements.h"
 #include "inject/compose.h"
-#include "scene/sonar_array.h"
+#include "scene/placement.h"
 
 #define TRACE_SHARE 0.5 /* of a run's progress */
 

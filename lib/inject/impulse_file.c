@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "inject/echoes.h"
 #include "scene/point_response.h"
+#include "schema/keys.h"
 #include "trace/glints.h"
 
 #define EDGE_LOSS         0.02   /* of an edge pixel's energy, which half its margin lacks */
@@ -364,7 +365,7 @@ static sonject_status deliver_all(struct delivery *delivery)
     const uint32_t planes = delivery->request->field == SEABED_FIELD_NONE ? 1 : 2;
     sonject_sonar_params traced = tracer->scene->sonar;
     impulse_facts_take_sonar(&delivery->file->facts, &traced);
-    if (check_sonar(&traced, tracer->report, NULL) != SONJECT_OK)
+    if (section_check(&sonar_section, &traced, tracer->report, NULL) != SONJECT_OK)
         return refuse(delivery);
     CHECK(read_next(delivery));
     CHECK(deliver_set(delivery, IMPULSES_SEABED, 0, planes, true));

@@ -276,7 +276,7 @@ sonject_status traced_scene_hash(struct report *report, const struct scene *scen
     static const struct impulse_facts none;
     struct scene traced = *scene;
     impulse_facts_take_sonar(&none, &traced.sonar);
-    sonject_pulse_params_init(&traced.pulse);
+    section_defaults(&pulse_section, &traced.pulse, NULL);
     memset(&traced.pulse_table, 0, sizeof traced.pulse_table);
     memset(&traced.cross_range_table, 0, sizeof traced.cross_range_table);
     memset(&traced.motion, 0, sizeof traced.motion);

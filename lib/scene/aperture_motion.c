@@ -10,19 +10,9 @@
 #include "scene/scene.h"
 
 #define PI           3.14159265358979323846
-#define SWAY_MAX_M   1e3
-#define YAW_MAX_RAD  0.1 /* its sine is the angle to 2 parts in 1000 */
-#define SCALE_MIN_M  0.1 /* sway from one centimetre to the next is no motion of a sonar */
-#define SCALE_MAX_M  1e6
 #define RANDOM_WAVES 256        /* whose sum is as good as Gaussian */
 #define RANDOM_SWAY  0x73776179 /* streams of random numbers that no other part uses */
 #define RANDOM_YAW   0x79617721
-
-static bool params_have_yaw(const sonject_motion_params *motion)
-{
-    return motion->yaw_count > 0 || motion->yaw_bias_rad != 0.0 ||
-           motion->yaw_random_rms_rad != 0.0;
-}
 
 bool motion_samples_are_good(enum motion_kind kind, const double *along_track_m,
                              const double *values, size_t count, size_t *sample, const char **what)
@@ -47,6 +37,13 @@ bool motion_samples_are_good(enum motion_kind kind, const double *along_track_m,
     return true;
 }
 
+static void motion_table_clear(struct motion_table *table)
+{
+    free(table->along_track_m);
+    free(table->values);
+    memset(table, 0, sizeof *table);
+}
+
 sonject_status motion_table_set(struct motion_table *table, struct report *report,
                                 const double *along_track_m, const double *values, size_t count)
 {
@@ -66,22 +63,21 @@ sonject_status motion_table_set(struct motion_table *table, struct report *repor
     return SONJECT_OK;
 }
 
-void motion_table_clear(struct motion_table *table)
-{
-    free(table->along_track_m);
-    free(table->values);
-    memset(table, 0, sizeof *table);
-}
-
 void aperture_motion_clear(struct aperture_motion *motion)
 {
     motion_table_clear(&motion->sway_table);
     motion_table_clear(&motion->yaw_table);
 }
 
+bool motion_has_yaw(const sonject_motion_params *motion)
+{
+    return motion->yaw_count > 0 || motion->yaw_bias_rad != 0.0 ||
+           motion->yaw_random_rms_rad != 0.0;
+}
+
 bool aperture_motion_has_yaw(const struct aperture_motion *motion)
 {
-    return params_have_yaw(&motion->params) || motion->yaw_table.count > 0;
+    return motion_has_yaw(&motion->params) || motion->yaw_table.count > 0;
 }
 
 bool aperture_motion_is_still(const struct aperture_motion *motion)
@@ -155,39 +151,53 @@ static void add_random(const struct places *places, double rms, double correlati
     }
 }
 
-static struct places begin_with_table(const struct motion_table *table, double start, double step,
-                                      size_t count, double *values)
+/* A table, sines and random waves of one of the two, added up. */
+struct motion {
+    const struct motion_table *table;
+    double bias;
+    const sonject_wave *waves;
+    uint32_t wave_count;
+    double random_rms, random_correlation;
+    uint64_t seed;
+    uint32_t stream;
+};
+
+static void add_up(const struct motion *motion, const struct places *places)
 {
-    const struct places places = {start, step, count, values};
-    for (size_t i = 0; i < count; i++)
-        values[i] = table->count > 0 ? value_of_table(table, start + (double)i * step) : 0.0;
-    return places;
+    for (size_t i = 0; i < places->count; i++) {
+        const double x = places->start + (double)i * places->step;
+        places->values[i] = motion->table->count > 0 ? value_of_table(motion->table, x) : 0.0;
+        places->values[i] += motion->bias;
+    }
+    for (uint32_t i = 0; i < motion->wave_count; i++)
+        add_wave(places, motion->waves[i].amplitude, 2.0 * PI / motion->waves[i].wavelength_m,
+                 motion->waves[i].phase_rad);
+    add_random(places, motion->random_rms, motion->random_correlation, motion->seed,
+               motion->stream);
 }
 
 void aperture_motion_sway(const struct aperture_motion *motion, double start_m, double step_m,
                           size_t count, double *sway_m)
 {
     const sonject_motion_params *params = &motion->params;
-    const struct places places =
-        begin_with_table(&motion->sway_table, start_m, step_m, count, sway_m);
-    for (uint32_t i = 0; i < params->sway_count; i++)
-        add_wave(&places, params->sways[i].amplitude_m, 2.0 * PI / params->sways[i].wavelength_m,
-                 params->sways[i].phase_rad);
-    add_random(&places, params->random_rms_m, params->random_correlation_m, params->seed,
-               RANDOM_SWAY);
+    const struct motion sway = {&motion->sway_table,  0.0,
+                                params->sways,        params->sway_count,
+                                params->random_rms_m, params->random_correlation_m,
+                                params->seed,         RANDOM_SWAY};
+    add_up(&sway, &(struct places){start_m, step_m, count, sway_m});
 }
 
 void aperture_motion_yaw(const struct aperture_motion *motion, double start_m, double step_m,
                          size_t count, double *yaw_rad)
 {
     const sonject_motion_params *params = &motion->params;
-    const struct places places =
-        begin_with_table(&motion->yaw_table, start_m, step_m, count, yaw_rad);
-    for (size_t i = 0; i < count; i++)
-        yaw_rad[i] += params->yaw_bias_rad;
-    for (uint32_t i = 0; i < params->yaw_count; i++)
-        add_wave(&places, params->yaws[i].amplitude_rad, 2.0 * PI / params->yaws[i].wavelength_m,
-                 params->yaws[i].phase_rad);
-    add_random(&places, params->yaw_random_rms_rad, params->yaw_random_correlation_m,
-               params->yaw_seed, RANDOM_YAW);
+    const struct motion yaw = {&motion->yaw_table,
+                               params->yaw_bias_rad,
+                               params->yaws,
+                               params->yaw_count,
+                               params->yaw_random_rms_rad,
+                               params->yaw_random_correlation_m,
+                               params->yaw_seed,
+                               RANDOM_YAW};
+    add_up(&yaw, &(struct places){start_m, step_m, count, yaw_rad});
 }

@@ -10,6 +10,10 @@
 #include "base/report.h"
 
 #define MOTION_SAMPLES_MAX 65536
+#define SWAY_MAX_M         1e3
+#define YAW_MAX_RAD        0.1 /* its sine is the angle to 2 parts in 1000 */
+#define SCALE_MIN_M        0.1 /* sway from one centimetre to the next is no motion of a sonar */
+#define SCALE_MAX_M        1e6
 
 enum motion_kind {
     MOTION_SWAY, /* m */
@@ -34,11 +38,12 @@ bool motion_samples_are_good(enum motion_kind kind, const double *along_track_m,
 /* Takes a copy of good samples in place of the table's. Errors: MEMORY. */
 sonject_status motion_table_set(struct motion_table *table, struct report *report,
                                 const double *along_track_m, const double *values, size_t count);
-void motion_table_clear(struct motion_table *table);
 
 /* Of both tables. */
 void aperture_motion_clear(struct aperture_motion *motion);
 
+/* Whether there is yaw: of the keys' own, and with a table. */
+bool motion_has_yaw(const sonject_motion_params *motion);
 bool aperture_motion_has_yaw(const struct aperture_motion *motion);
 bool aperture_motion_is_still(const struct aperture_motion *motion);
 

@@ -6,10 +6,10 @@
 #include "scene/aperture_motion.h"
 #include "scene/motion_response.h"
 #include "scene/patch_view.h"
+#include "scene/placement.h"
 #include "scene/point_response.h"
 #include "scene/relief.h"
 #include "scene/scene.h"
-#include "scene/sonar_array.h"
 
 #define PI               3.14159265358979323846
 #define BEAM_LOBES       8.0  /* of the pattern; 4e-6 of its energy lies beyond */

@@ -133,6 +133,7 @@ sonject_status element_plan(sonject_element_layout *layout, struct report *repor
                             const struct point_response *response)
 {
     layout->elements = scene->elements;
+    layout->elements.struct_size = sizeof layout->elements;
     layout->sound_speed_mps = scene_reference_speed(scene);
     layout->centre_frequency_hz = scene->sonar.centre_frequency_hz;
     layout->bandwidth_hz = scene->sonar.bandwidth_hz;

@@ -1,5 +1,6 @@
-/* A scene's parameters as structures: what its keys fill (lib/schema), and their defaults. All in
- * SI units. */
+/* A scene's parameters as structures. The tables of keys (lib/schema) fill them: a key's row says
+ * its meaning, unit, range, default and member; here stands what rows do not say. All in SI units.
+ */
 #ifndef SONJECT_SCENE_PARAMS_H
 #define SONJECT_SCENE_PARAMS_H
 
@@ -23,17 +24,12 @@ typedef enum sonject_side {
  * first_along_track_m + n * row_spacing_m and slant range first_slant_range_m + j *
  * column_spacing_m, range being reference sound speed * time / 2. */
 typedef struct sonject_geometry_params {
-    uint32_t struct_size;
     uint32_t side; /* sonject_side; poses are meant in the image's own ping order on either side */
-    double row_spacing_m;       /* > 0 */
-    double column_spacing_m;    /* > 0 */
-    double first_along_track_m; /* finite */
-    double first_slant_range_m; /* of column 0 of the whole image; the patch must reach ranges
-                                   above the altitude */
+    double row_spacing_m;
+    double column_spacing_m;
+    double first_along_track_m;
+    double first_slant_range_m; /* NaN: not set */
 } sonject_geometry_params;
-
-/* 2.5 cm pixels, port. first_slant_range_m is NaN, which is refused: it must be set. */
-void sonject_geometry_params_init(sonject_geometry_params *geometry);
 
 /* A channel of an XTF file: a number as the file counts them, or the only one of a side. */
 enum {
@@ -48,15 +44,13 @@ enum {
 typedef enum sonject_transfer {
     SONJECT_TRANSFER_AMPLITUDE = 0, /* amplitude = q */
     SONJECT_TRANSFER_INTENSITY = 1, /* amplitude = sqrt(q) */
-    SONJECT_TRANSFER_DECIBEL = 2,   /* amplitude = 10^((v * parameter + offset) / 20), parameter in
-                                       dB per unit of v, 1e-6...1000; offset within +-1000 dB */
-    SONJECT_TRANSFER_GAMMA = 3,     /* amplitude = q^parameter, parameter 0.01...100 */
-    SONJECT_TRANSFER_SCHLICK = 4    /* amplitude = q / (b - (b - 1) q), b = parameter >= 1 */
+    SONJECT_TRANSFER_DECIBEL = 2,   /* amplitude = 10^((v * parameter + offset) / 20) */
+    SONJECT_TRANSFER_GAMMA = 3,     /* amplitude = q^parameter */
+    SONJECT_TRANSFER_SCHLICK = 4    /* amplitude = q / (b - (b - 1) q), b = parameter */
 } sonject_transfer;
 
-/* The transfer function of an image file, see sonject_transfer. */
+/* The transfer function of an image file. */
 typedef struct sonject_transfer_params {
-    uint32_t struct_size;
     uint32_t kind; /* sonject_transfer */
     double parameter;
     double offset;
@@ -64,9 +58,6 @@ typedef struct sonject_transfer_params {
                           bits: pixels there count as clipped, and none brighter is written; 0 or
                           more than the type's: the type's. Floating point is only scaled by it */
 } sonject_transfer_params;
-
-/* Plain amplitude. */
-void sonject_transfer_params_init(sonject_transfer_params *transfer);
 
 /* What is said of an image file beside its name. */
 struct image_options {
@@ -79,23 +70,19 @@ struct image_options {
 
 /* A synthetic seabed: amplitude with K-distributed speckle on patches and ripples. */
 typedef struct sonject_synthetic_params {
-    uint32_t struct_size;
     uint32_t complex_pixels; /* 1: complex, 0: amplitude */
-    uint32_t rows;           /* 1...2^20 */
-    uint32_t columns;        /* 1...2^20; rows * columns at most 2^31 */
+    uint32_t rows;
+    uint32_t columns;
     uint64_t seed;
-    double speckle_shape;       /* K-distribution's shape, >= 0.01; infinite: Rayleigh amplitude */
-    double texture_length_m;    /* correlation length of the K texture, > 0 */
-    double ripple_wavelength_m; /* > 0 */
-    double ripple_contrast;     /* 0...1, 0: no ripples */
-    double ripple_heading_rad;  /* direction across the crests, from +x towards +y */
-    double patch_contrast_db;   /* 0...100, level step between sediment patches; 0: one sediment */
-    double patch_length_m;      /* typical size of a patch, > 0 */
-    double mean_amplitude;      /* rms amplitude of the darker sediment, > 0 */
+    double speckle_shape;
+    double texture_length_m;
+    double ripple_wavelength_m;
+    double ripple_contrast;
+    double ripple_heading_rad; /* across the crests, from +x towards +y */
+    double patch_contrast_db;
+    double patch_length_m;
+    double mean_amplitude; /* rms amplitude of the darker sediment */
 } sonject_synthetic_params;
-
-/* 400 x 400 amplitudes, sand ripples on half of the ground. */
-void sonject_synthetic_params_init(sonject_synthetic_params *synthetic);
 
 /* The sonar as its images show it. */
 
@@ -113,37 +100,32 @@ typedef enum sonject_sonar_kind {
 } sonject_sonar_kind;
 
 typedef struct sonject_sonar_params {
-    uint32_t struct_size;
-    uint32_t response_window;        /* sonject_response_window */
-    double centre_frequency_hz;      /* > 0 */
-    double bandwidth_hz;             /* > 0, below twice the centre frequency; -3 dB range width is
-                                        c/(2 bandwidth); of other pulses: pulse.h */
-    double altitude_m;               /* > 0, height of the track over the mean seabed */
+    uint32_t response_window; /* sonject_response_window */
+    double centre_frequency_hz;
+    double
+        bandwidth_hz; /* below twice the centre frequency; -3 dB range width is c/(2 bandwidth) */
+    double altitude_m;
     double along_track_resolution_m; /* the aspects integrated are sin(aspect) within
                                         +-wavelength/(4 resolution); 0: the image's row spacing */
     double transducer_side_m;        /* side of the source that rays are connected to; 0: a point */
-    double taylor_sidelobe_db;       /* 1...120, for the Taylor window */
-    uint32_t taylor_terms;           /* 2...16 */
-    uint32_t kind;                   /* sonject_sonar_kind */
+    double taylor_sidelobe_db;
+    uint32_t taylor_terms;
+    uint32_t kind;       /* sonject_sonar_kind */
     double aperture_rad; /* synthetic: full angle of the aspects that shadows and rough highlights
-                            are integrated over, at most pi/2; 0: broadside alone; negative: the
+                            are integrated over; 0: broadside alone; negative: the
                             response's own, wavelength/(2 resolution). Smooth highlights always
                             have the response's own */
     /* Real: the array, a uniform rectangle that sends and receives. Its long side lies along the
      * track and its beam looks abreast; then it is turned. */
-    double array_length_m;       /* > 0 where kind is real; two-way energy sinc(length u /
-                                    wavelength)^4 with sinc z = sin(pi z)/(pi z) and u the cosine
-                                    between the long side and the way to the echo */
+    double array_length_m;       /* two-way energy sinc(length u / wavelength)^4 with sinc z =
+                                    sin(pi z)/(pi z) and u the cosine between the long side and the
+                                    way to the echo */
     double array_height_m;       /* likewise across; 0: all elevations are heard alike */
     double array_heading_rad;    /* of the long side, from along-track (+x) towards range (+y),
-                                    whichever side that is; within pi/4 */
-    double array_pitch_rad;      /* of the long side over the horizontal; within pi/4 */
-    double array_depression_rad; /* of the beam below the horizontal, 0...pi/2 */
+                                    whichever side that is */
+    double array_pitch_rad;      /* of the long side over the horizontal */
+    double array_depression_rad; /* of the beam below the horizontal */
 } sonject_sonar_params;
-
-/* 100 kHz, 30 kHz bandwidth, 10 m altitude, point source, rectangular window; synthetic, with the
- * response's own aspects. */
-void sonject_sonar_params_init(sonject_sonar_params *sonar);
 
 /* The compressed pulse: what a point looks like in range. */
 
@@ -151,7 +133,7 @@ typedef enum sonject_pulse_kind {
     SONJECT_PULSE_GAUSSIAN = 0, /* half-power width c / (2 bandwidth) */
     SONJECT_PULSE_CHIRP = 1,    /* a linear sweep over the bandwidth, compressed: the transform of
                                    the spectrum's weighting */
-    SONJECT_PULSE_TABLE = 2     /* samples: sonject_scene_set_pulse_table */
+    SONJECT_PULSE_TABLE = 2     /* samples: the scene's pulse_table */
 } sonject_pulse_kind;
 
 /* Weighting of a compressed sweep's spectrum over the bandwidth B. Half-power widths, in c / 2B:
@@ -162,42 +144,24 @@ typedef enum sonject_pulse_window {
     SONJECT_PULSE_TAYLOR = 2       /* side lobes at -taylor_sidelobe_db */
 } sonject_pulse_window;
 
-/* What the positions of a table's samples are. */
-typedef enum sonject_pulse_axis {
-    SONJECT_PULSE_AXIS_RANGE = 0, /* m of slant range beyond the target */
-    SONJECT_PULSE_AXIS_TIME = 1   /* s after the target's echo; range is half the reference sound
-                                     speed times this */
-} sonject_pulse_axis;
-
 typedef struct sonject_pulse_params {
-    uint32_t struct_size;
-    uint32_t kind;             /* sonject_pulse_kind; TABLE only where the scene has a table */
-    uint32_t window;           /* sonject_pulse_window, of a chirp */
-    uint32_t taylor_terms;     /* 2...16 */
-    double taylor_sidelobe_db; /* 1...120 */
+    uint32_t kind;   /* sonject_pulse_kind */
+    uint32_t window; /* sonject_pulse_window, of a chirp */
+    uint32_t taylor_terms;
+    double taylor_sidelobe_db;
 } sonject_pulse_params;
-
-/* Gaussian; window rectangular; Taylor 35 dB, 5 terms. */
-void sonject_pulse_params_init(sonject_pulse_params *pulse);
 
 /* What motion the navigation did not see: it defocuses synthetic apertures. */
 
 #define SONJECT_SWAYS_CAPACITY 8
 #define SONJECT_YAWS_CAPACITY  8
 
-/* amplitude_m * sin(2 pi x / wavelength_m + phase_rad), x along-track. */
-typedef struct sonject_sway {
-    double amplitude_m;
-    double wavelength_m; /* from 10 cm */
+/* A sine of the along-track position x: amplitude * sin(2 pi x / wavelength_m + phase_rad). */
+typedef struct sonject_wave {
+    double amplitude; /* m of sway, rad of yaw */
+    double wavelength_m;
     double phase_rad;
-} sonject_sway;
-
-/* amplitude_rad * sin(2 pi x / wavelength_m + phase_rad), x along-track. */
-typedef struct sonject_yaw {
-    double amplitude_rad; /* within 0.1 rad */
-    double wavelength_m;  /* from 10 cm */
-    double phase_rad;
-} sonject_yaw;
+} sonject_wave;
 
 /* Residual sway: horizontal, across the track, positive towards the imaged side; all of these are
  * added. Towards the seabed at grazing angle gamma the path is shorter by sway * cos(gamma).
@@ -208,41 +172,31 @@ typedef struct sonject_yaw {
  * phase centres of each fill one advance around it; one that is x ahead of its ping's middle sways
  * by yaw * x. */
 typedef struct sonject_motion_params {
-    uint32_t struct_size;
-    uint32_t sway_count; /* of sways, at most 8 */
-    sonject_sway sways[SONJECT_SWAYS_CAPACITY];
+    uint32_t sway_count;
+    sonject_wave sways[SONJECT_SWAYS_CAPACITY];
     double random_rms_m;         /* of a Gaussian random sway; 0: none */
-    double random_correlation_m; /* from 10 cm; autocorrelation exp(-(x / this)^2 / 2) */
+    double random_correlation_m; /* autocorrelation exp(-(x / this)^2 / 2) */
     uint64_t seed;
     double yaw_advance_m; /* from ping to ping, along-track: half the length of the hydrophones'
-                             array where its pings neither overlap nor leave gaps; from 10 cm; 0:
-                             there is no yaw */
-    double yaw_bias_rad;  /* of all pings; within 0.1 rad */
-    double yaw_random_rms_rad;       /* of a Gaussian random yaw, at most 0.1 rad; 0: none */
+                             array where its pings neither overlap nor leave gaps; 0: there is no
+                             yaw */
+    double yaw_bias_rad;  /* of all pings */
+    double yaw_random_rms_rad;       /* of a Gaussian random yaw; 0: none */
     double yaw_random_correlation_m; /* as above */
     uint64_t yaw_seed;
-    uint32_t yaw_count; /* of yaws, at most 8 */
-    uint32_t reserved;  /* 0 */
-    sonject_yaw yaws[SONJECT_YAWS_CAPACITY];
+    uint32_t yaw_count;
+    sonject_wave yaws[SONJECT_YAWS_CAPACITY];
 } sonject_motion_params;
-
-/* No motion; correlation lengths 1 m. */
-void sonject_motion_params_init(sonject_motion_params *motion);
 
 /* The water: its sound speed, in layers if need be, and what it absorbs. */
 
 typedef struct sonject_medium_params {
-    uint32_t struct_size;
-    uint32_t reserved;
-    double sound_speed_mps;           /* of the water, 100...10000; of no meaning with layers */
+    double sound_speed_mps;           /* of no meaning with layers */
     double reference_sound_speed_mps; /* that the image processor assumed; 0: the true one (with
                                          layers: that around the seabed). A target at range r
                                          appears at r * reference / true */
-    double absorption_db_per_m;       /* 0...100; sonject_absorption gives that of sea water */
+    double absorption_db_per_m;
 } sonject_medium_params;
-
-/* Isovelocity water at 1500 m/s that absorbs nothing. */
-void sonject_medium_params_init(sonject_medium_params *medium);
 
 /* Surfaces: how much sound they return, and where to. */
 
@@ -260,23 +214,19 @@ typedef enum sonject_reflection_kind {
  *     direction that returns at most the fraction glossy_albedo of the energy,
  * reduced at both angles by what the smooth part keeps, so that no more energy leaves than came. */
 typedef struct sonject_material_params {
-    uint32_t struct_size;
     uint32_t reflection_kind; /* sonject_reflection_kind */
-    double reflection;        /* -1...1, amplitude; 0: no smooth part */
-    double roughness_m;       /* rms height, >= 0 */
-    double lambert; /* mu >= 0, linear; pi*mu + glossy_albedo <= reflection^2, or <= 1 where there
+    double reflection;        /* amplitude; 0: no smooth part */
+    double roughness_m;       /* rms height */
+    double lambert; /* mu, linear; pi*mu + glossy_albedo <= reflection^2, or <= 1 where there
                        is no smooth part or it is a fluid's */
-    double lambert_exponent; /* n, 1...64; 1: Lambert's law */
-    double glossy_albedo;    /* 0...1 */
-    double glossy_slope;     /* rms slope of the cone's facets, 0.01...1 */
-    double density_ratio;    /* to the water's, 0.001...100 */
-    double speed_ratio;      /* of sound, to the water's, 0.01...20 */
-    double loss; /* imaginary over real part of the wavenumber, 0...1; a plane wave in the material
-                    loses 54.6 * loss dB a wavelength */
+    double lambert_exponent; /* n; 1: Lambert's law */
+    double glossy_albedo;
+    double glossy_slope;
+    double density_ratio; /* to the water's */
+    double speed_ratio;   /* of sound, to the water's */
+    double loss; /* imaginary over real part of the wavenumber; a plane wave in the material loses
+                    54.6 * loss dB a wavelength */
 } sonject_material_params;
-
-/* Weathered steel: reflection 0.9, roughness 1 mm, mu = -10 dB, no cone. */
-void sonject_material_params_init(sonject_material_params *material);
 
 /* Fills in a named material: "steel", "concrete", "rubber", "wood", "rock" for objects; "gravel",
  * "coarse sand", "medium sand", "fine sand", "silt", "clay" for sediments ('_' and '-' do for the
@@ -287,7 +237,7 @@ sonject_status sonject_material_named(const char *name, sonject_material_params 
 const char *sonject_material_name(uint32_t index);
 
 /* The seabed, whose reflectivity comes from the measured image: the plane z = 0, or a relief about
- * it (sonject_scene_set_relief, seabed.relief of scene files). */
+ * it. */
 
 /* What resynthesise uses as reflectivity. */
 typedef enum sonject_seabed_map {
@@ -305,58 +255,41 @@ typedef enum sonject_forward_rule {
 } sonject_forward_rule;
 
 typedef struct sonject_seabed_params {
-    uint32_t struct_size;
-    uint32_t map;          /* sonject_seabed_map; what resynthesise uses as reflectivity */
-    double lambert;        /* mu0, backscatter per area and solid angle at normal incidence, linear:
-                              0 < mu0 <= 1/pi. Mackenzie's seabed is 10^-2.7 */
-    double level_radius_m; /* radius of the smooth local mean that mu0 stands for; > 0 */
-    double despeckle_radius_m; /* > 0 */
-    uint32_t forward_rule;     /* sonject_forward_rule */
-    uint32_t reserved;
+    uint32_t map;   /* sonject_seabed_map */
+    double lambert; /* mu0, backscatter per area and solid angle at normal incidence, linear */
+    double level_radius_m;
+    double despeckle_radius_m;
+    uint32_t forward_rule;           /* sonject_forward_rule */
     sonject_material_params forward; /* its lambert: NaN stands for the seabed's own mu0. Its rough
                                         part is the same at every angle, smooth part or not */
 } sonject_seabed_params;
 
-/* Mackenzie's level (-27 dB), 3 m level radius, 0.1 m despeckle radius, intensity map; forward: the
- * same Lambert's law, no smooth part. */
-void sonject_seabed_params_init(sonject_seabed_params *seabed);
-
-/* Heights of the seabed over its mean plane z = 0, given as a grid. */
-
-/* Rows along-track, columns in ground range, which is horizontal from the track. Between the points
- * heights are bilinear, outside the grid they are 0. */
+/* Heights of the seabed over its mean plane z = 0, given as a grid: rows along-track, columns in
+ * ground range, which is horizontal from the track. Between the points heights are bilinear,
+ * outside the grid they are 0. */
 typedef struct sonject_relief_params {
-    uint32_t struct_size;
-    uint32_t rows;    /* 2...16384, at most 2^24 points; 0: no grid */
-    uint32_t columns; /* 2...16384 */
-    uint32_t reserved;
+    uint32_t rows; /* 0: no grid */
+    uint32_t columns;
     double first_along_track_m;  /* of row 0 */
     double first_ground_range_m; /* of column 0 */
-    double row_spacing_m;        /* > 0 */
-    double column_spacing_m;     /* > 0 */
+    double row_spacing_m;
+    double column_spacing_m;
 } sonject_relief_params;
 
-/* No grid, spacings of 2.5 cm. */
-void sonject_relief_params_init(sonject_relief_params *relief);
-
 /* The sea surface over the scene. */
-
 typedef struct sonject_surface_params {
-    uint32_t struct_size;
-    uint32_t reserved;
     double water_depth_m; /* height of the surface over the mean seabed, above the sonar; 0: so far
                              away that nothing of it is heard */
-    sonject_material_params
-        material; /* reflection -1 for air above water; roughness_m: rms height of
-                     the waves; its rough part is in the chains of several
-                     interactions, where no layer bends sound below the surface;
-                     glossy_albedo NaN: all that lambert leaves of what roughness
-                     takes, reflection^2 - pi*lambert (fluid: 1 - pi*lambert) */
+    /* Its rough part is in the chains of several interactions, where no layer bends sound below the
+     * surface; glossy_albedo NaN: all that lambert leaves of what roughness takes, see
+     * surface_material. The slope of the keys' default is the sea's at 7 m/s of wind (C. Cox, W.
+     * Munk, J. Opt. Soc. Am. 44, 1954, 838). */
+    sonject_material_params material;
 } sonject_surface_params;
 
-/* No surface; material: reflection -1, smooth, lambert 0, glossy_albedo NaN, glossy_slope 0.2,
- * which is the sea's at 7 m/s of wind (C. Cox, W. Munk, J. Opt. Soc. Am. 44, 1954, 838). */
-void sonject_surface_params_init(sonject_surface_params *surface);
+/* The surface's material, with a number for a glossy_albedo that is NaN: reflection^2 - pi*lambert,
+ * or 1 - pi*lambert of a fluid. */
+sonject_material_params surface_material(const sonject_surface_params *surface);
 
 /* Objects: shape, pose and surface of each thing that is put on the seabed. */
 
@@ -422,7 +355,6 @@ typedef enum sonject_position_kind {
 } sonject_position_kind;
 
 typedef struct sonject_object_params {
-    uint32_t struct_size;
     uint32_t shape;                         /* sonject_shape; half a wavelength large at least */
     char name[SONJECT_NAME_CAPACITY];       /* "" becomes "object N"; both are terminated UTF-8
                                                without controls of terminals or text direction */
@@ -458,48 +390,9 @@ typedef struct sonject_object_params {
     double level_db;     /* not for SONJECT_LEVEL_PHYSICAL */
 } sonject_object_params;
 
-/* How the numbers of a mesh file are meant. */
-typedef struct sonject_mesh_params {
-    uint32_t struct_size;
-    uint32_t allows_open; /* 1: a mesh with edges that do not join two triangles is taken as thin
-                             sheets, which reflect on both sides; else it is refused */
-    double unit_m;        /* m a unit of the file, above 0; 0.001 for mm */
-    int32_t axes[3];      /* which axis of the file the object's x (nose), y and z axis is: 1, 2, 3,
-                             negative: the reverse of it. Together a rotation, not a mirror. A file
-                             whose y axis is up and whose nose is x: 1, -3, 2 */
-    int32_t reserved;
-    double smooth_angle_rad; /* 0...pi: facets that meet at less stand for one smooth surface where
-                                sound is scattered (the rough part, and paths of several
-                                interactions); 0: all facets are flat. Glints by physical optics
-                                are always those of the facets */
-} sonject_mesh_params;
-
-/* Metres, the file's axes, closed meshes only, flat facets. */
-void sonject_mesh_params_init(sonject_mesh_params *mesh);
-
-/* Where a part lies in its object. */
-typedef struct sonject_part_params {
-    uint32_t struct_size;
-    uint32_t reserved;
-    double along_m;     /* of the part's centre from the object's origin, along the object's nose */
-    double across_m;    /* along its own y */
-    double up_m;        /* along its own z */
-    double heading_rad; /* of the part's nose, from the object's nose towards its own y */
-    double pitch_rad;   /* raises the part's nose towards the object's own z */
-    double roll_rad;    /* about the part's nose */
-} sonject_part_params;
-
-/* In the middle of the object, turned as the object is. */
-void sonject_part_params_init(sonject_part_params *part);
-
-/* A proud sphere of 0.5 m diameter in the middle of the patch, default material. */
-void sonject_object_params_init(sonject_object_params *object);
-
-/* Shapes that are written by users, in OpenCL C. */
-
-/* A shape by code, whose contract is in sonject/user_shape.h. */
+/* A shape by code, whose contract is in sonject/user_shape.h. All 0: a closed solid without code,
+ * name and radius. */
 typedef struct sonject_user_shape_params {
-    uint32_t struct_size;
     uint32_t is_open;         /* 1: a surface without inside: the normal turns to the side that the
                                  ray comes from; 0: the closed surface of a solid */
     const char *name;         /* of the code, for messages ("name:line: what"): 1 to 255 bytes */
@@ -513,9 +406,6 @@ typedef struct sonject_user_shape_params {
     double parameters[SONJECT_USER_PARAMETERS_CAPACITY]; /* handed to the code as float, the others
                                                             as 0 */
 } sonject_user_shape_params;
-
-/* A closed solid without code, name and radius, which have no defaults. */
-void sonject_user_shape_params_init(sonject_user_shape_params *shape);
 
 /* How targets are put into an image. */
 
@@ -548,28 +438,22 @@ typedef enum sonject_match {
 } sonject_match;
 
 typedef struct sonject_injection_params {
-    uint32_t struct_size;
     uint32_t mode;           /* sonject_injection_mode */
     uint32_t column_rule;    /* sonject_column_rule */
     uint32_t estimate_noise; /* 1: noise floor estimated from the patch, noise_floor_db unused */
-    double noise_floor_db;   /* noise energy over local mean seabed energy, dB, < 0 */
+    double noise_floor_db;   /* noise energy over local mean seabed energy */
     double influence_db;     /* composite: a pixel is the target's when the change that it makes is
-                                above this level over the seabed; default -40; -200...0 */
-    double ray_scale;        /* factor on the number of rays; default 1; 1/64...4096 */
+                                above this level over the seabed */
+    double ray_scale;
     uint64_t seed;
-    uint32_t interactions;   /* surfaces that a path may meet, 1...8 */
-    uint32_t estimator;      /* sonject_estimator */
-    uint32_t order_energies; /* 1: keep the energy of each number of interactions (layers) */
-    uint32_t match_response; /* sonject_match: the point response's widths */
-    double match_looks; /* looks averaged in a magnitude pixel of the input: 1...64; 0: estimated
-                           from the image around the objects */
+    uint32_t interactions;     /* surfaces that a path may meet */
+    uint32_t estimator;        /* sonject_estimator */
+    uint32_t order_energies;   /* 1: keep the energy of each number of interactions (layers) */
+    uint32_t match_response;   /* sonject_match: the point response's widths */
+    double match_looks;        /* looks averaged in a magnitude pixel of the input; 0: estimated
+                                  from the image around the objects */
     uint32_t match_saturation; /* sonject_match: the amplitude at which highlights are cut */
-    uint32_t reserved;
 } sonject_injection_params;
-
-/* Composite, focused columns, estimated noise, -40 dB, ray scale 1, seed 1, one
- * interaction, connected; response, looks and saturation matched to the image. */
-void sonject_injection_params_init(sonject_injection_params *injection);
 
 /* Where the swath comes from. */
 typedef enum sonject_input_kind {
@@ -581,16 +465,10 @@ typedef enum sonject_input_kind {
 
 /* Part of the swath that is worked on; all 0: the whole swath. */
 typedef struct sonject_patch_params {
-    uint32_t struct_size;
-    uint32_t reserved;
     uint64_t first_row;
     uint64_t first_column;
     uint64_t rows;
     uint64_t columns;
 } sonject_patch_params;
-
-/* One hydrophone, complex baseband, compressed; 10 ms chirp; ratios of pressures; all else by
- * default. */
-void sonject_elements_params_init(sonject_elements_params *elements);
 
 #endif

@@ -80,4 +80,13 @@ double placement_shadow_end(const struct placement *placement, const struct patc
 sonject_status object_top(const struct scene *scene, struct report *report, uint32_t object,
                           double *top_m);
 
+/* ---- The pose of a real aperture's array. */
+
+/* Rows: the long side, which points ahead in the view, the beam, and the other side, in the view's
+ * axes. is_mirrored: the view's. */
+void sonar_array_axes(double axes[3][3], const sonject_sonar_params *sonar, bool is_mirrored);
+
+/* Whether the long side does not lie along the track. */
+bool sonar_array_is_turned(const sonject_sonar_params *sonar);
+
 #endif

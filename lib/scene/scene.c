@@ -1,10 +1,14 @@
 #include "scene/scene.h"
 
+#include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+
+#define PI 3.14159265358979323846
 
 static void give_up_mesh(struct scene *scene, struct mesh *mesh)
 {
@@ -31,17 +35,19 @@ void scene_clear(struct scene *scene)
     response_table_clear(&scene->cross_range_table);
     aperture_motion_clear(&scene->motion);
     relief_features_clear(&scene->relief);
-    written_keys_clear(&scene->written);
+    for (size_t i = 0; i < scene->written.count; i++)
+        free(scene->written.keys[i].path);
+    free(scene->written.keys);
     memset(scene, 0, sizeof *scene);
 }
 
 /* Room for one more of `count` elements: capacities are powers of two, grown when that is full.
  * Returns the elements, or NULL where there is no memory (the old ones then stay). */
-static void *make_room(void *elements, uint32_t count, size_t size)
+static void *make_room(void *elements, size_t count, size_t size)
 {
     if ((count & (count - 1)) != 0)
         return elements;
-    return realloc(elements, (count == 0 ? 1 : 2 * (size_t)count) * size);
+    return realloc(elements, (count == 0 ? 1 : 2 * count) * size);
 }
 
 sonject_status scene_append_object(struct scene *scene, struct report *report,
@@ -112,4 +118,64 @@ sonject_status scene_share_mesh(struct scene *scene, struct report *report, cons
             return allows_open ? SONJECT_OK
                                : mesh_require_closed(report, path, &scene->meshes[*number]);
     return append_mesh(scene, report, path, options, allows_open);
+}
+
+sonject_status scene_note_key(struct scene *scene, struct report *report, const char *path,
+                              const char *place)
+{
+    const size_t path_bytes = strlen(path) + 1;
+    const size_t place_bytes = strlen(place) + 1;
+    struct written_keys *written = &scene->written;
+    struct written_key *keys = make_room(written->keys, written->count, sizeof *keys);
+    CHECK_MEMORY(report, keys, "a scene's keys");
+    written->keys = keys;
+    struct written_key *key = &keys[written->count];
+    key->path = malloc(path_bytes + place_bytes);
+    CHECK_MEMORY(report, key->path, "a scene's keys");
+    memcpy(key->path, path, path_bytes);
+    key->place = memcpy(key->path + path_bytes, place, place_bytes);
+    written->count++;
+    return SONJECT_OK;
+}
+
+/* Shortens path to the section that it lies in; to "" at last. */
+static void go_out(char *path)
+{
+    char *dot = strrchr(path, '.');
+    *(dot ? dot : path) = '\0';
+}
+
+sonject_status scene_locate(const struct scene *scene, struct report *report, sonject_status status,
+                            const char *path, ...)
+{
+    char name[128], message[REPORT_LINE];
+    va_list arguments;
+    va_start(arguments, path);
+    vsnprintf(name, sizeof name, path, arguments);
+    va_end(arguments);
+    if (status != SONJECT_ERROR_INPUT)
+        return status;
+    snprintf(message, sizeof message, "%.*s", REPORT_LINE - 1, report->message);
+    for (; *name; go_out(name))
+        for (size_t i = 0; i < scene->written.count; i++) {
+            const struct written_key *key = &scene->written.keys[i];
+            const size_t set = strlen("--set ");
+            const bool is_told =
+                strncmp(key->place, "--set ", set) == 0 && strcmp(key->place + set, name) == 0;
+            if (strcmp(key->path, name) == 0)
+                return report_failure(report, status, "%s%s%s: %s", key->place, is_told ? "" : ": ",
+                                      is_told ? "" : name, message);
+        }
+    return status;
+}
+
+sonject_material_params surface_material(const sonject_surface_params *surface)
+{
+    sonject_material_params material = surface->material;
+    const double most = material.reflection_kind == SONJECT_REFLECTION_FLUID
+                            ? 1.0
+                            : material.reflection * material.reflection;
+    if (isnan(material.glossy_albedo))
+        material.glossy_albedo = fmax(0.0, most - PI * material.lambert);
+    return material;
 }

@@ -1,5 +1,4 @@
-/* A scene as the library keeps it: the public parameter structures themselves, each complete (no
- * zero sizes, no defaults left open). Pure data. */
+/* A scene as the library keeps it: structures of parameters, each complete. Pure data. */
 #ifndef SONJECT_SCENE_SCENE_H
 #define SONJECT_SCENE_SCENE_H
 
@@ -15,14 +14,42 @@
 #include "scene/params.h"
 #include "scene/relief_features.h"
 #include "scene/response_table.h"
-#include "scene/user_shapes.h"
-#include "scene/written.h"
+#include "user/snippet.h"
 
 #define SCENE_OBJECTS_MAX      250 /* ids must fit the 8-bit label image */
 #define SCENE_PARTS_MAX        1000
 #define SCENE_SHAPES_MAX       1024 /* parts and objects of one shape: STREAMS_OF_PAIR */
 #define SCENE_MESHES_MAX       64
 #define SCENE_INTERACTIONS_MAX 8
+
+/* Shapes that users wrote: code that several share is kept once. */
+#define USER_SNIPPETS_MAX 64
+#define USER_SHAPES_MAX   1250 /* as many as objects and parts */
+
+struct user_shape {
+    uint32_t snippet; /* number of its code */
+    bool is_open;
+    double bounding_radius_m;
+    double half_length_m, half_width_m, half_height_m; /* at most the radius */
+    float parameters[SONJECT_USER_PARAMETERS_CAPACITY];
+};
+
+struct user_shapes {
+    struct user_snippet *snippets; /* owned; no two of the same code */
+    uint32_t snippet_count;
+    struct user_shape *shapes; /* owned */
+    uint32_t count;
+};
+
+/* Where each key of a scene stands in its file, for what is found wrong only once the image and its
+ * geometry are known. */
+struct written_keys {
+    struct written_key {
+        char *path;  /* owned: "objects[0].position" */
+        char *place; /* within path's memory: "scene.yaml:12:5", "--set objects[0].position" */
+    } * keys;        /* owned */
+    size_t count;
+};
 
 /* A part of an object of parts. */
 struct scene_part {
@@ -70,9 +97,10 @@ struct scene {
     struct written_keys written; /* none where no file was read */
 };
 
-/* All defaults, which the table of keys holds (lib/schema, which defines it and the checks below);
- * geometry.first_slant_range_m has none and is NaN, which check_geometry refuses. */
+/* All defaults, which the tables of keys hold (lib/schema, which defines these two);
+ * geometry.first_slant_range_m has none and is NaN. Objects begin as a sphere without size. */
 void scene_init(struct scene *scene);
+void object_init(sonject_object_params *object);
 
 /* Frees what the scene owns and makes it all zeros, for scene_init or nothing more. */
 void scene_clear(struct scene *scene);
@@ -86,6 +114,16 @@ sonject_status scene_append_object(struct scene *scene, struct report *report,
 sonject_status scene_append_part(struct scene *scene, struct report *report,
                                  const struct scene_part *part);
 
+/* Appends a checked shape. Errors: INPUT (its code or name, see snippet_make; too many), MEMORY. */
+sonject_status user_shapes_append(struct user_shapes *shapes, struct report *report,
+                                  const sonject_user_shape_params *shape);
+
+void user_shapes_clear(struct user_shapes *shapes);
+
+/* Notes the place of a key, whose section has been noted before. Errors: MEMORY. */
+sonject_status scene_note_key(struct scene *scene, struct report *report, const char *path,
+                              const char *place);
+
 /* The number of the mesh that the scene already has from that file, as it now is, with those
  * options; else reads and appends it. Errors: as mesh_load, INPUT also where it is open or there
  * are too many. */
@@ -93,39 +131,11 @@ sonject_status scene_share_mesh(struct scene *scene, struct report *report, cons
                                 const struct mesh_options *options, bool allows_open,
                                 uint32_t *number);
 
-/* Checks of one structure each, ranges and relations as the public headers state them. The message
- * starts with the name of the value as the scene file writes it ("bandwidth must be ..."). report
- * keeps the first failure, listener hears all; either may be NULL. Errors: INPUT. */
-sonject_status check_sonar(const sonject_sonar_params *sonar, struct report *report,
-                           struct check_listener *listener);
-sonject_status check_pulse(const sonject_pulse_params *pulse, struct report *report,
-                           struct check_listener *listener);
-sonject_status check_motion(const sonject_motion_params *motion, struct report *report,
-                            struct check_listener *listener);
-sonject_status check_medium(const sonject_medium_params *medium, struct report *report,
-                            struct check_listener *listener);
-sonject_status check_seabed(const sonject_seabed_params *seabed, struct report *report,
-                            struct check_listener *listener);
-sonject_status check_surface(const sonject_surface_params *surface, struct report *report,
-                             struct check_listener *listener);
-sonject_status check_geometry(const sonject_geometry_params *geometry, struct report *report,
-                              struct check_listener *listener);
-sonject_status check_transfer(const sonject_transfer_params *transfer, struct report *report,
-                              struct check_listener *listener);
-sonject_status check_injection(const sonject_injection_params *injection, struct report *report,
-                               struct check_listener *listener);
-sonject_status check_elements(const sonject_elements_params *elements, struct report *report,
-                              struct check_listener *listener);
-sonject_status check_patch(const sonject_patch_params *patch, struct report *report,
-                           struct check_listener *listener);
-sonject_status check_uniform(uint32_t rows, uint32_t columns, struct report *report,
-                             struct check_listener *listener);
-sonject_status check_synthetic(const sonject_synthetic_params *synthetic, struct report *report,
-                               struct check_listener *listener);
-sonject_status check_part(const sonject_part_params *part, struct report *report,
-                          struct check_listener *listener);
-sonject_status check_object(const sonject_object_params *object, struct report *report,
-                            struct check_listener *listener);
+/* Puts in front of the report's message where the scene's file has the key that path (a format)
+ * names, or the nearest section around it. Returns status. Leaves the message as it is where status
+ * is not INPUT or the file has no such key. */
+sonject_status scene_locate(const struct scene *scene, struct report *report, sonject_status status,
+                            const char *path, ...) REPORT_FORMAT(4);
 
 /* The name of a shape as scene files write it; NULL for an unknown one. */
 const char *shape_name(uint32_t shape);

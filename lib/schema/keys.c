@@ -126,11 +126,7 @@ static void set_preset(const struct field *field, void *structure)
 
 void section_defaults(const struct section *section, void *structure, struct scene *scene)
 {
-    if (section->bytes > 0) {
-        const uint32_t size = (uint32_t)section->bytes;
-        memset(structure, 0, section->bytes);
-        memcpy(structure, &size, sizeof size);
-    }
+    memset(structure, 0, section->bytes);
     for (size_t i = 0; i < section->count; i++) {
         const struct field *field = &section->fields[i];
         const uint32_t entries = field->kind == FIELD_ENTRIES ? field->maximum : 1;

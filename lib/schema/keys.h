@@ -89,7 +89,7 @@ struct section {
     void (*relations)(struct check *check, const void *structure);
     /* Called in its place where a file's section was read, if there is one. */
     sonject_status (*finish)(struct reader *reader, const struct tree_node *node, void *structure);
-    size_t bytes;  /* of the structure, where the section is all of it; its size stands first */
+    size_t bytes;  /* of the structure, where the section is all of it */
     bool may_lack; /* the choice */
 };
 

@@ -5,8 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/surface_material.h"
-
 /* 1/pi written in decimal digits must not be refused for its last bit. */
 #define ENERGY_SLACK (1.0 + 1e-12)
 
@@ -52,14 +50,14 @@ sonject_status sonject_material_named(const char *name, sonject_material_params 
     if (!name || !material)
         return SONJECT_ERROR_ARGUMENT;
     if (is_same_name(name, "steel")) {
-        sonject_material_params_init(material);
+        section_defaults(&material_section, material, NULL);
         return SONJECT_OK;
     }
     for (size_t i = 0; i < COUNT(materials); i++) {
         const struct named_material *named = &materials[i];
         if (!is_same_name(name, named->name))
             continue;
-        sonject_material_params_init(material);
+        section_defaults(&material_section, material, NULL);
         material->reflection_kind = SONJECT_REFLECTION_FLUID;
         material->density_ratio = named->density_ratio;
         material->speed_ratio = named->speed_ratio;

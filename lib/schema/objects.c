@@ -120,12 +120,9 @@ static void relate_object(struct check *check, const void *structure)
     relate_energy(check, "material.", &object->material, NAN);
 }
 
-/* Defaults, no size set, surface as given (NULL: the default one). */
-static void start_shape(sonject_object_params *shape, const sonject_material_params *material)
+void object_init(sonject_object_params *object)
 {
-    section_defaults(&object_section, shape, NULL);
-    if (material)
-        shape->material = *material;
+    section_defaults(&object_section, object, NULL);
 }
 
 /* By the sound: no shape's name begins with a u as in "under". */
@@ -190,7 +187,7 @@ static sonject_status finish_shape(struct reader *reader, const struct tree_node
         checked.cut_count = 0;
     }
     if (!is_given(node, "material"))
-        sonject_material_params_init(&checked.material);
+        section_defaults(&material_section, &checked.material, NULL);
     relate_object(&check, &checked);
     return check.status == SONJECT_OK
                ? check_cuts_in_scene(reader->scene, &checked, NULL, check.listener)
@@ -205,10 +202,15 @@ struct frame {
     double origin[3];  /* m */
 };
 
+/* Where a part's centre lies in its object or group, m: along the nose, its own y and z. */
+struct part_place {
+    double along_m, across_m, up_m;
+};
+
 /* A part, or a group of parts, on its way into the scene. */
 struct part_text {
     sonject_object_params shape; /* first: tables of shapes fill it; angles: the part's */
-    sonject_part_params place;   /* its angles are not used */
+    struct part_place place;
     const struct frame *outer;
     int level; /* of the list that it stands in, from 1 */
     bool is_group;
@@ -258,7 +260,8 @@ static sonject_status read_part(struct reader *reader, const struct tree_node *n
     const struct part_list *list = structure;
     struct part_text part;
     memset(&part, 0, sizeof part);
-    start_shape(&part.shape, list->material);
+    object_init(&part.shape);
+    part.shape.material = *list->material;
     part.outer = list->frame;
     part.level = list->level;
     const sonject_status status = read_section(reader, &part_section, node, &part);
@@ -299,18 +302,14 @@ static sonject_status read_group(struct reader *reader, const struct tree_node *
 }
 #undef STRUCTURE
 
-#define STRUCTURE sonject_part_params
+#define STRUCTURE struct part_place
 static const struct field part_place_fields[] = {
     {"along", "along the object's nose", QUANTITY(along_m, LENGTH), COORDINATE},
     {"across", "along its own y, to which heading turns the nose", QUANTITY(across_m, LENGTH),
      COORDINATE},
     {"up", "along its own z, up when level", QUANTITY(up_m, LENGTH), COORDINATE},
-    {"heading", "said beside at", HIDDEN, QUANTITY(heading_rad, ANGLE)},
-    {"pitch", "said beside at", HIDDEN, QUANTITY(pitch_rad, ANGLE)},
-    {"roll", "said beside at", HIDDEN, QUANTITY(roll_rad, ANGLE)},
 };
-static const struct section part_place_section = {ROWS(part_place_fields),
-                                                  .bytes = sizeof(STRUCTURE)};
+static const struct section part_place_section = {ROWS(part_place_fields)};
 #undef STRUCTURE
 
 /* Keys are read in this order: what is in a group needs the group's pose and surface. */
@@ -501,7 +500,7 @@ static sonject_status read_object(struct reader *reader, const struct tree_node 
     struct target_text text;
     (void)structure;
     memset(&text, 0, sizeof text);
-    start_shape(&text.object, NULL);
+    object_init(&text.object);
     sonject_status status = read_section(reader, &object_section, node, &text);
     status = read_target_parts(reader, &text, status);
     THEN(status, scene_append_object(reader->scene, reader->report, &text.object));
@@ -514,23 +513,4 @@ sonject_status read_objects(struct reader *reader, const struct tree_node *node,
     static const struct list objects = {SCENE_OBJECTS_MAX, "; start each object with '- '",
                                         read_object};
     return tree_is_null(node) ? SONJECT_OK : read_list(reader, node, &objects, structure);
-}
-
-/* ---- Objects and parts that C describes: a sphere, unless another shape is set. */
-
-void sonject_object_params_init(sonject_object_params *object)
-{
-    start_shape(object, NULL);
-    object->diameter_m = 0.5;
-}
-
-void sonject_part_params_init(sonject_part_params *part)
-{
-    section_defaults(&part_place_section, part, NULL);
-}
-
-sonject_status check_part(const sonject_part_params *part, struct report *report,
-                          struct check_listener *listener)
-{
-    return section_check(&part_place_section, part, report, listener);
 }

@@ -219,7 +219,7 @@ static sonject_status write_down(const struct tree *tree, const struct tree_node
             entry->key ? key_path_add(path, entry->key) : key_path_add_index(path, i);
         char place[TREE_PLACE_TEXT];
         tree_place_text(tree, entry->value.place, place);
-        CHECK(written_keys_add(&scene->written, tree->report, path->text, place));
+        CHECK(scene_note_key(scene, tree->report, path->text, place));
         CHECK(write_down(tree, &entry->value, path, scene));
         key_path_shorten(path, before);
     }

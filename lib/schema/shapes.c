@@ -262,7 +262,6 @@ sonject_status read_user_shape(struct reader *reader, const struct tree_node *no
         return refuse_value(reader, node,
                             "is code that would run with your rights; if you trust who wrote it, "
                             "use --allow-user-shapes");
-    sonject_user_shape_params_init(&user.shape);
     sonject_status status = read_section(reader, &user_section, node, &user);
     if (status == SONJECT_OK && user.code) {
         user.shape.name = short_name(user.name);
@@ -273,13 +272,4 @@ sonject_status read_user_shape(struct reader *reader, const struct tree_node *no
     free(user.name);
     free(user.code);
     return status;
-}
-
-void sonject_mesh_params_init(sonject_mesh_params *mesh)
-{
-    memset(mesh, 0, sizeof *mesh);
-    mesh->struct_size = sizeof *mesh;
-    mesh->unit_m = 1.0;
-    for (int axis = 0; axis < 3; axis++)
-        mesh->axes[axis] = axis + 1;
 }

@@ -145,11 +145,6 @@ const struct section pulse_section = {ROWS(pulse_fields), .finish = finish_pulse
 
 /* ---- Residual motion. */
 
-#define SWAY_MAX_M  1e3
-#define YAW_MAX_RAD 0.1 /* its sine is the angle to 2 parts in 1000 */
-#define SCALE_MIN_M 0.1 /* sway from one centimetre to the next is no motion of a sonar */
-#define SCALE_MAX_M 1e6
-
 #define SINE_FIELDS                                                                                \
     {"wavelength",                                                                                 \
      "of the sine, along-track",                                                                   \
@@ -161,18 +156,16 @@ const struct section pulse_section = {ROWS(pulse_fields), .finish = finish_pulse
         "phase", "of the sine at along-track 0", QUANTITY(phase_rad, ANGLE), WITHIN(-1e3, 1e3)     \
     }
 
-#define STRUCTURE sonject_sway
+#define STRUCTURE sonject_wave
 static const struct field sway_fields[] = {
-    {"amplitude", "of the sine", QUANTITY(amplitude_m, LENGTH), WITHIN(-SWAY_MAX_M, SWAY_MAX_M),
+    {"amplitude", "of the sine", QUANTITY(amplitude, LENGTH), WITHIN(-SWAY_MAX_M, SWAY_MAX_M),
      REQUIRED},
     SINE_FIELDS,
 };
 static const struct section sway_section = {ROWS(sway_fields)};
-#undef STRUCTURE
 
-#define STRUCTURE sonject_yaw
 static const struct field yaw_sine_fields[] = {
-    {"amplitude", "of the sine", QUANTITY(amplitude_rad, ANGLE), WITHIN(-YAW_MAX_RAD, YAW_MAX_RAD),
+    {"amplitude", "of the sine", QUANTITY(amplitude, ANGLE), WITHIN(-YAW_MAX_RAD, YAW_MAX_RAD),
      REQUIRED},
     SINE_FIELDS,
 };
@@ -196,9 +189,7 @@ static sonject_status read_yaw_file(struct reader *reader, const struct tree_nod
 static void relate_motion(struct check *check, const void *structure)
 {
     const sonject_motion_params *motion = structure;
-    const bool has_yaw =
-        motion->yaw_count > 0 || motion->yaw_bias_rad != 0.0 || motion->yaw_random_rms_rad != 0.0;
-    if (has_yaw && motion->yaw_advance_m == 0.0)
+    if (motion_has_yaw(motion) && motion->yaw_advance_m == 0.0)
         check_within(check, "yaw.advance", motion->yaw_advance_m, SCALE_MIN_M, SWAY_MAX_M, " m");
 }
 

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "scene/surface_material.h"
 #include "trace/fan.h"
 #include "trace/object_buffer.h"
 

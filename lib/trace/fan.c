@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/sonar_array.h"
+#include "scene/placement.h"
 #include "trace/chains.h"
 
 #define PI             3.14159265358979323846

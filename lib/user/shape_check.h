@@ -4,7 +4,7 @@
 #define SONJECT_USER_SHAPE_CHECK_H
 
 #include "device/device.h"
-#include "scene/user_shapes.h"
+#include "scene/scene.h"
 
 #define SHAPE_CHECK_RAYS 4096 /* always the same ones, in radii of the bounding sphere */
 

@@ -57,7 +57,7 @@ void benchmark_set_up(struct benchmark_scene *set, size_t pixels)
     benchmark_begin(set, pixels);
     printf("device: %s, %u lanes, %u cores\n", set->tracer.device->name,
            (unsigned)set->tracer.device->width, (unsigned)set->tracer.device->compute_units);
-    sonject_object_params_init(&capsule);
+    object_init(&capsule);
     capsule.shape = SONJECT_SHAPE_CAPSULE;
     capsule.length_m = 2.3;
     capsule.diameter_m = 0.3;

@@ -34,7 +34,7 @@ static void shape_part(sonject_object_params *part, uint32_t number, double size
 {
     static const sonject_shape shapes[] = {SONJECT_SHAPE_SPHERE, SONJECT_SHAPE_CAPSULE,
                                            SONJECT_SHAPE_BOX, SONJECT_SHAPE_CYLINDER};
-    sonject_object_params_init(part);
+    object_init(part);
     part->shape = shapes[number % 4];
     part->length_m = 1.3 * size;
     part->width_m = 0.8 * size;

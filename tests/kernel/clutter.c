@@ -32,7 +32,7 @@ static void shape_object(sonject_object_params *object, uint32_t number, double 
         SONJECT_SHAPE_SPHERE,    SONJECT_SHAPE_CYLINDER, SONJECT_SHAPE_CAPSULE, SONJECT_SHAPE_PLANE,
         SONJECT_SHAPE_DISC,      SONJECT_SHAPE_BOX,      SONJECT_SHAPE_WEDGE,   SONJECT_SHAPE_CONE,
         SONJECT_SHAPE_ELLIPSOID, SONJECT_SHAPE_TORUS,    SONJECT_SHAPE_MESH,    SONJECT_SHAPE_BOX};
-    sonject_object_params_init(object);
+    object_init(object);
     object->shape = shapes[number % (COUNT(shapes))];
     object->length_m = size * (0.5 + draw(counter));
     object->width_m = 0.6 * object->length_m;

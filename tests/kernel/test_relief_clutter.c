@@ -11,8 +11,7 @@
 
 static void make_user_shape(struct bench *bench)
 {
-    sonject_user_shape_params params;
-    sonject_user_shape_params_init(&params);
+    sonject_user_shape_params params = {0};
     params.name = "sphere.cl";
     params.code = SPHERE_CODE;
     params.bounding_radius_m = 0.2;
@@ -26,7 +25,7 @@ static void add(struct bench *bench, sonject_shape shape, double diameter, doubl
                 double column)
 {
     sonject_object_params object;
-    sonject_object_params_init(&object);
+    object_init(&object);
     object.shape = shape;
     object.diameter_m = diameter;
     object.position_kind = SONJECT_POSITION_PIXELS;

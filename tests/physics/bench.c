@@ -103,7 +103,7 @@ sonject_object_params *bench_add(struct bench *bench, sonject_shape shape, doubl
                                  double width_m, double diameter_m)
 {
     sonject_object_params object;
-    sonject_object_params_init(&object);
+    object_init(&object);
     object.shape = shape;
     object.length_m = length_m;
     object.width_m = width_m;

@@ -103,8 +103,7 @@ static void make_box(struct pose *pose)
 static void draw_place(struct pose *pose)
 {
     sonject_object_params *object = &pose->object;
-    sonject_object_params_init(object);
-    object->diameter_m = 0.0; /* a sphere's */
+    object_init(object);
     object->position_kind = SONJECT_POSITION_PIXELS;
     object->position_along = draw(50.0, 60.0);
     object->position_range = draw(50.0, 70.0);

@@ -98,7 +98,7 @@ CLAIM(a_sway_makes_paired_echoes)
     struct sea *sea = open_aperture(true);
     const double complex straight = middle_of(sea);
     sea->motion->sway_count = 1;
-    sea->motion->sways[0].amplitude_m = beta / (2.0 * sea_wavenumber(sea) * cosine_of_grazing(sea));
+    sea->motion->sways[0].amplitude = beta / (2.0 * sea_wavenumber(sea) * cosine_of_grazing(sea));
     sea->motion->sways[0].wavelength_m = away;
     sea->motion->sways[0].phase_rad = 0.7;
     const double complex *cut = cut_through(sea, straight);
@@ -253,7 +253,7 @@ static void give_yaw(struct sea *sea)
     sea->motion->yaw_advance_m = ADVANCE;
     sea->motion->yaw_bias_rad = -2e-3;
     sea->motion->yaw_count = 1;
-    sea->motion->yaws[0].amplitude_rad = 8e-3;
+    sea->motion->yaws[0].amplitude = 8e-3;
     sea->motion->yaws[0].wavelength_m = 1.7;
     sea->motion->yaws[0].phase_rad = 0.4;
 }
@@ -447,7 +447,6 @@ CLAIM(a_random_sways_autocorrelation)
     double sums[3] = {0.0, 0.0, 0.0};
     struct aperture_motion motion;
     memset(&motion, 0, sizeof motion);
-    sonject_motion_params_init(&motion.params);
     motion.params.random_rms_m = 2.0;
     motion.params.random_correlation_m = 3.0;
     for (uint64_t seed = 0; seed < SEEDS; seed++) {

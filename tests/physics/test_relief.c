@@ -51,7 +51,7 @@ static void lay_slope(struct sea *sea, double along, double outward)
     sea_ready(sea);
     const double near = sea_ground(sea, sea_range(sea, -1.0));
     const double far = sea_ground(sea, sea_range(sea, COLUMNS));
-    sonject_relief_params_init(&grid);
+    memset(&grid, 0, sizeof grid);
     grid.first_along_track_m = sea_x(sea, -1.0);
     grid.first_ground_range_m = near;
     grid.row_spacing_m = grid.column_spacing_m = step;

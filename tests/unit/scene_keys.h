@@ -166,7 +166,7 @@ static const struct key_case {
      .number = 5.0, .other = "sonar.pulse={kind: table}"},
     {"sonar.measured_response", SOURCE_ROOT "/tests/unit/cross_range.csv",
      S(U64, cross_range_table.count), .number = 6.0},
-    {"sonar.motion.sway[].amplitude", "-2 mm", S(DOUBLE, motion.params.sways[0].amplitude_m),
+    {"sonar.motion.sway[].amplitude", "-2 mm", S(DOUBLE, motion.params.sways[0].amplitude),
      .number = -0.002, .other = "sonar.motion={sway: [{wavelength: 3 m}]}"},
     {"sonar.motion.sway[].wavelength", "3 m", S(DOUBLE, motion.params.sways[0].wavelength_m),
      .number = 3.0, .other = "sonar.motion={sway: [{amplitude: 2 mm}]}"},
@@ -183,9 +183,8 @@ static const struct key_case {
     {"sonar.motion.yaw.advance", "40 cm", S(DOUBLE, motion.params.yaw_advance_m), .number = 0.4},
     {"sonar.motion.yaw.bias", "-0.009 rad", S(DOUBLE, motion.params.yaw_bias_rad), .number = -0.009,
      .other = YAW},
-    {"sonar.motion.yaw.sines[].amplitude", "-0.02 rad",
-     S(DOUBLE, motion.params.yaws[0].amplitude_rad), .number = -0.02,
-     .other = "sonar.motion.yaw={advance: 1, sines: [{wavelength: 3 m}]}"},
+    {"sonar.motion.yaw.sines[].amplitude", "-0.02 rad", S(DOUBLE, motion.params.yaws[0].amplitude),
+     .number = -0.02, .other = "sonar.motion.yaw={advance: 1, sines: [{wavelength: 3 m}]}"},
     {"sonar.motion.yaw.sines[].wavelength", "3 m", S(DOUBLE, motion.params.yaws[0].wavelength_m),
      .number = 3.0, .other = "sonar.motion.yaw={advance: 1, sines: [{amplitude: 2e-3 rad}]}"},
     {"sonar.motion.yaw.sines[].phase", "2 rad", S(DOUBLE, motion.params.yaws[0].phase_rad),
@@ -622,8 +621,7 @@ static inline sonject_status read_case(struct scene_folder *folder, const struct
     write_scene(folder, base_of(key), strlen(base_of(key)));
     scene_clear(&folder->scene);
     memset(&folder->report, 0, sizeof folder->report);
-    return read_scene_file(&folder->report, folder->file, overrides, count, true,
-                                &folder->scene);
+    return read_scene_file(&folder->report, folder->file, overrides, count, true, &folder->scene);
 }
 
 #endif

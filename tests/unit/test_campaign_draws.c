@@ -154,10 +154,7 @@ static void test_images_lie_wherever_edges_contacts_and_ranges_let_them(void **s
     uint64_t places = 0;
     memset(&swath, 0, sizeof swath);
     memset(&campaign, 0, sizeof campaign);
-    sonject_geometry_params geometry;
-    sonject_geometry_params_init(&geometry);
-    geometry.column_spacing_m = 0.5;
-    geometry.first_slant_range_m = 20.0;
+    const sonject_geometry_params geometry = {.column_spacing_m = 0.5, .first_slant_range_m = 20.0};
     campaign.swaths = &swath;
     campaign.chip_rows = 16;
     campaign.chip_columns = 17;

@@ -32,7 +32,7 @@ static void set_up_init(struct set_up *set)
     set->scene.geometry.row_spacing_m = 0.025;
     set->scene.geometry.column_spacing_m = 0.025;
     set->scene.geometry.first_slant_range_m = 25.0;
-    sonject_object_params_init(&object);
+    object_init(&object);
     object.shape = SONJECT_SHAPE_SPHERE;
     object.diameter_m = 0.02;
     assert_int_equal(scene_append_object(&set->scene, &set->report, &object), SONJECT_OK);

@@ -3,8 +3,7 @@
 
 #include "scene/params.h"
 
-#include "first_key.h"
-#include "scene/scene.h"
+#include "schema/keys.h"
 
 /* Those that materials.c has. */
 static const char *const promised[] = {"steel",     "concrete", "rubber",      "wood",
@@ -22,7 +21,7 @@ static sonject_material_params take(const char *name)
 
 static void expect_same(const sonject_material_params *a, const sonject_material_params *b)
 {
-    assert_true(a->struct_size == b->struct_size && a->reflection_kind == b->reflection_kind);
+    assert_true(a->reflection_kind == b->reflection_kind);
     assert_true(a->reflection == b->reflection && a->roughness_m == b->roughness_m);
     assert_true(a->lambert == b->lambert && a->lambert_exponent == b->lambert_exponent);
     assert_true(a->glossy_albedo == b->glossy_albedo && a->glossy_slope == b->glossy_slope);
@@ -100,12 +99,11 @@ static void test_values_are_allowed(void **state)
 {
     for (size_t i = 0; i < COUNT(promised); i++) {
         struct report report = {{0}, NULL, NULL};
-        struct first_key first = FIRST_KEY;
         sonject_object_params object;
-        sonject_object_params_init(&object);
+        object_init(&object);
+        object.diameter_m = 0.5;
         object.material = take(promised[i]);
-        assert_int_equal(object.material.struct_size, sizeof object.material);
-        if (check_object(&object, &report, &first.listener) != SONJECT_OK)
+        if (section_check(&object_section, &object, &report, NULL) != SONJECT_OK)
             fail_msg("%s: %s", promised[i], report.message);
         /* of a smooth and a rough part; nothing that the tables do not give */
         assert_true(object.material.roughness_m > 0.0 && object.material.lambert > 0.0);
@@ -118,9 +116,9 @@ static void test_values_are_allowed(void **state)
 static void test_order_of_values(void **state)
 {
     const sonject_material_params steel = take("steel");
-    sonject_material_params initial;
-    sonject_material_params_init(&initial);
-    expect_same(&steel, &initial);
+    sonject_object_params initial;
+    object_init(&initial);
+    expect_same(&steel, &initial.material);
     /* sediments: from gravel to clay density, speed, loss and roughness fall */
     static const char *const sediments[] = {"gravel",    "coarse sand", "medium sand",
                                             "fine sand", "silt",        "clay"};
@@ -141,5 +139,27 @@ static void test_order_of_values(void **state)
     assert_true(take("fine sand").speed_ratio > 1.0 && take("silt").speed_ratio < 1.0);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_blanks_in_names), TEST(test_unknown_names),
-             TEST(test_list_of_names), TEST(test_values_are_allowed), TEST(test_order_of_values))
+/* What its lambert leaves is the surface's cone unless a number is given. */
+static void test_the_sea_surfaces_rough_part(void **state)
+{
+    struct scene scene;
+    scene_init(&scene);
+    sonject_surface_params *surface = &scene.surface;
+    sonject_material_params *material = &surface->material;
+    assert_true(surface_material(surface).glossy_albedo == 1.0);
+    material->reflection = -0.5;
+    material->lambert = 0.05;
+    const double left = 0.25 - 3.14159265358979 * 0.05;
+    assert_true(fabs(surface_material(surface).glossy_albedo - left) < 1e-12); /* digits of pi */
+    material->glossy_albedo = 0.0;
+    assert_true(surface_material(surface).glossy_albedo == 0.0);
+    material->glossy_albedo = NAN;
+    material->reflection = material->lambert = 0.0;
+    assert_true(surface_material(surface).glossy_albedo == 0.0);
+    material->reflection_kind = SONJECT_REFLECTION_FLUID;
+    assert_true(surface_material(surface).glossy_albedo == 1.0);
+}
+
+TEST_PROGRAM(NULL, NULL, TEST(test_the_sea_surfaces_rough_part), TEST(test_blanks_in_names),
+             TEST(test_unknown_names), TEST(test_list_of_names), TEST(test_values_are_allowed),
+             TEST(test_order_of_values))

@@ -7,7 +7,7 @@
 
 static sonject_transfer_params make(sonject_transfer kind, double parameter, double offset)
 {
-    sonject_transfer_params transfer = {sizeof transfer, (uint32_t)kind, parameter, offset, 0.0};
+    sonject_transfer_params transfer = {(uint32_t)kind, parameter, offset, 0.0};
     return transfer;
 }
 

@@ -269,6 +269,8 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
          ":6:15: objects[0].diameter: a plane has none; remove it"},
         {OBJECT "box\n    length: 1\n    width: 1\n    height: 1\n    front_height: 1\n",
          ":9:19: objects[0].front_height: a box has none; remove it"},
+        {OBJECT "wedge\n    length: 1\n    width: 1\n    height: 0.5\n    front_height: 0.51\n",
+         ":9:19: objects[0].front_height: must be 0...0.5 m (the height), not 0.51"},
         {OBJECT "capsule\n    length: 1\n    diameter: 1\n    nose_end: flat\n",
          ":8:15: objects[0].nose_end: a capsule has none; remove it"},
         {OBJECT "capsule\n    diameter: 1\n    length: 0.5\n",
@@ -403,6 +405,9 @@ static void test_interactions(void **state)
 static void test_elements(void **state)
 {
     static const struct wrong wrong[] = {
+        {BASE "surface: {depth: 20, reflection: -0.5, lambert: 0.05, glossy: {albedo: 0.1}}\n",
+         ":4:72: surface.glossy.albedo: must be 0...0.09292 (reflection^2 - pi lambert), or the "
+         "surface returns more than it receives; it is 0.1"},
         {BASE "elements: {hydrophones: {count: 0}}\n",
          ":4:33: elements.hydrophones.count: must be 1...65536, not 0"},
         {BASE "elements: {hydrophones: 4}\n", ":4:25: elements.hydrophones: must be a section of "

@@ -128,7 +128,6 @@ static void test_named_materials(void **state)
     write_scene(folder, small, strlen(small));
     if (read_scene(folder, overrides, COUNT(overrides)) != SONJECT_OK)
         fail_msg("%s", folder->report.message);
-    sonject_material_params_init(&expected);
     assert_int_equal(sonject_material_named("concrete", &expected), SONJECT_OK);
     expected.roughness_m = 0.007;
     assert_memory_equal(&folder->scene.objects[0].material, &expected, sizeof expected);

@@ -41,7 +41,7 @@ static void expect_heights(struct scene_folder *folder, double first_along_track
     char of_file[HASH_TEXT_CAPACITY], of_array[HASH_TEXT_CAPACITY];
     struct relief_features *relief = &folder->scene.relief;
     sonject_relief_params grid;
-    sonject_relief_params_init(&grid);
+    memset(&grid, 0, sizeof grid);
     grid.rows = ROWS;
     grid.columns = COLUMNS;
     grid.row_spacing_m = 0.5;

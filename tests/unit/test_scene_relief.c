@@ -237,9 +237,7 @@ static void test_hash(void **state)
         strcpy(before, after);
     }
     const float heights[4] = {0.0f, 0.0f, 0.0f, 0.1f};
-    sonject_relief_params grid;
-    sonject_relief_params_init(&grid);
-    grid.rows = grid.columns = 2;
+    const sonject_relief_params grid = {2, 2, 0.0, 0.0, 0.025, 0.025};
     assert_int_equal(
         relief_features_set_grid(&folder->scene.relief, &folder->report, &grid, heights),
         SONJECT_OK);

@@ -5,6 +5,7 @@
 
 #include "image/synthetic.h"
 #include "measure/seam.h"
+#include "scene/scene.h"
 
 #define ROWS    400
 #define COLUMNS 400
@@ -15,21 +16,20 @@ static struct report report;
 /* Rayleigh amplitudes of a plain seabed whose rows are correlated. */
 static float *seabed(double row_width, uint64_t seed)
 {
-    sonject_synthetic_params synthetic;
-    sonject_geometry_params geometry;
+    struct scene scene;
     float *pixels = calloc(PIXELS, sizeof *pixels);
     assert_non_null(pixels);
-    sonject_synthetic_params_init(&synthetic);
-    sonject_geometry_params_init(&geometry);
-    geometry.first_slant_range_m = 40.0;
-    synthetic.rows = ROWS;
-    synthetic.columns = COLUMNS;
-    synthetic.seed = seed;
-    synthetic.speckle_shape = INFINITY;
-    synthetic.ripple_contrast = 0.0;
-    synthetic.patch_contrast_db = 0.0;
+    scene_init(&scene);
+    sonject_synthetic_params *synthetic = &scene.synthetic;
+    scene.geometry.first_slant_range_m = 40.0;
+    synthetic->rows = ROWS;
+    synthetic->columns = COLUMNS;
+    synthetic->seed = seed;
+    synthetic->speckle_shape = INFINITY;
+    synthetic->ripple_contrast = 0.0;
+    synthetic->patch_contrast_db = 0.0;
     assert_int_equal(
-        synthesise_seabed(&report, &synthetic, &geometry, row_width * 0.025, 0.025, pixels),
+        synthesise_seabed(&report, synthetic, &scene.geometry, row_width * 0.025, 0.025, pixels),
         SONJECT_OK);
     return pixels;
 }

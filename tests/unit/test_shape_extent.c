@@ -2,9 +2,9 @@
  * shapes against the shapes that they stand for; how they rest on the seabed; and when cuts leave
  * nothing. */
 #include "claims.h"
-#include "first_key.h"
 #include "kernel/mesh_samples.h"
 #include "scene/placement.h"
+#include "schema/keys.h"
 
 #define POINTS 150000
 
@@ -104,7 +104,7 @@ static void draw_cuts(sonject_object_params *object, uint32_t count, double leas
 static sonject_object_params random_object(uint32_t shape, uint32_t cuts)
 {
     sonject_object_params object;
-    sonject_object_params_init(&object);
+    object_init(&object);
     object.shape = shape;
     object.diameter_m = sample_uniform(0.5, 1.0);
     object.length_m = shape == SONJECT_SHAPE_CYLINDER || shape == SONJECT_SHAPE_CAPSULE
@@ -198,7 +198,7 @@ static void test_closed_forms(void **state)
 {
     const double s = sqrt(0.5);
     sonject_object_params object;
-    sonject_object_params_init(&object);
+    object_init(&object);
     object.diameter_m = 2.0;
     object.cut_count = 1;
     object.cuts[0].elevation_rad = 0.5 * PI;
@@ -246,9 +246,10 @@ static void test_bounding_radius(void **state)
 {
     struct shape_size size;
     sonject_object_params object;
-    sonject_object_params_init(&object);
+    object_init(&object);
     object.shape = SONJECT_SHAPE_CYLINDER;
     object.length_m = 2.0;
+    object.diameter_m = 0.5;
     object.nose_end = object.tail_end = SONJECT_END_SPHERICAL;
     shape_size_init(&size, &object);
     assert_true(fabs(size.bounding_radius_m - 1.0) < 2e-6);
@@ -347,7 +348,8 @@ static void test_nothing_stands_prouder_than_it_is_high(void **state)
     struct placement placement;
     double burial;
     sonject_object_params object;
-    sonject_object_params_init(&object);
+    object_init(&object);
+    object.diameter_m = 0.5;
     object.burial_kind = SONJECT_BURIAL_PROUD;
     object.proud_height_m = 0.5;
     make_view(&view, &scene, SONJECT_SIDE_PORT);
@@ -414,7 +416,7 @@ static void test_extents_of_meshes(void **state)
     struct mesh mesh;
     struct mesh_sample sample;
     sonject_object_params object;
-    sonject_object_params_init(&object);
+    object_init(&object);
     object.shape = SONJECT_SHAPE_BOX;
     object.length_m = 2.0;
     object.width_m = 1.2;
@@ -423,7 +425,7 @@ static void test_extents_of_meshes(void **state)
     make_mesh(&mesh, &sample);
     compare_extents(&mesh, &object, 2e-6); /* vertices to 6e-8, where planes meet at a slant */
     mesh_clear(&mesh);
-    sonject_object_params_init(&object);
+    object_init(&object);
     object.diameter_m = 2.0;
     sample_sphere(&sample, 5);
     make_mesh(&mesh, &sample);
@@ -441,7 +443,7 @@ static void test_extents_of_user_shapes(void **state)
         .bounding_radius_m = 1.0, .half_length_m = 1.0, .half_width_m = 1.0, .half_height_m = 0.8};
     struct shape_size size;
     sonject_object_params object;
-    sonject_object_params_init(&object);
+    object_init(&object);
     object.shape = SONJECT_SHAPE_USER;
     object.cut_count = 1;
     object.cuts[0].elevation_rad = 0.5 * PI;
@@ -470,7 +472,7 @@ static void test_cut_meshes_lie_as_deep(void **state)
     make_mesh(&mesh, &sample);
     for (int i = 0; i < 200; i++) {
         sonject_object_params object;
-        sonject_object_params_init(&object);
+        object_init(&object);
         object.shape = SONJECT_SHAPE_BOX;
         object.length_m = 2.0;
         object.width_m = 1.2;
@@ -502,7 +504,6 @@ static void test_cut_meshes_lie_as_deep(void **state)
 static void test_cuts_must_leave_something(void **state)
 {
     struct report report = {{0}, NULL, NULL};
-    struct first_key first = FIRST_KEY;
     struct scene scene;
     struct mesh mesh;
     struct mesh_sample sample;
@@ -512,23 +513,20 @@ static void test_cuts_must_leave_something(void **state)
     scene_init(&scene);
     scene.meshes = &mesh;
     scene.mesh_count = 1;
-    sonject_object_params_init(&object);
+    object_init(&object);
     object.shape = SONJECT_SHAPE_MESH;
     object.cut_count = 2;
     object.cuts[0].distance_m = -0.99;
     object.cuts[1].azimuth_rad = PI;
     object.cuts[1].distance_m = 1.0;
-    assert_int_equal(check_object(&object, &report, &first.listener), SONJECT_OK);
-    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, &first.listener), SONJECT_OK);
+    assert_int_equal(section_check(&object_section, &object, &report, NULL), SONJECT_OK);
+    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, NULL), SONJECT_OK);
     object.cuts[1].distance_m = 0.98;
-    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, &first.listener),
-                     SONJECT_ERROR_INPUT);
-    assert_string_equal(first.key, "cuts");
+    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, NULL), SONJECT_ERROR_INPUT);
     assert_string_equal(report.message, "cuts leave nothing of the object; move one outwards");
     object.cut_count = 1;
     object.cuts[0].distance_m = -1.0; /* touches */
-    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, &first.listener),
-                     SONJECT_ERROR_INPUT);
+    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, NULL), SONJECT_ERROR_INPUT);
     mesh_clear(&mesh);
 }
 

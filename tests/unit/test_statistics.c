@@ -6,6 +6,7 @@
 
 #include "image/statistics.h"
 #include "image/synthetic.h"
+#include "scene/scene.h"
 
 #define ROWS    512
 #define COLUMNS 512
@@ -286,20 +287,19 @@ static void test_correlation(void **state)
 static void add_seabed(double shape, double row_width, double column_width, uint64_t seed,
                        float *intensity)
 {
-    sonject_synthetic_params synthetic;
-    sonject_geometry_params geometry;
+    struct scene scene;
     float *pixels = calloc(PIXELS, sizeof *pixels);
     assert_non_null(pixels);
-    sonject_synthetic_params_init(&synthetic);
-    sonject_geometry_params_init(&geometry);
-    geometry.first_slant_range_m = 40.0;
-    synthetic.rows = ROWS;
-    synthetic.columns = COLUMNS;
-    synthetic.seed = seed;
-    synthetic.speckle_shape = shape;
-    synthetic.ripple_contrast = 0.0;
-    synthetic.patch_contrast_db = 0.0;
-    assert_int_equal(synthesise_seabed(&report, &synthetic, &geometry, row_width * 0.025,
+    scene_init(&scene);
+    sonject_synthetic_params *synthetic = &scene.synthetic;
+    scene.geometry.first_slant_range_m = 40.0;
+    synthetic->rows = ROWS;
+    synthetic->columns = COLUMNS;
+    synthetic->seed = seed;
+    synthetic->speckle_shape = shape;
+    synthetic->ripple_contrast = 0.0;
+    synthetic->patch_contrast_db = 0.0;
+    assert_int_equal(synthesise_seabed(&report, synthetic, &scene.geometry, row_width * 0.025,
                                        column_width * 0.025, pixels),
                      SONJECT_OK);
     for (size_t i = 0; i < PIXELS; i++)

@@ -11,7 +11,6 @@ static sonject_synthetic_params plain(uint32_t rows, uint32_t columns)
 {
     sonject_synthetic_params synthetic;
     memset(&synthetic, 0, sizeof synthetic);
-    synthetic.struct_size = sizeof synthetic;
     synthetic.rows = rows;
     synthetic.columns = columns;
     synthetic.seed = 7;

@@ -101,11 +101,7 @@ static void test_size_and_names_are_limited(void **state)
 static void append(struct user_shapes *shapes, const char *name, const char *code)
 {
     struct report report = {{0}, NULL, NULL};
-    sonject_user_shape_params params;
-    sonject_user_shape_params_init(&params);
-    params.name = name;
-    params.code = code;
-    params.bounding_radius_m = 1.0;
+    const sonject_user_shape_params params = {.name = name, .code = code, .bounding_radius_m = 1.0};
     EXPECT_OK(&report, user_shapes_append(shapes, &report, &params));
 }
 

@@ -13,7 +13,6 @@
 #include "kernels/layout.h"
 #include "mesh/mesh.h"
 #include "scene/scene.h"
-#include "scene/user_shapes.h"
 
 /* Counted outwards along the axis. */
 struct end_size {
