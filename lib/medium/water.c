@@ -5,102 +5,15 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "base/report.h"
 
-#define DENSITY_MIN         1e-6 /* so that ratios neither overflow nor vanish */
-#define DENSITY_MAX         1e6
 #define STEPS_PER_SPEED     20000.0
 #define KELVIN_AT_0_CELSIUS 273.0 /* the papers' own, without the 0.15 */
 #define JOINED_DIFFERENCE   0.002 /* of layers that targets reach into, relative */
-
-/* Checks one value after the other and remembers where it was. */
-struct walk {
-    struct check check;
-    struct profile_place place;
-    char name[64]; /* of the value that is checked */
-};
-
-/* "heights[3]", or "layers[3].bottom" where `of` is not NULL. */
-static const char *name_value(struct walk *walk, const char *of, size_t index, const char *key)
-{
-    if (walk->check.status == SONJECT_OK) {
-        if (of)
-            snprintf(walk->name, sizeof walk->name, "%s[%zu].%s", of, index, key);
-        else
-            snprintf(walk->name, sizeof walk->name, "%s[%zu]", key, index);
-        walk->place.index = index;
-        walk->place.key = key;
-    }
-    return walk->name;
-}
-
-static sonject_status end_walk(const struct walk *walk, struct profile_place *place)
-{
-    if (walk->check.status != SONJECT_OK && place)
-        *place = walk->place;
-    return walk->check.status;
-}
-
-static void check_rise(struct walk *walk, double below, double height)
-{
-    if (!(height >= below + WATER_HEIGHT_STEP_MIN_M))
-        check_failure(&walk->check, walk->name,
-                      "must lie over the one before it, %g m, by at least %g m, not at %g m", below,
-                      WATER_HEIGHT_STEP_MIN_M, height);
-}
-
-sonject_status check_water_layers(const struct water_layer *layers, size_t count,
-                                  struct report *report, struct profile_place *place)
-{
-    struct walk walk = {{report, NULL, SONJECT_OK}, {0, NULL}, ""};
-    if (count > WATER_LAYERS_MAX) {
-        name_value(&walk, "layers", WATER_LAYERS_MAX, "bottom");
-        check_failure(&walk.check, walk.name, "is one too many; at most %d layers are possible",
-                      WATER_LAYERS_MAX);
-    }
-    for (size_t i = 0; i < count && walk.check.status == SONJECT_OK; i++) {
-        check_coordinate(&walk.check, name_value(&walk, "layers", i, "bottom"), layers[i].bottom_m);
-        if (i > 0)
-            check_rise(&walk, layers[i - 1].bottom_m, layers[i].bottom_m);
-        else if (layers[0].bottom_m != 0.0)
-            check_failure(&walk.check, walk.name,
-                          "must be 0 m: the first layer lies on the seabed; not %g m",
-                          layers[0].bottom_m);
-        check_within(&walk.check, name_value(&walk, "layers", i, "sound_speed"),
-                     layers[i].speed_mps, WATER_SPEED_MIN_MPS, WATER_SPEED_MAX_MPS, " m/s");
-        check_within(&walk.check, name_value(&walk, "layers", i, "density"), layers[i].density,
-                     DENSITY_MIN, DENSITY_MAX, "");
-    }
-    return end_walk(&walk, place);
-}
-
-sonject_status check_sound_speed_profile(const double *heights_m, const double *speeds_mps,
-                                         size_t count, struct report *report,
-                                         struct profile_place *place)
-{
-    struct walk walk = {{report, NULL, SONJECT_OK}, {0, NULL}, ""};
-    if (count < 2) {
-        name_value(&walk, NULL, count, "heights");
-        check_failure(&walk.check, walk.name, "is missing; a profile needs at least two samples");
-    }
-    for (size_t i = 0; i < count && walk.check.status == SONJECT_OK; i++) {
-        check_coordinate(&walk.check, name_value(&walk, NULL, i, "heights"), heights_m[i]);
-        if (i > 0)
-            check_rise(&walk, heights_m[i - 1], heights_m[i]);
-        if (i + 1 == count && !(heights_m[i] > 0.0))
-            check_failure(&walk.check, walk.name,
-                          "must lie over the seabed: the whole profile is below it (%g m)",
-                          heights_m[i]);
-        check_within(&walk.check, name_value(&walk, NULL, i, "sound_speeds"), speeds_mps[i],
-                     WATER_SPEED_MIN_MPS, WATER_SPEED_MAX_MPS, " m/s");
-    }
-    return end_walk(&walk, place);
-}
 
 struct stack {
     struct water_layer *layers; /* room for WATER_LAYERS_MAX */
@@ -161,23 +74,12 @@ sonject_status layers_of_profile(const double *heights_m, const double *speeds_m
     if (stack.is_full) {
         free(stack.layers);
         return report_failure(report, SONJECT_ERROR_INPUT,
-                              "profile needs more than %d layers; take fewer samples, or layers",
+                              "needs more than %d layers; take fewer samples, or layers",
                               WATER_LAYERS_MAX);
     }
     *layers = stack.layers;
     *layer_count = stack.count;
     return SONJECT_OK;
-}
-
-sonject_status check_sea_water(const struct sea_water *water, struct report *report,
-                               struct check_listener *listener)
-{
-    struct check check = {report, listener, SONJECT_OK};
-    check_within(&check, "temperature", water->temperature_celsius, -2.0, 30.0, " C");
-    check_within(&check, "salinity", water->salinity_permille, 0.0, 40.0, " per mille");
-    check_within(&check, "depth", water->depth_m, 0.0, 5000.0, " m");
-    check_within(&check, "ph", water->ph, 7.0, 9.0, "");
-    return check.status;
 }
 
 /* Of a substance that needs time to follow the pressure, for unit strength. */
@@ -222,15 +124,19 @@ static double pure_water(const struct sea_water *water, double frequency)
     return strength * pressure * frequency * frequency;
 }
 
+static bool is_within(double value, double least, double most)
+{
+    return value >= least && value <= most;
+}
+
 double sonject_absorption(double frequency_hz, double temperature_celsius, double salinity_permille,
                           double depth_m, double ph)
 {
     const struct sea_water water = {temperature_celsius, salinity_permille, depth_m, ph};
-    struct report report = {{0}, NULL, NULL};
     const double frequency = frequency_hz / 1e3;
-    if (!(frequency_hz >= ABSORPTION_FREQUENCY_MIN_HZ &&
-          frequency_hz <= ABSORPTION_FREQUENCY_MAX_HZ) ||
-        check_sea_water(&water, &report, NULL) != SONJECT_OK)
+    if (!is_within(frequency_hz, ABSORPTION_FREQUENCY_MIN_HZ, ABSORPTION_FREQUENCY_MAX_HZ) ||
+        !is_within(temperature_celsius, -2.0, 30.0) || !is_within(salinity_permille, 0.0, 40.0) ||
+        !is_within(depth_m, 0.0, 5000.0) || !is_within(ph, 7.0, 9.0))
         return NAN;
     return (boric_acid(&water, frequency) + magnesium_sulphate(&water, frequency) +
             pure_water(&water, frequency)) /

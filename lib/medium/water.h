@@ -28,25 +28,8 @@ struct water_layer {
 #define WATER_SPEED_MIN_MPS     100.0
 #define WATER_SPEED_MAX_MPS     10000.0
 
-/* Where a check failed. */
-struct profile_place {
-    size_t index;    /* of the layer or sample */
-    const char *key; /* of its value, static: "bottom", "sound_speed", "density"; "heights",
-                        "sound_speeds" */
-};
-
-/* Layers as sonject_scene_set_water_layers wants them, at least one. The message starts with the
- * value's name and a blank ("layers[2].bottom must be ..."); place may be NULL. Errors: INPUT. */
-sonject_status check_water_layers(const struct water_layer *layers, size_t count,
-                                  struct report *report, struct profile_place *place);
-
-/* A profile as sonject_scene_set_sound_speed_profile wants it; the message starts with "heights[3]
- * ..." or "sound_speeds[3] ...". Errors: INPUT. */
-sonject_status check_sound_speed_profile(const double *heights_m, const double *speeds_mps,
-                                         size_t count, struct report *report,
-                                         struct profile_place *place);
-
-/* Layers of a profile that the check has let pass. Each linear piece above the seabed gives equally
+/* Layers of a profile whose heights rise by WATER_HEIGHT_STEP_MIN_M or more, the last one above the
+ * seabed. Each linear piece above the seabed gives equally
  * high layers with the piece's sound speed at their middle, as many as keep the steps from one to
  * the next below 1/20000 of the speed; below the first sample and above the last one the speed is
  * theirs. Equal neighbours are one layer. On success *layers is the caller's for free(). Errors:
@@ -64,11 +47,6 @@ struct sea_water {
     double depth_m;             /* below the sea surface, 0...5000 */
     double ph;                  /* 7...9 */
 };
-
-/* Ranges in which the formula of sonject_absorption holds, in the manner of the checks in
- * scene/scene.h: keys are "temperature", "salinity", "depth" and "ph". Errors: INPUT. */
-sonject_status check_sea_water(const struct sea_water *water, struct report *report,
-                               struct check_listener *listener);
 
 struct water {
     struct water_layer *layers; /* owned; neighbours differ; the first is the straight water */

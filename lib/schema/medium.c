@@ -6,13 +6,6 @@
 #include "schema/keys.h"
 #include "schema/tables.h"
 
-/* What a check of layers or profiles says behind the name that its message begins with. */
-static const char *behind_name(const struct report *check)
-{
-    const char *blank = strchr(check->message, ' ');
-    return blank ? blank + 1 : check->message;
-}
-
 /* That the node is a list of 1...WATER_LAYERS_MAX entries. example: for the message. */
 static sonject_status check_list(struct reader *reader, const struct tree_node *node,
                                  const char *example)
@@ -115,9 +108,7 @@ static sonject_status table_of_file(struct reader *reader, const struct tree_nod
     if (is_given(node, "sound_speeds"))
         return refuse_key(reader, node, "sound_speeds",
                           "the file tells them; remove one of the two");
-    const struct number_array *array = find_array(reader, file);
-    return array ? profile_table_take(reader->report, array, table)
-                 : profile_table_read(reader->report, file, table);
+    return profile_table_read(reader->report, file, find_array(reader, file), table);
 }
 
 static sonject_status layers_of_table(struct reader *reader, const struct tree_node *node,
@@ -133,12 +124,15 @@ static sonject_status layers_of_table(struct reader *reader, const struct tree_n
         return refuse_key(reader, node, key,
                           "depths are meant from the sea surface; set depth in surface");
     profile_table_to_heights(table, depth);
-    sonject_status status = check_sound_speed_profile(table->positions_m, table->speeds_mps,
-                                                      table->count, &check, NULL);
-    THEN(status, layers_of_profile(table->positions_m, table->speeds_mps, table->count, &check,
-                                   &layers, &count));
+    const double highest = table->positions_m[table->count - 1];
+    if (!(highest > 0.0))
+        return refuse_key(reader, node, key,
+                          "must lie over the seabed: the whole profile is below it (%g m)",
+                          highest);
+    const sonject_status status = layers_of_profile(table->positions_m, table->speeds_mps,
+                                                    table->count, &check, &layers, &count);
     if (status == SONJECT_ERROR_INPUT)
-        return refuse_key(reader, node, key, "%s", behind_name(&check));
+        return refuse_key(reader, node, key, "%s", check.message);
     if (status != SONJECT_OK)
         return report_out_of_memory(reader->report, "layers of water");
     replace_layers(reader->scene, layers, count);
@@ -201,26 +195,27 @@ static const struct field layer_fields[] = {
 const struct section layer_section = {ROWS(layer_fields)};
 #undef STRUCTURE
 
-/* Densities stand at all layers or at none. node: the list. */
+/* Densities stand at all layers or at none, and bottoms rise from the seabed. node: the list. */
 static sonject_status relate_layers(struct reader *reader, const struct tree_node *node,
                                     const struct water_layer *layers)
 {
-    struct report check = {{0}, NULL, NULL};
-    struct profile_place place;
-    const char *what = NULL;
-    for (size_t i = 0; !what && i < node->count; i++) {
-        place.index = i;
-        place.key = "density";
-        if (is_given(&node->entries[i].value, "density") !=
-            is_given(&node->entries[0].value, "density"))
-            what = "give it for all layers or for none";
+    for (size_t i = 0; i < node->count; i++) {
+        const struct tree_node *entry = &node->entries[i].value;
+        const size_t before = key_path_add_index(&reader->path, i);
+        if (is_given(entry, "density") != is_given(&node->entries[0].value, "density"))
+            return refuse_key(reader, entry, "density", "give it for all layers or for none");
+        if (i == 0 && layers[0].bottom_m != 0.0)
+            return refuse_key(reader, entry, "bottom",
+                              "must be 0 m: the first layer lies on the seabed; not %g m",
+                              layers[0].bottom_m);
+        if (i > 0 && !(layers[i].bottom_m >= layers[i - 1].bottom_m + WATER_HEIGHT_STEP_MIN_M))
+            return refuse_key(
+                reader, entry, "bottom",
+                "must lie over the one before it, %g m, by at least %g m, not at %g m",
+                layers[i - 1].bottom_m, WATER_HEIGHT_STEP_MIN_M, layers[i].bottom_m);
+        key_path_shorten(&reader->path, before);
     }
-    if (!what && check_water_layers(layers, node->count, &check, &place) != SONJECT_OK)
-        what = behind_name(&check);
-    if (!what)
-        return SONJECT_OK;
-    key_path_add_index(&reader->path, place.index);
-    return refuse_key(reader, &node->entries[place.index].value, place.key, "%s", what);
+    return SONJECT_OK;
 }
 
 static sonject_status read_layer(struct reader *reader, const struct tree_node *node,

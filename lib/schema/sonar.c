@@ -23,9 +23,8 @@ static sonject_status read_table(struct reader *reader, const struct tree_node *
 {
     char *path = NULL;
     CHECK(read_existing_path(reader, node, &path));
-    const struct number_array *array = find_array(reader, path);
-    const sonject_status status = array ? number_table_take(reader->report, array, format, table)
-                                        : number_table_read(reader->report, path, format, table);
+    const sonject_status status =
+        number_table_read(reader->report, path, find_array(reader, path), format, table);
     free(path);
     return status;
 }

@@ -204,53 +204,54 @@ static sonject_status take_text(struct table_reader *reader, char *text, size_t 
     return status;
 }
 
-sonject_status number_table_read(struct report *report, const char *path,
-                                 const struct table_format *format, struct number_table *table)
+static sonject_status take_file(struct table_reader *reader, const char *path)
 {
-    struct table_reader reader = {report, table, ' ', 0, {0}};
     char *text = NULL;
     size_t bytes;
-    memset(table, 0, sizeof *table);
-    table->format = format;
-    text_excerpt(table->file, sizeof table->file, path);
-    table->lines = allocate_array(format->samples_max, sizeof *table->lines);
-    CHECK_MEMORY(report, table->lines, "a table");
-    sonject_status status = file_read_whole(report, path, format->bytes_max, &text, &bytes);
-    THEN(status, take_text(&reader, text, bytes));
-    if (status == SONJECT_OK && reader.column_count == 0)
-        status =
-            report_failure(report, SONJECT_ERROR_INPUT, "%s: there is nothing in it", table->file);
+    sonject_status status =
+        file_read_whole(reader->report, path, reader->table->format->bytes_max, &text, &bytes);
+    THEN(status, take_text(reader, text, bytes));
+    if (status == SONJECT_OK && reader->column_count == 0)
+        status = report_failure(reader->report, SONJECT_ERROR_INPUT, "%s: there is nothing in it",
+                                reader->table->file);
     free(text);
-    if (status != SONJECT_OK)
-        number_table_clear(table);
     return status;
 }
 
-sonject_status number_table_take(struct report *report, const struct number_array *array,
-                                 const struct table_format *format, struct number_table *table)
+static sonject_status take_array(struct table_reader *reader, const struct number_array *array)
 {
-    struct table_reader reader = {report, table, ' ', 0, {0}};
+    struct number_table *table = reader->table;
     char *names = copy_text(array->columns);
-    memset(table, 0, sizeof *table);
-    table->format = format;
-    text_excerpt(table->file, sizeof table->file, array->name);
-    table->lines = allocate_array(format->samples_max, sizeof *table->lines);
-    sonject_status status =
-        names && table->lines ? SONJECT_OK : report_out_of_memory(report, "a table");
-    THEN(status, take_names(&reader, trim(names)));
-    if (status == SONJECT_OK && reader.column_count != array->column_count)
-        status = refuse_line(&reader, "", "as many names as columns are needed");
-    else if (status == SONJECT_OK && array->rows > format->samples_max)
-        status = refuse_line(&reader, "", "too many samples; thin them out");
-    for (size_t row = 0; status == SONJECT_OK && row < array->rows; row++) {
+    CHECK_MEMORY(reader->report, names, "a table");
+    const sonject_status status = take_names(reader, trim(names));
+    free(names);
+    CHECK(status);
+    if (reader->column_count != array->column_count)
+        return refuse_line(reader, "", "as many names as columns are needed");
+    if (array->rows > table->format->samples_max)
+        return refuse_line(reader, "", "too many samples; thin them out");
+    for (size_t row = 0; row < array->rows; row++) {
         const double *values = array->values + row * array->column_count;
         for (int i = 0; i < TABLE_COLUMNS_MAX; i++)
             if (table->values[i])
-                table->values[i][row] = values[reader.place[i]];
+                table->values[i][row] = values[reader->place[i]];
         table->lines[row] = table->last_line = row + 1;
         table->count = row + 1;
     }
-    free(names);
+    return SONJECT_OK;
+}
+
+sonject_status number_table_read(struct report *report, const char *path,
+                                 const struct number_array *array,
+                                 const struct table_format *format, struct number_table *table)
+{
+    struct table_reader reader = {report, table, ' ', 0, {0}};
+    memset(table, 0, sizeof *table);
+    table->format = format;
+    text_excerpt(table->file, sizeof table->file, array ? array->name : path);
+    table->lines = allocate_array(format->samples_max, sizeof *table->lines);
+    CHECK_MEMORY(report, table->lines, "a table");
+    const sonject_status status = array ? take_array(&reader, array) : take_file(&reader, path);
     if (status != SONJECT_OK)
         number_table_clear(table);
     return status;
@@ -283,54 +284,32 @@ enum {
 static const struct table_format profile_format = {
     {"height_m", "depth_m", "sound_speed_mps", NULL}, 1, PROFILE_SAMPLES_MAX, PROFILE_BYTES_MAX};
 
-/* Takes the columns over and checks them. */
-static sonject_status take_columns(struct report *report, struct number_table *numbers,
-                                   struct profile_table *table)
+sonject_status profile_table_read(struct report *report, const char *path,
+                                  const struct number_array *array, struct profile_table *table)
 {
+    struct number_table numbers;
     struct profile_fault fault;
-    const int position = numbers->values[DEPTH] ? DEPTH : HEIGHT;
     sonject_status status = SONJECT_OK;
-    table->is_depth = position == DEPTH;
-    table->positions_m = numbers->values[position];
-    table->speeds_mps = numbers->values[SPEED];
-    table->count = numbers->count;
-    numbers->values[position] = NULL;
-    numbers->values[SPEED] = NULL;
+    CHECK(number_table_read(report, path, array, &profile_format, &numbers));
+    const int position = numbers.values[DEPTH] ? DEPTH : HEIGHT;
+    *table = (struct profile_table){numbers.values[position], numbers.values[SPEED], numbers.count,
+                                    position == DEPTH};
+    numbers.values[position] = numbers.values[SPEED] = NULL;
     if (!profile_table_is_good(table, &fault))
-        status = number_table_refuse(numbers, report, fault.sample,
+        status = number_table_refuse(&numbers, report, fault.sample,
                                      (size_t)(fault.is_speed ? SPEED : position), fault.what);
-    number_table_clear(numbers);
+    number_table_clear(&numbers);
     if (status != SONJECT_OK)
         profile_table_clear(table);
     return status;
 }
 
-sonject_status profile_table_read(struct report *report, const char *path,
-                                  struct profile_table *table)
-{
-    struct number_table numbers;
-    CHECK(number_table_read(report, path, &profile_format, &numbers));
-    return take_columns(report, &numbers, table);
-}
-
-sonject_status profile_table_take(struct report *report, const struct number_array *array,
-                                  struct profile_table *table)
-{
-    struct number_table numbers;
-    CHECK(number_table_take(report, array, &profile_format, &numbers));
-    return take_columns(report, &numbers, table);
-}
-
-/* What a range check says, without the value's name. */
 static bool is_within(struct profile_fault *fault, double value, double least, double most,
                       const char *unit)
 {
-    struct report report = {{0}, NULL, NULL};
-    struct check check = {&report, NULL, SONJECT_OK};
-    check_within(&check, "it", value, least, most, unit);
-    if (check.status != SONJECT_OK)
-        snprintf(fault->what, sizeof fault->what, "%.190s", report.message + 3);
-    return check.status == SONJECT_OK;
+    snprintf(fault->what, sizeof fault->what, "must be %g...%g%s, not %g", least, most, unit,
+             value);
+    return value >= least && value <= most;
 }
 
 /* Whether sample i >= 1 goes on in the direction of the first two. */

@@ -38,16 +38,14 @@ struct number_table {
     char file[400]; /* for messages */
 };
 
-/* Reads a file: a line of column names, then one line a sample. Columns are separated by
+/* Reads a file, or where array is not NULL takes that, whose rows are the samples, counted from 1
+ * in messages. A file has a line of column names, then one line a sample. Columns are separated by
  * semicolons, or else commas, or else white space, as the first line has them; what follows a # is
  * a comment; other columns are passed over. format: borrowed. table: gets what is read; on success
  * the caller's for number_table_clear. Message: "file:line: column: what". Errors: STORAGE, INPUT,
  * MEMORY. */
 sonject_status number_table_read(struct report *report, const char *path,
-                                 const struct table_format *format, struct number_table *table);
-
-/* The same of an array, whose rows are the samples, counted from 1 in messages. */
-sonject_status number_table_take(struct report *report, const struct number_array *array,
+                                 const struct number_array *array,
                                  const struct table_format *format, struct number_table *table);
 
 /* The message about a sample's value; sample: count for the table as a whole. Returns INPUT. */
@@ -80,11 +78,7 @@ struct profile_fault {
  * table: zeroed; on success the caller's for profile_table_clear. Errors and message: as of
  * number_table_read. */
 sonject_status profile_table_read(struct report *report, const char *path,
-                                  struct profile_table *table);
-
-/* The same of an array. */
-sonject_status profile_table_take(struct report *report, const struct number_array *array,
-                                  struct profile_table *table);
+                                  const struct number_array *array, struct profile_table *table);
 
 /* Whether there are at least two samples, positions rise or fall all the way, and all numbers are
  * within their ranges; if not, fault gets the first sample that is wrong. */

@@ -15,7 +15,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     struct report report = {{0}, NULL, NULL};
     struct number_table table;
     fuzz_write("fuzz.csv", bytes, count);
-    const sonject_status status = number_table_read(&report, "fuzz.csv", &format, &table);
+    const sonject_status status = number_table_read(&report, "fuzz.csv", NULL, &format, &table);
     fuzz_expect(status, &report);
     if (status != SONJECT_OK)
         return 0;

@@ -12,7 +12,7 @@ static sonject_status read_bytes(void **state, const void *bytes, size_t count,
     write_bytes(path, bytes, count);
     memset(report, 0, sizeof *report);
     memset(table, 0, sizeof *table);
-    return profile_table_read(report, path, table);
+    return profile_table_read(report, path, NULL, table);
 }
 
 /* The samples of all good tables here: 12 m and 1490.5 m/s, then 15.5 m and 1.5e3 m/s. */
@@ -183,10 +183,12 @@ static void test_files_that_cannot_be_read(void **state)
     struct temporary_folder *folder = *state;
     struct report report = {{0}, NULL, NULL};
     struct profile_table table = {NULL, NULL, 0, false};
-    assert_int_equal(profile_table_read(&report, temporary_file(folder, "absent.csv"), &table),
-                     SONJECT_ERROR_STORAGE);
+    assert_int_equal(
+        profile_table_read(&report, temporary_file(folder, "absent.csv"), NULL, &table),
+        SONJECT_ERROR_STORAGE);
     assert_non_null(strstr(report.message, "absent.csv: cannot open"));
-    assert_int_equal(profile_table_read(&report, folder->path, &table), SONJECT_ERROR_STORAGE);
+    assert_int_equal(profile_table_read(&report, folder->path, NULL, &table),
+                     SONJECT_ERROR_STORAGE);
     assert_non_null(strstr(report.message, "cannot read"));
     assert_null(table.positions_m);
 }
@@ -228,7 +230,92 @@ static void test_damaged_files_get_an_answer(void **state)
     }
 }
 
+/* ---- What becomes of good ones. */
+
+#define STEP (1.0 / 20000.0) /* of the sound speed between layers, at most */
+
+struct profile {
+    double heights[5], speeds[5];
+    size_t count;
+};
+
+/* The sound speed that the samples mean. */
+static double speed_at(const struct profile *profile, double height)
+{
+    size_t i = 0;
+    if (height <= profile->heights[0])
+        return profile->speeds[0];
+    if (height >= profile->heights[profile->count - 1])
+        return profile->speeds[profile->count - 1];
+    while (profile->heights[i + 1] < height)
+        i++;
+    const double share =
+        (height - profile->heights[i]) / (profile->heights[i + 1] - profile->heights[i]);
+    return (1.0 - share) * profile->speeds[i] + share * profile->speeds[i + 1];
+}
+
+/* Layers of the straight pieces that lie over the seabed: as few as the step allows, and one where
+ * it is constant, which the next one joins if it has the same speed. */
+static void expect_layers(const struct profile *profile, size_t expected)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct water_layer *layers;
+    size_t count;
+    EXPECT_OK(&report, layers_of_profile(profile->heights, profile->speeds, profile->count, &report,
+                                         &layers, &count));
+    assert_int_equal(count, expected);
+    assert_true(layers[0].bottom_m == 0.0);
+    for (size_t i = 0; i < count; i++) {
+        const bool is_last = i + 1 == count;
+        const double bottom = layers[i].bottom_m;
+        const double middle = is_last ? bottom + 1.0 : 0.5 * (bottom + layers[i + 1].bottom_m);
+        /* 1e-12: roundings of the middle and of the interpolation */
+        assert_true(fabs(layers[i].speed_mps / speed_at(profile, middle) - 1.0) < 1e-12);
+        assert_true(layers[i].density == layers[0].density);
+        if (is_last)
+            continue;
+        const double next = layers[i + 1].speed_mps;
+        assert_true(layers[i + 1].bottom_m > bottom && next != layers[i].speed_mps);
+        assert_true(fabs(next - layers[i].speed_mps) <=
+                    STEP * (1.0 + 1e-9) * fmin(next, layers[i].speed_mps));
+    }
+    free(layers);
+}
+
+static void test_profiles_become_thin_layers(void **state)
+{
+    /* 1490 to 1520 m/s: 30 / (1490 / 20000) = 402.7 layers, and one below and above */
+    const struct profile thermocline = {{0, 12, 16, 25}, {1490, 1490, 1520, 1520}, 4};
+    const struct profile falling = {{3, 20}, {1500.0, 1499.0}, 2};          /* 13.3, and two */
+    const struct profile buried = {{-4, 4, 6}, {1500, 1504, 1504}, 3};      /* 1502...1504: 26.6 */
+    const struct profile below = {{-9, -5, 10}, {1400, 1500, 1501}, 3};     /* 2/3 m/s: 8.9 */
+    const struct profile little = {{1, 2, 3}, {1500, 1500.06, 1500.01}, 3}; /* less than a step */
+    const struct profile constant = {{1, 2, 3}, {1480, 1480, 1480}, 3};
+    const struct profile corner = {{0, 10, 20}, {1500, 1503.1, 1499}, 3}; /* 41.3 and 54.7 */
+    expect_layers(&thermocline, 405);
+    expect_layers(&falling, 16);
+    expect_layers(&buried, 28);
+    expect_layers(&below, 10);
+    expect_layers(&little, 4);
+    expect_layers(&constant, 1);
+    expect_layers(&corner, 98);
+}
+
+/* Samples as close as heights may be, as far up as they may be, and the steepest that fits. */
+static void test_steep_profiles_keep_rising(void **state)
+{
+    const double heights[] = {999999.0, 999999.0000011}, speeds[] = {1400.0, 1660.0};
+    struct report report = {{0}, NULL, NULL};
+    struct water_layer *layers;
+    size_t count;
+    EXPECT_OK(&report, layers_of_profile(heights, speeds, 2, &report, &layers, &count));
+    for (size_t i = 1; i < count; i++)
+        assert_true(layers[i].bottom_m > layers[i - 1].bottom_m);
+    free(layers);
+}
+
 TEST_PROGRAM(make_temporary_folder, remove_temporary_folder, TEST(test_every_way_to_write_a_table),
              TEST(test_heights_rise_however_the_table_runs), TEST(test_tables_that_are_wrong),
              TEST(test_limits), TEST(test_files_that_cannot_be_read),
+             TEST(test_profiles_become_thin_layers), TEST(test_steep_profiles_keep_rising),
              TEST(test_damaged_files_get_an_answer))
