@@ -120,7 +120,7 @@ static void describe_meshes(struct growing_text *text, const struct scene *scene
                          (unsigned long)count_showing(placements, mesh),
                          count_showing(placements, mesh) == 1 ? "" : "s");
         if (topology->is_closed)
-            growing_text_add(text, "           watertight, %.4g m3", mesh->volume_m3);
+            growing_text_add(text, "           watertight, %.4g m3", mesh->topology.volume);
         else
             growing_text_add(
                 text,

@@ -46,40 +46,6 @@ void mesh_clear(struct mesh *mesh)
     memset(mesh, 0, sizeof *mesh);
 }
 
-/* Determinant of the map of axes; 0 unless it is made of 1, 2, 3. */
-static int determinant(const int axes[3])
-{
-    int order[3];
-    int sign = 1;
-    for (int i = 0; i < 3; i++) {
-        order[i] = axes[i] < 0 ? -axes[i] : axes[i];
-        sign = axes[i] < 0 ? -sign : sign;
-        if (order[i] < 1 || order[i] > 3)
-            return 0;
-    }
-    if (order[0] == order[1] || order[1] == order[2] || order[2] == order[0])
-        return 0;
-    return order[1] == order[0] % 3 + 1 ? sign : -sign;
-}
-
-static sonject_status check_options(struct report *report, const char *name,
-                                    const struct mesh_options *options)
-{
-    if (!(options->unit_m > 0.0) || !isfinite(options->unit_m))
-        return report_failure(report, SONJECT_ERROR_ARGUMENT,
-                              "%s: the unit of a mesh must be a length above 0", name);
-    if (!(options->smooth_angle_rad >= 0.0) || options->smooth_angle_rad > 3.15)
-        return report_failure(report, SONJECT_ERROR_ARGUMENT,
-                              "%s: the angle of smooth normals must be 0 to 180 degrees", name);
-    if (determinant(options->axes) == 1)
-        return SONJECT_OK;
-    return report_failure(report, SONJECT_ERROR_ARGUMENT, "%s: axes %d, %d, %d %s", name,
-                          options->axes[0], options->axes[1], options->axes[2],
-                          determinant(options->axes) == 0
-                              ? "must be 1, 2 and 3 in some order, with a minus sign where reversed"
-                              : "mirror the mesh: reverse one more or one less of them");
-}
-
 /* A coordinate of the file as the object's, m. */
 static double coordinate(const struct mesh_soup *soup, size_t vertex, int axis,
                          const struct mesh_options *options)
@@ -107,9 +73,8 @@ static sonject_status find_centre(const struct mesh_soup *soup, struct mesh *mes
     }
     if (sqrt(square) >= RADIUS_LEAST_M && sqrt(square) <= RADIUS_MOST_M)
         return SONJECT_OK;
-    return report_failure(soup->report, SONJECT_ERROR_INPUT,
-                          "%s: the mesh is %g m across: check its unit", soup->path,
-                          2.0 * sqrt(square));
+    return input_failure(soup->report, soup->path, "the mesh is %g m across: check its unit",
+                         2.0 * sqrt(square));
 }
 
 /* Brings the soup's vertices into the mesh's frame, welds those that are equal, or closer than the
@@ -139,9 +104,9 @@ static sonject_status weld_all(const struct mesh_soup *soup, struct mesh *mesh, 
             CHECK(mesh_soup_add_triangle(weld->soup, corners[0], corners[1], corners[2]));
     }
     if (weld->soup->triangles == 0)
-        return report_failure(soup->report, SONJECT_ERROR_INPUT,
-                              "%s: none of its %zu triangles has an area: export the mesh again",
-                              soup->path, soup->triangles);
+        return input_failure(soup->report, soup->path,
+                             "none of its %zu triangles has an area: export the mesh again",
+                             soup->triangles);
     return SONJECT_OK;
 }
 
@@ -215,19 +180,13 @@ static sonject_status set_normals(struct report *report, double angle, struct me
     return SONJECT_OK;
 }
 
-static sonject_status prepare(const struct mesh_soup *soup, struct mesh *mesh)
+sonject_status mesh_of_soup(const struct mesh_soup *soup, struct mesh *mesh)
 {
     struct report *report = soup->report;
     mesh->name = copy_text(soup->path);
     CHECK_MEMORY(report, mesh->name, soup->path);
     if (soup->triangles == 0)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: the mesh has no triangles",
-                              soup->path);
-    if (soup->triangles > MESH_TRIANGLES_MAX)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: %zu triangles are more than the %zu that a mesh may have: "
-                              "simplify it",
-                              soup->path, soup->triangles, MESH_TRIANGLES_MAX);
+        return input_failure(report, soup->path, "the mesh has no triangles");
     CHECK(find_centre(soup, mesh));
     CHECK(weld_and_orient(soup, mesh, 0.0));
     /* only a mesh that is open is looked at for a seam, so that no thin wall of another is touched
@@ -242,7 +201,6 @@ static sonject_status prepare(const struct mesh_soup *soup, struct mesh *mesh)
         CHECK(weld_and_orient(soup, mesh, SEAM_SHARE * sqrt(square)));
         mesh->welded = vertices - mesh->vertex_count;
     }
-    mesh->volume_m3 = mesh->topology.volume;
     CHECK(mesh_hierarchy_build(report, mesh->vertices, mesh->corners, mesh->triangle_count,
                                mesh->radius_m, &mesh->hierarchy));
     return mesh->options.smooth_angle_rad > 0.0
@@ -256,47 +214,10 @@ sonject_status mesh_load(struct report *report, const char *path,
     struct mesh_soup soup = {.report = report, .path = path};
     memset(mesh, 0, sizeof *mesh);
     mesh->options = *options;
-    sonject_status status = check_options(report, path, options);
-    THEN(status, file_identify(report, path, &mesh->file));
+    sonject_status status = file_identify(report, path, &mesh->file);
     THEN(status, mesh_file_read(&soup));
-    THEN(status, prepare(&soup, mesh));
+    THEN(status, mesh_of_soup(&soup, mesh));
     mesh_soup_clear(&soup);
-    if (status != SONJECT_OK)
-        mesh_clear(mesh);
-    return status;
-}
-
-static sonject_status check_arrays(const struct mesh_soup *soup)
-{
-    for (size_t i = 0; i < 3 * soup->vertices; i++)
-        if (!isfinite(soup->positions[i]))
-            return report_failure(soup->report, SONJECT_ERROR_INPUT,
-                                  "%s: a coordinate of vertex %zu is not a finite number",
-                                  soup->path, i / 3);
-    for (size_t i = 0; i < 3 * soup->triangles; i++)
-        if (soup->corners[i] >= soup->vertices)
-            return report_failure(soup->report, SONJECT_ERROR_INPUT,
-                                  "%s: triangle %zu has vertex %lu of %zu", soup->path, i / 3,
-                                  (unsigned long)soup->corners[i], soup->vertices);
-    return SONJECT_OK;
-}
-
-sonject_status mesh_from_arrays(struct report *report, const char *name, const double *positions,
-                                size_t vertex_count, const uint32_t *corners, size_t triangle_count,
-                                const struct mesh_options *options, struct mesh *mesh)
-{
-    /* read only */
-    const struct mesh_soup soup = {.report = report,
-                                   .path = name,
-                                   .positions = (double *)(uintptr_t)positions,
-                                   .corners = (uint32_t *)(uintptr_t)corners,
-                                   .vertices = vertex_count,
-                                   .triangles = triangle_count};
-    memset(mesh, 0, sizeof *mesh);
-    mesh->options = *options;
-    sonject_status status = check_options(report, name, options);
-    THEN(status, check_arrays(&soup));
-    THEN(status, prepare(&soup, mesh));
     if (status != SONJECT_OK)
         mesh_clear(mesh);
     return status;
@@ -308,12 +229,12 @@ sonject_status mesh_require_closed(struct report *report, const char *name, cons
     if (topology->is_closed)
         return SONJECT_OK;
     const float *vertex = &mesh->vertices[3 * (size_t)topology->edge[0]];
-    return report_failure(
-        report, SONJECT_ERROR_INPUT,
-        "%s: the mesh does not enclose a volume: %zu edges belong to one triangle, %zu to more "
+    return input_failure(
+        report, name,
+        "the mesh does not enclose a volume: %zu edges belong to one triangle, %zu to more "
         "than "
         "two, %zu are twisted, one of them at (%g, %g, %g) m: close it in a mesh editor",
-        name, topology->open_edges, topology->crowded_edges, topology->twisted_edges,
+        topology->open_edges, topology->crowded_edges, topology->twisted_edges,
         (double)vertex[0] + mesh->centre_m[0], (double)vertex[1] + mesh->centre_m[1],
         (double)vertex[2] + mesh->centre_m[2]);
 }

@@ -30,7 +30,7 @@ struct mesh_topology {
     size_t pieces;        /* sets of triangles that hang together by edges of two */
     bool is_closed;       /* every edge is that of two triangles, run in opposite directions */
     uint32_t edge[2];     /* vertices of one edge that keeps it from being closed */
-    double volume;        /* enclosed, cubic units; of a closed mesh only */
+    double volume;        /* enclosed, m3; of a closed mesh only, else 0 */
 };
 
 struct mesh {
@@ -44,7 +44,6 @@ struct mesh {
     float lower_m[3], upper_m[3]; /* the bounding box in the mesh's frame */
     float radius_m;               /* of the bounding sphere about the frame's origin */
     struct mesh_topology topology;
-    double volume_m3;  /* of a closed mesh; else 0 */
     size_t welded;     /* vertices of seams that were off by less than the tolerance */
     size_t degenerate; /* triangles of the file with two equal corners, which were left out */
 
@@ -65,16 +64,11 @@ bool mesh_is_of(const struct mesh *mesh, const struct file_identity *file,
  * in the mesh's frame); where that leaves the mesh open, so do those that are closer than a
  * millionth of its bounding box's diagonal. Triangles with two equal corners are left out,
  * orientation is made consistent. A mesh that is not closed is no failure here: topology says what
- * is open. Errors: STORAGE (cannot be read), INPUT (what and where), UNSUPPORTED (format), ARGUMENT
- * (options), MEMORY. On failure *mesh is empty. */
+ * is open. Errors: STORAGE (cannot be read), INPUT (what and where), UNSUPPORTED (format), MEMORY.
+ * On failure *mesh is empty. */
 sonject_status mesh_load(struct report *report, const char *path,
                          const struct mesh_options *options, struct mesh *mesh);
 
-/* The same from arrays: vertex_count x 3 positions, triangle_count x 3 numbers of vertices. name:
- * for messages. */
-sonject_status mesh_from_arrays(struct report *report, const char *name, const double *positions,
-                                size_t vertex_count, const uint32_t *corners, size_t triangle_count,
-                                const struct mesh_options *options, struct mesh *mesh);
 void mesh_clear(struct mesh *mesh);
 
 /* SONJECT_OK if the mesh is closed; else INPUT with a message that says what is open and where. */

@@ -9,6 +9,8 @@
 
 #include "base/report.h"
 
+struct mesh;
+
 /* Vertices and the triples of them that make triangles. Starts as zeros but for who is told of
  * failures, is for mesh_soup_clear. */
 struct mesh_soup {
@@ -29,6 +31,10 @@ sonject_status mesh_soup_add_triangle(struct mesh_soup *soup, uint32_t a, uint32
 sonject_status mesh_soup_add_polygon_corner(struct mesh_soup *soup, size_t place, uint32_t corner,
                                             uint32_t fan[2]);
 void mesh_soup_clear(struct mesh_soup *soup);
+
+/* Makes the triangles of a soup a mesh, whose options are set and which has nothing else yet.
+ * Errors: INPUT, MEMORY. *mesh is for mesh_clear, whatever is returned. */
+sonject_status mesh_of_soup(const struct mesh_soup *soup, struct mesh *mesh);
 
 /* A soup's vertices by position, so that equal ones are found. */
 struct weld {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/byte_order.h"
+#include "base/file.h"
 #include "mesh/mesh_reader.h"
 
 #define ELEMENTS_MAX   16
@@ -190,19 +191,18 @@ static sonject_status check_header(const struct words *words, const struct heade
         faces += element->is_face && has_roles(element, 1u << CORNERS);
         /* the last word of a text needs no blank behind it */
         if (least > 0 && element->count > (left + 1) / least)
-            return report_failure(
-                soup->report, SONJECT_ERROR_INPUT,
-                "%s: the header says %llu elements of a kind, the file holds %llu "
-                "at most: it is cut short, copy or export it again",
-                soup->path, (unsigned long long)element->count, (unsigned long long)(left / least));
+            return input_failure(soup->report, soup->path,
+                                 "the header says %llu elements of a kind, the file holds %llu "
+                                 "at most: it is cut short, copy or export it again",
+                                 (unsigned long long)element->count,
+                                 (unsigned long long)(left / least));
     }
     if (vertices == 1 && faces == 1)
         return SONJECT_OK;
-    return report_failure(soup->report, SONJECT_ERROR_INPUT,
-                          "%s: the header has no %s: export the mesh as vertices and faces",
-                          soup->path,
-                          vertices != 1 ? "one element 'vertex' with x, y and z"
-                                        : "one element 'face' with a list vertex_indices");
+    return input_failure(soup->report, soup->path,
+                         "the header has no %s: export the mesh as vertices and faces",
+                         vertices != 1 ? "one element 'vertex' with x, y and z"
+                                       : "one element 'face' with a list vertex_indices");
 }
 
 static double number_of_bytes(const char *at, enum type type, bool is_big_endian)
@@ -226,11 +226,10 @@ static sonject_status next_number(struct words *words, const struct header *head
     const bool is_text = header->format == TEXT;
     const size_t left = (size_t)(words->end - words->at);
     if (is_text ? !words_left(words, '\0') : left < types[type].bytes)
-        return report_failure(
-            words->soup->report, SONJECT_ERROR_INPUT,
-            "%s: it ends before all elements that its header promises: it is cut short, "
-            "copy or export it again",
-            words->soup->path);
+        return input_failure(
+            words->soup->report, words->soup->path,
+            "it ends before all elements that its header promises: it is cut short, "
+            "copy or export it again");
     if (is_text)
         return words_number(words, "a finite number", number);
     *number = number_of_bytes(words->at, type, header->format == BIG_ENDIAN_BYTES);
@@ -254,13 +253,11 @@ static sonject_status read_list(struct words *words, const struct header *header
         if (property->role != CORNERS)
             continue;
         if (!(number >= 0.0) || number >= 4294967295.0 || number != floor(number))
-            return report_failure(soup->report, SONJECT_ERROR_INPUT,
-                                  "%s: a face has vertex number %g", soup->path, number);
+            return input_failure(soup->report, soup->path, "a face has vertex number %g", number);
         CHECK(mesh_soup_add_polygon_corner(soup, i, (uint32_t)number, fan));
     }
     if (property->role == CORNERS && length < 3.0)
-        return report_failure(soup->report, SONJECT_ERROR_INPUT, "%s: a face has %g vertices",
-                              soup->path, length);
+        return input_failure(soup->report, soup->path, "a face has %g vertices", length);
     return SONJECT_OK;
 }
 
@@ -301,14 +298,13 @@ sonject_status ply_read(struct mesh_soup *soup, const char *bytes, size_t count)
             CHECK(read_one(&words, &header, element));
     }
     if (header.format == TEXT ? words_left(&words, '\0') : words.at < words.end)
-        return report_failure(soup->report, SONJECT_ERROR_INPUT,
-                              "%s: it holds more than its header says: the header's counts are "
-                              "wrong, export the mesh again",
-                              soup->path);
+        return input_failure(soup->report, soup->path,
+                             "it holds more than its header says: the header's counts are "
+                             "wrong, export the mesh again");
     for (size_t i = 0; i < 3 * soup->triangles; i++)
         if (soup->corners[i] >= soup->vertices)
-            return report_failure(soup->report, SONJECT_ERROR_INPUT,
-                                  "%s: a face has vertex number %lu, but numbers run from 0 to %zu",
-                                  soup->path, (unsigned long)soup->corners[i], soup->vertices - 1);
+            return input_failure(soup->report, soup->path,
+                                 "a face has vertex number %lu, but numbers run from 0 to %zu",
+                                 (unsigned long)soup->corners[i], soup->vertices - 1);
     return SONJECT_OK;
 }

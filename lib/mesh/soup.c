@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "mesh/hierarchy.h"
 #include "mesh/mesh_reader.h"
@@ -23,10 +24,10 @@ static sonject_status check_count(const struct mesh_soup *soup, size_t count, si
 {
     if (count < most)
         return SONJECT_OK;
-    return report_failure(soup->report, SONJECT_ERROR_INPUT,
-                          "%s: a mesh may have %zu triangles and %zu vertices, and this one has "
-                          "more: simplify it",
-                          soup->path, MESH_TRIANGLES_MAX, VERTICES_MAX);
+    return input_failure(soup->report, soup->path,
+                         "a mesh may have %zu triangles and %zu vertices, and this one has "
+                         "more: simplify it",
+                         MESH_TRIANGLES_MAX, VERTICES_MAX);
 }
 
 sonject_status mesh_soup_add_vertex(struct mesh_soup *soup, const double position[3])

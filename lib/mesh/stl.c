@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/byte_order.h"
+#include "base/file.h"
 #include "mesh/mesh_reader.h"
 
 #define HEADER_BYTES   84 /* 80 of any kind, then the number of triangles */
@@ -35,15 +36,14 @@ static sonject_status read_binary(struct weld *weld, const char *bytes, size_t c
 {
     const struct mesh_soup *soup = weld->soup;
     if (count < HEADER_BYTES)
-        return report_failure(soup->report, SONJECT_ERROR_INPUT,
-                              "%s: %zu bytes are too few for an STL file, whose header takes %d",
-                              soup->path, count, HEADER_BYTES);
+        return input_failure(soup->report, soup->path,
+                             "%zu bytes are too few for an STL file, whose header takes %d", count,
+                             HEADER_BYTES);
     const uint64_t promised = promised_triangles(bytes);
     const uint64_t held = (count - HEADER_BYTES) / TRIANGLE_BYTES;
     if (promised * TRIANGLE_BYTES + HEADER_BYTES != count)
-        return report_failure(
-            soup->report, SONJECT_ERROR_INPUT,
-            "%s: the header says %llu triangles, the file holds %llu%s: %s", soup->path,
+        return input_failure(
+            soup->report, soup->path, "the header says %llu triangles, the file holds %llu%s: %s",
             (unsigned long long)promised, (unsigned long long)held,
             held * TRIANGLE_BYTES + HEADER_BYTES == count ? "" : " and a part of one",
             promised > held ? "it is cut short, copy or export it again" : "export it again");

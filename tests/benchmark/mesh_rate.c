@@ -16,6 +16,7 @@
 #include "kernel/mesh_probe.h"
 #include "kernel/mesh_samples.h"
 #include "kernel/probe_device.h"
+#include "mesh_arrays.h"
 
 #ifdef HAS_EMBREE
 #include <embree3/rtcore.h>

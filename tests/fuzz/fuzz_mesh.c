@@ -11,8 +11,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
     struct report report = {{0}, NULL, NULL};
     struct mesh_soup soup = {.report = &report, .path = "fuzz"};
-    struct mesh_options options;
-    struct mesh mesh;
+    struct mesh mesh = {0};
     char *text = fuzz_text(bytes, count);
     sonject_status status = READER(&soup, text, count);
     fuzz_expect(status, &report);
@@ -23,10 +22,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
         for (size_t i = 0; i < 3 * soup.triangles; i++)
             if (soup.corners[i] >= soup.vertices)
                 abort();
-        mesh_options_init(&options);
-        options.smooth_angle_rad = 0.5;
-        status = mesh_from_arrays(&report, "fuzz", soup.positions, soup.vertices, soup.corners,
-                                  soup.triangles, &options, &mesh);
+        mesh_options_init(&mesh.options);
+        mesh.options.smooth_angle_rad = 0.5;
+        status = mesh_of_soup(&soup, &mesh);
         fuzz_expect(status, &report);
         if (status == SONJECT_OK)
             fuzz_expect(mesh_require_closed(&report, "fuzz", &mesh), &report);

@@ -1,6 +1,7 @@
 #include "kernel/clutter.h"
 
 #include "claims.h"
+#include "mesh_arrays.h"
 #include "random.h"
 
 /* Draws in turn. */

@@ -1,6 +1,7 @@
 /* Meshes that planes cut, against every triangle in double precision: where rays meet what is left,
  * and how it faces there, for rays from 50 m and 500 m, that start anywhere, through edges and
  * corners, and nearly along the planes. */
+#include "mesh_arrays.h"
 #include "mesh_samples.h"
 #include "physics/bench.h"
 #include "ray_claims.h"

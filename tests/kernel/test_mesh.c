@@ -6,6 +6,7 @@
 #include "kernel/mesh_samples.h"
 #include "kernel/probe_device.h"
 #include "kernel/random_rays.h"
+#include "mesh_arrays.h"
 #include "physics/bench.h"
 
 #define RAYS 51200 /* a multiple of 16 */

@@ -2,6 +2,7 @@
 
 #include "claims.h"
 #include "device/opencl.h"
+#include "mesh_arrays.h"
 
 static void expect_ok(struct bench *bench, sonject_status status)
 {

@@ -1,4 +1,5 @@
 #include "sea.h"
+#include "mesh_arrays.h"
 
 #include "scene/placement.h"
 #include "scene/point_response.h"

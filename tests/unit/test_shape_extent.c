@@ -3,6 +3,7 @@
  * nothing. */
 #include "claims.h"
 #include "kernel/mesh_samples.h"
+#include "mesh_arrays.h"
 #include "scene/placement.h"
 #include "schema/keys.h"
 
