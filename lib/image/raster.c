@@ -20,6 +20,28 @@ double pixel_full_scale(enum pixel_type type)
     return full_scales[type];
 }
 
+double pixel_number(enum pixel_type type, const void *pixels, size_t i)
+{
+    return type == PIXEL_UINT8    ? (double)((const uint8_t *)pixels)[i]
+           : type == PIXEL_UINT16 ? (double)((const uint16_t *)pixels)[i]
+                                  : (double)((const float *)pixels)[i];
+}
+
+bool pixel_store(enum pixel_type type, void *pixels, size_t i, double number)
+{
+    const double whole = floor(number + 0.5);
+    if (type == PIXEL_FLOAT32 ? isfinite(number) && fabs(number) > (double)FLT_MAX
+                              : !(whole >= 0.0 && whole <= pixel_full_scale(type)))
+        return false;
+    if (type == PIXEL_UINT8)
+        ((uint8_t *)pixels)[i] = (uint8_t)whole;
+    else if (type == PIXEL_UINT16)
+        ((uint16_t *)pixels)[i] = (uint16_t)whole;
+    else
+        ((float *)pixels)[i] = (float)number;
+    return true;
+}
+
 bool region_bytes(const struct raster_layout *layout, const struct region *region, size_t *bytes)
 {
     if (region->rows > SIZE_MAX || region->columns > SIZE_MAX)
@@ -86,19 +108,6 @@ static double transfer_full_scale(const sonject_transfer_params *transfer, enum 
     return most;
 }
 
-static double stored_value(enum pixel_type type, const void *stored, size_t index)
-{
-    switch (type) {
-    case PIXEL_UINT8:
-        return ((const uint8_t *)stored)[index];
-    case PIXEL_UINT16:
-        return ((const uint16_t *)stored)[index];
-    case PIXEL_FLOAT32:
-        break;
-    }
-    return (double)((const float *)stored)[index];
-}
-
 /* Only the plain transfer knows negative values: they are parts of complex pixels. */
 static bool is_amplitude(const sonject_transfer_params *transfer, float amplitude)
 {
@@ -128,7 +137,7 @@ sonject_status transfer_to_amplitude(const sonject_transfer_params *transfer, en
     sonject_status status = SONJECT_OK;
     uint64_t at_full_scale = 0;
     for (size_t i = 0; i < count; i++) {
-        const double value = stored_value(type, stored, i);
+        const double value = pixel_number(type, stored, i);
         amplitude[i] =
             table ? table[(size_t)value] : (float)amplitude_of(transfer, full_scale, value);
         if (!is_amplitude(transfer, amplitude[i])) {
@@ -174,7 +183,7 @@ uint32_t quantisation_step(enum pixel_type type, const void *stored, size_t coun
     if (type == PIXEL_FLOAT32)
         return 0;
     for (size_t i = 0; step != 1 && i < count; i++) {
-        uint32_t value = (uint32_t)stored_value(type, stored, i);
+        uint32_t value = (uint32_t)pixel_number(type, stored, i);
         largest = value > largest ? value : largest;
         while (value != 0) { /* Euclid's */
             const uint32_t rest = step % value;

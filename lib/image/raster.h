@@ -26,6 +26,12 @@ size_t pixel_bytes(enum pixel_type type);
 /* The value that amplitude 1 is stored as under the plain transfer: 255, 65535 or 1. */
 double pixel_full_scale(enum pixel_type type);
 
+/* Number i of many of that type. */
+double pixel_number(enum pixel_type type, const void *pixels, size_t i);
+
+/* Stores one, rounded where the type is a whole one. False if the type does not hold it. */
+bool pixel_store(enum pixel_type type, void *pixels, size_t i, double number);
+
 struct raster_layout {
     uint64_t rows, columns;
     uint32_t channels;

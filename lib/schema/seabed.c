@@ -120,13 +120,6 @@ static const struct field relief_grid_fields[] = {
 const struct section relief_grid_section = {ROWS(relief_grid_fields), .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
-static double number_at(const void *pixels, enum pixel_type type, size_t i)
-{
-    return type == PIXEL_UINT8    ? (double)((const uint8_t *)pixels)[i]
-           : type == PIXEL_UINT16 ? (double)((const uint16_t *)pixels)[i]
-                                  : (double)((const float *)pixels)[i];
-}
-
 static float height_of(const struct heights_text *text, double number)
 {
     const double unit_m = text->positive == POSITIVE_DOWN ? -text->unit_m : text->unit_m;
@@ -168,7 +161,8 @@ static sonject_status take_heights(struct scene *scene, struct report *report,
         (array || pixels) && heights ? SONJECT_OK : report_out_of_memory(report, text->path);
     THEN(status, array ? SONJECT_OK : swath_file_read(report, file, &all, pixels));
     for (size_t i = 0; status == SONJECT_OK && i < count; i++)
-        heights[i] = height_of(text, array ? array->values[i] : number_at(pixels, layout.type, i));
+        heights[i] =
+            height_of(text, array ? array->values[i] : pixel_number(layout.type, pixels, i));
     if (status == SONJECT_OK) {
         status = relief_features_set_grid(&scene->relief, &check, &text->grid, heights);
         if (status != SONJECT_OK)

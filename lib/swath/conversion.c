@@ -78,30 +78,6 @@ static sonject_status to_magnitude(struct report *report, struct conversion *con
     return SONJECT_OK;
 }
 
-static double sample_at(enum pixel_type type, const void *pixels, size_t i)
-{
-    return type == PIXEL_UINT8    ? (double)((const uint8_t *)pixels)[i]
-           : type == PIXEL_UINT16 ? (double)((const uint16_t *)pixels)[i]
-                                  : (double)((const float *)pixels)[i];
-}
-
-/* False if the type does not hold the number. */
-static bool put_sample(enum pixel_type type, void *pixels, size_t i, double number)
-{
-    if (type == PIXEL_FLOAT32) {
-        ((float *)pixels)[i] = (float)number;
-        return isfinite(((float *)pixels)[i]) || !isfinite(number);
-    }
-    const double rounded = floor(number + 0.5);
-    if (!(rounded >= 0.0 && rounded <= pixel_full_scale(type)))
-        return false;
-    if (type == PIXEL_UINT8)
-        ((uint8_t *)pixels)[i] = (uint8_t)rounded;
-    else
-        ((uint16_t *)pixels)[i] = (uint16_t)rounded;
-    return true;
-}
-
 static sonject_status to_type(struct report *report, struct conversion *conversion,
                               const sonject_convert_params *params)
 {
@@ -120,8 +96,8 @@ static sonject_status to_type(struct report *report, struct conversion *conversi
     void *fresh = allocate_array(count, pixel_bytes(type));
     CHECK_MEMORY(report, fresh, "the samples");
     for (size_t i = 0; i < count; i++) {
-        const double number = sample_at(layout->type, conversion->pixels, i) * params->scale;
-        if (put_sample(type, fresh, i, number))
+        const double number = pixel_number(layout->type, conversion->pixels, i) * params->scale;
+        if (pixel_store(type, fresh, i, number))
             continue;
         free(fresh);
         const uint64_t pixel = i / layout->channels;

@@ -184,9 +184,6 @@ static sonject_status pass(const struct passage *passage)
     const struct region *region = passage->region;
     const struct raster_layout *layout = &passage->image->layout;
     const bool is_turned = passage->image->is_turned;
-    if (!region_is_inside(layout, region))
-        return input_failure(passage->report, passage->image->path,
-                             "the region is not inside the image");
     const size_t pixel = layout->channels * pixel_bytes(layout->type);
     const uint64_t lines = is_turned ? region->columns : region->rows;
     const size_t line = (size_t)(is_turned ? region->rows : region->columns) * pixel;
@@ -221,12 +218,14 @@ static sonject_status patch_copy(struct report *report, const struct decoded_ima
                                  const struct swath_copy *copy)
 {
     struct decoded_image *patched;
-    struct decoder_request request = {.function = DECODER_FINISH};
+    struct decoder_request request = {.function = DECODER_CLOSE};
     CHECK(open_image(report, DECODER_OPEN_COPY, image->path, copy->part, image->array, &patched));
     sonject_status status =
         pass(&(struct passage){report, patched, copy->region, true, (unsigned char *)copy->pixels,
                                copy->progress, copy->user});
     THEN(status, ask(report, patched, &request, NULL, NULL, 0));
+    if (status == SONJECT_OK)
+        patched->handle = 0;
     decoded_image_close(&patched);
     return status;
 }

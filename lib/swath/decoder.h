@@ -31,10 +31,9 @@ enum decoder_function {
                            its 0; -> handle, layout, largest, is_turned; out: description, with its
                            0; none: it has none */
     DECODER_OPEN_COPY,  /* the same, to be written to */
-    DECODER_CLOSE,      /* handle; what was written to a copy may be lost */
+    DECODER_CLOSE,      /* handle: all that was written to a copy is to be in the file */
     DECODER_READ,       /* handle, region -> out: its samples, row after row */
     DECODER_WRITE,      /* handle of a copy, region; in: samples */
-    DECODER_FINISH,     /* handle of a copy, which is then closed: all is to be in the file */
     DECODER_FUNCTIONS
 };
 
@@ -112,7 +111,7 @@ sonject_status decoded_image_open(struct report *report, const char *path, const
                                   struct decoded_image **image);
 void decoded_image_close(struct decoded_image **image);
 
-/* Samples of a region, row after row. Errors: INPUT, STORAGE, MEMORY. */
+/* Samples of a region of the image, row after row. Errors: INPUT, STORAGE, MEMORY. */
 sonject_status decoded_image_read(struct report *report, struct decoded_image *image,
                                   const struct region *region, void *pixels);
 

@@ -45,12 +45,13 @@ struct decoder_state *decoder_state_make(void)
     return allocate_array(1, sizeof(struct decoder_state));
 }
 
-static void close_file(struct opened *file)
+static sonject_status close_file(struct report *report, struct opened *file)
 {
-    if (file->image)
-        file->library->close(file->image);
+    const sonject_status status =
+        file->image ? file->library->close(report, file->image) : SONJECT_OK;
     free(file->path);
     memset(file, 0, sizeof *file);
+    return status;
 }
 
 /* False: it is HDF5's. */
@@ -112,7 +113,7 @@ static sonject_status open_image(struct question *question)
         question->reply->bytes = strlen(facts.description) + 1;
     question->out = facts.description;
     if (status != SONJECT_OK)
-        close_file(file);
+        (void)close_file(question->report, file);
     return status;
 }
 
@@ -128,57 +129,23 @@ static sonject_status read_samples(struct question *question)
                                question->out);
 }
 
+/* The library asks what can be done. */
 static sonject_status give_answer(struct question *question)
 {
-    struct opened *file = question->file;
-    sonject_status status = SONJECT_OK;
-    switch (question->request->function) {
-    case DECODER_OPEN_IMAGE:
-    case DECODER_OPEN_COPY:
-        return open_image(question);
-    case DECODER_READ:
-        return read_samples(question);
-    case DECODER_WRITE:
-        return file->library->change(question->report, file->image, &question->request->region,
-                                     question->in);
-    case DECODER_FINISH:
-        status = file->library->finish(question->report, file->image);
-        break;
-    }
-    close_file(file);
-    return status;
-}
-
-/* Three texts that each end with a 0. */
-static bool take_texts(struct question *question)
-{
-    const char *text = question->in;
-    const char *end = text + question->request->bytes;
-    for (int i = 0; i < 3; i++) {
-        const char *zero = text < end ? memchr(text, '\0', (size_t)(end - text)) : NULL;
-        if (!zero)
-            return false;
-        question->texts[i] = text;
-        text = zero + 1;
-    }
-    return true;
-}
-
-static bool is_possible(struct question *question)
-{
     const struct decoder_request *request = question->request;
-    if (request->function <= DECODER_OPEN_COPY)
-        return take_texts(question);
-    if (request->function >= DECODER_FUNCTIONS || request->handle < 1 ||
-        request->handle > DECODER_FILES_MAX)
-        return false;
-    struct opened *file = question->file = &question->state->files[request->handle - 1];
-    const bool is_of_region =
-        request->function == DECODER_READ || request->function == DECODER_WRITE;
-    const bool is_of_copy =
-        request->function == DECODER_WRITE || request->function == DECODER_FINISH;
-    return file->image && (!is_of_copy || file->library->change) &&
-           (!is_of_region || region_is_inside(&file->layout, &request->region));
+    const char *text = question->in;
+    if (request->function <= DECODER_OPEN_COPY) {
+        for (int i = 0; i < 3; i++, text += strlen(text) + 1)
+            question->texts[i] = text;
+        return open_image(question);
+    }
+    question->file = &question->state->files[request->handle - 1];
+    if (request->function == DECODER_READ)
+        return read_samples(question);
+    if (request->function == DECODER_WRITE)
+        return question->file->library->change(question->report, question->file->image,
+                                               &request->region, question->in);
+    return close_file(question->report, question->file);
 }
 
 /* Where the disk could not be read HDF5 says that it is damaged, or does without what lies there: a
@@ -191,25 +158,17 @@ static sonject_status tell_disk(struct question *question, sonject_status status
         file_check_disk(question->report, path, SONJECT_ERROR_INPUT) == SONJECT_ERROR_INPUT)
         return status;
     if (question->file && question->request->function <= DECODER_OPEN_COPY)
-        close_file(question->file);
+        (void)close_file(question->report, question->file);
     return SONJECT_ERROR_STORAGE;
-}
-
-static sonject_status answer(struct question *question)
-{
-    if (!is_possible(question))
-        return report_failure(question->report, SONJECT_ERROR_INPUT,
-                              "a decoder was asked what it cannot do");
-    errno = 0;
-    return tell_disk(question, give_answer(question));
 }
 
 void decoder_state_release(struct decoder_state **state)
 {
+    struct report unheard = {{0}, NULL, NULL};
     struct hdf5_session session;
     hdf5_enter(&session);
     for (size_t i = 0; *state && i < DECODER_FILES_MAX; i++)
-        close_file(&(*state)->files[i]);
+        (void)close_file(&unheard, &(*state)->files[i]);
     hdf5_leave(&session);
     free(*state);
     *state = NULL;
@@ -222,7 +181,8 @@ sonject_status decoder_answer(struct report *report, struct decoder_state *state
     struct question question = {report, state, request, {"", "", ""}, in, NULL, reply, NULL};
     struct hdf5_session session;
     hdf5_enter(&session);
-    const sonject_status status = answer(&question);
+    errno = 0;
+    const sonject_status status = tell_disk(&question, give_answer(&question));
     hdf5_leave(&session);
     if (status != SONJECT_OK) {
         free(question.out);

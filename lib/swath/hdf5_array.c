@@ -296,21 +296,26 @@ static sonject_status open_array(struct report *report, struct hdf5_array *array
     return SONJECT_OK;
 }
 
-static void close_image(void *image)
+static sonject_status close_image(struct report *report, void *image)
 {
     struct hdf5_array *array = image;
-    if (array->writes && array->file >= 0)
+    errno = 0;
+    bool is_done = !array->writes || array->file < 0 || H5Fflush(array->file, H5F_SCOPE_LOCAL) >= 0;
+    if (!is_done)
         hdf5_abandon(array->file);
     release(array->dataset);
-    release(array->file);
+    is_done = (array->file < 0 || H5Fclose(array->file) >= 0) && is_done;
+    const sonject_status status = is_done ? SONJECT_OK : cannot_move(report, array);
     free(array->path);
     free(array);
+    return status;
 }
 
 static sonject_status open_image(struct report *report, const char *name, const char *path,
                                  const char *array, bool writes, void **image,
                                  struct image_facts *facts)
 {
+    struct report unheard = {{0}, NULL, NULL};
     struct hdf5_array *opened = allocate_array(1, sizeof *opened);
     CHECK_MEMORY(report, opened, "a file");
     opened->path = copy_text(name);
@@ -321,7 +326,7 @@ static sonject_status open_image(struct report *report, const char *name, const 
     if (status == SONJECT_OK)
         *image = opened;
     else
-        close_image(opened);
+        (void)close_image(&unheard, opened);
     return status;
 }
 
@@ -410,21 +415,7 @@ static sonject_status change_samples(struct report *report, void *image,
     return exchange(report, image, region, (void *)pixels, true);
 }
 
-static sonject_status finish_image(struct report *report, void *image)
-{
-    struct hdf5_array *array = image;
-    errno = 0;
-    bool is_done = H5Fflush(array->file, H5F_SCOPE_LOCAL) >= 0;
-    if (!is_done)
-        hdf5_abandon(array->file);
-    release(array->dataset);
-    is_done = H5Fclose(array->file) >= 0 && is_done;
-    array->dataset = array->file = -1;
-    return is_done ? SONJECT_OK : cannot_move(report, array);
-}
-
-const struct image_library hdf5_library = {open_image, close_image, read_samples, change_samples,
-                                           finish_image};
+const struct image_library hdf5_library = {open_image, close_image, read_samples, change_samples};
 
 static bool fill_file(hid_t file, const struct raster_layout *layout,
                       const struct raster_attribute *notes, size_t note_count, const void *pixels)

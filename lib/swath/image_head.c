@@ -30,47 +30,27 @@ static const struct beginning beginnings[] = {
     {IMAGE_OPENEXR, "v/1\x01", 4}, {IMAGE_BMP, "BM", 2},        {IMAGE_PNM, "P5", 2},
     {IMAGE_PNM, "Pf", 2}};
 
-static const struct {
-    enum image_kind kind;
-    const char *letters;
-} extensions[] = {{IMAGE_TIFF, "tif"},
-                  {IMAGE_TIFF, "tiff"},
-                  {IMAGE_PNG, "png"},
-                  {IMAGE_JPEG, "jpg"},
-                  {IMAGE_JPEG, "jpeg"}};
-
 /* What users may have at hand that sonject does not read. */
 static const struct {
     const char *name;
     const char *bytes;
-    size_t place, count;
+    size_t count;
 } foreign_kinds[] = {
-    {"a DPX", "SDPX", 0, 4},
-    {"a DPX", "XPDS", 0, 4},
-    {"a Cineon", "\x80\x2A\x5F\xD7", 0, 4},
-    {"a PSD", "8BPS", 0, 4},
-    {"a GIF", "GIF8", 0, 4},
-    {"a WebP", "WEBP", 8, 4},
-    {"a Radiance", "#?RADIANCE", 0, 10},
-    {"a Radiance", "#?RGBE", 0, 6},
-    {"an SGI", "\x01\xDA", 0, 2},
-    {"an IFF", "FOR4", 0, 4},
-    {"a DDS", "DDS ", 0, 4},
-    {"a Softimage", "\x53\x80\xF6\x34", 0, 4},
-    {"a HEIF", "ftyphei", 4, 7},
-    {"a HEIF", "ftypmif1", 4, 8},
-    {"a colour PFM", "PF\n", 0, 3},
-    {"a PBM", "P4", 0, 2},
-    {"a PPM", "P6", 0, 2},
-    {"a PGM in ASCII (P2)", "P2", 0, 2},
-    {"a JPEG 2000", "\xFF\x4F\xFF\x51", 0, 4},
-    {"a JPEG 2000", "jP  ", 4, 4},
-    {"a FITS", "SIMPLE  =", 0, 9},
-    {"a Targa", "\0\0\x03", 0, 3},
-    {"a Targa", "\0\0\x0B", 0, 3},
-    {"a NITF", "NITF", 0, 4},
-    {"a JSF", "\x01\x16", 0, 2},
-    {"a zip or .npz", "PK\x03\x04", 0, 4},
+    {"a DPX", "SDPX", 4},
+    {"a DPX", "XPDS", 4},
+    {"a GIF", "GIF8", 4},
+    {"a colour PFM", "PF\n", 3},
+    {"a PBM", "P4", 2},
+    {"a PPM", "P6", 2},
+    {"a PGM in ASCII (P2)", "P2", 2},
+    {"a JPEG 2000", "\xFF\x4F\xFF\x51", 4},
+    {"a JPEG 2000", "\0\0\0\x0CjP  ", 8},
+    {"a FITS", "SIMPLE  =", 9},
+    {"a Targa", "\0\0\x03", 3},
+    {"a Targa", "\0\0\x0B", 3},
+    {"a NITF", "NITF", 4},
+    {"a JSF", "\x01\x16", 2},
+    {"a zip or .npz", "PK\x03\x04", 4},
 };
 
 sonject_status image_kind_refuse(struct report *report, const char *path, const unsigned char *head,
@@ -79,15 +59,13 @@ sonject_status image_kind_refuse(struct report *report, const char *path, const 
     static const char readable[] =
         "TIFF, PNG, JPEG, OpenEXR, PGM (P5), PFM (Pf), BMP, XTF, NumPy (.npy), HDF5 and MATLAB "
         "(.mat)";
-    for (size_t i = 0; i < sizeof foreign_kinds / sizeof *foreign_kinds; i++) {
-        const size_t place = foreign_kinds[i].place;
-        if (count >= place + foreign_kinds[i].count &&
-            memcmp(head + place, foreign_kinds[i].bytes, foreign_kinds[i].count) == 0)
+    for (size_t i = 0; i < sizeof foreign_kinds / sizeof *foreign_kinds; i++)
+        if (count >= foreign_kinds[i].count &&
+            memcmp(head, foreign_kinds[i].bytes, foreign_kinds[i].count) == 0)
             return input_failure(report, path,
                                  "is %s file, which sonject does not read; it reads %s: convert it "
                                  "to one of these",
                                  foreign_kinds[i].name, readable);
-    }
     return input_failure(report, path, "is %s; sonject reads %s: convert it to one of these",
                          count == 0 ? "empty" : "of no format that sonject knows", readable);
 }
@@ -98,25 +76,6 @@ bool image_kind_of_beginning(const unsigned char *bytes, size_t count, enum imag
         if (count >= beginnings[i].count &&
             memcmp(bytes, beginnings[i].bytes, beginnings[i].count) == 0) {
             *kind = beginnings[i].kind;
-            return true;
-        }
-    return false;
-}
-
-static bool is_same_but_for_case(const char *text, const char *letters)
-{
-    for (; *letters; text++, letters++)
-        if (*text != *letters && *text != *letters - 'a' + 'A')
-            return false;
-    return *text == '\0';
-}
-
-bool image_kind_of_name(const char *path, enum image_kind *kind)
-{
-    const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot && i < sizeof extensions / sizeof *extensions; i++)
-        if (is_same_but_for_case(dot + 1, extensions[i].letters)) {
-            *kind = extensions[i].kind;
             return true;
         }
     return false;

@@ -29,9 +29,6 @@ sonject_status image_kind_refuse(struct report *report, const char *path, const 
 /* Told by bytes from a file's beginning; false for another kind. */
 bool image_kind_of_beginning(const unsigned char *bytes, size_t count, enum image_kind *kind);
 
-/* Told by the extension of a file that is to be written; false for another kind. */
-bool image_kind_of_name(const char *path, enum image_kind *kind);
-
 /* BMP, PGM and PFM have no checksums, and OpenImageIO takes what their heads say: refuses (INPUT)
  * files whose length is not what the head says, and numbers that OpenImageIO would not hand on as
  * they are stored: those of a PGM that is not of 8 bits are scaled there, so that half of a 16-bit

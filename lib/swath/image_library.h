@@ -29,17 +29,15 @@ struct image_library {
      * to be changed. On success *image is the caller's, for close. */
     sonject_status (*open)(struct report *report, const char *name, const char *path,
                            const char *array, bool writes, void **image, struct image_facts *facts);
-    /* what was changed and not finished may be lost */
-    void (*close)(void *image);
+    /* brings what was changed to the file; *image is gone, whatever is returned */
+    sonject_status (*close)(struct report *report, void *image);
     /* samples of a region, row after row; a float64 that stays the same as float32 keeps its bits
      */
     sonject_status (*read)(struct report *report, void *image, const struct region *region,
                            void *pixels);
-    /* NULL with finish: copies are new images */
+    /* NULL: copies are new images */
     sonject_status (*change)(struct report *report, void *image, const struct region *region,
                              const void *pixels);
-    /* brings all changes to the file */
-    sonject_status (*finish)(struct report *report, void *image);
 };
 
 /* Data sets of HDF5 files (swath/hdf5_array.c). Calls come between hdf5_enter and hdf5_leave. */

@@ -1,9 +1,11 @@
+#define _POSIX_C_SOURCE 200809L /* strcasecmp */
 #include "swath/raster_file.h"
 
 #include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/file.h"
 #include "base/memory.h"
@@ -71,14 +73,65 @@ sonject_status raster_file_copy_with_patch(struct report *report, struct decoded
                   source->description, false);
 }
 
+static sonject_status write_npy(struct report *report, const char *path,
+                                const struct raster_layout *layout,
+                                const struct raster_attribute *attributes, size_t attribute_count,
+                                const void *pixels)
+{
+    (void)attributes, (void)attribute_count;
+    return npy_write(report, path, layout->type, layout->channels == 2,
+                     (const uint64_t[]){layout->rows, layout->columns}, 2, pixels);
+}
+
+#ifndef HAS_HDF5
+sonject_status hdf5_array_write(struct report *report, const char *path,
+                                const struct raster_layout *layout,
+                                const struct raster_attribute *notes, size_t note_count,
+                                const void *pixels)
+{
+    (void)layout, (void)notes, (void)note_count, (void)pixels;
+    return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                          "%s: this build of sonject has no HDF5 files: build it with HDF5", path);
+}
+#endif
+
+/* New files, by their extension in any case of letters. */
+static const struct new_format {
+    const char *extension;
+    enum image_kind kind; /* of an image, which no writer of its own writes */
+    sonject_status (*write)(struct report *report, const char *path,
+                            const struct raster_layout *layout,
+                            const struct raster_attribute *attributes, size_t attribute_count,
+                            const void *pixels);
+} new_formats[] = {{".tif", IMAGE_TIFF, NULL},
+                   {".tiff", IMAGE_TIFF, NULL},
+                   {".png", IMAGE_PNG, NULL},
+                   {".jpg", IMAGE_JPEG, NULL},
+                   {".jpeg", IMAGE_JPEG, NULL},
+                   {".npy", IMAGE_TIFF, write_npy},
+                   {".h5", IMAGE_TIFF, hdf5_array_write},
+                   {".hdf5", IMAGE_TIFF, hdf5_array_write}};
+
+/* NULL: none. */
+static const struct new_format *format_of(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; dot && i < sizeof new_formats / sizeof *new_formats; i++)
+        if (strcasecmp(dot, new_formats[i].extension) == 0)
+            return &new_formats[i];
+    return NULL;
+}
+
 static sonject_status kind_to_write(struct report *report, const char *path,
                                     const struct raster_layout *layout, enum image_kind *kind)
 {
-    if (!image_kind_of_name(path, kind))
+    const struct new_format *format = format_of(path);
+    if (!format || format->write)
         return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
                               "%s: images are written as .tif, .png or .jpg: choose one of these "
                               "extensions",
                               path);
+    *kind = format->kind;
     if ((*kind == IMAGE_PNG && layout->type == PIXEL_FLOAT32) ||
         (*kind == IMAGE_JPEG && layout->type != PIXEL_UINT8))
         return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
@@ -127,7 +180,7 @@ static sonject_status colour_png(struct report *report, const char *grey, const 
 static sonject_status write_rows(struct patched_rows *rows, const char *path,
                                  const char *description, bool is_drawn, const uint8_t *palette)
 {
-    enum image_kind kind;
+    enum image_kind kind = IMAGE_TIFF;
     CHECK(kind_to_write(rows->report, path, &rows->layout, &kind));
     char *part = file_part_name(path);
     char *coloured = part ? file_part_name(part) : NULL;
@@ -179,77 +232,24 @@ sonject_status raster_file_write_placed(struct report *report, const char *path,
                                 "%s: the region is not inside the image", path);
 }
 
-static sonject_status write_npy(struct report *report, const char *path,
-                                const struct raster_layout *layout,
-                                const struct raster_attribute *attributes, size_t attribute_count,
-                                const void *pixels)
-{
-    (void)attributes, (void)attribute_count;
-    return npy_write(report, path, layout->type, layout->channels == 2,
-                     (const uint64_t[]){layout->rows, layout->columns}, 2, pixels);
-}
-
-static sonject_status write_image(struct report *report, const char *path,
-                                  const struct raster_layout *layout,
-                                  const struct raster_attribute *attributes, size_t attribute_count,
-                                  const void *pixels)
-{
-    static const char *const complex_names[] = {"real", "imag"};
-    return raster_file_write(report, path, layout, layout->channels == 2 ? complex_names : NULL,
-                             attributes, attribute_count, pixels);
-}
-
-#ifndef HAS_HDF5
-sonject_status hdf5_array_write(struct report *report, const char *path,
-                                const struct raster_layout *layout,
-                                const struct raster_attribute *notes, size_t note_count,
-                                const void *pixels)
-{
-    (void)layout, (void)notes, (void)note_count, (void)pixels;
-    return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
-                          "%s: this build of sonject has no HDF5 files: build it with HDF5", path);
-}
-#endif
-
-/* Formats that lose nothing. */
-static const struct whole_format {
-    const char *extension;
-    sonject_status (*write)(struct report *report, const char *path,
-                            const struct raster_layout *layout,
-                            const struct raster_attribute *attributes, size_t attribute_count,
-                            const void *pixels);
-    bool is_for_grey; /* of whole numbers alone */
-} whole_formats[] = {{".tif", write_image, false},     {".tiff", write_image, false},
-                     {".png", write_image, true},      {".npy", write_npy, false},
-                     {".h5", hdf5_array_write, false}, {".hdf5", hdf5_array_write, false}};
-
-/* NULL: none. */
-static const struct whole_format *format_of(const char *path)
-{
-    const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot && i < sizeof whole_formats / sizeof *whole_formats; i++)
-        if (strcmp(dot, whole_formats[i].extension) == 0)
-            return &whole_formats[i];
-    return NULL;
-}
-
 bool raster_format_keeps_attributes(const char *path)
 {
-    const struct whole_format *format = format_of(path);
+    const struct new_format *format = format_of(path);
     return !format || format->write != write_npy;
 }
 
-sonject_status raster_format_check(struct report *report, const char *path,
+/* Whether the extension tells a format that holds such samples. */
+static sonject_status check_format(struct report *report, const char *path,
                                    const struct raster_layout *layout)
 {
-    const struct whole_format *format = format_of(path);
+    const struct new_format *format = format_of(path);
     const bool is_float = layout->type == PIXEL_FLOAT32;
-    if (!format)
+    if (!format || format->kind == IMAGE_JPEG)
         return input_failure(report, path,
                              "images are written without loss as .tif, .png, .npy or .h5: choose "
                              "one of these extensions");
-    if (format->is_for_grey ? layout->channels == 1 && !is_float
-                            : layout->channels == 1 || is_float)
+    if (format->kind == IMAGE_PNG ? layout->channels == 1 && !is_float
+                                  : layout->channels == 1 || is_float)
         return SONJECT_OK;
     return input_failure(report, path,
                          "this format does not hold %s samples: write .tif, .npy or .h5, or ask "
@@ -264,6 +264,11 @@ sonject_status raster_format_write(struct report *report, const char *path,
                                    const struct raster_attribute *attributes,
                                    size_t attribute_count, const void *pixels)
 {
-    CHECK(raster_format_check(report, path, layout));
-    return format_of(path)->write(report, path, layout, attributes, attribute_count, pixels);
+    static const char *const complex_names[] = {"real", "imag"};
+    CHECK(check_format(report, path, layout));
+    const struct new_format *format = format_of(path);
+    return format->write ? format->write(report, path, layout, attributes, attribute_count, pixels)
+                         : raster_file_write(report, path, layout,
+                                             layout->channels == 2 ? complex_names : NULL,
+                                             attributes, attribute_count, pixels);
 }

@@ -58,13 +58,8 @@ sonject_status hdf5_array_write(struct report *report, const char *path,
 /* True if files of that extension keep attributes. */
 bool raster_format_keeps_attributes(const char *path);
 
-/* Checks that the extension of path tells a format that holds such samples. Errors: INPUT (lists
- * the formats). */
-sonject_status raster_format_check(struct report *report, const char *path,
-                                   const struct raster_layout *layout);
-
 /* Writes the raster: complex where it has 2 channels. Published whole or not at all. Errors: INPUT
- * (as raster_format_check), STORAGE, MEMORY, UNSUPPORTED. */
+ * (the extension tells no format that holds such samples), STORAGE, MEMORY, UNSUPPORTED. */
 sonject_status raster_format_write(struct report *report, const char *path,
                                    const struct raster_layout *layout,
                                    const struct raster_attribute *attributes,

@@ -261,7 +261,7 @@ sonject_status open_file(struct report *report, struct raster_image &file)
     return SONJECT_OK;
 }
 
-void raster_close(void *image)
+sonject_status raster_close(struct report *, void *image)
 {
     std::unique_ptr<struct raster_image> file(static_cast<struct raster_image *>(image));
     try {
@@ -270,6 +270,7 @@ void raster_close(void *image)
     } catch (...) {
         /* nothing is lost by a file that was only read */
     }
+    return SONJECT_OK;
 }
 
 sonject_status raster_open(struct report *report, const char *name, const char *path, const char *,
@@ -436,7 +437,7 @@ sonject_status encode(struct report *report, const struct image_encoding *encodi
     return guarded(report, encoding->name, [&] { return write_rows(report, *encoding); });
 }
 
-const struct image_library openimageio = {raster_open, raster_close, raster_read, nullptr, nullptr};
+const struct image_library openimageio = {raster_open, raster_close, raster_read, nullptr};
 
 } // namespace
 

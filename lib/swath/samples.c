@@ -73,43 +73,6 @@ void samples_convert(enum stored_type from_type, const unsigned char *from, enum
     put_number(stored_number(is_big_endian, from_type, from), type, to, is_big_endian);
 }
 
-static double shown_number(enum pixel_type type, const unsigned char *shown)
-{
-    uint16_t half;
-    float single;
-    switch (type) {
-    case PIXEL_UINT8:
-        return (double)*shown;
-    case PIXEL_UINT16:
-        memcpy(&half, shown, sizeof half);
-        return (double)half;
-    case PIXEL_FLOAT32:
-        break;
-    }
-    memcpy(&single, shown, sizeof single);
-    return (double)single;
-}
-
-/* False if the image cannot hold it. */
-static bool show(enum pixel_type type, double number, unsigned char *shown)
-{
-    const uint16_t half = number >= 0.0 && number <= pixel_full_scale(type) ? (uint16_t)number : 0;
-    float single;
-    switch (type) {
-    case PIXEL_UINT8:
-        *shown = (unsigned char)half;
-        return number >= 0.0 && number <= UINT8_MAX;
-    case PIXEL_UINT16:
-        memcpy(shown, &half, sizeof half);
-        return number >= 0.0 && number <= UINT16_MAX;
-    case PIXEL_FLOAT32:
-        break;
-    }
-    const bool is_held = float_of_double(number, &single);
-    memcpy(shown, &single, sizeof single);
-    return is_held;
-}
-
 /* The largest number of a whole type that a file may hold. */
 static double largest_of(const struct stored_samples *stored, enum stored_type type)
 {
@@ -157,9 +120,10 @@ static bool exchange(const struct stored_samples *stored, uint32_t channel, enum
         return true;
     }
     if (writes)
-        return store(stored, from, shown_number(type, shown), bytes);
+        return store(stored, from, pixel_number(type, shown, 0), bytes);
     const double number = stored_number(stored->is_big_endian, from, bytes);
-    return !(stored->are_amplitudes && is_whole(from) && number < 0.0) && show(type, number, shown);
+    return !(stored->are_amplitudes && is_whole(from) && number < 0.0) &&
+           pixel_store(type, shown, 0, number);
 }
 
 static sonject_status refuse_sample(struct report *report, const char *path,
@@ -196,7 +160,7 @@ sonject_status samples_exchange(struct report *report, const char *path,
                 if (!exchange(stored, k, layout->type, writes, at, shown))
                     return refuse_sample(report, path, stored, type, part->first_row + i,
                                          part->first_column + j,
-                                         writes ? shown_number(layout->type, shown)
+                                         writes ? pixel_number(layout->type, shown, 0)
                                                 : stored_number(stored->is_big_endian, type, at),
                                          writes);
             }

@@ -282,9 +282,10 @@ static sonject_status check(struct report *report, struct tiff_image *image, uin
     return check_other_pages(report, image);
 }
 
-static void close_image(void *opened)
+static sonject_status close_image(struct report *report, void *opened)
 {
     struct tiff_image *image = opened;
+    (void)report;
     if (image->file)
         TIFFClose(image->file);
     for (int i = 0; i < 2; i++)
@@ -292,6 +293,7 @@ static void close_image(void *opened)
     free(image->name);
     free(image->path);
     free(image);
+    return SONJECT_OK;
 }
 
 static sonject_status open_file(struct report *report, struct tiff_image *image, const char *name,
@@ -335,7 +337,7 @@ static sonject_status open_image(struct report *report, const char *name, const 
     if (status == SONJECT_OK)
         *opened = image;
     else
-        close_image(image);
+        (void)close_image(report, image);
     return status;
 }
 
@@ -462,14 +464,7 @@ static sonject_status change_pixels(struct report *report, void *opened,
                          "its pixels cannot be replaced: %s: convert it to BigTIFF", fault.message);
 }
 
-static sonject_status finish_image(struct report *report, void *image)
-{
-    (void)report, (void)image;
-    return SONJECT_OK;
-}
-
-const struct image_library tiff_library = {open_image, close_image, read_pixels, change_pixels,
-                                           finish_image};
+const struct image_library tiff_library = {open_image, close_image, read_pixels, change_pixels};
 
 static uint64_t row_bytes(const struct raster_layout *layout)
 {
