@@ -1,7 +1,6 @@
 #include "swath/image_head.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -25,10 +24,9 @@ struct beginning {
 };
 
 static const struct beginning beginnings[] = {
-    {IMAGE_TIFF, "II\x2A\0", 4},   {IMAGE_TIFF, "MM\0\x2A", 4}, {IMAGE_TIFF, "II\x2B\0", 4},
-    {IMAGE_TIFF, "MM\0\x2B", 4},   {IMAGE_PNG, "\x89PNG", 4},   {IMAGE_JPEG, "\xFF\xD8\xFF", 3},
-    {IMAGE_OPENEXR, "v/1\x01", 4}, {IMAGE_BMP, "BM", 2},        {IMAGE_PNM, "P5", 2},
-    {IMAGE_PNM, "Pf", 2}};
+    {IMAGE_TIFF, "II\x2A\0", 4}, {IMAGE_TIFF, "MM\0\x2A", 4}, {IMAGE_TIFF, "II\x2B\0", 4},
+    {IMAGE_TIFF, "MM\0\x2B", 4}, {IMAGE_PNG, "\x89PNG", 4},   {IMAGE_JPEG, "\xFF\xD8\xFF", 3},
+    {IMAGE_BMP, "BM", 2},        {IMAGE_PGM, "P5", 2}};
 
 /* What users may have at hand that sonject does not read. */
 static const struct {
@@ -39,7 +37,9 @@ static const struct {
     {"a DPX", "SDPX", 4},
     {"a DPX", "XPDS", 4},
     {"a GIF", "GIF8", 4},
-    {"a colour PFM", "PF\n", 3},
+    {"an OpenEXR", "v/1\x01", 4},
+    {"a PFM", "Pf", 2},
+    {"a PFM", "PF", 2},
     {"a PBM", "P4", 2},
     {"a PPM", "P6", 2},
     {"a PGM in ASCII (P2)", "P2", 2},
@@ -57,7 +57,7 @@ sonject_status image_kind_refuse(struct report *report, const char *path, const 
                                  size_t count)
 {
     static const char readable[] =
-        "TIFF, PNG, JPEG, OpenEXR, PGM (P5), PFM (Pf), BMP, XTF, NumPy (.npy), HDF5 and MATLAB "
+        "TIFF, PNG, JPEG, PGM (P5), BMP, XTF, NumPy (.npy), HDF5 and MATLAB "
         "(.mat)";
     for (size_t i = 0; i < sizeof foreign_kinds / sizeof *foreign_kinds; i++)
         if (count >= foreign_kinds[i].count &&
@@ -153,7 +153,7 @@ static bool take_number(const char **at, double *number)
     return text_to_number(*at, number, at);
 }
 
-sonject_status pnm_check(struct report *report, const char *name, const char *path)
+sonject_status pgm_check(struct report *report, const char *name, const char *path)
 {
     struct head head;
     double columns = 0.0;
@@ -165,15 +165,11 @@ sonject_status pnm_check(struct report *report, const char *name, const char *pa
         !is_blank(*at) || !(columns >= 1.0 && columns < (double)SIDE_MAX) ||
         !(rows >= 1.0 && rows < (double)SIDE_MAX))
         return input_failure(report, name, "is damaged: its head does not tell its size");
-    const bool is_float = head.text[1] == 'f';
-    if (is_float && fabs(largest) != 1.0)
-        return input_failure(
-            report, name, "says that its numbers are scaled: write it with a scale of 1.0 or -1.0");
-    if (!is_float && largest != 255.0)
+    if (largest != 255.0)
         return input_failure(report, name,
                              "is no PGM of 8 bits (largest number 255): write it as TIFF");
     return check_file_length(report, name, &head, (uint64_t)(at + 1 - head.text), (uint64_t)rows,
-                             (uint64_t)columns * (is_float ? 4 : 1));
+                             (uint64_t)columns);
 }
 
 /* Returns what is behind it. */

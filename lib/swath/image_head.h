@@ -1,4 +1,4 @@
-/* What the first bytes of image files say: their kind, and what of BMP, PNG, PGM and PFM files
+/* What the first bytes of image files say: their kind, and what of BMP, PNG and PGM files
  * OpenImageIO would not hand on as it is stored. */
 #ifndef SONJECT_SWATH_IMAGE_HEAD_H
 #define SONJECT_SWATH_IMAGE_HEAD_H
@@ -17,9 +17,8 @@ enum image_kind {
     IMAGE_TIFF,
     IMAGE_PNG,
     IMAGE_JPEG,
-    IMAGE_OPENEXR,
     IMAGE_BMP,
-    IMAGE_PNM /* PGM and PFM */
+    IMAGE_PGM
 };
 
 /* The message for a file of no kind that sonject reads, by its first bytes. Returns INPUT. */
@@ -29,12 +28,12 @@ sonject_status image_kind_refuse(struct report *report, const char *path, const 
 /* Told by bytes from a file's beginning; false for another kind. */
 bool image_kind_of_beginning(const unsigned char *bytes, size_t count, enum image_kind *kind);
 
-/* BMP, PGM and PFM have no checksums, and OpenImageIO takes what their heads say: refuses (INPUT)
+/* BMP and PGM have no checksums, and OpenImageIO takes what their heads say: refuses (INPUT)
  * files whose length is not what the head says, and numbers that OpenImageIO would not hand on as
  * they are stored: those of a PGM that is not of 8 bits are scaled there, so that half of a 16-bit
  * one's come out by one too small. name: of the file in messages. */
 sonject_status bmp_check(struct report *report, const char *name, const char *path);
-sonject_status pnm_check(struct report *report, const char *name, const char *path);
+sonject_status pgm_check(struct report *report, const char *name, const char *path);
 
 /* PNG files whose pixels are numbers of a palette's colours: OpenImageIO reads the colours; sonject
  * needs the numbers, of its own files. A coloured file is a grey one whose header has made room for

@@ -85,8 +85,8 @@ struct module_stamp {
 struct raster_module {
     struct module_stamp stamp;
     /* TIFF alone is changed; the others' copies are new images. Refused is what they cannot read,
-     * more than 2^40 pixels, sides of 0, pixel types other than 8 and 16 bit unsigned and 16 and 32
-     * bit float, palettes, other than 1 or 2 channels. */
+     * more than 2^40 pixels, sides of 0, palettes, several channels, and of the others what is not of
+     * 8 or 16 bits. */
     const struct image_library *tiff, *others;
     /* Streams in strips of at most about 64 MB. What failed is left to the caller to remove.
      * Errors: STORAGE, MEMORY, those of give_rows. */

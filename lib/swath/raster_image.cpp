@@ -1,5 +1,5 @@
-/* Images by OpenImageIO: PNG, JPEG, OpenEXR, BMP, PGM and PFM that are read, PNG and JPEG that are
- * written; and the module of these and of TIFF, which is libtiff's. No exception leaves the file.
+/* Images by OpenImageIO: PNG, JPEG, BMP and PGM that are read, PNG and JPEG that are written; and
+ * the module of these and of TIFF, which is libtiff's. No exception leaves the file.
  */
 #include <cerrno>
 #include <cstdio>
@@ -8,12 +8,10 @@
 #include <new>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <OpenImageIO/strutil.h>
 
 #include "base/file.h"
 #include "swath/image_library.h"
@@ -57,8 +55,6 @@ struct raster_image {
     OIIO::ImageSpec spec;
     std::vector<unsigned char> rows;     /* decoded last, for pieces of one strip */
     uint64_t first_row = 0, end_row = 0; /* what they are; nothing if these are equal */
-    bool is_half = false;                /* stored as 16-bit floating point */
-    bool is_swapped = false;             /* the imaginary part is stored before the real one */
 
     size_t pixel_size() const
     {
@@ -68,7 +64,7 @@ struct raster_image {
 
 const char *format_name(enum image_kind kind)
 {
-    static const char *const names[] = {"tiff", "png", "jpeg", "openexr", "bmp", "pnm"};
+    static const char *const names[] = {"tiff", "png", "jpeg", "bmp", "pnm"};
     return names[kind];
 }
 
@@ -111,38 +107,6 @@ sonject_status open_input(struct report *report, struct raster_image &file)
                : input_failure(report, name, "cannot be read: %s", reason.c_str());
 }
 
-/* "real" of "real" and of "layer.real"; the letters' case does not matter. */
-std::string part_of_channel(const std::string &name)
-{
-    return OIIO::Strutil::lower(name.substr(name.rfind('.') + 1));
-}
-
-/* What OpenEXR itself takes. The format has no checksums: a window that a damaged byte changed is
- * told by the other one. Channels are sorted by their names, so only these tell which is which. */
-sonject_status check_openexr(struct report *report, struct raster_image &file)
-{
-    const OIIO::ImageSpec &spec = file.spec;
-    const char *fault = nullptr;
-    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
-        spec.height != spec.full_height)
-        fault = "its data window is not its display window: write the whole image";
-    else if (spec.deep || file.input->seek_subimage(1, 0))
-        fault = "has several parts or depths: write the image alone";
-    else if (!spec.channelformats.empty())
-        fault = "has channels of different types: store them in one";
-    file.input->seek_subimage(0, 0);
-    file.input->geterror(); /* that there is no other part */
-    file.is_half = spec.format == OIIO::TypeDesc::HALF;
-    if (!fault && spec.nchannels == 2) {
-        const std::string first = part_of_channel(spec.channel_name(0));
-        const std::string second = part_of_channel(spec.channel_name(1));
-        file.is_swapped = first == "imag" && second == "real";
-        if (!file.is_swapped && !(first == "real" && second == "imag"))
-            fault = "has two channels: name them real and imag";
-    }
-    return fault ? input_failure(report, file.name.c_str(), "%s", fault) : SONJECT_OK;
-}
-
 sonject_status take_layout(struct report *report, struct raster_image &file)
 {
     const OIIO::ImageSpec &spec = file.spec;
@@ -152,52 +116,39 @@ sonject_status take_layout(struct report *report, struct raster_image &file)
         return input_failure(report, name,
                              "%d x %d x %d pixels are not an image that sonject reads", spec.width,
                              spec.height, spec.depth);
-    if (spec.nchannels != 1 && spec.nchannels != 2)
+    if (spec.nchannels == 2)
+        return input_failure(report, name,
+                             "has 2 channels, grey and transparency; convert it to one channel "
+                             "first");
+    if (spec.nchannels != 1)
         return input_failure(report, name,
                              "has %d channels; sonject reads 1 (amplitude) or 2 (real, imaginary); "
                              "convert it to one channel first",
                              spec.nchannels);
-    if (spec.nchannels == 2 && spec.alpha_channel >= 0)
-        return input_failure(report, name,
-                             "has 2 channels, grey and transparency; convert it to one channel "
-                             "first");
-    file.layout = {uint64_t(spec.height), uint64_t(spec.width), uint32_t(spec.nchannels),
-                   spec.format == OIIO::TypeDesc::UINT8    ? PIXEL_UINT8
-                   : spec.format == OIIO::TypeDesc::UINT16 ? PIXEL_UINT16
-                                                           : PIXEL_FLOAT32};
-    if (file.layout.type == PIXEL_FLOAT32 && spec.format != OIIO::TypeDesc::FLOAT && !file.is_half)
-        return input_failure(report, name,
-                             "has pixels of type %s; sonject reads 8 and 16 bit unsigned and 32 "
-                             "bit float: convert it to one of these",
+    if (spec.format != OIIO::TypeDesc::UINT8 && spec.format != OIIO::TypeDesc::UINT16)
+        return input_failure(report, name, "has pixels of type %s: convert it to TIFF",
                              spec.format.c_str());
+    file.layout = {uint64_t(spec.height), uint64_t(spec.width), 1,
+                   spec.format == OIIO::TypeDesc::UINT8 ? PIXEL_UINT8 : PIXEL_UINT16};
     return SONJECT_OK;
 }
 
-/* Whole rows, of tiled images whole rows of tiles, into file.rows. */
+/* Whole rows, into file.rows. */
 sonject_status decode_rows(struct report *report, struct raster_image &file, uint64_t first,
                            uint64_t end)
 {
     const OIIO::ImageSpec &spec = file.spec;
-    const OIIO::TypeDesc type = file.is_half ? OIIO::TypeDesc::FLOAT : spec.format;
-    const int y = spec.y + int(first);
-    const int y_end = spec.y + int(end);
     if (first == file.first_row && end == file.end_row)
         return SONJECT_OK;
     file.end_row = file.first_row;
     file.rows.resize(size_t((end - first) * file.layout.columns * file.pixel_size()));
-    const bool is_read =
-        spec.tile_width > 0 ? file.input->read_tiles(0, 0, spec.x, spec.x + spec.width, y, y_end, 0,
-                                                     1, 0, spec.nchannels, type, file.rows.data())
-                            : file.input->read_scanlines(0, 0, y, y_end, 0, 0, spec.nchannels, type,
-                                                         file.rows.data());
+    const bool is_read = file.input->read_scanlines(0, 0, spec.y + int(first), spec.y + int(end), 0,
+                                                    0, 1, spec.format, file.rows.data());
     const std::string reason = file.input->geterror();
     if (!is_read || !reason.empty())
         return input_failure(
             report, file.name.c_str(), "cut short or damaged at rows %llu...%llu: %s",
             (unsigned long long)first, (unsigned long long)(end - 1), reason.c_str());
-    float *parts = reinterpret_cast<float *>(file.rows.data());
-    for (uint64_t i = 0; file.is_swapped && i < (end - first) * file.layout.columns; i++)
-        std::swap(parts[2 * i], parts[2 * i + 1]);
     file.first_row = first;
     file.end_row = end;
     return SONJECT_OK;
@@ -206,22 +157,17 @@ sonject_status decode_rows(struct report *report, struct raster_image &file, uin
 sonject_status read_region(struct report *report, struct raster_image &file,
                            const struct region &region, unsigned char *pixels)
 {
-    const uint64_t unit = file.spec.tile_height > 0 ? uint64_t(file.spec.tile_height) : 1;
-    const uint64_t some = rows_at_once(&file.layout) / unit * unit;
-    const uint64_t at_once = some > 0 ? some : unit;
-    const uint64_t region_end = region.first_row + region.rows;
-    const uint64_t wanted_end = (region_end - 1) / unit * unit + unit;
-    const uint64_t end = wanted_end < file.layout.rows ? wanted_end : file.layout.rows;
+    const uint64_t at_once = rows_at_once(&file.layout);
+    const uint64_t end = region.first_row + region.rows;
     const size_t pixel = file.pixel_size();
-    for (uint64_t first = region.first_row / unit * unit; first < end; first += at_once) {
+    for (uint64_t first = region.first_row; first < end; first += at_once) {
         const uint64_t last = end - first < at_once ? end : first + at_once;
         CHECK(decode_rows(report, file, first, last));
         for (uint64_t row = first; row < last; row++)
-            if (row >= region.first_row && row < region_end)
-                std::memcpy(pixels + (row - region.first_row) * region.columns * pixel,
-                            file.rows.data() +
-                                ((row - first) * file.layout.columns + region.first_column) * pixel,
-                            region.columns * pixel);
+            std::memcpy(pixels + (row - region.first_row) * region.columns * pixel,
+                        file.rows.data() +
+                            ((row - first) * file.layout.columns + region.first_column) * pixel,
+                        region.columns * pixel);
     }
     return SONJECT_OK;
 }
@@ -246,13 +192,11 @@ sonject_status open_file(struct report *report, struct raster_image &file)
         CHECK(png_check(report, name, path, &is_coloured));
     if (file.kind == IMAGE_BMP)
         CHECK(bmp_check(report, name, path));
-    if (file.kind == IMAGE_PNM)
-        CHECK(pnm_check(report, name, path));
+    if (file.kind == IMAGE_PGM)
+        CHECK(pgm_check(report, name, path));
     if (is_coloured)
         restore_numbers(file);
     CHECK(open_input(report, file));
-    if (file.kind == IMAGE_OPENEXR)
-        CHECK(check_openexr(report, file));
     CHECK(take_layout(report, file));
     /* Of PNG and JPEG the decoder alone tells that they are cut short: at once, not after hours of
      * work. */

@@ -1,5 +1,4 @@
-/* What sonject itself reads of image files: the heads of BMP, PGM and PFM. Decoding is
- * OpenImageIO's. */
+/* What sonject itself reads of image files: the heads of BMP and PGM. Decoding is OpenImageIO's. */
 #include "fuzz.h"
 
 #include "swath/image_head.h"
@@ -15,6 +14,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
     fuzz_write("fuzz.image", bytes, count);
     if (count > 1 && (bytes[0] == 'B' || bytes[0] == 'P'))
-        check_head(bytes[0] == 'B' ? bmp_check : pnm_check);
+        check_head(bytes[0] == 'B' ? bmp_check : pgm_check);
     return 0;
 }

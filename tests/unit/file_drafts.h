@@ -39,13 +39,13 @@ static inline void add_number(struct draft *draft, uint64_t number, size_t size)
     add(draft, bytes, size);
 }
 
-static inline void add_float(struct draft *draft, double sample, bool is_big_endian)
+static inline void add_float(struct draft *draft, double sample)
 {
     const float single = (float)sample;
     unsigned char bytes[4];
     uint32_t word;
     memcpy(&word, &single, sizeof word);
-    number_to_bytes(word, bytes, 4, is_big_endian);
+    number_to_bytes(word, bytes, 4, false);
     add(draft, bytes, 4);
 }
 
@@ -70,7 +70,7 @@ static inline void make_npy(struct draft *draft, int how)
     memcpy(draft->bytes, head, sizeof head - 1);
     draft->count = 80;
     for (size_t i = 0; i < SAMPLES; i++)
-        add_float(draft, sample_at(false, i / COLUMNS, i % COLUMNS), false);
+        add_float(draft, sample_at(false, i / COLUMNS, i % COLUMNS));
 }
 
 /* Port, whose samples run from far to near, and starboard, of 16 bits. */
@@ -273,16 +273,6 @@ static inline void make_pgm(struct draft *draft, int how)
         add_number(draft, (uint64_t)sample_at(true, i / COLUMNS, i % COLUMNS), 1);
 }
 
-/* The file's first row is the image's last. */
-static inline void make_pfm(struct draft *draft, int is_big_endian)
-{
-    const char *head = is_big_endian ? "Pf\n4 3\n1.0\n" : "Pf\n4 3\n-1.0\n";
-    draft->count = 0;
-    add(draft, head, strlen(head));
-    for (size_t i = 0; i < SAMPLES; i++)
-        add_float(draft, sample_at(false, ROWS - 1 - i / COLUMNS, i % COLUMNS), is_big_endian);
-}
-
 /* From the last row up. */
 static inline void make_bmp(struct draft *draft, int how)
 {
@@ -309,45 +299,6 @@ static inline void make_bmp(struct draft *draft, int how)
         add_number(draft, i * 0x010101, 4);
     for (size_t i = 0; i < SAMPLES; i++)
         add_number(draft, (uint64_t)sample_at(true, ROWS - 1 - i / COLUMNS, i % COLUMNS), 1);
-}
-
-/* Without compression, so without any check of the samples. */
-static inline void make_exr(struct draft *draft, int how)
-{
-    static const unsigned char channel[19] = {'Y', 0, 2, [10] = 1, [14] = 1};
-    static const unsigned char window[16] = {[8] = COLUMNS - 1, [12] = ROWS - 1};
-    static const unsigned char zeros[8] = {0};
-    static const struct {
-        const char *name, *kind;
-        const void *content;
-        size_t count;
-    } attributes[] = {{"channels", "chlist", channel, sizeof channel},
-                      {"compression", "compression", zeros, 1},
-                      {"dataWindow", "box2i", window, sizeof window},
-                      {"displayWindow", "box2i", window, sizeof window},
-                      {"lineOrder", "lineOrder", zeros, 1},
-                      {"pixelAspectRatio", "float", "\0\0\x80\x3F", 4},
-                      {"screenWindowCenter", "v2f", zeros, 8},
-                      {"screenWindowWidth", "float", "\0\0\x80\x3F", 4}};
-    (void)how;
-    draft->count = 0;
-    add(draft, "\x76\x2F\x31\x01\x02\0\0\0", 8);
-    for (size_t i = 0; i < COUNT(attributes); i++) {
-        add(draft, attributes[i].name, strlen(attributes[i].name) + 1);
-        add(draft, attributes[i].kind, strlen(attributes[i].kind) + 1);
-        add_number(draft, attributes[i].count, 4);
-        add(draft, attributes[i].content, attributes[i].count);
-    }
-    add(draft, zeros, 1);
-    const size_t first = draft->count + (size_t)8 * ROWS;
-    for (size_t row = 0; row < ROWS; row++)
-        add_number(draft, first + row * (8 + 4 * COLUMNS), 8);
-    for (size_t row = 0; row < ROWS; row++) {
-        add_number(draft, row, 4);
-        add_number(draft, 4 * COLUMNS, 4);
-        for (size_t column = 0; column < COLUMNS; column++)
-            add_float(draft, sample_at(false, row, column), false);
-    }
 }
 
 #endif
