@@ -11,13 +11,6 @@ static double value_of(enum quantity quantity, const char *text)
     return value;
 }
 
-static void expect(enum quantity quantity, const char *text, double expected)
-{
-    const double value = value_of(quantity, text);
-    if (!(value == expected))
-        fail_msg("'%s' gave %.17g, not %.17g", text, value, expected);
-}
-
 static void expect_problem(enum quantity quantity, const char *text, const char *part)
 {
     char problem[200] = "";
@@ -29,71 +22,66 @@ static void expect_problem(enum quantity quantity, const char *text, const char 
         fail_msg("'%s': the problem is '%s', without '%s'", text, problem, part);
 }
 
-/* All units but degrees and decibels are powers of ten, so these are exact comparisons. */
+/* All units but degrees and decibels are powers of ten, so these are exact comparisons. Angles are
+ * radians; blanks do not matter; infinity is only where it is written. */
 static void test_every_unit(void **state)
 {
-    expect(QUANTITY_NUMBER, "0.25", 0.25);
-    expect(QUANTITY_LENGTH, "12.5", 12.5);
-    expect(QUANTITY_LENGTH, "12.5 m", 12.5);
-    expect(QUANTITY_LENGTH, "1.2 km", 1200.0);
-    expect(QUANTITY_LENGTH, "2.5 cm", 0.025);
-    expect(QUANTITY_LENGTH, "6.7cm", 0.067);
-    expect(QUANTITY_LENGTH, "0.4 mm", 0.0004);
-    expect(QUANTITY_LENGTH, "-3 cm", -0.03);
-    expect(QUANTITY_FREQUENCY, "455e3", 455000.0);
-    expect(QUANTITY_FREQUENCY, "10 Hz", 10.0);
-    expect(QUANTITY_FREQUENCY, "100 kHz", 100000.0);
-    expect(QUANTITY_FREQUENCY, "1.8 MHz", 1800000.0);
-    expect(QUANTITY_SPEED, "1500", 1500.0);
-    expect(QUANTITY_SPEED, "1480.5 m/s", 1480.5);
-    expect(QUANTITY_SPEED, "1.5 km/s", 1500.0);
-    expect(QUANTITY_DECIBEL, "-40", -40.0);
-    expect(QUANTITY_DECIBEL, "-40 dB", -40.0);
-    expect(QUANTITY_LEVEL, "0.002", 0.002);
-    expect(QUANTITY_ABSORPTION, "0.03", 0.03);
-    expect(QUANTITY_ABSORPTION, "0.03 dB/m", 0.03);
-    expect(QUANTITY_ABSORPTION, "34 dB/km", 0.034);
-    expect(QUANTITY_TEMPERATURE, "12.5", 12.5);
-    expect(QUANTITY_TEMPERATURE, "-1 C", -1.0);
-    expect(QUANTITY_DENSITY, "1025", 1025.0);
-    expect(QUANTITY_DENSITY, "1025 kg/m3", 1025.0);
-    expect(QUANTITY_DENSITY, "1.025 g/cm3", 1025.0);
-    expect(QUANTITY_TIME, "0.25", 0.25);
-    expect(QUANTITY_TIME, "12.5 ms", 0.0125);
-    expect(QUANTITY_TIME, "3 us", 3e-6);
-}
-
-static void test_angles_are_radians(void **state)
-{
-    expect(QUANTITY_ANGLE, "180", PI);
-    expect(QUANTITY_ANGLE, "90 deg", 0.5 * PI);
-    expect(QUANTITY_ANGLE, "-45 deg", -0.25 * PI);
-    expect(QUANTITY_ANGLE, "1.5 rad", 1.5);
+    static const struct {
+        enum quantity quantity;
+        const char *text;
+        double value;
+    } cases[] = {{QUANTITY_NUMBER, "0.25", 0.25},
+                 {QUANTITY_LENGTH, "12.5", 12.5},
+                 {QUANTITY_LENGTH, "12.5 m", 12.5},
+                 {QUANTITY_LENGTH, "1.2 km", 1200.0},
+                 {QUANTITY_LENGTH, "2.5 cm", 0.025},
+                 {QUANTITY_LENGTH, "6.7cm", 0.067},
+                 {QUANTITY_LENGTH, "0.4 mm", 0.0004},
+                 {QUANTITY_LENGTH, "-3 cm", -0.03},
+                 {QUANTITY_FREQUENCY, "455e3", 455000.0},
+                 {QUANTITY_FREQUENCY, "10 Hz", 10.0},
+                 {QUANTITY_FREQUENCY, "100 kHz", 100000.0},
+                 {QUANTITY_FREQUENCY, "1.8 MHz", 1800000.0},
+                 {QUANTITY_SPEED, "1500", 1500.0},
+                 {QUANTITY_SPEED, "1480.5 m/s", 1480.5},
+                 {QUANTITY_SPEED, "1.5 km/s", 1500.0},
+                 {QUANTITY_DECIBEL, "-40", -40.0},
+                 {QUANTITY_DECIBEL, "-40 dB", -40.0},
+                 {QUANTITY_LEVEL, "0.002", 0.002},
+                 {QUANTITY_ABSORPTION, "0.03", 0.03},
+                 {QUANTITY_ABSORPTION, "0.03 dB/m", 0.03},
+                 {QUANTITY_ABSORPTION, "34 dB/km", 0.034},
+                 {QUANTITY_TEMPERATURE, "12.5", 12.5},
+                 {QUANTITY_TEMPERATURE, "-1 C", -1.0},
+                 {QUANTITY_DENSITY, "1025", 1025.0},
+                 {QUANTITY_DENSITY, "1025 kg/m3", 1025.0},
+                 {QUANTITY_DENSITY, "1.025 g/cm3", 1025.0},
+                 {QUANTITY_TIME, "0.25", 0.25},
+                 {QUANTITY_TIME, "12.5 ms", 0.0125},
+                 {QUANTITY_TIME, "3 us", 3e-6},
+                 {QUANTITY_ANGLE, "180", PI},
+                 {QUANTITY_ANGLE, "90 deg", 0.5 * PI},
+                 {QUANTITY_ANGLE, "-45 deg", -0.25 * PI},
+                 {QUANTITY_ANGLE, "1.5 rad", 1.5},
+                 {QUANTITY_LENGTH, " 2.5  cm ", 0.025},
+                 {QUANTITY_LENGTH, "2.5\tcm", 0.025},
+                 {QUANTITY_LENGTH, "2.5 ", 2.5},
+                 {QUANTITY_NUMBER, "inf", HUGE_VAL},
+                 {QUANTITY_NUMBER, "-.inf", -HUGE_VAL}};
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        const double value = value_of(cases[i].quantity, cases[i].text);
+        if (!(value == cases[i].value))
+            fail_msg("'%s' gave %.17g, not %.17g", cases[i].text, value, cases[i].value);
+    }
 }
 
 /* 1e-15 relative: pow is not bound to round correctly. */
 static void test_levels_are_energy_ratios(void **state)
 {
-    expect(QUANTITY_LEVEL, "0 dB", 1.0);
+    assert_true(value_of(QUANTITY_LEVEL, "0 dB") == 1.0);
     assert_true(fabs(value_of(QUANTITY_LEVEL, "-27 dB") / 0.001995262314968879602 - 1.0) < 1e-15);
     assert_true(fabs(value_of(QUANTITY_LEVEL, "-10 dB") / 0.1 - 1.0) < 1e-15);
     assert_true(fabs(value_of(QUANTITY_LEVEL, "3 dB") / 1.995262314968879602 - 1.0) < 1e-15);
-}
-
-static void test_blanks_do_not_matter(void **state)
-{
-    expect(QUANTITY_LENGTH, " 2.5  cm ", 0.025);
-    expect(QUANTITY_LENGTH, "2.5\tcm", 0.025);
-    expect(QUANTITY_LENGTH, "2.5 ", 2.5);
-}
-
-static void test_infinity_only_where_written(void **state)
-{
-    expect(QUANTITY_NUMBER, "inf", HUGE_VAL);
-    expect(QUANTITY_NUMBER, "-.inf", -HUGE_VAL);
-    expect_problem(QUANTITY_NUMBER, "1e999", "too large");
-    expect_problem(QUANTITY_FREQUENCY, "1e305 MHz", "too large");
-    expect_problem(QUANTITY_LEVEL, "4000 dB", "too large");
 }
 
 static void test_problems(void **state)
@@ -114,6 +102,9 @@ static void test_problems(void **state)
     expect_problem(QUANTITY_LENGTH, "nan", "'nan' is not a number with a unit of m");
     expect_problem(QUANTITY_LENGTH, "deep", "'deep' is not a number");
     expect_problem(QUANTITY_LENGTH, "0x10", "unit 'x10'");
+    expect_problem(QUANTITY_NUMBER, "1e999", "too large");
+    expect_problem(QUANTITY_FREQUENCY, "1e305 MHz", "too large");
+    expect_problem(QUANTITY_LEVEL, "4000 dB", "too large");
 }
 
 static void test_a_long_unit_is_cut_in_the_message(void **state)
@@ -127,7 +118,5 @@ static void test_a_long_unit_is_cut_in_the_message(void **state)
     expect_problem(QUANTITY_NUMBER, text, "kkk...' is not a number");
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_every_unit), TEST(test_angles_are_radians),
-             TEST(test_levels_are_energy_ratios), TEST(test_blanks_do_not_matter),
-             TEST(test_infinity_only_where_written), TEST(test_problems),
-             TEST(test_a_long_unit_is_cut_in_the_message))
+TEST_PROGRAM(NULL, NULL, TEST(test_every_unit), TEST(test_levels_are_energy_ratios),
+             TEST(test_problems), TEST(test_a_long_unit_is_cut_in_the_message))
