@@ -1,6 +1,7 @@
 #include "image/plot.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -87,23 +88,16 @@ double plot_tick_value(const struct plot_ticks *ticks, int64_t number)
 const char *plot_tick_label(const struct plot_ticks *ticks, int64_t number,
                             char label[TICK_LABEL_CAPACITY])
 {
-    /* written backwards from the end: at most 8 digits, 12 decimals or zeros, point and sign */
-    char *at = label + TICK_LABEL_CAPACITY;
-    uint64_t digits = (uint64_t)(number < 0 ? -number : number) * (uint64_t)ticks->multiple;
-    *--at = '\0';
-    for (int i = 0; number != 0 && i < ticks->exponent; i++)
-        *--at = '0';
-    for (int i = ticks->exponent; i < 0; i++, digits /= 10)
-        *--at = (char)('0' + digits % 10);
-    if (ticks->exponent < 0)
-        *--at = '.';
-    do {
-        *--at = (char)('0' + digits % 10);
-        digits /= 10;
-    } while (digits > 0);
-    if (number < 0)
-        *--at = '-';
-    return at;
+    size_t length = 0;
+    snprintf(label, TICK_LABEL_CAPACITY, "%.*f", ticks->exponent < 0 ? -ticks->exponent : 0,
+             plot_tick_value(ticks, number));
+    for (const char *from = label; *from; from++)
+        if (*from == '-' || (*from >= '0' && *from <= '9'))
+            label[length++] = *from;
+        else if (label[length - 1] != '.') /* however long the locale's is */
+            label[length++] = '.';
+    label[length] = '\0';
+    return label;
 }
 
 /* One axis of a panel: `down` image pixels are averaged to a cell, which is drawn `up` pixels wide;

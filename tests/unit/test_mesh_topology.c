@@ -84,7 +84,7 @@ static struct mesh prepare_loose_box(double off_m, bool is_reversed)
 
 /* A millionth of the box's diagonal is 2.4 um; the farthest corners of a seam are sqrt(3)/2 apart.
  */
-static void test_narrow_seams_close_in_any_order(void **state)
+static void narrow_seams_close_in_any_order_and_thin_walls_stay(void **state)
 {
     for (int is_reversed = 0; is_reversed < 2; is_reversed++) {
         struct mesh mesh = prepare_loose_box(1e-6, is_reversed);
@@ -96,11 +96,7 @@ static void test_narrow_seams_close_in_any_order(void **state)
         assert_false(mesh.topology.is_closed);
         mesh_clear(&mesh);
     }
-}
-
-/* Two sides of a closed mesh that are closer than a seam's may be. */
-static void test_thin_walls_stay(void **state)
-{
+    /* two sides of a closed mesh that are closer than a seam's may be */
     struct mesh_sample sample;
     sample_box(&sample);
     for (size_t i = 0; i < 8; i++)
@@ -302,7 +298,7 @@ static void test_normals(void **state)
     sample_clear(&sample);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_orientation), TEST(test_narrow_seams_close_in_any_order),
-             TEST(test_thin_walls_stay), TEST(test_cavity), TEST(test_open), TEST(test_crowded),
-             TEST(test_twisted), TEST(test_degenerate), TEST(test_crowded_vertex),
-             TEST(test_normals))
+TEST_PROGRAM(NULL, NULL, TEST(test_orientation),
+             TEST(narrow_seams_close_in_any_order_and_thin_walls_stay), TEST(test_cavity),
+             TEST(test_open), TEST(test_crowded), TEST(test_twisted), TEST(test_degenerate),
+             TEST(test_crowded_vertex), TEST(test_normals))
