@@ -1,4 +1,4 @@
-/* sonject form: the second stage of a run, from the impulses of sonject trace. */
+/* sonject form: the second stage of a run, from the sums of sonject trace. */
 #include <stddef.h>
 
 #include <sonject/sonject.h>
@@ -57,7 +57,7 @@ static int work(const void *verb_options)
 
 const struct verb form_verb = {
     .name = "form",
-    .summary = "forms the image of traced impulses; writes what run does",
+    .summary = "forms the image of what was traced; writes what run does",
     .operand = "FILE",
     .operand_offset = offsetof(struct form_options, file),
     .arguments = arguments,

@@ -39,12 +39,12 @@ static sonject_status trace(sonject_context *context, const void *verb_options,
 static int work(const void *verb_options)
 {
     const struct trace_options *options = verb_options;
-    return stage_work(&options->stage, trace, verb_options, "the impulses are in ");
+    return stage_work(&options->stage, trace, verb_options, "the sums are in ");
 }
 
 const struct verb trace_verb = {
     .name = "trace",
-    .summary = "traces a scene and writes its impulses, for sonject form",
+    .summary = "traces a scene and writes its sums, for sonject form",
     .operand = "SCENE.yaml",
     .operand_offset = offsetof(struct trace_options, scene.path),
     .arguments = arguments,

@@ -1,4 +1,4 @@
-/* The two stages of a run apart: tracing, whose impulses go to a file, and forming images of them,
+/* The two stages of a run apart: tracing, whose sums go to a file, and forming images of them,
  * as often as wanted, also with another bandwidth or cross-range response. */
 #ifndef SONJECT_STAGES_H
 #define SONJECT_STAGES_H
@@ -12,8 +12,8 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
-/* Traces the scene and writes its impulses to the file, for sonject_form, and, where it is not
- * NULL, to export_file as arrays of HDF5, described in lib/inject/impulses.h (builds without
+/* Traces the scene and writes what rays added up to the file, for sonject_form, and, where it is not
+ * NULL, its impulses to export_file as arrays of HDF5, described in lib/inject/impulses.h (builds without
  * it: UNSUPPORTED). Each appears whole or not at all. The file keeps the scene's text, and the
  * names of the files that it names, but not these: they, and the input image, are needed again; of
  * a scene with tables in memory it keeps no text. Errors: ARGUMENT, INPUT, DEVICE, STORAGE, MEMORY,
@@ -39,7 +39,8 @@ typedef struct sonject_form_params {
 } sonject_form_params;
 
 /* Forms the image of the scene that was traced, or of `scene`, which then may differ in the sonar's
- * bandwidth, resolution and response (NULL: the one whose text the file keeps), and writes into
+ * bandwidth, resolution and response unless the file keeps no text (NULL: the scene of that text),
+ * and writes into
  * params->folder what sonject_run would: with nothing overridden every file is the same byte for
  * byte, but for times and memory in run.json. A bandwidth may be at most the one that was traced
  * and not much below a third of it, a resolution no finer than that one: trace at the largest
@@ -47,7 +48,7 @@ typedef struct sonject_form_params {
  * bandwidth the rays are the same only where that lays the same fine grid (lib/scene/patch_view.h);
  * else energies differ by the noise of two sets of rays, and the outermost pixels lack up to 2 % of
  * their energy. Errors: ARGUMENT, INPUT (not such a file, damaged, of another version, of another
- * scene or image; a key or value that needs a new trace), DEVICE, STORAGE, MEMORY, UNSUPPORTED,
+ * scene or image; traced on a machine of another kind, whose mathematics differ; a key or value that needs a new trace), DEVICE, STORAGE, MEMORY, UNSUPPORTED,
  * CANCELLED. */
 SONJECT_API sonject_status sonject_form(sonject_context *context, const sonject_scene *scene,
                                         const sonject_form_params *params,

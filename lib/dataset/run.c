@@ -106,7 +106,7 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
                                 const struct run_request *request, const struct swath *swath,
                                 struct run_facts *facts, double start)
 {
-    struct device *device;
+    struct device *device = NULL;
     struct injection_result result;
     const struct scene *scene = request->scene;
     struct stage_progress stage = {request->progress, request->user, TRACE_START,
@@ -114,15 +114,10 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
     const struct injection_input input = swath_input(swath);
     bool is_formed = true;
     sonject_status status = device_slot_open(report, slot, &device);
-    if (status == SONJECT_OK && request->impulses) {
-        const struct impulse_source source = impulse_file_source(request->impulses);
-        status =
-            injection_form(report, device, scene, &input, &source, tell_stage, &stage, &result);
-    } else if (status == SONJECT_OK) {
-        const struct checkpoint_job job = {report, device, request,    facts->scene_hash,
-                                           &input, start,  tell_stage, &stage};
-        status = inject_by_checkpoints(&job, &result, &is_formed);
-    }
+    const struct checkpoint_job job = {report,          device, request, facts->scene_hash,
+                                       swath->identity, &input, start,   tell_stage,
+                                       &stage};
+    THEN(status, inject_by_checkpoints(&job, &result, &is_formed));
     if (status != SONJECT_OK || !is_formed)
         return status;
     tell_noise_floor(report, scene, &result.statistics);
@@ -131,7 +126,7 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
     facts->device = device;
     status = write_results(report, facts, &result, request->folder, start, request->progress,
                            request->user);
-    if (status == SONJECT_OK && !request->impulses)
+    if (status == SONJECT_OK && !request->sums)
         checkpoints_remove(request->folder);
     if (status == SONJECT_OK)
         tell_clipped(report, &result.statistics);
@@ -139,43 +134,45 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
     return status;
 }
 
-/* Whether scene and image are those that the impulses were traced from, but for what image
- * formation alone depends on. Errors: INPUT, MEMORY. */
-static sonject_status check_traced(struct report *report, const struct impulse_file *impulses,
-                                   const struct scene *scene, const struct swath *swath)
+/* Whether scene and image are those of the sums, but for what image formation alone depends on.
+ * Errors: INPUT, MEMORY. */
+static sonject_status check_traced(struct report *report, const struct run_request *request,
+                                   const struct swath *swath)
 {
-    const struct impulse_facts *facts = &impulses->facts;
-    char hash[HASH_TEXT_CAPACITY];
-    if (facts->image_rows != swath->layout.rows || facts->image_columns != swath->layout.columns ||
-        strcmp(facts->image_hash, swath->identity) != 0)
+    const struct sums_identity *identity = &request->sums->head.identity;
+    const struct scene *traced = request->traced;
+    const char *made = "the made seabed";
+    char hash[HASH_TEXT_CAPACITY], wanted[HASH_TEXT_CAPACITY];
+    if (strcmp(identity->image, swath->identity) != 0)
         return report_failure(
             report, SONJECT_ERROR_INPUT,
-            "%s: not the image that was traced, %s of %llu x %llu pixels (XXH3 %s): name that one "
-            "with input.path, or trace again",
-            scene->input_path ? scene->input_path : "the made seabed",
-            *impulses->image_path ? impulses->image_path : "a made one",
-            (unsigned long long)facts->image_rows, (unsigned long long)facts->image_columns,
-            facts->image_hash);
-    const sonject_status status = traced_scene_hash(report, scene, swath->identity, hash);
-    if (status == SONJECT_OK && strcmp(hash, impulses->sums.head.identity.scene) != 0)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the scene, or a file that it names, is not what was traced: trace "
-                              "again");
-    return status;
+            "%s: not the image that was traced, %s (XXH3 %s): name that one with input.path, or "
+            "trace again",
+            request->scene->input_path ? request->scene->input_path : made,
+            traced->input_path ? traced->input_path : made, identity->image);
+    CHECK(scene_hash(report, traced, swath->identity, hash));
+    bool is_same = strcmp(hash, identity->scene) == 0;
+    CHECK(traced_scene_hash(report, traced, swath->identity, wanted));
+    CHECK(traced_scene_hash(report, request->scene, swath->identity, hash));
+    is_same = is_same && strcmp(hash, wanted) == 0;
+    return is_same ? SONJECT_OK
+                   : report_failure(report, SONJECT_ERROR_INPUT,
+                                    "the scene, or a file that it names, is not what was traced: "
+                                    "trace again");
 }
 
-/* The image that the scene's targets go into. Where impulses are formed with another response it
- * stays the one that they were traced for, also a made one. */
+/* The image that the scene's targets go into. Where sums are formed with another response it stays
+ * the one that they were traced for, also a made one. */
 static sonject_status open_swath(struct report *report, const struct run_request *request,
                                  struct swath *swath)
 {
-    struct scene traced = *request->scene;
-    if (request->impulses)
-        impulse_facts_take_sonar(&request->impulses->facts, &traced.sonar);
-    const sonject_status status = swath_open(report, &traced, swath);
-    if (status != SONJECT_OK || !request->impulses)
+    struct scene opened = *request->scene;
+    if (request->sums)
+        opened.sonar = request->traced->sonar;
+    const sonject_status status = swath_open(report, &opened, swath);
+    if (status != SONJECT_OK || !request->sums)
         return status;
-    const sonject_status same = check_traced(report, request->impulses, request->scene, swath);
+    const sonject_status same = check_traced(report, request, swath);
     if (same != SONJECT_OK)
         swath_close(swath);
     return same;
@@ -234,35 +231,9 @@ sonject_status run_scene(struct report *report, struct device_slot *slot,
     return status;
 }
 
-static sonject_status describe(struct report *report, const struct scene *scene,
-                               const struct swath *swath, struct sums_head *head,
-                               struct impulse_facts *facts)
+static sonject_status export_lines(void *export, const struct impulse_lines *lines)
 {
-    char hash[HASH_TEXT_CAPACITY];
-    memset(head, 0, sizeof *head);
-    memset(facts, 0, sizeof *facts);
-    strncpy(head->identity.version, sonject_version(), sizeof head->identity.version - 1);
-    facts->image_rows = swath->layout.rows;
-    facts->image_columns = swath->layout.columns;
-    strncpy(facts->image_hash, swath->identity, sizeof facts->image_hash - 1);
-    impulse_facts_note_sonar(facts, &scene->sonar);
-    CHECK(traced_scene_hash(report, scene, swath->identity, hash));
-    memcpy(head->identity.scene, hash, sizeof hash);
-    return SONJECT_OK;
-}
-
-/* The lines go to the file and, where one is wanted, to its export. */
-struct two_files {
-    struct sums_writer *sums;
-    struct impulse_export *export;
-};
-
-static sonject_status write_lines(void *taker, const struct impulse_lines *lines)
-{
-    const struct two_files *files = taker;
-    const sonject_status status = impulse_lines_write(files->sums, lines);
-    return status == SONJECT_OK && files->export ? impulse_export_lines(files->export, lines)
-                                                 : status;
+    return impulse_export_lines(export, lines);
 }
 
 static sonject_status trace_swath(struct report *report, struct device_slot *slot,
@@ -270,28 +241,26 @@ static sonject_status trace_swath(struct report *report, struct device_slot *slo
                                   const char *file, const char *export_file)
 {
     const struct scene *scene = request->scene;
-    const char *image_path = scene->input_path ? scene->input_path : "";
     const struct injection_input input = swath_input(swath);
-    struct device *device;
-    struct sums_head head;
-    struct impulse_facts facts;
-    struct sums_writer writer;
-    struct two_files files = {&writer, NULL};
-    const struct impulse_sink sink = {write_lines, &files};
-    memset(&writer, 0, sizeof writer);
-    sonject_status status = describe(report, scene, swath, &head, &facts);
-    THEN(status, sums_writer_begin(&writer, report, file, NULL));
+    struct device *device = NULL;
+    struct impulse_export *export = NULL;
+    char hash[HASH_TEXT_CAPACITY];
+    sonject_status status = scene_hash(report, scene, swath->identity, hash);
     if (status == SONJECT_OK && export_file && *export_file)
-        status = impulse_export_begin(report, export_file, &files.export);
+        status = impulse_export_begin(report, export_file, &export);
     THEN(status, device_slot_open(report, slot, &device));
-    THEN(status, injection_trace(report, device, scene, &input, &sink, request->progress,
-                                 request->user, &facts.counts));
-    if (status == SONJECT_OK && files.export)
-        status = impulse_export_publish(files.export, scene, &input, &facts, head.identity.scene,
-                                        image_path);
-    THEN(status, impulse_file_publish(&writer, &head, request->source, &facts, image_path));
-    impulse_export_release(&files.export);
-    sums_writer_clear(&writer);
+    const struct impulse_sink sink = {export_lines, export};
+    const struct checkpoint_job job = {report,          device, request,         hash,
+                                       swath->identity, &input, clock_seconds(), request->progress,
+                                       request->user};
+    struct export_facts facts = {.scene_hash = hash,
+                                 .image_hash = swath->identity,
+                                 .image_rows = swath->layout.rows,
+                                 .image_columns = swath->layout.columns};
+    THEN(status, trace_into_file(&job, file, export ? &sink : NULL, &facts.counts));
+    if (status == SONJECT_OK && export)
+        status = impulse_export_publish(export, scene, &input, &facts);
+    impulse_export_release(&export);
     return status;
 }
 
@@ -343,14 +312,22 @@ static sonject_status check_overrides(struct report *report, const struct scene 
     return SONJECT_OK;
 }
 
-static sonject_status check_version(struct report *report, const char *path,
-                                    const struct sums_identity *identity)
+/* Whether the file holds all that this version would trace. */
+static sonject_status check_sums(struct report *report, const struct sums_file *sums)
 {
-    if (strcmp(identity->version, sonject_version()) == 0)
+    const struct sums_head *head = &sums->head;
+    char code[HASH_TEXT_CAPACITY];
+    CHECK(code_hash(report, code));
+    if (strcmp(head->identity.version, sonject_version()) != 0 ||
+        strcmp(head->identity.code, code) != 0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: traced by another version, sonject %s: trace again", sums->path,
+                              head->identity.version);
+    if (head->shards == 1 && head->first == 0 && head->is_last)
         return SONJECT_OK;
     return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: traced by sonject %s, but this is %s: trace again", path,
-                          identity->version, sonject_version());
+                          "%s: a part of what was traced: sonject merge forms all parts",
+                          sums->path);
 }
 
 /* All overrides, the file's first, in one list to be given to free(). */
@@ -394,32 +371,52 @@ sonject_status read_traced_scene(struct report *report, const struct kept_scene 
     return status;
 }
 
+/* With the scenes that were traced and that are formed, which the caller clears. */
 static sonject_status form_file(struct report *report, struct device_slot *slot,
-                                const struct scene *scene, const sonject_form_params *params,
-                                struct run_request *request, int *was_finished)
+                                const struct sonject_form_params *params,
+                                struct run_request *request, struct scene *traced,
+                                struct scene *formed, int *was_finished)
 {
-    const struct sums_file *sums = &request->impulses->sums;
-    struct scene read;
-    scene_init(&read);
-    sonject_status status = check_version(report, params->file, &sums->head.identity);
-    if (status == SONJECT_OK && !scene)
-        status = read_traced_scene(report, &sums->scene, params, &read);
-    request->scene = scene ? scene : &read;
-    THEN(status, run_scene(report, slot, request, was_finished));
-    scene_clear(&read);
-    return status;
+    const struct kept_scene *kept = &request->sums->scene;
+    sonject_form_params as_traced = *params;
+    as_traced.override_count = 0;
+    if (request->scene && request->scene->user_shapes.count > 0)
+        as_traced.allows_user_shapes = 1;
+    CHECK(check_sums(report, request->sums));
+    request->traced = request->scene;
+    if (kept->text || !request->scene) {
+        CHECK(read_traced_scene(report, kept, &as_traced, traced));
+        request->traced = traced;
+    }
+    if (!request->scene && params->override_count > 0) {
+        CHECK(read_traced_scene(report, kept, params, formed));
+        request->scene = formed;
+    }
+    if (!request->scene)
+        request->scene = request->traced;
+    return run_scene(report, slot, request, was_finished);
 }
 
 sonject_status form_scene(struct report *report, struct device_slot *slot,
                           const struct scene *scene, const sonject_form_params *params,
                           const struct run_request *request, int *was_finished)
 {
-    struct impulse_file impulses;
+    struct sums_file sums;
+    struct scene traced, formed;
     struct run_request forming = *request;
-    forming.impulses = &impulses;
     CHECK(check_overrides(report, scene, params));
-    CHECK(impulse_file_open(report, params->file, &impulses));
-    const sonject_status status = form_file(report, slot, scene, params, &forming, was_finished);
-    impulse_file_close(&impulses);
+    if (!file_exists(params->file))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: there is no such file of sums; check its name", params->file);
+    CHECK(sums_file_open(&sums, report, params->file));
+    scene_init(&traced);
+    scene_init(&formed);
+    forming.scene = scene;
+    forming.sums = &sums;
+    const sonject_status status =
+        form_file(report, slot, params, &forming, &traced, &formed, was_finished);
+    scene_clear(&traced);
+    scene_clear(&formed);
+    sums_file_close(&sums);
     return status;
 }

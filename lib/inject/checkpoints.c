@@ -57,6 +57,7 @@ static sonject_status identify(struct tracing *tracing)
     tracing->head.shards = job->request->shards > 0 ? job->request->shards : 1;
     strncpy(identity->version, sonject_version(), sizeof identity->version - 1);
     strncpy(identity->scene, job->scene_hash, sizeof identity->scene - 1);
+    strncpy(identity->image, job->image_hash, sizeof identity->image - 1);
     CHECK(code_hash(tracing->report, identity->code));
     if (job->request->scene->user_shapes.count == 0)
         return SONJECT_OK;
@@ -154,7 +155,8 @@ static int ask(void *user)
 static sonject_status begin_checkpoint(struct tracing *tracing, uint64_t first)
 {
     tracing->head.first = first;
-    CHECK(checkpoint_begin(&tracing->checkpoint, tracing->report, tracing->folder, &tracing->head));
+    CHECK(checkpoint_begin(&tracing->checkpoint, tracing->report, NULL, tracing->folder,
+                           &tracing->head));
     tracing->checkpoint.ask = ask;
     tracing->checkpoint.user = tracing;
     tracing->checkpoint_start_s = clock_seconds();
@@ -192,11 +194,27 @@ static sonject_status take_nothing(void *taker, const struct impulse_lines *line
     return SONJECT_OK;
 }
 
+static const struct impulse_sink nobody = {take_nothing, NULL};
+
+sonject_status trace_into_file(const struct checkpoint_job *job, const char *path,
+                               const struct impulse_sink *sink, struct trace_counts *counts)
+{
+    struct tracing tracing = {.job = job, .report = job->report};
+    struct injection_input input = *job->input;
+    input.checkpoint = &tracing.checkpoint;
+    sonject_status status = identify(&tracing);
+    THEN(status, checkpoint_begin(&tracing.checkpoint, job->report, path, NULL, &tracing.head));
+    THEN(status, injection_trace(job->report, job->device, job->request->scene, &input,
+                                 sink ? sink : &nobody, job->progress, job->user, counts));
+    THEN(status, checkpoint_publish(&tracing.checkpoint, job->request->source));
+    checkpoint_clear(&tracing.checkpoint);
+    return status;
+}
+
 /* Traces from a strip of the shard on, checkpoint by checkpoint, to its end. */
 static sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is_complete)
 {
     const struct checkpoint_job *job = tracing->job;
-    const struct impulse_sink nobody = {take_nothing, NULL};
     struct injection_input input = *job->input;
     input.checkpoint = &tracing->checkpoint;
     while (!is_complete) {
@@ -210,12 +228,15 @@ static sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is
     return SONJECT_OK;
 }
 
-/* Forms the result from tracing->checkpoint. */
+/* Forms the result from tracing->checkpoint, for another response than was traced where the request
+ * says so. */
 static sonject_status form_traced(struct tracing *tracing, struct injection_result *result)
 {
     const struct checkpoint_job *job = tracing->job;
     struct injection_input input = *job->input;
     input.checkpoint = &tracing->checkpoint;
+    if (job->request->traced != job->request->scene)
+        input.traced = job->request->traced;
     return injection_run(tracing->report, job->device, job->request->scene, &input, tell, tracing,
                          result);
 }
@@ -285,6 +306,16 @@ static sonject_status add_up(struct tracing *tracing, const struct sums_folder *
     return status;
 }
 
+/* Forms what a file of everything holds. */
+static sonject_status form_sums(struct tracing *tracing, struct injection_result *result)
+{
+    const struct sums_file *const *file = &tracing->job->request->sums;
+    CHECK(checkpoint_begin_adding(&tracing->checkpoint, tracing->report, file, 1));
+    const sonject_status status = form_traced(tracing, result);
+    checkpoint_clear(&tracing->checkpoint);
+    return status;
+}
+
 static sonject_status merge(struct tracing *tracing, struct injection_result *result)
 {
     struct sums_folder folder;
@@ -344,9 +375,10 @@ sonject_status inject_by_checkpoints(const struct checkpoint_job *job,
     tracing.folder = checkpoints_folder(job->request->folder);
     CHECK_MEMORY(job->report, tracing.folder, "a file name");
     sonject_status status = identify(&tracing);
-    *is_formed = status == SONJECT_OK && job->request->merges;
-    THEN(status,
-         job->request->merges ? merge(&tracing, result) : run_shard(&tracing, result, is_formed));
+    *is_formed = status == SONJECT_OK && (job->request->merges || job->request->sums);
+    THEN(status, job->request->merges ? merge(&tracing, result)
+                 : job->request->sums ? form_sums(&tracing, result)
+                                      : run_shard(&tracing, result, is_formed));
     free(tracing.folder);
     return status;
 }

@@ -14,7 +14,8 @@
 struct run_request {
     const struct scene *scene;
     const struct scene_source *source; /* of the scene; kept with what is traced */
-    struct impulse_file *impulses;     /* NULL: they are traced */
+    const struct sums_file *sums;      /* of everything, instead of tracing; NULL: it is traced */
+    const struct scene *traced;        /* what they are of: scene, or one of another response */
     uint32_t shard, shards;            /* 1...shards; shards 0: all is traced */
     bool merges;                       /* nothing is traced: all shards' tallies are there */
     double exit_after_s;               /* 0: never */
@@ -30,18 +31,24 @@ struct checkpoint_job {
     struct report *report;
     struct device *device;
     const struct run_request *request;
-    const char *scene_hash;
+    const char *scene_hash, *image_hash;
     const struct injection_input *input;
     double start_s; /* clock_seconds() when the call began */
     sonject_progress_function progress;
     void *user;
 };
 
-/* The result of a run by rays; of the whole of it, or of all shards where the request merges. Of a
- * request for one shard its tallies, and *is_formed is false. What was traced before is not traced
- * again, and stays until checkpoints_remove. Errors: as sonject_run and sonject_merge. */
+/* The result of a run by rays; of the whole of it, or of all shards where the request merges, or of
+ * the request's sums. Of a request for one shard its tallies, and *is_formed is false. What was
+ * traced before is not traced again, and stays until checkpoints_remove. Errors: as sonject_run and
+ * sonject_merge. */
 sonject_status inject_by_checkpoints(const struct checkpoint_job *job,
                                      struct injection_result *result, bool *is_formed);
+
+/* Traces everything into a file of sums, and hands its impulses to the sink too. *counts is filled
+ * in. Errors: as sonject_trace, and the sink's own. */
+sonject_status trace_into_file(const struct checkpoint_job *job, const char *path,
+                               const struct impulse_sink *sink, struct trace_counts *counts);
 
 /* Where the tallies of a run's folder are, for free(); NULL where memory lacks. */
 char *checkpoints_folder(const char *folder);

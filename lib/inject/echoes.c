@@ -392,7 +392,8 @@ sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
     forming.tracer = tracer;
     forming.request = request;
     sonject_status status = allocate_planes(echoes, tracer, request);
-    THEN(status, source->deliver(source->giver, tracer, request, &sink));
+    THEN(status, source ? source->deliver(source->giver, tracer, request, &sink)
+                        : trace_impulses(tracer, request, &sink));
     THEN(status, finish(&forming));
     form_lines_end(&forming.energies);
     form_lines_end(&forming.field);
@@ -403,11 +404,4 @@ sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
     if (status != SONJECT_OK)
         echoes_clear(echoes);
     return status;
-}
-
-sonject_status echoes_compute(struct echoes *echoes, struct tracer *tracer,
-                              const struct echo_request *request)
-{
-    const struct impulse_source source = traced_impulses();
-    return echoes_form(echoes, tracer, request, &source);
 }

@@ -68,14 +68,11 @@ struct echo_request {
 sonject_status echo_request_tell(const struct echo_request *request, struct report *report,
                                  double fraction, const char *stage);
 
-/* Forms all of it from impulses as they come. On failure *echoes is empty. Errors: DEVICE, MEMORY,
- * and the source's own. */
+/* Forms all of it from impulses as they come; source NULL: from rays of the tracer. On failure
+ * *echoes is empty. Errors: DEVICE, MEMORY, and those of trace_impulses or the source. */
 sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
                            const struct echo_request *request, const struct impulse_source *source);
 
-/* The same from rays: traces and forms. Errors: INPUT, DEVICE, MEMORY, CANCELLED. */
-sonject_status echoes_compute(struct echoes *echoes, struct tracer *tracer,
-                              const struct echo_request *request);
 void echoes_clear(struct echoes *echoes);
 
 /* The reflectivity that the seabed's energies are traced with. With relief a composite takes an

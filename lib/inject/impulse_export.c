@@ -196,8 +196,9 @@ sonject_status impulse_export_lines(struct impulse_export *export,
 }
 
 static bool write_facts(hid_t file, const struct scene *scene, const struct injection_input *input,
-                        const struct impulse_facts *facts)
+                        const struct export_facts *facts)
 {
+    const sonject_sonar_params *sonar = &scene->sonar;
     const sonject_geometry_params *geometry = &scene->geometry;
     const struct {
         const char *name;
@@ -206,8 +207,8 @@ static bool write_facts(hid_t file, const struct scene *scene, const struct inje
         {"seed", scene->injection.seed},
         {"image_rows", facts->image_rows},
         {"image_columns", facts->image_columns},
-        {"response_window", facts->response_window},
-        {"taylor_terms", facts->taylor_terms},
+        {"response_window", sonar->response_window},
+        {"taylor_terms", sonar->taylor_terms},
         {"patch_first_row", (uint64_t)input->first_row},
         {"patch_first_column", (uint64_t)input->first_column},
         {"patch_rows", input->rows},
@@ -221,9 +222,9 @@ static bool write_facts(hid_t file, const struct scene *scene, const struct inje
         const char *name;
         double value;
     } numbers[] = {
-        {"bandwidth_hz", facts->bandwidth_hz},
-        {"along_track_resolution_m", facts->along_track_resolution_m},
-        {"taylor_sidelobe_db", facts->taylor_sidelobe_db},
+        {"bandwidth_hz", sonar->bandwidth_hz},
+        {"along_track_resolution_m", sonar->along_track_resolution_m},
+        {"taylor_sidelobe_db", sonar->taylor_sidelobe_db},
         {"row_spacing_m", geometry->row_spacing_m},
         {"column_spacing_m", geometry->column_spacing_m},
         {"first_slant_range_m", geometry->first_slant_range_m},
@@ -238,18 +239,18 @@ static bool write_facts(hid_t file, const struct scene *scene, const struct inje
 
 sonject_status impulse_export_publish(struct impulse_export *export, const struct scene *scene,
                                       const struct injection_input *input,
-                                      const struct impulse_facts *facts, const char *scene_hash,
-                                      const char *image_path)
+                                      const struct export_facts *facts)
 {
     struct hdf5_session session;
     hdf5_enter(&session);
     errno = 0;
-    const bool is_whole = hdf5_write_text(export->file, "sonject", sonject_version()) &&
-                          hdf5_write_text(export->file, "scene", scene_hash) &&
-                          hdf5_write_text(export->file, "image_path", image_path) &&
-                          hdf5_write_text(export->file, "image_xxhash", facts->image_hash) &&
-                          write_facts(export->file, scene, input, facts) &&
-                          H5Fflush(export->file, H5F_SCOPE_GLOBAL) >= 0;
+    const bool is_whole =
+        hdf5_write_text(export->file, "sonject", sonject_version()) &&
+        hdf5_write_text(export->file, "scene", facts->scene_hash) &&
+        hdf5_write_text(export->file, "image_path", scene->input_path ? scene->input_path : "") &&
+        hdf5_write_text(export->file, "image_xxhash", facts->image_hash) &&
+        write_facts(export->file, scene, input, facts) &&
+        H5Fflush(export->file, H5F_SCOPE_GLOBAL) >= 0;
     sonject_status status = is_whole ? SONJECT_OK : cannot_write(export);
     const bool is_closed = H5Fclose(export->file) >= 0;
     export->file = -1;
@@ -303,10 +304,9 @@ sonject_status impulse_export_lines(struct impulse_export *export,
 
 sonject_status impulse_export_publish(struct impulse_export *export, const struct scene *scene,
                                       const struct injection_input *input,
-                                      const struct impulse_facts *facts, const char *scene_hash,
-                                      const char *image_path)
+                                      const struct export_facts *facts)
 {
-    (void)export, (void)scene, (void)input, (void)facts, (void)scene_hash, (void)image_path;
+    (void)export, (void)scene, (void)input, (void)facts;
     return SONJECT_ERROR_UNSUPPORTED;
 }
 

@@ -1,5 +1,4 @@
-/* What tracing leaves for image formation: lines of bins on fine grids, from rays or from a file of
- * sums. */
+/* What tracing leaves for image formation: lines of bins on fine grids. */
 #ifndef SONJECT_INJECT_IMPULSES_H
 #define SONJECT_INJECT_IMPULSES_H
 
@@ -8,7 +7,6 @@
 #include <sonject/status.h>
 
 #include "scene/patch_view.h"
-#include "trace/sums_file.h"
 #include "trace/tracer.h"
 
 /* Sets of lines, in the order in which they are handed out. */
@@ -40,7 +38,7 @@ struct impulse_lines {
     const float *plane[IMPULSE_PLANES_MAX]; /* strips.count x grid.bins.count each */
 };
 
-/* Who takes them: the former of an image, or the writer of a file. */
+/* Who takes them: the former of an image, or an export. */
 struct impulse_sink {
     sonject_status (*take)(void *taker, const struct impulse_lines *lines);
     void *taker;
@@ -48,7 +46,7 @@ struct impulse_sink {
 
 struct echo_request;
 
-/* Where they come from: rays, or a file. */
+/* Where they come from: rays of the tracer that forms them, or of one for another response. */
 struct impulse_source {
     /* Hands out all sets. Errors: of the source, and the sink's own. */
     sonject_status (*deliver)(void *giver, struct tracer *tracer,
@@ -72,63 +70,10 @@ static inline int impulse_lines_end(const struct impulse_lines *lines)
  * DEVICE, MEMORY, CANCELLED, and the sink's own. */
 sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *request,
                               const struct impulse_sink *sink);
-struct impulse_source traced_impulses(void);
 
-/* Impulses in a file of sums (trace/sums_file.h), so that images can be formed later, with another
- * pulse or cross-range response too. Its head has shard 1 of 1, the hash of what tracing depends on
- * and the scene's text, and no digest of launches. Its records, 64-bit words each:
- *
- *   lines  LINES_HEAD_WORDS numbers: kind, number, strips_per_row, bins_per_pixel, the grid's first
- *          strip and strips, its first bin and bins, first strip and strips of these lines, planes;
- *          then the planes' 32-bit floats, one plane after the other, and one 0 where they are odd.
- *          In the order in which tracing hands them out.
- *   facts  the last record: struct impulse_facts, then the image's path, terminated */
-
-/* What was traced, and what the grids were laid for. */
-struct impulse_facts {
-    char image_hash[SUMS_DIGEST_CAPACITY]; /* of size and patch pixels */
-    uint64_t image_rows, image_columns;
-    double bandwidth_hz, along_track_resolution_m, taylor_sidelobe_db;
-    uint64_t response_window, taylor_terms;
-    struct trace_counts counts;
-};
-
-/* Between the members that image formation alone depends on and a sonar. */
-void impulse_facts_note_sonar(struct impulse_facts *facts, const sonject_sonar_params *sonar);
-void impulse_facts_take_sonar(const struct impulse_facts *facts, sonject_sonar_params *sonar);
-
-#define LINES_HEAD_WORDS 11
-
-/* A sink whose taker is a struct sums_writer, to which it appends the lines. Errors: STORAGE,
- * MEMORY. */
-sonject_status impulse_lines_write(void *writer, const struct impulse_lines *lines);
-
-/* Appends the last record and gives the file its name. head: whose the impulses are; source may be
- * NULL; image_path: "" if the image is made. Errors: STORAGE, MEMORY. */
-sonject_status impulse_file_publish(struct sums_writer *writer, const struct sums_head *head,
-                                    const struct scene_source *source,
-                                    const struct impulse_facts *facts, const char *image_path);
-
-struct impulse_file {
-    struct report *report;
-    struct sums_file sums;
-    struct impulse_facts facts;
-    void *last;             /* record; owned */
-    const char *image_path; /* in it */
-};
-
-/* Reads a file from end to end; lines are read again when they are asked for. Borrows report. On
- * success to be given to impulse_file_close; on failure nothing is held. Errors: INPUT (no such
- * file, or not one that sonject_trace wrote, or damaged), STORAGE, MEMORY. */
-sonject_status impulse_file_open(struct report *report, const char *path,
-                                 struct impulse_file *file);
-void impulse_file_close(struct impulse_file *file);
-
-/* Hands out the file's impulses, and its counts to the tracer. The tracer's scene must be the one
- * that was traced, but for the sonar's pulse and cross-range response. Errors: INPUT (damaged; a
- * grid that is not the scene's, or too coarse or too narrow for the response), MEMORY, CANCELLED,
- * and the sink's own. */
-struct impulse_source impulse_file_source(struct impulse_file *file);
+/* Whether impulses that `traced` lays the grids of can be formed with the tracer's response: bins,
+ * strips and margins must be fine and wide enough. Errors: INPUT. */
+sonject_status check_response_fits(const struct tracer *tracer, const struct tracer *traced);
 
 /* Impulses as arrays for other programs, in HDF5; nothing is read back from it.
  *
@@ -151,6 +96,12 @@ struct impulse_source impulse_file_source(struct impulse_file *file);
 struct impulse_export;
 struct injection_input;
 
+struct export_facts {
+    const char *scene_hash, *image_hash;
+    uint64_t image_rows, image_columns;
+    struct trace_counts counts;
+};
+
 /* Begins a file that is to be found at path once impulse_export_publish has succeeded; until then
  * it has another name. Borrows report and path. On success *export is to be given to
  * impulse_export_release. Errors: STORAGE, MEMORY, UNSUPPORTED (no HDF5 in this build). */
@@ -162,8 +113,7 @@ sonject_status impulse_export_lines(struct impulse_export *export,
                                     const struct impulse_lines *lines);
 sonject_status impulse_export_publish(struct impulse_export *export, const struct scene *scene,
                                       const struct injection_input *input,
-                                      const struct impulse_facts *facts, const char *scene_hash,
-                                      const char *image_path);
+                                      const struct export_facts *facts);
 
 /* Discards what was not published; NULL allowed. */
 void impulse_export_release(struct impulse_export **export);

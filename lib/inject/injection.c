@@ -286,56 +286,79 @@ static void fill_statistics(const struct tracer *tracer, const struct patch_leve
         statistics->changed_pixels += result->influence[i] != 0;
 }
 
-static sonject_status form_and_compose(struct injection_setup *setup,
+/* A scene on its patch, and what is asked of its echoes. */
+struct prepared {
+    struct injection_setup setup;
+    struct image_match match;
+    struct patch_request patch;
+};
+
+/* To be given to prepared_clear, also on failure. */
+static sonject_status prepare(struct prepared *prepared, struct report *report,
+                              struct device *device, const struct scene *scene,
+                              const struct injection_input *input,
+                              sonject_progress_function progress, void *user)
+{
+    struct injection_setup *setup = &prepared->setup;
+    memset(prepared, 0, sizeof *prepared);
+    sonject_status status = injection_setup_init(setup, report, device, scene, input);
+    /* the grid follows the response */
+    THEN(status, match_image(&setup->tracer, setup->pixels, input, &prepared->match));
+    THEN(status, patch_request_init(&prepared->patch, &setup->tracer, setup->pixels,
+                                    input->is_complex, progress, user));
+    return status;
+}
+
+static void prepared_clear(struct prepared *prepared)
+{
+    patch_request_clear(&prepared->patch);
+    injection_setup_clear(&prepared->setup);
+}
+
+/* Impulses of the scene that is traced, for a tracer of another response. */
+static sonject_status deliver_others(void *giver, struct tracer *tracer,
+                                     const struct echo_request *request,
+                                     const struct impulse_sink *sink)
+{
+    const struct injection_input *input = giver;
+    struct prepared traced;
+    sonject_status status = prepare(&traced, tracer->report, tracer->device, input->traced, input,
+                                    request->progress, request->user);
+    THEN(status, check_response_fits(tracer, &traced.setup.tracer));
+    THEN(status, trace_impulses(&traced.setup.tracer, &traced.patch.request, sink));
+    tracer->counts = traced.setup.tracer.counts;
+    prepared_clear(&traced);
+    return status;
+}
+
+static sonject_status form_and_compose(struct prepared *prepared,
                                        const struct injection_input *input,
-                                       const struct impulse_source *source,
-                                       sonject_progress_function progress, void *user,
                                        struct injection_result *result)
 {
-    struct tracer *tracer = &setup->tracer;
-    const float *pixels = setup->pixels;
-    const bool is_complex = input->is_complex;
-    struct patch_request patch;
-    struct image_match match;
+    struct tracer *tracer = &prepared->setup.tracer;
+    const float *pixels = prepared->setup.pixels;
+    const struct image_match *match = &prepared->match;
+    const struct patch_level *level = &prepared->patch.level;
+    struct injection_input others = *input;
+    const struct impulse_source traced = {deliver_others, &others};
     struct echoes echoes;
-    CHECK(match_image(tracer, pixels, input, &match));
-    CHECK(patch_request_init(&patch, tracer, pixels, is_complex, progress, user));
-    patch.request.wants_coherent = match.looks > 1.0;
-    sonject_status status = echoes_form(&echoes, tracer, &patch.request, source);
+    prepared->patch.request.wants_coherent = match->looks > 1.0;
+    sonject_status status =
+        echoes_form(&echoes, tracer, &prepared->patch.request, input->traced ? &traced : NULL);
     const double start = clock_seconds();
     THEN(status, set_target_levels(tracer, &echoes, result));
-    THEN(status, compose(tracer, &match, &patch.level, &echoes, pixels, is_complex, result));
+    THEN(status, compose(tracer, match, level, &echoes, pixels, input->is_complex, result));
     if (status == SONJECT_OK && tracer->scene->injection.mode == SONJECT_MODE_RESYNTHESISE)
-        status = compare_seabed(tracer->report, &echoes, &patch.level, result);
-    THEN(status, find_truth(tracer, &patch.level, &match.seabed, &echoes, result));
+        status = compare_seabed(tracer->report, &echoes, level, result);
+    THEN(status, find_truth(tracer, level, &match->seabed, &echoes, result));
     if (status == SONJECT_OK) {
-        tell_match(&match, &tracer->response, &result->statistics);
-        fill_statistics(tracer, &patch.level, &echoes, clock_seconds() - start, result);
+        tell_match(match, &tracer->response, &result->statistics);
+        fill_statistics(tracer, level, &echoes, clock_seconds() - start, result);
         result->orders = echoes.orders;
         memcpy(result->order_energy, echoes.order_energy, sizeof result->order_energy);
         memset(echoes.order_energy, 0, sizeof echoes.order_energy); /* they are the result's now */
     }
     echoes_clear(&echoes);
-    patch_request_clear(&patch);
-    return status;
-}
-
-sonject_status injection_form(struct report *report, struct device *device,
-                              const struct scene *scene, const struct injection_input *input,
-                              const struct impulse_source *source,
-                              sonject_progress_function progress, void *user,
-                              struct injection_result *result)
-{
-    struct injection_setup setup;
-    memset(result, 0, sizeof *result);
-    sonject_status status = injection_setup_init(&setup, report, device, scene, input);
-    THEN(status, result_init(result, report, scene, input));
-    THEN(status, form_and_compose(&setup, input, source, progress, user, result));
-    if (status == SONJECT_OK && setup.tracer.view.is_mirrored)
-        unmirror(result);
-    injection_setup_clear(&setup);
-    if (status != SONJECT_OK)
-        injection_result_clear(result);
     return status;
 }
 
@@ -344,8 +367,17 @@ sonject_status injection_run(struct report *report, struct device *device,
                              sonject_progress_function progress, void *user,
                              struct injection_result *result)
 {
-    const struct impulse_source source = traced_impulses();
-    return injection_form(report, device, scene, input, &source, progress, user, result);
+    struct prepared prepared;
+    memset(result, 0, sizeof *result);
+    sonject_status status = prepare(&prepared, report, device, scene, input, progress, user);
+    THEN(status, result_init(result, report, scene, input));
+    THEN(status, form_and_compose(&prepared, input, result));
+    if (status == SONJECT_OK && prepared.setup.tracer.view.is_mirrored)
+        unmirror(result);
+    prepared_clear(&prepared);
+    if (status != SONJECT_OK)
+        injection_result_clear(result);
+    return status;
 }
 
 sonject_status injection_trace(struct report *report, struct device *device,
@@ -353,19 +385,10 @@ sonject_status injection_trace(struct report *report, struct device *device,
                                const struct impulse_sink *sink, sonject_progress_function progress,
                                void *user, struct trace_counts *counts)
 {
-    struct injection_setup setup;
-    struct image_match match;
-    struct patch_request patch;
-    sonject_status status = injection_setup_init(&setup, report, device, scene, input);
-    /* the grid follows the response */
-    THEN(status, match_image(&setup.tracer, setup.pixels, input, &match));
-    THEN(status, patch_request_init(&patch, &setup.tracer, setup.pixels, input->is_complex,
-                                    progress, user));
-    if (status == SONJECT_OK) {
-        status = trace_impulses(&setup.tracer, &patch.request, sink);
-        *counts = setup.tracer.counts;
-        patch_request_clear(&patch);
-    }
-    injection_setup_clear(&setup);
+    struct prepared prepared;
+    sonject_status status = prepare(&prepared, report, device, scene, input, progress, user);
+    THEN(status, trace_impulses(&prepared.setup.tracer, &prepared.patch.request, sink));
+    *counts = prepared.setup.tracer.counts;
+    prepared_clear(&prepared);
     return status;
 }

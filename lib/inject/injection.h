@@ -23,6 +23,8 @@ struct injection_input {
     bool is_made;        /* by sonject, so that it is what the sonar's parameters say */
     const float *pixels; /* rows x columns amplitudes, or pairs of real and imaginary part */
     struct checkpoint *checkpoint; /* how tracing is cut; NULL: not at all */
+    const struct scene *traced;    /* NULL, or the scene of another response that is traced: its
+                                      grids must be fine and wide enough */
 };
 
 /* What sonject_result is. All layers rows x columns in the image's row order. */
@@ -48,18 +50,12 @@ sonject_status injection_run(struct report *report, struct device *device,
                              struct injection_result *result);
 void injection_result_clear(struct injection_result *result);
 
-/* The two stages of it. injection_trace hands the impulses to sink; injection_form makes the result
- * of those that source gives, which must be of the same scene and patch. Errors: as sonject_inject,
- * and those of sink and source. */
+/* The first stage of it, whose impulses go to the sink. Errors: as sonject_inject, and the sink's
+ * own. */
 sonject_status injection_trace(struct report *report, struct device *device,
                                const struct scene *scene, const struct injection_input *input,
                                const struct impulse_sink *sink, sonject_progress_function progress,
                                void *user, struct trace_counts *counts);
-sonject_status injection_form(struct report *report, struct device *device,
-                              const struct scene *scene, const struct injection_input *input,
-                              const struct impulse_source *source,
-                              sonject_progress_function progress, void *user,
-                              struct injection_result *result);
 
 /* The element level of a patch: its impulses, traced as for the image, heard by hydrophones. Fills
  * *layout (not its struct_size) for a patch of the input's size; pixels are not used. Errors:

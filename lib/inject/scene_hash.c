@@ -8,7 +8,6 @@
 
 #include "base/json_document.h"
 #include "device/device.h"
-#include "inject/impulses.h"
 #include "schema/keys.h"
 
 /* Members one by one: the padding of a structure is not part of its value. */
@@ -273,9 +272,11 @@ sonject_status scene_inputs(struct report *report, const struct scene *scene,
 sonject_status traced_scene_hash(struct report *report, const struct scene *scene,
                                  const char *input_identity, char text[HASH_TEXT_CAPACITY])
 {
-    static const struct impulse_facts none;
     struct scene traced = *scene;
-    impulse_facts_take_sonar(&none, &traced.sonar);
+    traced.sonar.bandwidth_hz = traced.sonar.along_track_resolution_m = 0.0;
+    traced.sonar.taylor_sidelobe_db = 0.0;
+    traced.sonar.response_window = SONJECT_WINDOW_RECTANGULAR;
+    traced.sonar.taylor_terms = 0;
     section_defaults(&pulse_section, &traced.pulse, NULL);
     memset(&traced.pulse_table, 0, sizeof traced.pulse_table);
     memset(&traced.cross_range_table, 0, sizeof traced.cross_range_table);

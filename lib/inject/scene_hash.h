@@ -21,8 +21,8 @@ sonject_status scene_inputs(struct report *report, const struct scene *scene,
                             const char *input_identity, char hash[HASH_TEXT_CAPACITY],
                             json_t **inputs);
 
-/* The hash of what tracing depends on: without the sonar's pulse and cross-range response
- * (inject/impulses.h). Errors: MEMORY. */
+/* The hash of what a file of sums cannot be formed without: all but the sonar's pulse and
+ * cross-range response. Errors: MEMORY. */
 sonject_status traced_scene_hash(struct report *report, const struct scene *scene,
                                  const char *input_identity, char hash[HASH_TEXT_CAPACITY]);
 

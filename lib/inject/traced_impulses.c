@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "inject/echoes.h"
+#include "scene/point_response.h"
 #include "trace/chains.h"
 #include "trace/checkpoint.h"
 #include "trace/glints.h"
@@ -287,15 +288,90 @@ sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *
     return status;
 }
 
-static sonject_status deliver(void *giver, struct tracer *tracer,
-                              const struct echo_request *request, const struct impulse_sink *sink)
+#define EDGE_LOSS       0.02   /* of an edge pixel's energy, which half its margin lacks */
+#define EDGE_DEVIATIONS 1.4522 /* erfc(x) / 2 = EDGE_LOSS, G^2 being exp(-(r / sigma)^2) */
+#define ROUNDING        1e-6
+
+/* The pulse's range resolution is inverse to the bandwidth. */
+static double bandwidth_for(const struct tracer *tracer, double share)
 {
-    (void)giver;
-    return trace_impulses(tracer, request, sink);
+    return 1e-3 * tracer->scene->sonar.bandwidth_hz * share;
 }
 
-struct impulse_source traced_impulses(void)
+/* Bins fine enough for the tracer's pulse, and margins so wide that a pixel at the patch's edge
+ * lacks at most EDGE_LOSS of its energy. Half of what is not within the margin lies beyond it. */
+static sonject_status check_bins(const struct tracer *tracer, const struct line_grid *grid,
+                                 const char *path)
 {
-    const struct impulse_source source = {deliver, NULL};
-    return source;
+    const struct point_response *response = &tracer->response;
+    const double spacing = tracer->view.column_spacing_m;
+    const double bin = spacing / grid->bins_per_pixel;
+    const double margin = -grid->bins.first * bin;
+    const double fine = response->range_deviation_m / line_grid_shortest_deviation(grid, spacing);
+    const double reach = response->pulse_kind == SONJECT_PULSE_GAUSSIAN
+                             ? EDGE_DEVIATIONS * response->range_deviation_m
+                             : range_energy_reach(response, 2.0 * EDGE_LOSS);
+    /* a margin that ends at range 0 holds all that any pulse reaches */
+    const double wide = tracer->view.first_range_m - margin < bin ? HUGE_VAL : margin / reach;
+    if (fine >= 1.0 - ROUNDING && wide >= 1.0 - ROUNDING)
+        return SONJECT_OK;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "sonar.bandwidth: %g kHz, but with that pulse %s was traced for %.4g to "
+                          "%.4g kHz: trace again with another bandwidth",
+                          bandwidth_for(tracer, 1.0), path, bandwidth_for(tracer, 1.0 / wide),
+                          bandwidth_for(tracer, fine));
+}
+
+/* The same of strips and the cross-range response. */
+static sonject_status check_strips(const struct tracer *tracer, const struct line_grid *grid,
+                                   const char *path)
+{
+    const double strip = tracer->view.row_spacing_m / grid->strips_per_row;
+    const double margin = -grid->strips.first * strip;
+    if (tracer->response.strip_m < strip * (1.0 - ROUNDING))
+        return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                              "sonar.resolution: %g cm, but %s was traced in strips of %.4g cm: "
+                              "trace again with a finer one",
+                              1e2 * tracer->response.strip_m, path, 1e2 * strip);
+    const double farthest = view_processor_range(&tracer->view, (double)tracer->view.columns - 1.0);
+    const double reach = cross_range_energy_reach(&tracer->response, farthest, 2.0 * EDGE_LOSS);
+    const bool is_moved = tracer->response.motion != NULL;
+    if (reach <= margin)
+        return SONJECT_OK;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "%s: the response reaches %.4g m, but %s was traced to %.4g m beyond the "
+                          "patch: trace again with %s",
+                          is_moved ? "sonar.motion" : "sonar.resolution", reach, path, margin,
+                          is_moved ? "this motion" : "a coarser resolution");
+}
+
+/* Of glints, whose bins are finer and as wide for all parts. */
+static sonject_status check_glints(const struct tracer *tracer, const struct tracer *traced,
+                                   const char *path)
+{
+    struct line_grid grid;
+    uint32_t part = 0;
+    while (part < traced->part_count && !material_is_smooth(traced->placements[part].material))
+        part++;
+    if (part == traced->part_count)
+        return SONJECT_OK;
+    glint_strips_init(&grid, traced, part);
+    const double shortest = glint_shortest_deviation(&grid, tracer->view.column_spacing_m);
+    if (tracer->response.range_deviation_m >= shortest * (1.0 - ROUNDING))
+        return SONJECT_OK;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "sonar.bandwidth: %g kHz, but the glints of %s were traced for at most "
+                          "%.4g kHz: trace again with another bandwidth",
+                          bandwidth_for(tracer, 1.0), path,
+                          bandwidth_for(tracer, tracer->response.range_deviation_m / shortest));
+}
+
+sonject_status check_response_fits(const struct tracer *tracer, const struct tracer *traced)
+{
+    const char *path = traced->checkpoint->files[0]->path;
+    struct line_grid grid;
+    line_grid_for_patch(&grid, &traced->view, &traced->response);
+    CHECK(check_bins(tracer, &grid, path));
+    CHECK(check_strips(tracer, &grid, path));
+    return check_glints(tracer, traced, path);
 }

@@ -298,7 +298,6 @@ static sonject_status begin_launch(struct chain_trace *trace, struct tracer *tra
     const size_t tally_bytes = trace->planes * cells * sizeof(int64_t);
     const struct part_list parts = all_parts(tracer);
     struct launch *launch = &trace->launch;
-    struct object_record *records = NULL;
     struct target_spheres spheres;
     struct chain_record chains;
     double origin[3];
@@ -312,14 +311,12 @@ static sonject_status begin_launch(struct chain_trace *trace, struct tracer *tra
     patch_fan_origin(origin, &tracer->view);
     CHECK(target_spheres_init(&spheres, tracer, origin));
     chain_record_init(&chains, trace, tracer, &spheres);
-    sonject_status status = object_records_create(&records, tracer, &parts, origin);
-    THEN(status, launch_begin(launch, tracer, PROGRAM_TRACE_CHAINS, "trace_chains"));
+    sonject_status status = launch_begin(launch, tracer, PROGRAM_TRACE_CHAINS, "trace_chains");
     THEN(status, launch_add(launch, tracer, sizeof chains, &chains));
-    THEN(status, launch_add_objects(launch, tracer, records, &parts));
+    THEN(status, launch_add_objects(launch, tracer, &parts, origin, NULL));
     THEN(status, launch_add(launch, tracer, spheres.bytes, spheres.records));
     THEN(status, launch_add(launch, tracer, map_bytes, map));
     THEN(status, launch_add(launch, tracer, tally_bytes, NULL));
-    free(records);
     free(spheres.records);
     return status;
 }

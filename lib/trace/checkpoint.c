@@ -19,10 +19,10 @@ static sonject_status begin(struct checkpoint *checkpoint, struct report *report
 }
 
 sonject_status checkpoint_begin(struct checkpoint *checkpoint, struct report *report,
-                                const char *folder, const struct sums_head *head)
+                                const char *path, const char *folder, const struct sums_head *head)
 {
     sonject_status status = begin(checkpoint, report);
-    THEN(status, sums_writer_begin(&checkpoint->writer, report, NULL, folder));
+    THEN(status, sums_writer_begin(&checkpoint->writer, report, path, folder));
     checkpoint->head = *head;
     checkpoint->next = head->first;
     if (status != SONJECT_OK)
@@ -154,8 +154,8 @@ sonject_status checkpoint_finish(struct checkpoint *checkpoint, struct trace_cou
             file->head.records != checkpoint->record)
             return report_failure(checkpoint->report, SONJECT_ERROR_INPUT,
                                   "%s: traced other rays than this machine would, whose "
-                                  "mathematics may differ: run all shards and merge on machines "
-                                  "of one kind",
+                                  "mathematics may differ: trace all, and merge or form, on "
+                                  "machines of one kind",
                                   file->path);
     }
     return SONJECT_OK;

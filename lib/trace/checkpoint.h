@@ -36,10 +36,10 @@ struct checkpoint {
 };
 
 /* Begins to trace the shard of a head from head->first on: strips before it are in other
- * checkpoints. Borrows report and folder. On success to be given to checkpoint_clear. Errors:
- * MEMORY. */
+ * checkpoints. Borrows report, path and folder, which are sums_writer_begin's. On success to be
+ * given to checkpoint_clear. Errors: MEMORY. */
 sonject_status checkpoint_begin(struct checkpoint *checkpoint, struct report *report,
-                                const char *folder, const struct sums_head *head);
+                                const char *path, const char *folder, const struct sums_head *head);
 
 /* Begins to add up checkpoints, all of one identity, which together are everything. */
 sonject_status checkpoint_begin_adding(struct checkpoint *checkpoint, struct report *report,

@@ -193,16 +193,13 @@ static sonject_status begin_launch(struct corner_launch *corner, struct tracer *
 {
     const struct part_list parts = all_parts(tracer);
     struct launch *launch = &corner->launch;
-    struct object_record *records;
-    CHECK(object_records_create(&records, tracer, &parts, tracer->placements[part].centre));
     sonject_status status = launch_begin(launch, tracer, PROGRAM_TRACE_CORNERS, "trace_corners");
-    THEN(status, launch_add_objects(launch, tracer, records, &parts));
+    THEN(status, launch_add_objects(launch, tracer, &parts, tracer->placements[part].centre, NULL));
     THEN(status, launch_add(launch, tracer, sizeof corner->sources, &corner->sources));
     THEN(status, launch_add(launch, tracer, sizeof corner->record, &corner->record));
     THEN(status,
          launch_add(launch, tracer, corner->capacity * sizeof(struct corner_echo_record), NULL));
     THEN(status, launch_add(launch, tracer, sizeof(uint32_t), NULL));
-    free(records);
     return status;
 }
 

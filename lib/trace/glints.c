@@ -70,20 +70,17 @@ static sonject_status begin_launch(struct smooth_trace *trace, struct tracer *tr
     const int32_t strips = trace->grid.strips.count < most ? trace->grid.strips.count : most;
     struct launch *launch = &trace->launch;
     struct part_list parts;
-    struct object_record *records = NULL;
     sonject_status status = parts_in_way(&parts, tracer, number, &trace->grid, !sources);
-    THEN(status,
-         object_records_create(&records, tracer, &parts, tracer->placements[number].centre));
     THEN(status, launch_begin(launch, tracer,
                               sources ? PROGRAM_TRACE_SMOOTH_MIRRORED : PROGRAM_TRACE_SMOOTH,
                               sources ? "trace_smooth_mirrored" : "trace_smooth"));
-    THEN(status, launch_add_objects(launch, tracer, records, &parts));
+    THEN(status,
+         launch_add_objects(launch, tracer, &parts, tracer->placements[number].centre, NULL));
     THEN(status, launch_add_tallies(launch, tracer, strips, 2 * (size_t)trace->grid.bins.count,
                                     &trace->chunk));
     if (sources)
         THEN(status, launch_add(launch, tracer, sizeof *sources, sources));
     fan_set_parts(&launch->fan, tracer, &parts);
-    free(records);
     part_list_clear(&parts);
     return status;
 }

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "scene/shapes/shape.h"
 #include "trace/fan.h"
+#include "trace/rough.h"
 #include "user/snippet.h"
 
 #define MARGIN_M    1.0e-3 /* beyond the heights, so that rays cross them all between the bounds */
@@ -330,9 +331,17 @@ sonject_status object_buffer_create(struct tracer *tracer, struct object_record 
 }
 
 sonject_status launch_add_objects(struct launch *launch, struct tracer *tracer,
-                                  struct object_record *records, const struct part_list *parts)
+                                  const struct part_list *parts, const double origin[3],
+                                  const struct rough_trace *tiles)
 {
-    return object_buffer_create(tracer, records, parts, &launch->buffers[launch->buffer_count++]);
+    struct object_record *records;
+    CHECK(object_records_create(&records, tracer, parts, origin));
+    for (uint32_t i = 0; tiles && i < parts->count; i++)
+        rough_tile_describe(tiles, placement_of(tracer, parts, i)->object, &records[i]);
+    const sonject_status status =
+        object_buffer_create(tracer, records, parts, &launch->buffers[launch->buffer_count++]);
+    free(records);
+    return status;
 }
 
 void fan_set_parts(struct fan_record *fan, const struct tracer *tracer,

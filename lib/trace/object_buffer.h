@@ -49,9 +49,13 @@ sonject_status object_records_create(struct object_record **records, const struc
 sonject_status object_buffer_create(struct tracer *tracer, struct object_record *records,
                                     const struct part_list *parts, device_buffer *buffer);
 
-/* Adds that buffer to a launch. */
+struct rough_trace;
+
+/* Adds such a buffer to a launch, of parts in a frame about an origin. tiles: where what the
+ * objects return is tallied; NULL: nowhere. */
 sonject_status launch_add_objects(struct launch *launch, struct tracer *tracer,
-                                  struct object_record *records, const struct part_list *parts);
+                                  const struct part_list *parts, const double origin[3],
+                                  const struct rough_trace *tiles);
 
 /* Where the relief is, in words from the first record of a launch that knows so many parts; 0 where
  * there is none. */

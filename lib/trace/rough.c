@@ -112,9 +112,8 @@ static int32_t object_halo(const struct rough_trace *trace, const struct tracer 
     return halo;
 }
 
-/* Tells the record of a part of an object where the object's tile is. */
-static void rough_tile_describe(const struct rough_trace *trace, uint32_t object,
-                                struct object_record *record)
+void rough_tile_describe(const struct rough_trace *trace, uint32_t object,
+                         struct object_record *record)
 {
     const struct rough_tile *tile = &trace->tiles[object];
     record->tile_offset = (uint32_t)tile->offset;
@@ -124,8 +123,7 @@ static void rough_tile_describe(const struct rough_trace *trace, uint32_t object
     record->tile_bins = tile->grid.bins.count;
 }
 
-static sonject_status init_tiles(struct rough_trace *trace, struct tracer *tracer,
-                                 struct object_record *records)
+static sonject_status init_tiles(struct rough_trace *trace, struct tracer *tracer)
 {
     size_t elements = 0;
     for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
@@ -142,8 +140,6 @@ static sonject_status init_tiles(struct rough_trace *trace, struct tracer *trace
                           span_overlap(part_strips(trace, tracer, part), trace->grid.strips));
             tile->grid.bins = span_join(tile->grid.bins, part_bins(trace, tracer, part));
         }
-        for (uint32_t k = 0; k < object->part_count; k++)
-            rough_tile_describe(trace, i, &records[object->first_part + k]);
         elements += line_grid_cells(&tile->grid) * TILE_PLANES;
         if (elements > (size_t)1 << 31)
             return report_failure(tracer->report, SONJECT_ERROR_INPUT,
@@ -175,13 +171,15 @@ static void choose_quanta(struct rough_trace *trace, const struct tracer *tracer
 }
 
 static sonject_status begin_launch(struct rough_trace *trace, struct tracer *tracer,
-                                   struct object_record *records, const float *map)
+                                   const float *map)
 {
     const size_t map_bytes = map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0;
     const struct part_list parts = all_parts(tracer);
     struct launch *launch = &trace->launch;
+    double origin[3];
+    patch_fan_origin(origin, &tracer->view);
     sonject_status status = launch_begin(launch, tracer, PROGRAM_TRACE_ROUGH, "trace_rough");
-    THEN(status, launch_add_objects(launch, tracer, records, &parts));
+    THEN(status, launch_add_objects(launch, tracer, &parts, origin, trace));
     THEN(status, launch_add(launch, tracer, map_bytes, map));
     THEN(status, launch_add_tallies(launch, tracer, trace->grid.strips.count,
                                     (size_t)trace->grid.bins.count, &trace->chunk));
@@ -228,23 +226,17 @@ static void aim_at_part(struct fan_record *fan, const struct rough_trace *trace,
 static sonject_status begin(struct rough_trace *trace, struct tracer *tracer, const float *map,
                             const struct point_response *response, bool is_beam)
 {
-    const struct part_list parts = all_parts(tracer);
-    struct object_record *records;
-    double origin[3];
     memset(trace, 0, sizeof *trace);
     line_grid_for_patch(&trace->grid, &tracer->view, response);
-    patch_fan_origin(origin, &tracer->view);
-    CHECK(object_records_create(&records, tracer, &parts, origin));
     sonject_status status = init_fan(trace, tracer, map != NULL, is_beam);
     trace->relief_halo = aspects_relief_halo(tracer, &trace->grid);
     trace->object_halo = object_halo(trace, tracer);
     rough_trace_aim(trace, trace->grid.strips);
-    THEN(status, init_tiles(trace, tracer, records));
+    THEN(status, init_tiles(trace, tracer));
     if (status == SONJECT_OK) {
         choose_quanta(trace, tracer, map);
-        status = begin_launch(trace, tracer, records, map);
+        status = begin_launch(trace, tracer, map);
     }
-    free(records);
     if (status != SONJECT_OK)
         rough_trace_end(trace);
     return status;
@@ -362,22 +354,17 @@ static sonject_status trace_part(struct rough_trace *trace, struct tracer *trace
     struct part_list parts;
     struct image_pairs pairs;
     struct image_pair pair;
-    struct object_record *records = NULL;
     memset(&launch, 0, sizeof launch);
     sonject_status status = parts_in_way(&parts, tracer, part, &trace->tiles[object].grid, false);
-    THEN(status, object_records_create(&records, tracer, &parts, tracer->placements[part].centre));
-    if (status == SONJECT_OK) {
-        rough_tile_describe(trace, object, &records[parts.target]);
-        status =
-            launch_begin(&launch, tracer, PROGRAM_TRACE_ROUGH_MIRRORED, "trace_rough_mirrored");
-    }
-    THEN(status, launch_add_objects(&launch, tracer, records, &parts));
+    THEN(status,
+         launch_begin(&launch, tracer, PROGRAM_TRACE_ROUGH_MIRRORED, "trace_rough_mirrored"));
+    THEN(status,
+         launch_add_objects(&launch, tracer, &parts, tracer->placements[part].centre, trace));
     image_pairs_begin(&pairs, tracer, part, false, 1);
     while (status == SONJECT_OK && image_pairs_next(&pairs, &pair))
         if (image_pair_bins_in_patch(tracer, part, &pair, &trace->grid).count > 0)
             status = trace_pair(trace, tracer, &launch, &parts, &pair);
     launch_end(&launch);
-    free(records);
     part_list_clear(&parts);
     return status;
 }

@@ -55,6 +55,10 @@ sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *trac
  * are. */
 void rough_trace_flatten(struct rough_trace *trace);
 
+/* Tells the record of a part of an object where the object's tile is. */
+void rough_tile_describe(const struct rough_trace *trace, uint32_t object,
+                         struct object_record *record);
+
 /* Reads all tiles as energies (planes TILE_ENERGY, TILE_LOST; m^2) and counts (TILE_FOOTPRINT):
  * tile_elements floats. Plane p of a tile starts at offset + p * line_grid_cells(&tile.grid). */
 sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *tracer, float *tiles);

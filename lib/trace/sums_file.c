@@ -11,12 +11,8 @@
 #define MEMORY_MOST ((size_t)32 << 20) /* short runs touch no file */
 #define ZEROS_MOST  4                  /* within a run: a new one takes two numbers */
 
-/* A record of more sums than these is none that was written. */
-#define ANNOUNCED_MAX    ((uint64_t)1 << 27)
-#define ZEROS_A_BYTE_MAX 256
-
 typedef char block_head_is_packed[sizeof(struct block_head) == 56 ? 1 : -1];
-typedef char sums_head_is_packed[sizeof(struct sums_head) == 272 ? 1 : -1];
+typedef char sums_head_is_packed[sizeof(struct sums_head) == 312 ? 1 : -1];
 
 bool block_digest(struct block_head *head, const void *content)
 {
@@ -281,6 +277,7 @@ static bool read_head(struct sums_file *file, char *content, size_t bytes, uint6
     return is_terminated(identity->version, sizeof identity->version) &&
            is_terminated(identity->code, sizeof identity->code) &&
            is_terminated(identity->scene, sizeof identity->scene) &&
+           is_terminated(identity->image, sizeof identity->image) &&
            is_terminated(identity->device, sizeof identity->device) &&
            is_terminated(head->launches, sizeof head->launches) && head->shard >= 1 &&
            head->shard <= head->shards && head->first <= head->last && head->is_last <= 1 &&
@@ -288,10 +285,9 @@ static bool read_head(struct sums_file *file, char *content, size_t bytes, uint6
 }
 
 /* False where memory lacks. */
-static bool note_sums(struct sums_file *file, uint64_t records, uint64_t at, uint64_t bytes,
-                      const unsigned char *content)
+static bool note_sums(struct sums_file *file, uint64_t records, uint64_t at, uint64_t bytes)
 {
-    const struct sums_block block = {at, bytes, 0};
+    const struct sums_block block = {at, bytes};
     if ((records & (records + 1)) == 0) { /* 0, 1, 3, 7...: room for twice as many */
         struct sums_block *more =
             records < SIZE_MAX / sizeof *more / 4
@@ -302,8 +298,6 @@ static bool note_sums(struct sums_file *file, uint64_t records, uint64_t at, uin
         file->sums = more;
     }
     file->sums[records] = block;
-    if (bytes >= sizeof(uint64_t))
-        memcpy(&file->sums[records].count, content, sizeof(uint64_t));
     return true;
 }
 
@@ -328,7 +322,7 @@ static sonject_status read_all(struct sums_file *file, struct report *report, FI
             read_block(report, file->path, opened, bytes - at, &block, &content);
         at += sizeof block;
         if (status == SONJECT_OK && block.kind == BLOCK_SUMS &&
-            !note_sums(file, records++, at, block.bytes, content))
+            !note_sums(file, records++, at, block.bytes))
             status = report_out_of_memory(report, file->path);
         at += block.bytes;
         if (status == SONJECT_OK && block.kind == BLOCK_HEAD)
@@ -413,29 +407,5 @@ sonject_status sums_file_runs(const struct sums_file *file, struct report *repor
     free(content);
     if (opened)
         fclose(opened);
-    return status;
-}
-
-static bool copy_run(void *user, uint64_t first, const int64_t *values, size_t count)
-{
-    memcpy((int64_t *)user + first, values, count * sizeof *values);
-    return true;
-}
-
-sonject_status sums_file_record(const struct sums_file *file, struct report *report,
-                                uint64_t record, int64_t **values, uint64_t *count)
-{
-    *values = NULL;
-    *count = record < file->head.records ? file->sums[record].count : 0;
-    if (record >= file->head.records ||
-        *count > ZEROS_A_BYTE_MAX * file->sums[record].bytes + ANNOUNCED_MAX)
-        return refuse(report, file->path);
-    *values = allocate_array((size_t)*count, sizeof **values);
-    CHECK_MEMORY(report, *values, file->path);
-    const sonject_status status = sums_file_runs(file, report, record, *count, copy_run, *values);
-    if (status != SONJECT_OK) {
-        free(*values);
-        *values = NULL;
-    }
     return status;
 }

@@ -1,7 +1,6 @@
-/* Files of sums: what tracing leaves. A checkpoint, which is what one process traced of a shard in
- * one go, or all that a trace found (inject/impulses.h says what its sums are).
+/* Files of sums: what one process traced of a shard, or of everything, in one go.
  *
- *   "sonject sums 04\n"
+ *   "sonject sums 05\n"
  *   blocks: kind, bytes (64 bits each), digest (XXH3 of kind, bytes and content, 32 digits in 40
  *   bytes), content
  *     sums  how many sums there are; then runs of those that are not all 0: number of the first,
@@ -31,6 +30,7 @@ struct sums_identity {
     char code[SUMS_DIGEST_CAPACITY];
     char scene[SUMS_DIGEST_CAPACITY];  /* everything that the result depends on,
                                            but not the image file's name */
+    char image[SUMS_DIGEST_CAPACITY];  /* size and pixels of the patch alone */
     char device[SUMS_DIGEST_CAPACITY]; /* "" unless the result depends on it: user shapes */
 };
 
@@ -45,8 +45,8 @@ struct sums_head {
     uint64_t rays, queries, impulses;
 };
 
-/* What a scene was read from as a file of sums keeps it, lying in that; all NULL: it had no text, or
- * arrays beside it. */
+/* What a scene was read from as a file of sums keeps it, lying in that; all NULL: it had no text,
+ * or arrays beside it. */
 struct kept_scene {
     const char *path, *folder, *text;
     const char **overrides;
@@ -88,7 +88,6 @@ sonject_status sums_writer_publish(struct sums_writer *writer, const struct sums
 
 struct sums_block {
     uint64_t at, bytes; /* of its content in the file */
-    uint64_t count;     /* of its sums */
 };
 
 /* A file that was found whole. */
@@ -112,10 +111,6 @@ typedef bool sums_run_function(void *user, uint64_t first, const int64_t *values
  * STORAGE, MEMORY. */
 sonject_status sums_file_runs(const struct sums_file *file, struct report *report, uint64_t record,
                               uint64_t count, sums_run_function *take, void *user);
-
-/* All sums of a block, for free(); NULL on failure. Errors: as sums_file_runs. */
-sonject_status sums_file_record(const struct sums_file *file, struct report *report,
-                                uint64_t record, int64_t **values, uint64_t *count);
 
 /* A run's folder of checkpoints: files named shard-I-of-K-FIRST-LAST.sums. */
 struct sums_folder {
@@ -154,7 +149,7 @@ sonject_status sums_chain_find(struct sums_chain *chain, struct report *report,
                                const struct sums_folder *folder, uint64_t shard);
 
 /* Blocks, as tests make them, too. */
-#define SUMS_MAGIC       "sonject sums 04\n"
+#define SUMS_MAGIC       "sonject sums 05\n"
 #define SUMS_MAGIC_BYTES 16
 
 enum block_kind {

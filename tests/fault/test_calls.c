@@ -48,45 +48,51 @@ static void expect_nothing_held(const char *name, long n, long blocks)
         fail_msg("%s, call %ld: %ld OpenCL objects are left", name, n, fault_objects());
 }
 
+static struct work work;
+
 /* Returns whether the work failed; a call may be one that the library can do without. */
-static bool fail_at(struct work *work, const char *name, work_piece *piece, long n)
+static bool fail_at(const struct work_piece *piece, long n)
 {
+    const char *name = piece->name;
     const int error = KIND == FAULT_OPENCL ? opencl_errors[(size_t)n % COUNT(opencl_errors)] : 0;
     const bool stays = KIND == FAULT_OPENCL ? error == CL_DEVICE_NOT_AVAILABLE : n % 2 == 1;
     const long blocks = fault_blocks();
     fault_arm(KIND, n, stays, error);
-    const sonject_status status = piece(work);
+    const sonject_status status = work_do(&work, piece);
     const long calls = fault_disarm();
     /* a device that fails may be asked in another order; then there is nothing to be seen */
     if (calls < n && status != SONJECT_OK)
-        fail_msg("%s failed of itself: %s", name, work->message);
+        fail_msg("%s failed of itself: %s", name, work.message);
     if (status != SONJECT_OK && !is_right_status(status))
-        fail_msg("%s, call %ld: %s: %s", name, n, sonject_status_name(status), work->message);
-    if (status != SONJECT_OK && status != SONJECT_ERROR_MEMORY && work->message[0] == '\0')
+        fail_msg("%s, call %ld: %s: %s", name, n, sonject_status_name(status), work.message);
+    if (status != SONJECT_OK && status != SONJECT_ERROR_MEMORY && work.message[0] == '\0')
         fail_msg("%s, call %ld: no message", name, n);
     expect_nothing_held(name, n, blocks);
-    work_check_results(work, status == SONJECT_OK);
+    work_check_results(&work, status == SONJECT_OK);
     return status != SONJECT_OK;
 }
 
-static void expect_done(struct work *work, const char *name, work_piece *piece)
+static void expect_done(const struct work_piece *piece)
 {
     const long blocks = fault_blocks();
-    if (piece(work) != SONJECT_OK)
-        fail_msg("%s, undisturbed: %s", name, work->message);
-    expect_nothing_held(name, 0, blocks);
+    if (work_do(&work, piece) != SONJECT_OK)
+        fail_msg("%s, undisturbed: %s", piece->name, work.message);
+    expect_nothing_held(piece->name, 0, blocks);
 }
 
 /* Fails calls spread over all that the work makes, the next call of which must work each time that
  * a third of them is done. */
-static void test_piece(struct work *work, const char *name, work_piece *piece)
+static void test_piece(void **state)
 {
-    expect_done(work, name, piece); /* fills the driver's cache */
-    work_expect(work);
+    const struct work_piece *piece = *state;
+    if (piece == &work_form)
+        expect_done(&work_trace);
+    expect_done(piece); /* fills the driver's cache */
+    work_expect(&work);
     fault_arm(KIND, 0, false, 0);
-    expect_done(work, name, piece);
+    expect_done(piece);
     const long calls = fault_disarm();
-    work_check_results(work, true);
+    work_check_results(&work, true);
     const long wanted = points_wanted();
     const long points = wanted > 0 && wanted < calls ? wanted : calls;
     long failed = 0;
@@ -95,115 +101,55 @@ static void test_piece(struct work *work, const char *name, work_piece *piece)
          */
         const long first = i * calls / points;
         const long length = (i + 1) * calls / points - first;
-        failed += fail_at(work, name, piece, 1 + first + (7 * i) % length);
+        failed += fail_at(piece, 1 + first + (7 * i) % length);
         if (i % (points / 3 + 1) == points / 3 || i == points - 1) {
-            expect_done(work, name, piece);
-            work_check_results(work, true);
+            expect_done(piece);
+            work_check_results(&work, true);
         }
     }
-    print_message("%s: %ld calls, %ld tried, %ld failed the work\n", name, calls, points, failed);
+    print_message("%s: %ld calls, %ld tried, %ld failed the work\n", piece->name, calls, points,
+                  failed);
     assert_true(failed > 0);
-}
-
-static void test_reading_a_scene(void **state)
-{
-    test_piece(*state, "read", work_read);
-}
-
-static void test_injecting(void **state)
-{
-    test_piece(*state, "inject", work_inject);
-}
-
-static void test_checking(void **state)
-{
-    test_piece(*state, "check", work_check);
-}
-
-static void test_measuring(void **state)
-{
-    test_piece(*state, "measure", work_measure);
-}
-
-static void test_running(void **state)
-{
-    test_piece(*state, "run", work_run);
-}
-
-static void test_sharing_out(void **state)
-{
-    test_piece(*state, "shards", work_shards);
-}
-
-static void test_making_a_campaign(void **state)
-{
-    test_piece(*state, "campaign", work_campaign);
-}
-
-static void test_drawing(void **state)
-{
-    test_piece(*state, "quicklook", work_quicklook);
-}
-
-static void test_making_a_seabed(void **state)
-{
-    test_piece(*state, "seabed", work_seabed);
 }
 
 static void test_discovery_short_of_memory_says_so(void **state)
 {
-    struct work *work = *state;
+    (void)state;
     for (long n = 1; n <= 2; n++) { /* platforms, devices */
         fault_arm(FAULT_OPENCL, n, false, CL_OUT_OF_HOST_MEMORY);
-        const sonject_status status = work_inject(work);
+        const sonject_status status = work_do(&work, &work_inject);
         (void)fault_disarm();
         assert_int_equal(status, SONJECT_ERROR_MEMORY);
-        assert_non_null(strstr(work->message, "too little memory"));
+        assert_non_null(strstr(work.message, "too little memory"));
     }
-}
-
-static void test_tracing(void **state)
-{
-    test_piece(*state, "trace", work_trace);
-}
-
-static void test_forming(void **state)
-{
-    expect_done(*state, "trace", work_trace);
-    test_piece(*state, "form", work_form);
 }
 
 /* Without memory OpenImageIO 2.4 ends the process (where functions that may not throw do), and HDF5
  * 1.10 loses what all its later calls need: what uses them is left out where libraries lack it. */
+#define PIECE(of)                                                                                  \
+    {                                                                                              \
+#of, test_piece, NULL, NULL, (void *)(uintptr_t)&of                                        \
+    }
+
 int main(void)
 {
-    const struct CMUnitTest with_device[] = {
-        cmocka_unit_test(test_injecting), cmocka_unit_test(test_discovery_short_of_memory_says_so),
-        cmocka_unit_test(test_running),   cmocka_unit_test(test_tracing),
-        cmocka_unit_test(test_forming),
-    };
-    /* whose OpenCL calls are those of the others */
-    const struct CMUnitTest repeating[] = {
-        cmocka_unit_test(test_sharing_out),
-        cmocka_unit_test(test_making_a_campaign),
-    };
-    const struct CMUnitTest without_device[] = {
-        cmocka_unit_test(test_reading_a_scene), cmocka_unit_test(test_checking),
-        cmocka_unit_test(test_measuring),       cmocka_unit_test(test_drawing),
-        cmocka_unit_test(test_making_a_seabed),
-    };
-    const struct CMUnitTest without_files[] = {
-        cmocka_unit_test(test_injecting),
-        cmocka_unit_test(test_reading_a_scene),
-        cmocka_unit_test(test_checking),
-    };
+    const struct CMUnitTest with_device[] = {PIECE(work_inject),
+                                             TEST(test_discovery_short_of_memory_says_so),
+                                             PIECE(work_run), PIECE(work_trace), PIECE(work_form)};
+    /* the OpenCL calls of some are those of the others, and the last ones have none */
+    const struct CMUnitTest others[] = {
+        PIECE(work_shards),  PIECE(work_campaign),  PIECE(work_read),  PIECE(work_check),
+        PIECE(work_measure), PIECE(work_quicklook), PIECE(work_seabed)};
+    const struct CMUnitTest without_files[] = {PIECE(work_inject), PIECE(work_read),
+                                               PIECE(work_check)};
     fault_take_jansson();
-    if (KIND == FAULT_LIBRARIES)
-        return cmocka_run_group_tests(without_files, work_prepare, work_remove);
-    int failed = cmocka_run_group_tests(with_device, work_prepare, work_remove);
-    if (KIND != FAULT_OPENCL) {
-        failed += cmocka_run_group_tests(repeating, work_prepare, work_remove);
-        failed += cmocka_run_group_tests(without_device, work_prepare, work_remove);
+    int failed = work_prepare(&work);
+    if (KIND == FAULT_LIBRARIES) {
+        failed += cmocka_run_group_tests(without_files, NULL, NULL);
+    } else {
+        failed += cmocka_run_group_tests(with_device, NULL, NULL);
+        if (KIND != FAULT_OPENCL)
+            failed += cmocka_run_group_tests(others, NULL, NULL);
     }
-    return failed;
+    return failed + work_remove(&work);
 }

@@ -76,52 +76,45 @@ static void set_path(struct work *work, char path[WORK_PATH], const char *name)
     snprintf(path, WORK_PATH, "%s/%s", work->folder->path, name);
 }
 
-static sonject_status begin(struct work *work, sonject_context **context)
+sonject_status work_do(struct work *work, const struct work_piece *piece)
 {
-    sonject_context_params params = {.struct_size = sizeof params};
+    const sonject_context_params params = {.struct_size = sizeof params};
+    sonject_context *context;
+    sonject_scene *scene = NULL;
     work->message[0] = '\0';
     work->digest = UINT64_C(0xCBF29CE484222325);
-    return sonject_context_create(&params, context);
-}
-
-static sonject_status begin_scene(struct work *work, sonject_context **context,
-                                  sonject_scene **scene)
-{
-    *scene = NULL;
-    const sonject_status status = begin(work, context);
-    return status == SONJECT_OK ? sonject_scene_read(*context, work->scene, NULL, scene) : status;
-}
-
-static sonject_status end(struct work *work, sonject_status status, sonject_context **context,
-                          sonject_scene **scene)
-{
-    if (*context && status != SONJECT_OK)
-        snprintf(work->message, sizeof work->message, "%s", sonject_context_message(*context));
-    if (scene)
-        sonject_scene_release(scene);
-    sonject_context_release(context);
+    sonject_status status = sonject_context_create(&params, &context);
+    if (status == SONJECT_OK && piece->has_scene)
+        status = sonject_scene_read(context, work->scene, NULL, &scene);
+    if (status == SONJECT_OK)
+        status = piece->act(work, context, scene);
+    if (context && status != SONJECT_OK)
+        snprintf(work->message, sizeof work->message, "%s", sonject_context_message(context));
+    sonject_scene_release(&scene);
+    sonject_context_release(&context);
     return status;
 }
 
-static sonject_status write_seabed(struct work *work, const char *image)
+static sonject_status write_seabed(sonject_context *context, sonject_scene *scene,
+                                   const char *image)
 {
-    sonject_context *context;
-    sonject_scene *scene;
-    sonject_status status = begin_scene(work, &context, &scene);
-    if (status == SONJECT_OK)
-        status =
-            sonject_scene_set(scene, "input",
-                              "{synthetic: {rows: 40, columns: 40}, geometry: {row_spacing: 0.025, "
-                              "column_spacing: 0.025, first_slant_range: 44}}");
-    if (status == SONJECT_OK)
-        status = sonject_seabed_write(context, scene, image);
-    return end(work, status, &context, &scene);
+    const sonject_status status =
+        sonject_scene_set(scene, "input",
+                          "{synthetic: {rows: 40, columns: 40}, geometry: {row_spacing: 0.025, "
+                          "column_spacing: 0.025, first_slant_range: 44}}");
+    return status == SONJECT_OK ? sonject_seabed_write(context, scene, image) : status;
 }
 
-int work_prepare(void **state)
+static sonject_status make_seabed(struct work *work, sonject_context *context, sonject_scene *scene)
 {
-    struct work *work = calloc(1, sizeof *work);
-    if (!work || make_temporary_folder((void **)&work->folder) != 0)
+    return write_seabed(context, scene, work->seabed);
+}
+
+int work_prepare(struct work *work)
+{
+    static const struct work_piece seabed = {"seabed", make_seabed, true};
+    memset(work, 0, sizeof *work);
+    if (make_temporary_folder((void **)&work->folder) != 0)
         return 1;
     set_path(work, work->scene, "scene.yaml");
     set_path(work, work->campaign, "campaign.yaml");
@@ -133,8 +126,7 @@ int work_prepare(void **state)
     write_bytes(work->campaign, campaign_text, strlen(campaign_text));
     write_bytes(temporary_file(work->folder, "buoy.yaml"), target_text, strlen(target_text));
     write_image(work->image);
-    *state = work;
-    return write_seabed(work, work->seabed) != SONJECT_OK;
+    return work_do(work, &seabed) != SONJECT_OK;
 }
 
 static void empty_folder(const char *path)
@@ -152,178 +144,132 @@ static void empty_folder(const char *path)
     (void)rmdir(path);
 }
 
-int work_remove(void **state)
+int work_remove(struct work *work)
 {
-    struct work *work = *state;
     empty_folder(work->folder->path);
     free(work->folder);
-    free(work);
     return 0;
 }
 
-sonject_status work_read(struct work *work)
+static sonject_status read_scene(struct work *work, sonject_context *context, sonject_scene *scene)
 {
-    sonject_context *context;
-    sonject_scene *scene;
     uint32_t count = 0;
-    sonject_status status = begin_scene(work, &context, &scene);
-    if (status == SONJECT_OK)
-        status = sonject_scene_object_count(scene, &count);
+    (void)context;
+    const sonject_status status = sonject_scene_object_count(scene, &count);
     work->digest = add_to_digest(work->digest, &count, sizeof count);
-    return end(work, status, &context, &scene);
+    return status;
 }
 
-sonject_status work_inject(struct work *work)
+static sonject_status inject(struct work *work, sonject_context *context, sonject_scene *scene)
 {
-    sonject_context *context;
-    sonject_scene *scene;
     sonject_result *result = NULL;
     float pixels[ROWS * COLUMNS];
     const sonject_pixels patch = {sizeof patch, SONJECT_PIXELS_AMPLITUDE, ROWS, COLUMNS, 0, pixels};
     fill_pixels(pixels);
-    sonject_status status = begin_scene(work, &context, &scene);
-    if (status == SONJECT_OK)
-        status = sonject_inject(context, scene, &patch, NULL, NULL, &result);
+    sonject_status status = sonject_inject(context, scene, &patch, NULL, NULL, &result);
     assert_true((status == SONJECT_OK) == (result != NULL));
     if (status == SONJECT_OK)
         status = sonject_result_layer(result, SONJECT_LAYER_IMAGE, pixels, sizeof pixels);
     work->digest = add_to_digest(work->digest, pixels, sizeof pixels);
     sonject_result_release(&result);
-    return end(work, status, &context, &scene);
+    return status;
 }
 
-sonject_status work_measure(struct work *work)
+static sonject_status measure(struct work *work, sonject_context *context, sonject_scene *scene)
 {
-    sonject_context *context;
-    sonject_measure_params params = {.struct_size = sizeof params};
+    const sonject_measure_params params = {.struct_size = sizeof params, .image = work->seabed};
     sonject_measurement measurement = {.struct_size = sizeof measurement};
-    params.image = work->seabed;
-    sonject_status status = begin(work, &context);
-    if (status == SONJECT_OK)
-        status = sonject_measure(context, &params, &measurement);
+    (void)scene;
+    const sonject_status status = sonject_measure(context, &params, &measurement);
     work->digest = add_to_digest(work->digest, &measurement, sizeof measurement);
-    return end(work, status, &context, NULL);
+    return status;
 }
 
-sonject_status work_check(struct work *work)
+static sonject_status check(struct work *work, sonject_context *context, sonject_scene *scene)
 {
-    sonject_context *context;
-    sonject_scene *scene;
     char *text = NULL;
-    sonject_status status = begin_scene(work, &context, &scene);
-    if (status == SONJECT_OK)
-        status = sonject_check(context, scene, &text);
+    const sonject_status status = sonject_check(context, scene, &text);
     assert_true((status == SONJECT_OK) == (text != NULL));
     if (text)
         work->digest = add_to_digest(work->digest, text, strlen(text));
     sonject_text_release(&text);
-    return end(work, status, &context, &scene);
+    return status;
 }
 
-sonject_status work_run(struct work *work)
+static sonject_status run(struct work *work, sonject_context *context, sonject_scene *scene)
 {
-    sonject_context *context;
-    sonject_scene *scene;
-    sonject_run_params params = {.struct_size = sizeof params};
-    params.folder = work->results;
-    sonject_status status = begin_scene(work, &context, &scene);
-    if (status == SONJECT_OK)
+    const sonject_run_params params = {.struct_size = sizeof params, .folder = work->results};
+    return sonject_run(context, scene, &params, NULL, NULL, NULL);
+}
+
+static sonject_status share_out(struct work *work, sonject_context *context, sonject_scene *scene)
+{
+    sonject_run_params params = {
+        .struct_size = sizeof params, .folder = work->results, .shard_count = 2};
+    const sonject_merge_params merging = {.struct_size = sizeof merging, .folder = work->results};
+    sonject_status status = SONJECT_OK;
+    for (params.shard_index = 2; status == SONJECT_OK && params.shard_index > 0;
+         params.shard_index--)
         status = sonject_run(context, scene, &params, NULL, NULL, NULL);
-    return end(work, status, &context, &scene);
+    return status == SONJECT_OK ? sonject_merge(context, NULL, &merging, NULL, NULL, NULL) : status;
 }
 
-/* One of two shards, or, for 0, both together. */
-static sonject_status do_shard(struct work *work, uint32_t shard)
+static sonject_status make_campaign(struct work *work, sonject_context *context,
+                                    sonject_scene *scene)
 {
-    sonject_context *context;
-    sonject_scene *scene = NULL;
-    sonject_run_params params = {.struct_size = sizeof params};
-    sonject_merge_params merging = {.struct_size = sizeof merging};
-    params.folder = merging.folder = work->results;
-    params.shard_index = shard;
-    params.shard_count = 2;
-    if (shard == 0) {
-        const sonject_status begun = begin(work, &context);
-        return end(work,
-                   begun == SONJECT_OK ? sonject_merge(context, NULL, &merging, NULL, NULL, NULL)
-                                       : begun,
-                   &context, NULL);
-    }
-    sonject_status status = begin_scene(work, &context, &scene);
-    if (status == SONJECT_OK)
-        status = sonject_run(context, scene, &params, NULL, NULL, NULL);
-    return end(work, status, &context, &scene);
-}
-
-sonject_status work_shards(struct work *work)
-{
-    sonject_status status = do_shard(work, 2);
-    if (status == SONJECT_OK)
-        status = do_shard(work, 1);
-    return status == SONJECT_OK ? do_shard(work, 0) : status;
-}
-
-sonject_status work_campaign(struct work *work)
-{
-    sonject_context *context;
     sonject_campaign *campaign = NULL;
-    sonject_campaign_run_params params = {.struct_size = sizeof params};
-    params.folder = work->results;
-    sonject_status status = begin(work, &context);
-    if (status == SONJECT_OK)
-        status = sonject_campaign_read(context, work->campaign, NULL, &campaign);
+    const sonject_campaign_run_params params = {.struct_size = sizeof params,
+                                                .folder = work->results};
+    (void)scene;
+    sonject_status status = sonject_campaign_read(context, work->campaign, NULL, &campaign);
     if (status == SONJECT_OK)
         status = sonject_campaign_run(context, campaign, &params, NULL, NULL, NULL);
-    if (status != SONJECT_OK && context)
-        snprintf(work->message, sizeof work->message, "%s", sonject_context_message(context));
     sonject_campaign_release(&campaign);
-    return end(work, status, &context, NULL);
+    return status;
 }
 
-sonject_status work_trace(struct work *work)
+static sonject_status trace(struct work *work, sonject_context *context, sonject_scene *scene)
 {
-    sonject_context *context;
-    sonject_scene *scene;
-    sonject_status status = begin_scene(work, &context, &scene);
-    if (status == SONJECT_OK)
-        status = sonject_trace(context, scene, work->impulses, NULL, NULL, NULL);
-    return end(work, status, &context, &scene);
+    return sonject_trace(context, scene, work->impulses, NULL, NULL, NULL);
 }
 
-sonject_status work_form(struct work *work)
+static sonject_status form(struct work *work, sonject_context *context, sonject_scene *scene)
 {
-    sonject_context *context;
-    sonject_form_params params = {.struct_size = sizeof params};
-    params.file = work->impulses;
-    params.folder = work->results;
-    sonject_status status = begin(work, &context);
-    if (status == SONJECT_OK)
-        status = sonject_form(context, NULL, &params, NULL, NULL, NULL);
-    return end(work, status, &context, NULL);
+    const sonject_form_params params = {
+        .struct_size = sizeof params, .file = work->impulses, .folder = work->results};
+    (void)scene;
+    return sonject_form(context, NULL, &params, NULL, NULL, NULL);
 }
 
-sonject_status work_quicklook(struct work *work)
+static sonject_status draw(struct work *work, sonject_context *context, sonject_scene *scene)
 {
     char picture[WORK_PATH + 16];
-    sonject_context *context;
-    sonject_quicklook_params params = {.struct_size = sizeof params};
+    const sonject_quicklook_params params = {
+        .struct_size = sizeof params, .image = work->image, .picture = picture};
+    (void)scene;
     snprintf(picture, sizeof picture, "%s/look.png", work->results);
-    params.image = work->image;
-    params.picture = picture;
     (void)mkdir(work->results, 0777);
-    sonject_status status = begin(work, &context);
-    if (status == SONJECT_OK)
-        status = sonject_quicklook(context, &params);
-    return end(work, status, &context, NULL);
+    return sonject_quicklook(context, &params);
 }
 
-sonject_status work_seabed(struct work *work)
+static sonject_status make_result_seabed(struct work *work, sonject_context *context,
+                                         sonject_scene *scene)
 {
     char image[WORK_PATH + 16];
     snprintf(image, sizeof image, "%s/seabed.tif", work->results);
     (void)mkdir(work->results, 0777);
-    return write_seabed(work, image);
+    return write_seabed(context, scene, image);
 }
+
+const struct work_piece work_read = {"read", read_scene, true},
+                        work_inject = {"inject", inject, true},
+                        work_measure = {"measure", measure, false},
+                        work_check = {"check", check, true}, work_run = {"run", run, true},
+                        work_quicklook = {"quicklook", draw, false},
+                        work_seabed = {"seabed", make_result_seabed, true},
+                        work_trace = {"trace", trace, true}, work_form = {"form", form, false},
+                        work_shards = {"shards", share_out, true},
+                        work_campaign = {"campaign", make_campaign, false};
 
 /* Files that tell times. */
 static bool differs_each_time(const char *name)

@@ -32,14 +32,21 @@ struct work {
     size_t expected_count;
 };
 
-typedef sonject_status work_piece(struct work *work);
+/* A piece of work, in a context and, where it wants one, with the scene. */
+struct work_piece {
+    const char *name;
+    sonject_status (*act)(struct work *work, sonject_context *context, sonject_scene *scene);
+    bool has_scene;
+};
 
-/* Set-up and tear-down of a cmocka group; *state is the struct work. */
-int work_prepare(void **state);
-int work_remove(void **state);
+extern const struct work_piece work_read, work_inject, work_measure, work_check, work_run,
+    work_quicklook, work_seabed, work_trace, work_form, work_shards, work_campaign;
 
-work_piece work_read, work_inject, work_measure, work_check, work_run, work_quicklook, work_seabed,
-    work_trace, work_form, work_shards, work_campaign;
+sonject_status work_do(struct work *work, const struct work_piece *piece);
+
+/* Set-up and tear-down; 0, or 1 where it failed. */
+int work_prepare(struct work *work);
+int work_remove(struct work *work);
 
 /* Takes what the piece left just now for right, and removes it. */
 void work_expect(struct work *work);

@@ -32,7 +32,7 @@ const struct image *sea_image_of(struct sea *sea, const float *map, bool has_spe
     const struct echo_request request = {
         .map = map, .field = has_speckle ? SEABED_FIELD_SPECKLE : SEABED_FIELD_NONE};
     sea_lay(sea);
-    EXPECT_OK(&sea->bench->report, echoes_compute(echoes, &sea->bench->tracer, &request));
+    EXPECT_OK(&sea->bench->report, echoes_form(echoes, &sea->bench->tracer, &request, NULL));
     claim_end(clear_echoes, echoes);
     *image = (struct image){.rows = echoes->rows,
                             .columns = echoes->columns,

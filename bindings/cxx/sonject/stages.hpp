@@ -1,4 +1,4 @@
-/* Results of what was traced before: of the shards of a run, or of impulses in a file. */
+/* Results of what was traced before: of the shards of a run, or of sums in a file. */
 #ifndef SONJECT_STAGES_HPP
 #define SONJECT_STAGES_HPP
 

@@ -154,7 +154,7 @@ def trace(
     *,
     export_file: Optional[PathLike] = None,
 ) -> None:
-    """Traces the scene and writes its impulses to a file, which form makes images of.
+    """Traces the scene and writes its sums to a file, which form makes images of.
 
     export_file: the same as HDF5 arrays, for other programs.
     """
