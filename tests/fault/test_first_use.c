@@ -1,6 +1,7 @@
-/* The first use of OpenCL in a process, by several threads, before and after a fork; and what
- * contexts hold. This process makes no call of the library, so that each of its children is the
- * first to use the driver. */
+/* The first use of OpenCL in a process, by several threads, before and after a fork; what contexts
+ * hold; and two threads that go on, each with a context of its own, with the same images as one.
+ * This process makes no call of the library, so that each of its children is the first to use the
+ * driver. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "claims.h"
@@ -16,7 +17,11 @@
 #ifndef RUNS
 #define RUNS 20 /* processes; a slow checker may be compiled with fewer */
 #endif
-#define SECONDS 300 /* after which a child that waits for ever is ended */
+#define SECONDS     300             /* after which a child that waits for ever is ended */
+#define IMAGES      (2 * RUNS + 10) /* of each of two threads */
+#define SIDE        24
+#define KINDS       3 /* different scenes, which a thread takes in turn */
+#define IMAGE_BYTES (SIDE * SIDE * sizeof(float))
 
 /* A child of this process, or one of its own: nonzero for failure, with a line that says why. */
 typedef int child_work(void);
@@ -39,23 +44,34 @@ static int exit_of(child_work *work)
     return child > 0 && waitpid(child, &status, 0) == child ? status : -1;
 }
 
-static sonject_status inject(sonject_context *context)
+/* Of a sphere, whose glint is weak, or a cylinder, in different places. pixels may be NULL. */
+static sonject_status inject_kind(sonject_context *context, unsigned kind, float *pixels)
 {
     sonject_scene *scene = NULL;
     sonject_result *result = NULL;
-    const sonject_scene_read_params params = {
-        .struct_size = sizeof params,
-        .text = "sonject: 1\n"
-                "input: {uniform: {rows: 16, columns: 16}, geometry: {row_spacing: 0.025,\n"
-                "  column_spacing: 0.025, first_slant_range: 20}}\n"
-                "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
-                "objects: [{shape: sphere, diameter: 0.3}]\n"};
+    char text[500];
+    const sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
+    snprintf(text, sizeof text,
+             "sonject: 1\n"
+             "input: {uniform: {rows: %d, columns: %d}, geometry: {row_spacing: 0.06,\n"
+             "  column_spacing: 0.06, first_slant_range: %u}}\n"
+             "sonar: {frequency: 100e3, bandwidth: 15e3, altitude: 8}\n"
+             "injection: {seed: %u}\n"
+             "objects: [{shape: %s, diameter: 0.3}]\n",
+             SIDE, SIDE, 20 + kind, 7 + kind, kind == 1 ? "cylinder, length: 0.5" : "sphere");
     sonject_status status = sonject_scene_read(context, NULL, &params, &scene);
     if (status == SONJECT_OK)
         status = sonject_inject(context, scene, NULL, NULL, NULL, &result);
+    if (status == SONJECT_OK && pixels)
+        status = sonject_result_layer(result, SONJECT_LAYER_IMAGE, pixels, IMAGE_BYTES);
     sonject_result_release(&result);
     sonject_scene_release(&scene);
     return status;
+}
+
+static sonject_status inject(sonject_context *context)
+{
+    return inject_kind(context, 0, NULL);
 }
 
 static int inject_once(void)
@@ -217,7 +233,58 @@ static void test_a_hundred_contexts_hold_less_than_two(void **state)
     assert_int_equal(exit_of(hold_contexts), 0);
 }
 
+struct worker {
+    float (*expected)[SIDE * SIDE]; /* of each kind */
+    unsigned first_kind;
+    int failed;
+};
+
+static void *repeat_images(void *argument)
+{
+    struct worker *worker = argument;
+    sonject_context *context = NULL;
+    float pixels[SIDE * SIDE];
+    worker->failed = sonject_context_create(NULL, &context) != SONJECT_OK;
+    for (unsigned run = 0; !worker->failed && run < IMAGES; run++) {
+        const unsigned kind = (worker->first_kind + run) % KINDS;
+        if (inject_kind(context, kind, pixels) != SONJECT_OK)
+            worker->failed = say("thread", context);
+        else if (memcmp(pixels, worker->expected[kind], IMAGE_BYTES) != 0)
+            worker->failed = say("another image", NULL);
+    }
+    sonject_context_release(&context);
+    return NULL;
+}
+
+static int inject_side_by_side(void)
+{
+    static float expected[KINDS][SIDE * SIDE];
+    struct worker workers[2] = {{expected, 0, 0}, {expected, 1, 0}};
+    pthread_t threads[2];
+    sonject_context *context = NULL;
+    int failed = sonject_context_create(NULL, &context) != SONJECT_OK;
+    for (unsigned kind = 0; kind < KINDS && !failed; kind++)
+        failed = inject_kind(context, kind, expected[kind]) != SONJECT_OK;
+    sonject_context_release(&context);
+    if (failed || memcmp(expected[0], expected[1], IMAGE_BYTES) == 0)
+        return say("one thread", NULL);
+    for (int i = 0; i < 2; i++)
+        if (pthread_create(&threads[i], NULL, repeat_images, &workers[i]) != 0)
+            return say("no thread", NULL);
+    for (int i = 0; i < 2; i++) {
+        pthread_join(threads[i], NULL);
+        failed += workers[i].failed;
+    }
+    return failed;
+}
+
+static void test_two_threads_give_what_one_gives(void **state)
+{
+    assert_int_equal(exit_of(inject_side_by_side), 0);
+}
+
 TEST_PROGRAM(NULL, NULL, TEST(test_threads_may_be_the_first_to_use_a_device),
              TEST(test_a_child_of_a_process_that_used_opencl_is_refused),
              TEST(test_parent_and_child_may_both_inject_where_none_did_before),
-             TEST(test_a_hundred_contexts_hold_less_than_two))
+             TEST(test_a_hundred_contexts_hold_less_than_two),
+             TEST(test_two_threads_give_what_one_gives))
