@@ -1,20 +1,12 @@
-/* Where rays meet objects. A new shape enters here, in shape_spans and shape_normal. */
+/* Where rays meet objects. */
 #ifndef SONJECT_KERNELS_INTERSECTION_H
 #define SONJECT_KERNELS_INTERSECTION_H
 
 #include "cut.h"
 #include "layout.h"
 #include "mesh_ray.h" /* boxes, which many objects need too */
-#include "shapes/box.h"
-#include "shapes/capsule.h"
-#include "shapes/cone.h"
-#include "shapes/cylinder.h"
-#include "shapes/disc.h"
-#include "shapes/ellipsoid.h"
-#include "shapes/ended_cylinder.h"
-#include "shapes/plane.h"
-#include "shapes/sphere.h"
-#include "shapes/torus.h"
+#define SHAPE_FILES
+#include "shapes/shapes.h"
 /* A device builds without meshes where a scene has none: it takes half the time. Plain C has them
  * unless it is told otherwise. */
 #if defined(WITH_MESHES) || !(defined(__OPENCL_C_VERSION__) || defined(WITHOUT_MESHES))
@@ -55,25 +47,33 @@ FUNCTION struct vector3 from_centre(GLOBAL const struct object_record *object, s
     return relative;
 }
 
-/* Of the plainest shapes, which nothing cuts: in line, for most scenes hold no others. */
+#define SHAPE_ONE(NUMBER, name, traits) +1
+/* Of the plainest shapes, which nothing cuts. */
 FUNCTION int is_plain(GLOBAL const struct object_record *object)
 {
-    return object->shape <= SHAPE_CAPSULE && object->cuts == 0;
+    return object->shape < 0 PLAIN_SHAPES(SHAPE_ONE) && object->cuts == 0;
 }
+
+#define SHAPE_INTERVAL(NUMBER, name, traits)                                                       \
+    case SHAPE_##NUMBER:                                                                           \
+        return name##_interval(object, point, direction);
+#define SHAPE_SPANS(NUMBER, name, traits)                                                          \
+    case SHAPE_##NUMBER:                                                                           \
+        return name##_spans(object, point, direction);
+#define SHAPE_NORMAL(NUMBER, name, traits)                                                         \
+    case SHAPE_##NUMBER:                                                                           \
+        return name##_normal(object, point, direction);
+#define SHAPE_TRAITS(NUMBER, name, traits)                                                         \
+    case SHAPE_##NUMBER:                                                                           \
+        return ((traits)&trait) != 0;
 
 /* Plain shapes, in the object's own frame. */
 FUNCTION struct interval plain_interval(GLOBAL const struct object_record *object,
                                         struct vector3 point, struct vector3 direction)
 {
     switch (object->shape) {
-    case SHAPE_PLANE:
-        return plane_interval(point, direction, object->half_length, object->half_width);
-    case SHAPE_SPHERE:
-        return sphere_interval(point, direction, object->radius);
-    case SHAPE_CYLINDER:
-        return cylinder_interval(point, direction, object->half_length, object->radius);
     default:
-        return capsule_interval(point, direction, object->half_length, object->radius);
+        PLAIN_SHAPES(SHAPE_INTERVAL)
     }
 }
 
@@ -82,52 +82,33 @@ FUNCTION struct spans shape_spans(GLOBAL const struct object_record *object, str
                                   struct vector3 direction)
 {
     switch (object->shape) {
-    case SHAPE_DISC:
-        return spans_of_one(disc_interval(point, direction, object->radius));
-    case SHAPE_ELLIPSOID:
-        return spans_of_one(ellipsoid_interval(point, direction, object->half_length,
-                                               object->half_width, object->half_height));
-    case SHAPE_BOX:
-        return spans_of_one(box_interval(point, direction, object->half_length, object->half_width,
-                                         object->half_height));
-    case SHAPE_WEDGE:
-        return spans_of_one(wedge_interval(
-            point, direction, object->half_length, object->half_width, object->half_height,
-            object->slant_across, object->slant_up, object->slant_offset));
-    case SHAPE_CONE:
-        return spans_of_one(cone_interval(point, direction, object->half_height, object->radius,
-                                          object->slant_across, object->slant_up,
-                                          object->slant_offset));
-    case SHAPE_TORUS:
-        return torus_spans(point, direction, object->radius, object->ring_radius);
-    case SHAPE_ENDED_CYLINDER:
-        return spans_of_one(
-            ended_cylinder_interval(point, direction, object->ends, object->radius));
-    case SHAPE_OPEN_CYLINDER:
-        return open_cylinder_spans(point, direction, object->ends, object->radius);
+        OTHER_SHAPES(SHAPE_SPANS)
+        ENDED_CYLINDERS(SHAPE_SPANS)
     default:
         return spans_of_one(plain_interval(object, point, direction));
     }
 }
 
-/* Whether a cut of this shape, which is no mesh nor a user's, lays open an inside, which its face
- * then closes. */
-FUNCTION int is_solid(GLOBAL const struct object_record *object)
+/* Whether it is more of an enum shape_trait. */
+FUNCTION int has_trait(GLOBAL const struct object_record *object, int trait)
 {
-    return object->shape != SHAPE_PLANE && object->shape != SHAPE_DISC &&
-           object->shape != SHAPE_OPEN_CYLINDER;
+    switch (object->shape) {
+    default:
+        PLAIN_SHAPES(SHAPE_TRAITS)
+        OTHER_SHAPES(SHAPE_TRAITS)
+        SCENE_SHAPES(SHAPE_TRAITS)
+        ENDED_CYLINDERS(SHAPE_TRAITS)
+    }
 }
 
-/* Whether a straight way that leaves the outer side never meets the object again: flat or convex;
- * cuts leave it so. */
+/* Whether a straight way that leaves the outer side never meets the object again. */
 FUNCTION int is_convex(GLOBAL const struct object_record *object)
 {
 #ifdef WITH_USER_SHAPES
     if (object->shape == SHAPE_USER)
         return 0;
 #endif
-    return object->shape != SHAPE_TORUS && object->shape != SHAPE_OPEN_CYLINDER &&
-           object->shape != SHAPE_MESH;
+    return !has_trait(object, SHAPE_IS_HOLLOW);
 }
 
 /* Plain shapes, in the object's own frame, outward, unit. */
@@ -135,14 +116,8 @@ FUNCTION struct vector3 plain_normal(GLOBAL const struct object_record *object,
                                      struct vector3 point, struct vector3 direction)
 {
     switch (object->shape) {
-    case SHAPE_PLANE:
-        return plane_normal(direction);
-    case SHAPE_SPHERE:
-        return sphere_normal(point, object->radius);
-    case SHAPE_CYLINDER:
-        return cylinder_normal(point, object->half_length, object->radius);
     default:
-        return capsule_normal(point, object->half_length, object->radius);
+        PLAIN_SHAPES(SHAPE_NORMAL)
     }
 }
 
@@ -150,28 +125,9 @@ FUNCTION struct vector3 plain_normal(GLOBAL const struct object_record *object,
 FUNCTION struct vector3 shape_normal(GLOBAL const struct object_record *object,
                                      struct vector3 point, struct vector3 direction)
 {
-    vfloat highest;
     switch (object->shape) {
-    case SHAPE_DISC:
-        return plane_normal(direction);
-    case SHAPE_ELLIPSOID:
-        return ellipsoid_normal(point, object->half_length, object->half_width,
-                                object->half_height);
-    case SHAPE_BOX:
-        return box_normal(point, object->half_length, object->half_width, object->half_height,
-                          &highest);
-    case SHAPE_WEDGE:
-        return wedge_normal(point, object->half_length, object->half_width, object->half_height,
-                            object->slant_across, object->slant_up, object->slant_offset);
-    case SHAPE_CONE:
-        return cone_normal(point, object->half_height, object->slant_across, object->slant_up,
-                           object->slant_offset);
-    case SHAPE_TORUS:
-        return torus_normal(point, object->radius);
-    case SHAPE_ENDED_CYLINDER:
-        return ended_cylinder_normal(point, object->ends, object->radius);
-    case SHAPE_OPEN_CYLINDER:
-        return open_cylinder_normal(point, direction, object->ends, object->radius);
+        OTHER_SHAPES(SHAPE_NORMAL)
+        ENDED_CYLINDERS(SHAPE_NORMAL)
     default:
         return plain_normal(object, point, direction);
     }
@@ -247,7 +203,7 @@ NOINLINE struct vector3 normal_with_cuts(GLOBAL const struct object_record *obje
     const struct vector3 hit =
         into_object(object, from_centre(object, along3(point, direction, distance)));
     const struct vector3 normal = shape_normal(object, hit, step);
-    if (object->cuts == 0 || !is_solid(object))
+    if (object->cuts == 0 || has_trait(object, SHAPE_IS_SHEET))
         return normal;
     const vfloat approach = -dot3(relative, direction);
     const struct vector3 start = into_object(object, along3(relative, direction, approach));

@@ -15,23 +15,6 @@
 #define TALLY       int64_t
 #endif
 
-enum shape_kind {
-    SHAPE_PLANE = 0,
-    SHAPE_SPHERE = 1,
-    SHAPE_CYLINDER = 2,
-    SHAPE_CAPSULE = 3,
-    SHAPE_DISC = 4,
-    SHAPE_ELLIPSOID = 5,
-    SHAPE_BOX = 6,
-    SHAPE_WEDGE = 7,
-    SHAPE_CONE = 8,
-    SHAPE_TORUS = 9,
-    SHAPE_ENDED_CYLINDER = 10, /* solid: each end is flat or a part of a sphere */
-    SHAPE_OPEN_CYLINDER = 11,  /* thin wall: at least one end is open */
-    SHAPE_MESH = 12,
-    SHAPE_USER = 13 /* code of a user's, in programs built for it */
-};
-
 /* What a random number is for; part of its key. */
 enum random_stream {
     STREAM_ROUGH_RAYS = 1,
@@ -103,7 +86,7 @@ struct cut_record {
 
 /* One object in the frame of a launch. */
 struct object_record {
-    RECORD_INT shape;
+    RECORD_INT shape;                   /* enum shape_kind (shapes/shapes.h) */
     float centre_x, centre_y, centre_z; /* m, in the frame */
     float axes[9];         /* rows: the object's own x (nose), y and z axis in frame coordinates */
     float half_length;     /* m, along x: plane, cylinder, box, wedge, ellipsoid; capsule: of its

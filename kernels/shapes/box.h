@@ -3,24 +3,32 @@
 #define SONJECT_KERNELS_SHAPES_BOX_H
 
 #include "interval.h"
+#include "layout.h"
 
-FUNCTION struct interval box_interval(struct vector3 point, struct vector3 direction,
-                                      float half_length, float half_width, float half_height)
+FUNCTION struct interval box_interval(GLOBAL const struct object_record *object,
+                                      struct vector3 point, struct vector3 direction)
 {
-    return interval_overlap(interval_overlap(interval_of_slab(point.x, direction.x, half_length),
-                                             interval_of_slab(point.y, direction.y, half_width)),
-                            interval_of_slab(point.z, direction.z, half_height));
+    return interval_overlap(
+        interval_overlap(interval_of_slab(point.x, direction.x, object->half_length),
+                         interval_of_slab(point.y, direction.y, object->half_width)),
+        interval_of_slab(point.z, direction.z, object->half_height));
 }
 
-/* slant: unit normal (x and z) and offset of the wedge's top. */
-FUNCTION struct interval wedge_interval(struct vector3 point, struct vector3 direction,
-                                        float half_length, float half_width, float half_height,
-                                        float slant_x, float slant_z, float slant_offset)
+FUNCTION struct spans box_spans(GLOBAL const struct object_record *object, struct vector3 point,
+                                struct vector3 direction)
 {
-    const vfloat depth = slant_offset - (point.x * slant_x + point.z * slant_z);
-    const vfloat loss = direction.x * slant_x + direction.z * slant_z;
-    return interval_overlap(box_interval(point, direction, half_length, half_width, half_height),
-                            interval_of_half_space(depth, loss));
+    return spans_of_one(box_interval(object, point, direction));
+}
+
+/* The slant is the wedge's top: its unit normal (x and z) and offset. */
+FUNCTION struct spans wedge_spans(GLOBAL const struct object_record *object, struct vector3 point,
+                                  struct vector3 direction)
+{
+    const vfloat depth =
+        object->slant_offset - (point.x * object->slant_across + point.z * object->slant_up);
+    const vfloat loss = direction.x * object->slant_across + direction.z * object->slant_up;
+    return spans_of_one(interval_overlap(box_interval(object, point, direction),
+                                         interval_of_half_space(depth, loss)));
 }
 
 /* A face's normal where the point lies further out (or less deep) than all faces before. */
@@ -33,8 +41,8 @@ FUNCTION void offer_face(vfloat height, struct vector3 candidate, vfloat *highes
 }
 
 /* Of the face that is nearest. */
-FUNCTION struct vector3 box_normal(struct vector3 point, float half_length, float half_width,
-                                   float half_height, vfloat *highest)
+FUNCTION struct vector3 normal_of_side(GLOBAL const struct object_record *object,
+                                       struct vector3 point, vfloat *highest)
 {
     struct vector3 end, side, top, normal;
     end.x = SELECT(MASK_OF(point.x < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
@@ -43,24 +51,33 @@ FUNCTION struct vector3 box_normal(struct vector3 point, float half_length, floa
     side.x = side.z = SPLAT(0.0f);
     top.z = SELECT(MASK_OF(point.z < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
     top.x = top.y = SPLAT(0.0f);
-    *highest = magnitude(point.x) - half_length;
+    *highest = magnitude(point.x) - object->half_length;
     normal = end;
-    offer_face(magnitude(point.y) - half_width, side, highest, &normal);
-    offer_face(magnitude(point.z) - half_height, top, highest, &normal);
+    offer_face(magnitude(point.y) - object->half_width, side, highest, &normal);
+    offer_face(magnitude(point.z) - object->half_height, top, highest, &normal);
     return normal;
 }
 
-FUNCTION struct vector3 wedge_normal(struct vector3 point, float half_length, float half_width,
-                                     float half_height, float slant_x, float slant_z,
-                                     float slant_offset)
+FUNCTION struct vector3 box_normal(GLOBAL const struct object_record *object, struct vector3 point,
+                                   struct vector3 direction)
 {
     vfloat highest;
-    struct vector3 normal = box_normal(point, half_length, half_width, half_height, &highest);
+    (void)direction;
+    return normal_of_side(object, point, &highest);
+}
+
+FUNCTION struct vector3 wedge_normal(GLOBAL const struct object_record *object,
+                                     struct vector3 point, struct vector3 direction)
+{
+    vfloat highest;
+    (void)direction;
+    struct vector3 normal = normal_of_side(object, point, &highest);
     struct vector3 slant;
-    slant.x = SPLAT(slant_x);
+    slant.x = SPLAT(object->slant_across);
     slant.y = SPLAT(0.0f);
-    slant.z = SPLAT(slant_z);
-    offer_face(point.x * slant_x + point.z * slant_z - slant_offset, slant, &highest, &normal);
+    slant.z = SPLAT(object->slant_up);
+    offer_face(point.x * object->slant_across + point.z * object->slant_up - object->slant_offset,
+               slant, &highest, &normal);
     return normal;
 }
 

@@ -5,24 +5,26 @@
 #include "shapes/cylinder.h"
 #include "shapes/sphere.h"
 
-/* half_length: of the straight part. */
-FUNCTION struct interval capsule_interval(struct vector3 point, struct vector3 direction,
-                                          float half_length, float radius)
+/* Its half_length is that of the straight part. */
+FUNCTION struct interval capsule_interval(GLOBAL const struct object_record *object,
+                                          struct vector3 point, struct vector3 direction)
 {
     struct vector3 from_nose = point;
     struct vector3 from_tail = point;
-    from_nose.x = point.x - half_length;
-    from_tail.x = point.x + half_length;
-    const struct interval ends = interval_union(sphere_interval(from_nose, direction, radius),
-                                                sphere_interval(from_tail, direction, radius));
-    return interval_union(ends, cylinder_interval(point, direction, half_length, radius));
+    from_nose.x = point.x - object->half_length;
+    from_tail.x = point.x + object->half_length;
+    const struct interval ends = interval_union(sphere_interval(object, from_nose, direction),
+                                                sphere_interval(object, from_tail, direction));
+    return interval_union(ends, cylinder_interval(object, point, direction));
 }
 
-FUNCTION struct vector3 capsule_normal(struct vector3 point, float half_length, float radius)
+FUNCTION struct vector3 capsule_normal(GLOBAL const struct object_record *object,
+                                       struct vector3 point, struct vector3 direction)
 {
     struct vector3 from_axis = point;
-    from_axis.x = point.x - smaller(larger(point.x, SPLAT(-half_length)), SPLAT(half_length));
-    return sphere_normal(from_axis, radius);
+    from_axis.x =
+        point.x - smaller(larger(point.x, SPLAT(-object->half_length)), SPLAT(object->half_length));
+    return sphere_normal(object, from_axis, direction);
 }
 
 #endif

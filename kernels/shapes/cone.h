@@ -3,15 +3,17 @@
 #define SONJECT_KERNELS_SHAPES_CONE_H
 
 #include "interval.h"
+#include "layout.h"
 
-/* slant: unit normal (radial and z) and offset of the side, which is where
+/* The slant is the side: its unit normal (radial and z) and offset; it is where
  * slant_across * (distance from the axis) = slant_offset - slant_up * z. Both squared make a double
  * cone; its other half lies beyond the ends. */
-FUNCTION struct interval cone_interval(struct vector3 point, struct vector3 direction,
-                                       float half_height, float radius, float slant_across,
-                                       float slant_up, float slant_offset)
+FUNCTION struct spans cone_spans(GLOBAL const struct object_record *object, struct vector3 point,
+                                 struct vector3 direction)
 {
-    const struct interval slab = interval_of_slab(point.z, direction.z, half_height);
+    const float slant_across = object->slant_across;
+    const float slant_up = object->slant_up;
+    const struct interval slab = interval_of_slab(point.z, direction.z, object->half_height);
     const float square_across = slant_across * slant_across;
     const vfloat widening = -slant_up * direction.z;
     const vfloat steepness =
@@ -19,14 +21,14 @@ FUNCTION struct interval cone_interval(struct vector3 point, struct vector3 dire
         widening * widening;
     const vfloat a = SELECT(MASK_OF(magnitude(steepness) < 1.0e-14f), SPLAT(1.0e-14f), steepness);
     const vfloat from_here = square_across * (point.x * direction.x + point.y * direction.y) -
-                             widening * (slant_offset - slant_up * point.z);
+                             widening * (object->slant_offset - slant_up * point.z);
     /* counted from where the ray is deepest within the slab, where nothing cancels */
-    const vfloat limit = SPLAT(2.0f * (radius + half_height));
+    const vfloat limit = SPLAT(2.0f * (object->radius + object->half_height));
     const vfloat deepest = smaller(larger(-from_here / a, slab.entry), slab.exit);
     const vfloat start = smaller(larger(deepest, -limit), limit);
     const struct vector3 p = along3(point, direction, start);
     const vfloat outer = slant_across * SQUARE_ROOT(p.x * p.x + p.y * p.y);
-    const vfloat side = slant_offset - slant_up * p.z;
+    const vfloat side = object->slant_offset - slant_up * p.z;
     const vfloat b = square_across * (p.x * direction.x + p.y * direction.y) - widening * side;
     const vfloat c = (outer - side) * (outer + side);
     const vfloat square = b * b - a * c;
@@ -42,19 +44,23 @@ FUNCTION struct interval cone_interval(struct vector3 point, struct vector3 dire
     const mask widens = MASK_OF(widening > 0.0f);
     const vfloat entry = SELECT(is_steep, SELECT(widens, upper, SPLAT(-FAR_AWAY)), lower);
     const vfloat exit = SELECT(is_steep, SELECT(widens, SPLAT(FAR_AWAY), lower), upper);
-    return interval_overlap(interval_where(is_steep | MASK_OF(square > 0.0f), entry, exit), slab);
+    return spans_of_one(
+        interval_overlap(interval_where(is_steep | MASK_OF(square > 0.0f), entry, exit), slab));
 }
 
 /* Of the end where the point is nearer to an end than to the side. */
-FUNCTION struct vector3 cone_normal(struct vector3 point, float half_height, float slant_across,
-                                    float slant_up, float slant_offset)
+FUNCTION struct vector3 cone_normal(GLOBAL const struct object_record *object, struct vector3 point,
+                                    struct vector3 direction)
 {
+    const float slant_across = object->slant_across;
+    const float slant_up = object->slant_up;
     const vfloat from_axis = SQUARE_ROOT(point.x * point.x + point.y * point.y);
-    const vfloat over_side = slant_across * from_axis + slant_up * point.z - slant_offset;
-    const mask on_end = MASK_OF(magnitude(point.z) - half_height > over_side);
+    const vfloat over_side = slant_across * from_axis + slant_up * point.z - object->slant_offset;
+    const mask on_end = MASK_OF(magnitude(point.z) - object->half_height > over_side);
     const mask is_on_axis = MASK_OF(from_axis <= 0.0f);
     const vfloat safe = SELECT(is_on_axis, SPLAT(1.0f), from_axis);
     struct vector3 end, side;
+    (void)direction;
     end.x = end.y = SPLAT(0.0f);
     end.z = SELECT(MASK_OF(point.z < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
     side.x = slant_across * SELECT(is_on_axis, SPLAT(1.0f), point.x / safe);

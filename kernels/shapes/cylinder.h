@@ -3,6 +3,7 @@
 #define SONJECT_KERNELS_SHAPES_CYLINDER_H
 
 #include "interval.h"
+#include "layout.h"
 
 /* Inside the infinite cylinder about the x axis. The discriminant is formed at the closest approach
  * to the axis, where nothing cancels. */
@@ -21,18 +22,21 @@ FUNCTION struct interval tube_interval(struct vector3 point, struct vector3 dire
     return interval_where(MASK_OF(square > 0.0f), middle - reach, middle + reach);
 }
 
-FUNCTION struct interval cylinder_interval(struct vector3 point, struct vector3 direction,
-                                           float half_length, float radius)
+FUNCTION struct interval cylinder_interval(GLOBAL const struct object_record *object,
+                                           struct vector3 point, struct vector3 direction)
 {
-    return interval_overlap(tube_interval(point, direction, radius),
-                            interval_of_slab(point.x, direction.x, half_length));
+    return interval_overlap(tube_interval(point, direction, object->radius),
+                            interval_of_slab(point.x, direction.x, object->half_length));
 }
 
 /* Of the end where the point is nearer to an end than to the side. */
-FUNCTION struct vector3 cylinder_normal(struct vector3 point, float half_length, float radius)
+FUNCTION struct vector3 cylinder_normal(GLOBAL const struct object_record *object,
+                                        struct vector3 point, struct vector3 direction)
 {
+    (void)direction;
     const vfloat from_axis = SQUARE_ROOT(point.y * point.y + point.z * point.z);
-    const mask on_end = MASK_OF(half_length - magnitude(point.x) < radius - from_axis);
+    const mask on_end =
+        MASK_OF(object->half_length - magnitude(point.x) < object->radius - from_axis);
     const vfloat safe = SELECT(MASK_OF(from_axis > 0.0f), from_axis, SPLAT(1.0f));
     struct vector3 end, side;
     end.x = SELECT(MASK_OF(point.x < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));

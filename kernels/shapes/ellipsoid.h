@@ -3,42 +3,44 @@
 #define SONJECT_KERNELS_SHAPES_ELLIPSOID_H
 
 #include "interval.h"
+#include "layout.h"
 
-FUNCTION struct vector3 in_semi_axes(struct vector3 v, float half_length, float half_width,
-                                     float half_height)
+FUNCTION struct vector3 in_semi_axes(GLOBAL const struct object_record *object, struct vector3 v)
 {
     struct vector3 scaled;
-    scaled.x = v.x / half_length;
-    scaled.y = v.y / half_width;
-    scaled.z = v.z / half_height;
+    scaled.x = v.x / object->half_length;
+    scaled.y = v.y / object->half_width;
+    scaled.z = v.z / object->half_height;
     return scaled;
 }
 
 /* Counted in semi-axes it is the unit sphere; distances along the ray stay what they are. */
-FUNCTION struct interval ellipsoid_interval(struct vector3 point, struct vector3 direction,
-                                            float half_length, float half_width, float half_height)
+FUNCTION struct spans ellipsoid_spans(GLOBAL const struct object_record *object,
+                                      struct vector3 point, struct vector3 direction)
 {
-    const struct vector3 start = in_semi_axes(point, half_length, half_width, half_height);
-    const struct vector3 step = in_semi_axes(direction, half_length, half_width, half_height);
+    const struct vector3 start = in_semi_axes(object, point);
+    const struct vector3 step = in_semi_axes(object, direction);
     const vfloat square_of_step = dot3(step, step);
     const vfloat middle = -dot3(start, step) / square_of_step;
     const struct vector3 closest = along3(start, step, middle);
     const vfloat square = 1.0f - dot3(closest, closest);
     const vfloat reach = SQUARE_ROOT(larger(square, SPLAT(0.0f)) / square_of_step);
-    return interval_where(MASK_OF(square > 0.0f), middle - reach, middle + reach);
+    return spans_of_one(interval_where(MASK_OF(square > 0.0f), middle - reach, middle + reach));
 }
 
-FUNCTION struct vector3 ellipsoid_normal(struct vector3 point, float half_length, float half_width,
-                                         float half_height)
+FUNCTION struct vector3 ellipsoid_normal(GLOBAL const struct object_record *object,
+                                         struct vector3 point, struct vector3 direction)
 {
+    (void)direction;
     /* times the shortest semi-axis, so that no square leaves single precision */
-    float shortest = half_length < half_width ? half_length : half_width;
-    shortest = half_height < shortest ? half_height : shortest;
-    const struct vector3 scaled = in_semi_axes(point, half_length, half_width, half_height);
+    float shortest =
+        object->half_length < object->half_width ? object->half_length : object->half_width;
+    shortest = object->half_height < shortest ? object->half_height : shortest;
+    const struct vector3 scaled = in_semi_axes(object, point);
     struct vector3 normal;
-    normal.x = scaled.x * (shortest / half_length);
-    normal.y = scaled.y * (shortest / half_width);
-    normal.z = scaled.z * (shortest / half_height);
+    normal.x = scaled.x * (shortest / object->half_length);
+    normal.y = scaled.y * (shortest / object->half_width);
+    normal.z = scaled.z * (shortest / object->half_height);
     const vfloat length = SQUARE_ROOT(dot3(normal, normal));
     const vfloat safe = SELECT(MASK_OF(length > 0.0f), length, SPLAT(1.0f));
     normal.x = normal.x / safe;

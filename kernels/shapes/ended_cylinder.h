@@ -39,10 +39,11 @@ FUNCTION struct interval straight_part_slab(struct vector3 point, struct vector3
 }
 
 /* As if it were solid; open ends are flat. */
-FUNCTION struct interval ended_cylinder_interval(struct vector3 point, struct vector3 direction,
-                                                 GLOBAL const struct end_record *ends, float radius)
+FUNCTION struct interval ended_cylinder_interval(GLOBAL const struct object_record *object,
+                                                 struct vector3 point, struct vector3 direction)
 {
-    struct interval inside = interval_overlap(tube_interval(point, direction, radius),
+    GLOBAL const struct end_record *ends = object->ends;
+    struct interval inside = interval_overlap(tube_interval(point, direction, object->radius),
                                               straight_part_slab(point, direction, ends));
     for (int end = END_NOSE; end <= END_TAIL; end++)
         if (ends[end].depth > 0.0f)
@@ -51,13 +52,20 @@ FUNCTION struct interval ended_cylinder_interval(struct vector3 point, struct ve
     return inside;
 }
 
+FUNCTION struct spans ended_cylinder_spans(GLOBAL const struct object_record *object,
+                                           struct vector3 point, struct vector3 direction)
+{
+    return spans_of_one(ended_cylinder_interval(object, point, direction));
+}
+
 /* Where the ray crosses the wall, on the way in and on the way out; each crossing is an interval of
  * no length. Crossings of an open end do not count. */
-FUNCTION struct spans open_cylinder_spans(struct vector3 point, struct vector3 direction,
-                                          GLOBAL const struct end_record *ends, float radius)
+FUNCTION struct spans open_cylinder_spans(GLOBAL const struct object_record *object,
+                                          struct vector3 point, struct vector3 direction)
 {
+    GLOBAL const struct end_record *ends = object->ends;
     const struct interval slab = straight_part_slab(point, direction, ends);
-    const struct interval inside = ended_cylinder_interval(point, direction, ends, radius);
+    const struct interval inside = ended_cylinder_interval(object, point, direction);
     const mask never = MASK_OF(direction.x > FAR_AWAY);
     const mask nose_is_open = ends[END_NOSE].is_open ? ~never : never;
     const mask tail_is_open = ends[END_TAIL].is_open ? ~never : never;
@@ -74,17 +82,18 @@ FUNCTION struct spans open_cylinder_spans(struct vector3 point, struct vector3 d
 }
 
 /* Outward. Of a flat end where the point is nearer to that than to the side. */
-FUNCTION struct vector3 ended_cylinder_normal(struct vector3 point,
-                                              GLOBAL const struct end_record *ends, float radius)
+FUNCTION struct vector3 ended_cylinder_normal(GLOBAL const struct object_record *object,
+                                              struct vector3 point, struct vector3 direction)
 {
     const vfloat from_axis = SQUARE_ROOT(point.y * point.y + point.z * point.z);
     const vfloat safe = SELECT(MASK_OF(from_axis > 0.0f), from_axis, SPLAT(1.0f));
     struct vector3 normal;
+    (void)direction;
     normal.x = SPLAT(0.0f);
     normal.y = point.y / safe;
     normal.z = point.z / safe;
     for (int number = END_NOSE; number <= END_TAIL; number++) {
-        GLOBAL const struct end_record *end = &ends[number];
+        GLOBAL const struct end_record *end = &object->ends[number];
         const float outward = number == END_NOSE ? 1.0f : -1.0f;
         const vfloat to_joint = end->joint - outward * point.x;
         struct vector3 on_end;
@@ -92,8 +101,8 @@ FUNCTION struct vector3 ended_cylinder_normal(struct vector3 point,
         on_end.x = outward * on_end.x;
         on_end.y = end->curvature * point.y;
         on_end.z = end->curvature * point.z;
-        const mask is_there =
-            end->depth > 0.0f ? MASK_OF(to_joint < 0.0f) : MASK_OF(to_joint < radius - from_axis);
+        const mask is_there = end->depth > 0.0f ? MASK_OF(to_joint < 0.0f)
+                                                : MASK_OF(to_joint < object->radius - from_axis);
         if (!end->is_open)
             normal = choose3(is_there, on_end, normal);
     }
@@ -101,10 +110,10 @@ FUNCTION struct vector3 ended_cylinder_normal(struct vector3 point,
 }
 
 /* On the side that the ray comes from. */
-FUNCTION struct vector3 open_cylinder_normal(struct vector3 point, struct vector3 direction,
-                                             GLOBAL const struct end_record *ends, float radius)
+FUNCTION struct vector3 open_cylinder_normal(GLOBAL const struct object_record *object,
+                                             struct vector3 point, struct vector3 direction)
 {
-    const struct vector3 outward = ended_cylinder_normal(point, ends, radius);
+    const struct vector3 outward = ended_cylinder_normal(object, point, direction);
     return choose3(MASK_OF(dot3(outward, direction) > 0.0f), reversed3(outward), outward);
 }
 

@@ -3,24 +3,27 @@
 #define SONJECT_KERNELS_SHAPES_SPHERE_H
 
 #include "interval.h"
+#include "layout.h"
 
 /* point: of the ray, near the centre; direction: unit. */
-FUNCTION struct interval sphere_interval(struct vector3 point, struct vector3 direction,
-                                         float radius)
+FUNCTION struct interval sphere_interval(GLOBAL const struct object_record *object,
+                                         struct vector3 point, struct vector3 direction)
 {
     const vfloat middle = -dot3(point, direction);
     const struct vector3 closest = along3(point, direction, middle);
-    const vfloat square = radius * radius - dot3(closest, closest);
+    const vfloat square = object->radius * object->radius - dot3(closest, closest);
     const vfloat reach = SQUARE_ROOT(larger(square, SPLAT(0.0f)));
     return interval_where(MASK_OF(square > 0.0f), middle - reach, middle + reach);
 }
 
-FUNCTION struct vector3 sphere_normal(struct vector3 point, float radius)
+FUNCTION struct vector3 sphere_normal(GLOBAL const struct object_record *object,
+                                      struct vector3 point, struct vector3 direction)
 {
     struct vector3 normal;
-    normal.x = point.x / radius;
-    normal.y = point.y / radius;
-    normal.z = point.z / radius;
+    (void)direction;
+    normal.x = point.x / object->radius;
+    normal.y = point.y / object->radius;
+    normal.z = point.z / object->radius;
     return normal;
 }
 

@@ -10,6 +10,7 @@
 
 #include "elementary.h"
 #include "interval.h"
+#include "layout.h"
 
 struct torus_ray {
     struct vector3 point, direction;
@@ -123,14 +124,14 @@ FUNCTION struct torus_order torus_order_along(struct torus_ray *ray)
     return order;
 }
 
-FUNCTION struct spans torus_spans(struct vector3 point, struct vector3 direction, float radius,
-                                  float ring_radius)
+FUNCTION struct spans torus_spans(GLOBAL const struct object_record *object, struct vector3 point,
+                                  struct vector3 direction)
 {
     struct torus_ray ray;
     ray.point = point;
     ray.direction = direction;
-    ray.radius = radius;
-    ray.ring_radius = ring_radius;
+    ray.radius = object->radius;
+    ray.ring_radius = object->ring_radius;
     const struct torus_order order = torus_order_along(&ray);
     vfloat at_one, at_crest, at_other, slope;
     torus_depth(&ray, order.one, &at_one, &slope);
@@ -139,7 +140,7 @@ FUNCTION struct spans torus_spans(struct vector3 point, struct vector3 direction
     const mask in_one = order.is_near & MASK_OF(at_one < 0.0f);
     const mask in_other = order.is_near & MASK_OF(at_other < 0.0f);
     const mask is_parted = MASK_OF(at_crest > 0.0f);
-    const vfloat tolerance = SPLAT(2.0e-7f * (radius + ring_radius));
+    const vfloat tolerance = SPLAT(2.0e-7f * (object->radius + object->ring_radius));
     const vfloat falling = SPLAT(1.0f);
     const vfloat rising = SPLAT(-1.0f);
     struct spans spans = spans_of_one(interval_where(in_one, order.one, order.one));
@@ -156,10 +157,12 @@ FUNCTION struct spans torus_spans(struct vector3 point, struct vector3 direction
     return spans;
 }
 
-FUNCTION struct vector3 torus_normal(struct vector3 point, float radius)
+FUNCTION struct vector3 torus_normal(GLOBAL const struct object_record *object,
+                                     struct vector3 point, struct vector3 direction)
 {
+    (void)direction;
     const vfloat rho = distance_from_axis(point);
-    const vfloat outward = (rho - radius) / rho;
+    const vfloat outward = (rho - object->radius) / rho;
     struct vector3 normal;
     normal.x = point.x * outward;
     normal.y = point.y * outward;

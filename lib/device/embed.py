@@ -1,6 +1,8 @@
 """Flattens OpenCL sources: each local include is put in once, with #line marks for build logs.
 
-usage: embed.py OUTPUT.c KERNEL_FOLDER ENTRY.cl...
+usage: embed.py OUTPUT.c OUTPUT.d KERNEL_FOLDER ENTRY.cl...
+
+OUTPUT.d names all files that went in, as a rule of make.
 """
 import pathlib
 import re
@@ -22,12 +24,15 @@ def flatten(folder, name, seen, lines):
 
 
 def main():
-    output, folder, entries = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3:]
+    output, rule, folder, entries = *sys.argv[1:3], pathlib.Path(sys.argv[3]), sys.argv[4:]
+    used = set()
     parts = ['#include "device/device.h"', ""]
     table = []
     for index, entry in enumerate(entries):
         lines = []
-        flatten(folder, entry, set(), lines)
+        seen = set()
+        flatten(folder, entry, seen, lines)
+        used |= seen
         source = ("\n".join(lines) + "\n").encode("utf-8")
         # C99 promises string literals of 4095 characters only; arrays have no limit
         parts.append(f"static const char source_{index}[] = {{")
@@ -37,6 +42,8 @@ def main():
         table.append(f'    {{"{entry}", source_{index}, sizeof source_{index} - 1}},')
     parts += ["const struct embedded_source embedded_sources[] = {", *table, "};", ""]
     pathlib.Path(output).write_text("\n".join(parts), encoding="utf-8")
+    names = " ".join(str(folder / name).replace(" ", "\\ ") for name in sorted(used))
+    pathlib.Path(rule).write_text(f"{output}: {names}\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

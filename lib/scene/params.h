@@ -12,6 +12,8 @@
 #include <sonject/scene.h>
 #include <sonject/user_shape.h>
 
+#include "kernels/shapes/shapes.h"
+
 /* Sonar images: what a pixel's number means and where on the seabed it lies. */
 
 /* The side of the track that the image shows. */
@@ -296,25 +298,9 @@ sonject_material_params surface_material(const sonject_surface_params *surface);
 /* Lengths are overall. Length runs along the object's nose direction (own x), width across it (own
  * y, to the left of the nose as seen from above), height upwards when the pose is level (own z). An
  * object is the same thing to port and to starboard. */
+#define SCENE_SHAPE(NUMBER, name, traits) SONJECT_SHAPE_##NUMBER = SHAPE_##NUMBER,
 typedef enum sonject_shape {
-    SONJECT_SHAPE_PLANE = 0,  /* rectangle length x width, facing up when pose is level; both sides
-                                 reflect */
-    SONJECT_SHAPE_SPHERE = 1, /* diameter */
-    SONJECT_SHAPE_CYLINDER = 2,  /* length x diameter, axis along the nose; ends as nose_end and
-                                    tail_end say */
-    SONJECT_SHAPE_CAPSULE = 3,   /* length x diameter, length includes the spherical ends */
-    SONJECT_SHAPE_DISC = 4,      /* diameter, facing up when pose is level; both sides reflect */
-    SONJECT_SHAPE_ELLIPSOID = 5, /* length x width x height */
-    SONJECT_SHAPE_BOX = 6,       /* length x width x height */
-    SONJECT_SHAPE_WEDGE = 7,     /* length x width x height; the top slants from height at the tail
-                                    to front_height at the nose */
-    SONJECT_SHAPE_CONE = 8,      /* diameter x height, tip up when pose is level */
-    SONJECT_SHAPE_TRUNCATED_CONE = 9, /* diameter (below) and top_diameter x height */
-    SONJECT_SHAPE_TORUS = 10, /* diameter x height, lying flat when pose is level; its height is
-                                 the thickness of the ring */
-    SONJECT_SHAPE_PARTS = 11, /* the union of parts, see struct scene_part; no sizes */
-    SONJECT_SHAPE_MESH = 12,  /* triangles, see struct mesh; no sizes */
-    SONJECT_SHAPE_USER = 13   /* code, see struct user_shape; no sizes */
+    ALL_SHAPES(SCENE_SHAPE) SONJECT_SHAPE_PARTS = SHAPE_PARTS /* the union of parts; no sizes */
 } sonject_shape;
 
 /* An end of a cylinder. With an open end the cylinder is a tube: its wall is thin and reflects on
@@ -359,9 +345,9 @@ typedef struct sonject_object_params {
     char name[SONJECT_NAME_CAPACITY];       /* "" becomes "object N"; both are terminated UTF-8
                                                without controls of terminals or text direction */
     char class_name[SONJECT_NAME_CAPACITY]; /* label class; "" becomes the shape's name */
-    double length_m;        /* plane, cylinder, capsule (>= diameter), ellipsoid, box, wedge */
-    double width_m;         /* plane, ellipsoid, box, wedge */
-    double diameter_m;      /* sphere, cylinder, capsule, disc, cones, torus (> 2 height) */
+    double length_m;                        /* this and other sizes: of the shapes that have them */
+    double width_m;
+    double diameter_m;
     uint32_t position_kind; /* sonject_position_kind */
     uint32_t burial_kind;   /* sonject_burial_kind */
     double position_along;  /* see sonject_position_kind */
@@ -372,7 +358,7 @@ typedef struct sonject_object_params {
                            the left side to port, the right side to starboard */
     double burial_m;    /* depth of the lowest point below the seabed; negative: above it */
     sonject_material_params material;
-    double height_m;         /* ellipsoid, box, wedge, cones, torus */
+    double height_m;
     double top_diameter_m;   /* truncated cone; 0: a cone; may be the larger one */
     double front_height_m;   /* wedge: at the nose, 0...height */
     uint32_t nose_end;       /* sonject_end, cylinder */

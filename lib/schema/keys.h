@@ -14,7 +14,7 @@
 #include "schema/tables.h"
 #include "schema/yaml_tree.h"
 
-#define FIELD_WORDS_MAX 15
+#define FIELD_WORDS_MAX 20
 
 enum field_kind {
     FIELD_QUANTITY, /* double; or a section, if the row has one */

@@ -51,33 +51,17 @@ static const struct section cut_section = {ROWS(cut_fields)};
 
 #define SIZE(its) QUANTITY(its, LENGTH), POSITIVE, NONE_IF_ZERO
 
+#define SHAPE_WORD(NUMBER, name, traits) [SHAPE_##NUMBER] = #name,
 #define SHAPE_FIELDS                                                                               \
     {"shape", "of the object or part; objects are at least half a wavelength large",               \
-     WORD(shape) = {[SONJECT_SHAPE_PLANE] = "plane",                                               \
-                    [SONJECT_SHAPE_SPHERE] = "sphere",                                             \
-                    [SONJECT_SHAPE_CYLINDER] = "cylinder",                                         \
-                    [SONJECT_SHAPE_CAPSULE] = "capsule",                                           \
-                    [SONJECT_SHAPE_DISC] = "disc",                                                 \
-                    [SONJECT_SHAPE_ELLIPSOID] = "ellipsoid",                                       \
-                    [SONJECT_SHAPE_BOX] = "box",                                                   \
-                    [SONJECT_SHAPE_WEDGE] = "wedge",                                               \
-                    [SONJECT_SHAPE_CONE] = "cone",                                                 \
-                    [SONJECT_SHAPE_TRUNCATED_CONE] = "truncated_cone",                             \
-                    [SONJECT_SHAPE_TORUS] = "torus",                                               \
-                    [SONJECT_SHAPE_PARTS] = "",                                                    \
-                    [SONJECT_SHAPE_MESH] = "mesh",                                                 \
-                    [SONJECT_SHAPE_USER] = "user"},                                                \
+     WORD(shape) = {ALL_SHAPES(SHAPE_WORD)[SONJECT_SHAPE_PARTS] = ""},                             \
      .preset = SONJECT_SHAPE_SPHERE},                                                              \
         {"user", "code that is the shape, where that is user", .kind = FIELD_SPECIAL,              \
          .section = &user_section, .read = read_user_shape},                                       \
-        {"length",                                                                                 \
-         "overall along the nose, of plane, cylinder, capsule, ellipsoid, box and wedge",          \
-         SIZE(length_m)},                                                                          \
-        {"width", "overall across the nose, of plane, ellipsoid, box and wedge", SIZE(width_m)},   \
-        {"diameter", "overall, of sphere, cylinder, capsule, disc, cones (below) and torus",       \
-         SIZE(diameter_m)},                                                                        \
-        {"height", "overall when level, of ellipsoid, box, wedge (at the tail), cones and torus",  \
-         SIZE(height_m)},                                                                          \
+        {"length", "overall along the nose", SIZE(length_m)},                                      \
+        {"width", "overall across the nose", SIZE(width_m)},                                       \
+        {"diameter", "overall; of cones below", SIZE(diameter_m)},                                 \
+        {"height", "overall when level; of a wedge at the tail", SIZE(height_m)},                  \
         {"top_diameter", "of a truncated cone; 0: a cone", QUANTITY(top_diameter_m, LENGTH),       \
          FROM_ZERO},                                                                               \
         {"front_height", "of a wedge at its nose, at most its height",                             \
@@ -143,33 +127,19 @@ static void refuse_shape_keys(struct reader *reader, const struct tree_node *nod
 /* That the section has the sizes of its shape, and no others; of parts none. */
 static void check_shape_keys(struct reader *reader, const struct tree_node *node, uint32_t shape)
 {
-    static const struct {
-        const char *key;
-        uint32_t bit;
-    } sizes[] = {
-        {"length", SHAPE_HAS_LENGTH},
-        {"width", SHAPE_HAS_WIDTH},
-        {"diameter", SHAPE_HAS_DIAMETER},
-        {"height", SHAPE_HAS_HEIGHT},
-        {"user", SHAPE_HAS_CODE},
-        {"top_diameter", SHAPE_HAS_TOP_DIAMETER},
-        {"front_height", SHAPE_HAS_FRONT_HEIGHT},
-        {"nose_end", SHAPE_HAS_ENDS},
-        {"tail_end", SHAPE_HAS_ENDS},
-        {"mesh", SHAPE_HAS_MESH},
-    };
     const struct shape *row = shape_of(shape);
+    const char *name = shape_name(shape);
     if (shape == SONJECT_SHAPE_PARTS) {
         refuse_shape_keys(reader, node, "the parts have shapes of their own");
         return;
     }
-    for (size_t i = 0; i < COUNT(sizes); i++) {
-        if ((row->needs & sizes[i].bit) && !is_given(node, sizes[i].key))
-            refuse_relation(reader, node, sizes[i].key, "shape", "missing; %s %s needs it",
-                            article_of(row->name), row->name);
-        if (!((row->needs | row->may_have) & sizes[i].bit) && is_given(node, sizes[i].key))
-            refuse_relation(reader, node, sizes[i].key, "shape", "%s %s has none; remove it",
-                            article_of(row->name), row->name);
+    for (const struct shape_key_name *its = shape_keys; its->key; its++) {
+        if ((row->needs & its->bit) && !is_given(node, its->key))
+            refuse_relation(reader, node, its->key, "shape", "missing; %s %s needs it",
+                            article_of(name), name);
+        if (!((row->needs | row->may_have) & its->bit) && is_given(node, its->key))
+            refuse_relation(reader, node, its->key, "shape", "%s %s has none; remove it",
+                            article_of(name), name);
     }
 }
 

@@ -5,6 +5,7 @@
 #include <jansson.h>
 
 #include "claims.h"
+#include "scene/shapes/shape.h"
 #include "schema/scene_file.h"
 
 #define REFERENCE SOURCE_ROOT "/tools/scenes/KEYS.md"
@@ -87,6 +88,27 @@ static void print_heading(FILE *out, const char *path, const char *before)
             (int)length, path);
 }
 
+static void print_shape_keys(FILE *out)
+{
+    const char *joint = "";
+    fputs("\nA shape's keys, in brackets those that it may have:", out);
+    for (uint32_t shape = 0; shape < SONJECT_SHAPE_PARTS; shape++) {
+        fprintf(out, "%s `%s`", joint, shape_name(shape));
+        joint = ":";
+        for (const struct shape_key_name *its = shape_keys; its->key; its++) {
+            if (shape_of(shape)->needs & its->bit)
+                fprintf(out, "%s %s", joint, its->key);
+            else if (shape_of(shape)->may_have & its->bit)
+                fprintf(out, "%s (%s)", joint, its->key);
+            else
+                continue;
+            joint = ",";
+        }
+        joint = ";";
+    }
+    fputs(".\n", out);
+}
+
 static void print_reference(FILE *out, const json_t *keys)
 {
     const char *before = "";
@@ -111,6 +133,7 @@ static void print_reference(FILE *out, const json_t *keys)
         joint = ",";
     }
     fputs(".\n", out);
+    print_shape_keys(out);
 }
 
 /* The whole reference, for free(). */

@@ -16,8 +16,6 @@ void shape_init_box(struct shape_size *size, const sonject_object_params *object
         hypot(hypot(size->half_length_m, size->half_width_m), size->half_height_m);
 }
 
-const struct shape shape_box = {.name = "box",
-                                .needs = SHAPE_HAS_LENGTH | SHAPE_HAS_WIDTH | SHAPE_HAS_HEIGHT,
-                                .kind = SHAPE_BOX,
+const struct shape shape_box = {.needs = SHAPE_HAS_LENGTH | SHAPE_HAS_WIDTH | SHAPE_HAS_HEIGHT,
                                 .init = shape_init_box,
                                 .extent = extent};

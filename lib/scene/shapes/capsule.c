@@ -27,9 +27,5 @@ static double extent(const struct shape_size *size, const double v[3])
            size->radius_m * sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-const struct shape shape_capsule = {.name = "capsule",
-                                    .needs = SHAPE_HAS_LENGTH | SHAPE_HAS_DIAMETER,
-                                    .kind = SHAPE_CAPSULE,
-                                    .check = check,
-                                    .init = init,
-                                    .extent = extent};
+const struct shape shape_capsule = {
+    .needs = SHAPE_HAS_LENGTH | SHAPE_HAS_DIAMETER, .check = check, .init = init, .extent = extent};

@@ -13,6 +13,7 @@ static double extent(const struct shape_size *size, const double v[3])
 static void record(struct object_record *record, const struct shape_size *size)
 {
     const double z = size->half_height_m;
+    record->shape = SHAPE_CONE;
     record_set_slant(record, size->radius_m, -z, size->top_radius_m, z);
     record->radius = (float)fmax(size->radius_m, size->top_radius_m);
 }
@@ -26,16 +27,12 @@ static void init(struct shape_size *size, const sonject_object_params *object)
     size->least_curvature_m = fmax(size->top_radius_m, 0.5 * size->radius_m);
 }
 
-const struct shape shape_cone = {.name = "cone",
-                                 .needs = SHAPE_HAS_DIAMETER | SHAPE_HAS_HEIGHT,
-                                 .kind = SHAPE_CONE,
+const struct shape shape_cone = {.needs = SHAPE_HAS_DIAMETER | SHAPE_HAS_HEIGHT,
                                  .init = init,
                                  .extent = extent,
                                  .record = record};
-const struct shape shape_truncated_cone = {.name = "truncated_cone",
-                                           .needs = SHAPE_HAS_DIAMETER | SHAPE_HAS_HEIGHT |
+const struct shape shape_truncated_cone = {.needs = SHAPE_HAS_DIAMETER | SHAPE_HAS_HEIGHT |
                                                     SHAPE_HAS_TOP_DIAMETER,
-                                           .kind = SHAPE_CONE,
                                            .init = init,
                                            .extent = extent,
                                            .record = record};

@@ -90,10 +90,8 @@ static void record(struct object_record *record, const struct shape_size *size)
     end_record_init(&record->ends[END_TAIL], &size->tail, size->radius_m);
 }
 
-const struct shape shape_cylinder = {.name = "cylinder",
-                                     .needs = SHAPE_HAS_LENGTH | SHAPE_HAS_DIAMETER,
+const struct shape shape_cylinder = {.needs = SHAPE_HAS_LENGTH | SHAPE_HAS_DIAMETER,
                                      .may_have = SHAPE_HAS_ENDS,
-                                     .kind = SHAPE_CYLINDER,
                                      .check = check,
                                      .init = init,
                                      .extent = extent,

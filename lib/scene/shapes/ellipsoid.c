@@ -20,9 +20,5 @@ static void init(struct shape_size *size, const sonject_object_params *object)
     size->least_curvature_m = least * least / most;
 }
 
-const struct shape shape_ellipsoid = {.name = "ellipsoid",
-                                      .needs =
-                                          SHAPE_HAS_LENGTH | SHAPE_HAS_WIDTH | SHAPE_HAS_HEIGHT,
-                                      .kind = SHAPE_ELLIPSOID,
-                                      .init = init,
-                                      .extent = extent};
+const struct shape shape_ellipsoid = {
+    .needs = SHAPE_HAS_LENGTH | SHAPE_HAS_WIDTH | SHAPE_HAS_HEIGHT, .init = init, .extent = extent};

@@ -16,8 +16,5 @@ static void init(struct shape_size *size, const sonject_object_params *object)
     size->radius_about_nose_m = size->half_width_m;
 }
 
-const struct shape shape_plane = {.name = "plane",
-                                  .needs = SHAPE_HAS_LENGTH | SHAPE_HAS_WIDTH,
-                                  .kind = SHAPE_PLANE,
-                                  .init = init,
-                                  .extent = extent};
+const struct shape shape_plane = {
+    .needs = SHAPE_HAS_LENGTH | SHAPE_HAS_WIDTH, .init = init, .extent = extent};

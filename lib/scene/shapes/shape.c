@@ -11,33 +11,38 @@
 
 typedef char cuts_are_as_many[OBJECT_CUTS == SONJECT_CUTS_CAPACITY ? 1 : -1];
 
-static const struct shape shape_parts = {.name = "parts"};
+const struct shape_key_name shape_keys[] = {
+    {"length", SHAPE_HAS_LENGTH},
+    {"width", SHAPE_HAS_WIDTH},
+    {"diameter", SHAPE_HAS_DIAMETER},
+    {"height", SHAPE_HAS_HEIGHT},
+    {"user", SHAPE_HAS_CODE},
+    {"top_diameter", SHAPE_HAS_TOP_DIAMETER},
+    {"front_height", SHAPE_HAS_FRONT_HEIGHT},
+    {"nose_end", SHAPE_HAS_ENDS},
+    {"tail_end", SHAPE_HAS_ENDS},
+    {"mesh", SHAPE_HAS_MESH},
+    {NULL, 0},
+};
+
+static const struct shape shape_parts = {.needs = 0};
+
+static const struct {
+    const char *name;
+    const struct shape *row;
+    int traits;
+} shapes[] = {
+#define SHAPE_ROW(NUMBER, name, traits) [SHAPE_##NUMBER] = {#name, &shape_##name, traits},
+    ALL_SHAPES(SHAPE_ROW)[SHAPE_PARTS] = {"parts", &shape_parts, 0}};
 
 const struct shape *shape_of(uint32_t shape)
 {
-    static const struct shape *const shapes[] = {
-        [SONJECT_SHAPE_PLANE] = &shape_plane,
-        [SONJECT_SHAPE_SPHERE] = &shape_sphere,
-        [SONJECT_SHAPE_CYLINDER] = &shape_cylinder,
-        [SONJECT_SHAPE_CAPSULE] = &shape_capsule,
-        [SONJECT_SHAPE_DISC] = &shape_disc,
-        [SONJECT_SHAPE_ELLIPSOID] = &shape_ellipsoid,
-        [SONJECT_SHAPE_BOX] = &shape_box,
-        [SONJECT_SHAPE_WEDGE] = &shape_wedge,
-        [SONJECT_SHAPE_CONE] = &shape_cone,
-        [SONJECT_SHAPE_TRUNCATED_CONE] = &shape_truncated_cone,
-        [SONJECT_SHAPE_TORUS] = &shape_torus,
-        [SONJECT_SHAPE_PARTS] = &shape_parts,
-        [SONJECT_SHAPE_MESH] = &shape_mesh,
-        [SONJECT_SHAPE_USER] = &shape_user,
-    };
-    return shape < sizeof shapes / sizeof *shapes ? shapes[shape] : NULL;
+    return shape < sizeof shapes / sizeof *shapes ? shapes[shape].row : NULL;
 }
 
 const char *shape_name(uint32_t shape)
 {
-    const struct shape *known = shape_of(shape);
-    return known ? known->name : NULL;
+    return shape < sizeof shapes / sizeof *shapes ? shapes[shape].name : NULL;
 }
 
 static void set_cuts(struct shape_size *size, const sonject_object_params *object)
@@ -81,7 +86,7 @@ void shape_size_init_in_scene(struct shape_size *size, const struct scene *scene
 
 bool shape_is_convex(const struct shape_size *size, uint32_t shape)
 {
-    return !shape_of(shape)->is_concave && !size->nose.is_open && !size->tail.is_open;
+    return !(shapes[shape].traits & SHAPE_IS_HOLLOW) && !size->nose.is_open && !size->tail.is_open;
 }
 
 /* With the first `cuts` of the cuts; the shape is convex and something of it is left. */
@@ -192,7 +197,7 @@ void record_set_slant(struct object_record *record, double across, double up, do
 void shape_record_init(struct object_record *record, const struct shape_size *size, uint32_t shape)
 {
     const struct shape *row = shape_of(shape);
-    record->shape = row->kind;
+    record->shape = (int32_t)shape;
     record->half_length = (float)size->half_length_m;
     record->half_width = (float)size->half_width_m;
     record->half_height = (float)size->half_height_m;
@@ -250,7 +255,7 @@ static void check_sizes(struct check *check, const sonject_object_params *object
 void check_shape(struct check *check, const sonject_object_params *object)
 {
     const struct shape *shape = shape_of(object->shape);
-    check_choice(check, "shape", object->shape, SONJECT_SHAPE_USER + 1);
+    check_choice(check, "shape", object->shape, SONJECT_SHAPE_PARTS + 1);
     if (!shape)
         return;
     if (object->shape == SONJECT_SHAPE_PARTS) {

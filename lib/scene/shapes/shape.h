@@ -1,6 +1,6 @@
 /* The sizes of an object in its own frame (x nose, z up when level, origin in the middle of its
  * overall sizes), how far it reaches, and what else differs from shape to shape: a file of this
- * folder fills a row for its shape, and shape.c lists the rows. */
+ * folder fills a row for its shape (kernels/shapes/shapes.h lists them). */
 #ifndef SONJECT_SCENE_SHAPES_SHAPE_H
 #define SONJECT_SCENE_SHAPES_SHAPE_H
 
@@ -57,13 +57,16 @@ enum shape_key {
     SHAPE_HAS_MESH = 256
 };
 
+/* Their names, up to a NULL. */
+extern const struct shape_key_name {
+    const char *key;
+    uint32_t bit;
+} shape_keys[];
+
 /* What a shape is. v: of any length. */
 struct shape {
-    const char *name;  /* as scene files write it */
     uint32_t needs;    /* bits of enum shape_key */
     uint32_t may_have; /* besides those */
-    int32_t kind;      /* of struct object_record, unless `record` says another */
-    bool is_concave;   /* sound may go from it to itself */
     /* Relations between its sizes; NULL: none. */
     void (*check)(struct check *check, const sonject_object_params *object);
     /* Sizes and radii; those are at first half of what was given, and its radius_m. NULL: it has
@@ -75,13 +78,12 @@ struct shape {
      * follow from extent. */
     double (*cut_extent)(const struct shape_size *size, const double v[3]);
     bool (*is_left)(const struct shape_size *size);
-    /* What the device is told besides sizes and cuts; NULL: nothing. */
+    /* What the device is told besides sizes and cuts, and as which shape; NULL: nothing. */
     void (*record)(struct object_record *record, const struct shape_size *size);
 };
 
-extern const struct shape shape_plane, shape_sphere, shape_cylinder, shape_capsule, shape_disc,
-    shape_ellipsoid, shape_box, shape_wedge, shape_cone, shape_truncated_cone, shape_torus,
-    shape_mesh, shape_user;
+#define SHAPE_DECLARATION(NUMBER, name, traits) extern const struct shape shape_##name;
+ALL_SHAPES(SHAPE_DECLARATION)
 
 /* By its number, sonject_shape; NULL for an unknown one. */
 const struct shape *shape_of(uint32_t shape);

@@ -14,8 +14,4 @@ static double extent(const struct shape_size *size, const double v[3])
     return size->radius_m * sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-const struct shape shape_sphere = {.name = "sphere",
-                                   .needs = SHAPE_HAS_DIAMETER,
-                                   .kind = SHAPE_SPHERE,
-                                   .init = init,
-                                   .extent = extent};
+const struct shape shape_sphere = {.needs = SHAPE_HAS_DIAMETER, .init = init, .extent = extent};

@@ -111,10 +111,7 @@ static bool is_left(const struct shape_size *size)
     return isfinite(cut_extent(size, upward));
 }
 
-const struct shape shape_torus = {.name = "torus",
-                                  .needs = SHAPE_HAS_DIAMETER | SHAPE_HAS_HEIGHT,
-                                  .kind = SHAPE_TORUS,
-                                  .is_concave = true,
+const struct shape shape_torus = {.needs = SHAPE_HAS_DIAMETER | SHAPE_HAS_HEIGHT,
                                   .check = check,
                                   .init = init,
                                   .extent = extent,

@@ -34,10 +34,8 @@ static void record(struct object_record *record, const struct shape_size *size)
                      z);
 }
 
-const struct shape shape_wedge = {.name = "wedge",
-                                  .needs = SHAPE_HAS_LENGTH | SHAPE_HAS_WIDTH | SHAPE_HAS_HEIGHT,
+const struct shape shape_wedge = {.needs = SHAPE_HAS_LENGTH | SHAPE_HAS_WIDTH | SHAPE_HAS_HEIGHT,
                                   .may_have = SHAPE_HAS_FRONT_HEIGHT,
-                                  .kind = SHAPE_WEDGE,
                                   .check = check,
                                   .init = init,
                                   .extent = extent,

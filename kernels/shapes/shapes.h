@@ -1,0 +1,67 @@
+/* Every shape, once. From these rows come its number, its place in the kernels' choice of shapes,
+ * its word in scene files, its row of the host (lib/scene/shapes, whose file has its name) and its
+ * turn in the tests. */
+#ifndef SONJECT_KERNELS_SHAPES_H
+#define SONJECT_KERNELS_SHAPES_H
+
+enum shape_trait {
+    SHAPE_IS_SHEET = 1,  /* no inside that a cut would lay open, and that its face then closes */
+    SHAPE_IS_HOLLOW = 2, /* a straight way that leaves the outer side may meet the object again;
+                            of what is flat or convex none does, cut or not */
+};
+
+/* ROW(number: SHAPE_ and this, name, traits). The plainest shapes, of one interval: in line where
+ * nothing cuts them, for most scenes hold no others. */
+#define PLAIN_SHAPES(ROW)                                                                          \
+    ROW(PLANE, plane, SHAPE_IS_SHEET)                                                              \
+    ROW(SPHERE, sphere, 0)                                                                         \
+    ROW(CYLINDER, cylinder, 0)                                                                     \
+    ROW(CAPSULE, capsule, 0)
+
+#define OTHER_SHAPES(ROW)                                                                          \
+    ROW(DISC, disc, SHAPE_IS_SHEET)                                                                \
+    ROW(ELLIPSOID, ellipsoid, 0)                                                                   \
+    ROW(BOX, box, 0)                                                                               \
+    ROW(WEDGE, wedge, 0)                                                                           \
+    ROW(CONE, cone, 0)                                                                             \
+    ROW(TORUS, torus, SHAPE_IS_HOLLOW)
+
+/* What scenes call a shape, and kernels another one or treat apart. */
+#define SCENE_SHAPES(ROW)                                                                          \
+    ROW(TRUNCATED_CONE, truncated_cone, 0)                                                         \
+    ROW(MESH, mesh, SHAPE_IS_HOLLOW)                                                               \
+    ROW(USER, user, 0)
+
+/* Cylinders that have other ends than flat ones. */
+#define ENDED_CYLINDERS(ROW)                                                                       \
+    ROW(ENDED_CYLINDER, ended_cylinder, 0) /* solid: each end is flat or a part of a sphere */     \
+    ROW(OPEN_CYLINDER, open_cylinder, SHAPE_IS_SHEET | SHAPE_IS_HOLLOW) /* thin wall */
+
+#define ALL_SHAPES(ROW) PLAIN_SHAPES(ROW) OTHER_SHAPES(ROW) SCENE_SHAPES(ROW)
+
+#define SHAPE_NUMBER(NUMBER, name, traits) SHAPE_##NUMBER,
+enum shape_kind {
+    ALL_SHAPES(SHAPE_NUMBER) SHAPE_PARTS, /* scenes' objects of several */
+    ENDED_CYLINDERS(SHAPE_NUMBER)
+};
+
+#endif
+
+/* For who defines SHAPE_FILES, kernels but not the host: of the object in its own frame,
+ * NAME_interval of a plain shape or NAME_spans of another, and NAME_normal: outward, unit; of a
+ * sheet on the side that the ray comes from. */
+#if defined(SHAPE_FILES) && !defined(SONJECT_KERNELS_SHAPE_FILES)
+#define SONJECT_KERNELS_SHAPE_FILES
+
+#include "shapes/box.h"
+#include "shapes/capsule.h"
+#include "shapes/cone.h"
+#include "shapes/cylinder.h"
+#include "shapes/disc.h"
+#include "shapes/ellipsoid.h"
+#include "shapes/ended_cylinder.h"
+#include "shapes/plane.h"
+#include "shapes/sphere.h"
+#include "shapes/torus.h"
+
+#endif
