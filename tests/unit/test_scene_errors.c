@@ -172,8 +172,7 @@ static void test_wrong_values(void **state)
         {BASE "objects: [sphere]\n",
          ":4:11: objects[0]: must be a section of 'key: value' lines, not a single value"},
         {OBJECT "cube\n",
-         ":5:12: objects[0].shape: 'cube' is not one of plane, sphere, cylinder, capsule, disc, "
-         "ellipsoid, box, wedge, cone, truncated_cone, torus, mesh, user; did you mean 'cone'?"},
+         ":5:12: objects[0].shape: 'cube' is not one of " SHAPE_WORDS "; did you mean 'cone'?"},
         {OBJECT "cylinder\n    diameter: 1\n    length: 2\n    nose_end: round\n",
          ":8:15: objects[0].nose_end: 'round' is not one of flat, open, spherical, {depth: ...}"},
         {OBJECT "cylinder\n    diameter: 1\n    length: 2\n    tail_end: {depth: 0}\n",

@@ -188,8 +188,7 @@ static void test_what_is_refused(void **state)
         {SCENE "  - {shape: mesh, mesh: corner.obj, cuts: [{distance: -9}]}\n",
          ":5:43: objects[0].cuts: leave nothing of the object; move one outwards"},
         {SCENE "  - {shape: mesg, mesh: corner.obj}\n",
-         ":5:13: objects[0].shape: 'mesg' is not one of plane, sphere, cylinder, capsule, disc, "
-         "ellipsoid, box, wedge, cone, truncated_cone, torus, mesh, user; did you mean 'mesh'?"},
+         ":5:13: objects[0].shape: 'mesg' is not one of " SHAPE_WORDS "; did you mean 'mesh'?"},
         {MESH("~"), ":6:11: objects[0].mesh: has no value; write one or remove the key"},
         {MESH("{unit: mm}"), ":6:11: objects[0].mesh.file: missing; add it (of triangles: STL, OBJ "
                              "or PLY)"},

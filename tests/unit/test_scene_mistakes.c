@@ -34,9 +34,8 @@ static void test_six_mistakes_are_six_lines(void **state)
         ":4:46: input.geometry.column_spacing: unit 'knot' is not one of m, km, cm, mm\n"
         ":7:3: sonar.bandwith: unknown key; did you mean 'bandwidth'?\n"
         ":8:13: sonar.altitude: must be 1e-06...1e+06 m, not -3\n"
-        ":10:12: objects[0].shape: 'cilinder' is not one of plane, sphere, cylinder, capsule, "
-        "disc, "
-        "ellipsoid, box, wedge, cone, truncated_cone, torus, mesh, user; did you mean 'cylinder'?\n"
+        ":10:12: objects[0].shape: 'cilinder' is not one of " SHAPE_WORDS
+        "; did you mean 'cylinder'?\n"
         ":13:5: objects[0].heading: given twice, first on line 12; remove one\n"
         ":14:5: objects[1].height: missing; a box needs it");
 }
@@ -117,13 +116,13 @@ static void test_a_targets_mistakes_stand_where_it_is_named(void **state)
     sprintf(expected,
             "%s:2:8: class: must be UTF-8 text without control characters\n"
             "%s:4:5: parts[0].diameter: missing; a sphere needs it\n"
-            "%s:5:13: parts[1].shape: 'shpere' is not one of plane, sphere, cylinder, capsule, "
-            "disc, ellipsoid, box, wedge, cone, truncated_cone, torus, mesh, user; did you mean "
+            "%s:5:13: parts[1].shape: 'shpere' is not one of %s; did you mean "
             "'sphere'?\n"
             "%s:5:31: objects[0].heading: 'north' is not a number with a unit of deg, rad\n"
             "%s:7:14: objects[2].target: there is no file %s/absent.yaml; check its name\n"
             "%s:8:19: seabed.lambert: 'loud' is not a number with a unit of dB",
-            target, target, target, folder->file, folder->file, folder->folder, folder->file);
+            target, target, target, shape_words(), folder->file, folder->file, folder->folder,
+            folder->file);
     assert_string_equal(folder->report.message, expected);
 }
 
