@@ -5,9 +5,6 @@
 
 #include <sonject/sonject.h>
 
-#include "exit_code.h"
-#include "message.h"
-#include "shard_argument.h"
 #include "stage.h"
 #include "verbs.h"
 

@@ -6,8 +6,7 @@
 
 #include <sonject/sonject.h>
 
-#include "exit_code.h"
-#include "message.h"
+#include "console.h"
 #include "verbs.h"
 
 struct device_options {

@@ -3,8 +3,6 @@
 
 #include <sonject/sonject.h>
 
-#include "exit_code.h"
-#include "labels_argument.h"
 #include "stage.h"
 #include "verbs.h"
 

@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "message.h"
-#include "number.h"
+#include "arguments.h"
+#include "console.h"
 
 static bool parse_range_axis(const char *verb, const char *text, uint32_t *is_ground)
 {

@@ -4,16 +4,11 @@
 
 #include <sonject/sonject.h>
 
-#include "arguments.h"
-#include "exit_code.h"
-#include "message.h"
-#include "nearest.h"
-#include "standard_streams.h"
+#include "console.h"
 #include "verbs.h"
 
-static const struct verb *const verbs[] = {
-    &run_verb,     &trace_verb,     &form_verb,    &campaign_verb, &merge_verb,    &check_verb,
-    &measure_verb, &quicklook_verb, &convert_verb, &seabed_verb,   &elements_verb, &devices_verb};
+#define VERB_ADDRESS(name) &name##_verb,
+static const struct verb *const verbs[] = {VERBS(VERB_ADDRESS)};
 static const size_t verb_count = sizeof(verbs) / sizeof(verbs[0]);
 
 static void print_help(FILE *file)
@@ -21,41 +16,39 @@ static void print_help(FILE *file)
     fputs("sonject puts ray-traced targets into measured sonar images.\n\n", file);
     for (size_t i = 0; i < verb_count; i++)
         fprintf(file, "  sonject %-10s %s\n", verbs[i]->name, verbs[i]->summary);
-    fputs("\n"
-          "  sonject help VERB   the verb's options\n"
-          "  sonject --version   the version\n"
-          "\n"
-          "Exit status: 0 done, 2 wrong usage, 3 unusable scene or image, 4 OpenCL device,\n"
-          "5 files or memory, 85 stopped by SIGTERM (run the same command again).\n",
-          file);
+    fputs(
+        "\n"
+        "  sonject help VERB   the verb's options\n"
+        "  sonject help KEY    what a key of scene files means; or all keys of a section: sonar.\n"
+        "  sonject --version   the version\n"
+        "\n"
+        "Exit status: 0 done, 2 wrong usage, 3 unusable scene or image, 4 OpenCL device,\n"
+        "5 files or memory, 85 stopped by SIGTERM (run the same command again).\n",
+        file);
 }
 
-static const struct verb *find_verb(const char *name)
+/* NULL: none has that name; then `nearest` knows those that are like it. */
+static const struct verb *find_verb(const char *name, struct nearest *nearest)
 {
-    struct nearest nearest;
-    nearest_begin(&nearest, name);
+    nearest_begin(nearest, name);
     for (size_t i = 0; i < verb_count; i++) {
         if (strcmp(verbs[i]->name, name) == 0)
             return verbs[i];
-        nearest_consider(&nearest, verbs[i]->name);
+        nearest_consider(nearest, verbs[i]->name);
     }
-    if (nearest.best)
-        message("there is no verb \"", name, "\"; did you mean ", nearest.best, "?");
-    else
-        message("there is no verb \"", name, "\"; see sonject --help");
     return NULL;
 }
 
 static int help(const char *name)
 {
-    if (!name) {
+    struct nearest nearest;
+    const struct verb *verb = name ? find_verb(name, &nearest) : NULL;
+    if (name && !verb)
+        return key_help(name, &nearest);
+    if (verb)
+        arguments_help(verb, stdout);
+    else
         print_help(stdout);
-        return finish_output();
-    }
-    const struct verb *verb = find_verb(name);
-    if (!verb)
-        return EXIT_CODE_USAGE;
-    arguments_help(verb, stdout);
     return finish_output();
 }
 
@@ -103,7 +96,12 @@ int main(int argc, char **argv)
         return help(NULL);
     if (strcmp(first, "help") == 0)
         return help(argc > 2 ? argv[2] : NULL);
-    const struct verb *verb = find_verb(first);
+    struct nearest nearest;
+    const struct verb *verb = find_verb(first, &nearest);
+    if (!verb && nearest.best)
+        message("there is no verb \"", first, "\"; did you mean ", nearest.best, "?");
+    else if (!verb)
+        message("there is no verb \"", first, "\"; see sonject --help");
     if (!verb)
         return EXIT_CODE_USAGE;
     if (asks_for_help(argc - 2, argv + 2))

@@ -62,7 +62,7 @@ def command_page(help_text, verbs, version):
     for line in parts[1]:
         verb, summary = re.fullmatch(r"  sonject (\S+) +(.*)", line).groups()
         page += [".TP", f"\\fB{roff(verb)}\\fR", roff(summary)]
-    page += verbatim("EXIT STATUS", parts[-1])
+    page += verbatim("HELP", parts[2]) + verbatim("EXIT STATUS", parts[-1])
     references = [f".BR sonject\\-{verb} (1)" for verb in verbs]
     return page + [".SH SEE ALSO"] + [line + "," for line in references[:-1]] + references[-1:]
 

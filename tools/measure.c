@@ -8,9 +8,8 @@
 
 #include <sonject/sonject.h>
 
-#include "exit_code.h"
+#include "console.h"
 #include "image_arguments.h"
-#include "message.h"
 #include "verbs.h"
 
 struct measure_options {

@@ -9,9 +9,6 @@
 
 #include <sonject/sonject.h>
 
-#include "exit_code.h"
-#include "labels_argument.h"
-#include "message.h"
 #include "stage.h"
 #include "verbs.h"
 

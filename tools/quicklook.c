@@ -4,10 +4,8 @@
 
 #include <sonject/sonject.h>
 
-#include "exit_code.h"
+#include "console.h"
 #include "image_arguments.h"
-#include "message.h"
-#include "number.h"
 #include "verbs.h"
 
 struct quicklook_options {

@@ -6,10 +6,6 @@
 
 #include <sonject/sonject.h>
 
-#include "exit_code.h"
-#include "labels_argument.h"
-#include "scene_arguments.h"
-#include "shard_argument.h"
 #include "stage.h"
 #include "verbs.h"
 

@@ -4,9 +4,7 @@
 
 #include <sonject/sonject.h>
 
-#include "exit_code.h"
-#include "message.h"
-#include "number.h"
+#include "console.h"
 #include "verbs.h"
 
 struct seabed_options {

@@ -1,5 +1,5 @@
-/* What the verbs have in common that trace a scene or form its image: options, progress, stopping,
- * and the last word. */
+/* What the verbs have in common that read a scene, trace it or form its image: options, progress,
+ * stopping, and the last word. */
 #ifndef SONJECT_TOOLS_STAGE_H
 #define SONJECT_TOOLS_STAGE_H
 
@@ -8,7 +8,7 @@
 #include <sonject/sonject.h>
 
 #include "arguments.h"
-#include "progress.h"
+#include "console.h"
 
 struct stage_options {
     const char *output;
@@ -48,5 +48,60 @@ typedef sonject_status (*stage_function)(sonject_context *context, const void *v
 /* Calls it and answers the exit code. done: "the result is in ", before the output's name. */
 int stage_work(const struct stage_options *stage, stage_function function, const void *verb_options,
                const char *done);
+
+/* ---- A scene file with a command's overrides. */
+
+struct scene_arguments {
+    const char *path;
+    struct text_list overrides;
+    struct whole_argument seed; /* an override too, the last */
+    bool allows_user_shapes;
+    const char *band; /* --set band=, of a verb that goes through all; NULL: as the scene says */
+};
+
+/* Lines of a verb's arguments, whose options are a structure with a struct scene_arguments `scene`.
+ */
+#define SCENE_ARGUMENTS(structure)                                                                 \
+    {"--seed",                                                                                     \
+     NULL,                                                                                         \
+     "N",                                                                                          \
+     "seed of the random numbers: --set injection.seed=N",                                         \
+     ARGUMENT_WHOLE,                                                                               \
+     false,                                                                                        \
+     offsetof(structure, scene.seed)},                                                             \
+        {"--set",                                                                                  \
+         NULL,                                                                                     \
+         "KEY.PATH=VALUE",                                                                         \
+         "replaces or adds a key of the scene; may be repeated",                                   \
+         ARGUMENT_TEXTS,                                                                           \
+         false,                                                                                    \
+         offsetof(structure, scene.overrides)},                                                    \
+    {                                                                                              \
+        "--allow-user-shapes", NULL, NULL,                                                         \
+            "runs code of shapes in the scene; only if you trust it", ARGUMENT_FLAG, false,        \
+            offsetof(structure, scene.allows_user_shapes)                                          \
+    }
+
+/* The bands that the scene leaves to be chosen; see sonject_scene_bands. */
+sonject_status scene_arguments_bands(sonject_context *context,
+                                     const struct scene_arguments *arguments, char **names);
+
+/* As sonject_scene_read. */
+sonject_status scene_arguments_read(sonject_context *context,
+                                    const struct scene_arguments *arguments, sonject_scene **scene);
+
+/* ---- --shard I/K. */
+
+/* "2/4": whole numbers, I from 1 to K; NULL leaves both as they are. A message where it is none of
+ * that. */
+bool shard_parse(const char *verb, const char *text, uint32_t *index, uint32_t *count);
+
+/* ---- --labels: formats by name. */
+
+#define LABELS_HELP "label files beside coco.json: yolo, voc, or both"
+
+/* Reads names with commas between them into a sum of sonject_labels; text NULL: 0. On failure
+ * prints a message. verb: for that. */
+bool labels_parse(const char *verb, const char *text, uint32_t *labels);
 
 #endif

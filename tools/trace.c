@@ -3,7 +3,6 @@
 
 #include <sonject/sonject.h>
 
-#include "scene_arguments.h"
 #include "stage.h"
 #include "verbs.h"
 

@@ -1,20 +1,30 @@
-/* The verbs, one file each. */
+/* The verbs in the order of the help, a file each, which has the verb's name. The command's table,
+ * what is compiled and the manual pages come from these rows. */
 #ifndef SONJECT_TOOLS_VERBS_H
 #define SONJECT_TOOLS_VERBS_H
 
 #include "arguments.h"
 
-extern const struct verb run_verb;
-extern const struct verb trace_verb;
-extern const struct verb form_verb;
-extern const struct verb campaign_verb;
-extern const struct verb merge_verb;
-extern const struct verb check_verb;
-extern const struct verb quicklook_verb;
-extern const struct verb measure_verb;
-extern const struct verb convert_verb;
-extern const struct verb seabed_verb;
-extern const struct verb elements_verb;
-extern const struct verb devices_verb;
+#define VERBS(ROW)                                                                                 \
+    ROW(run)                                                                                       \
+    ROW(trace)                                                                                     \
+    ROW(form)                                                                                      \
+    ROW(campaign)                                                                                  \
+    ROW(merge)                                                                                     \
+    ROW(check)                                                                                     \
+    ROW(measure)                                                                                   \
+    ROW(quicklook)                                                                                 \
+    ROW(convert)                                                                                   \
+    ROW(seabed)                                                                                    \
+    ROW(elements)                                                                                  \
+    ROW(devices)
+
+#define VERB_DECLARATION(name) extern const struct verb name##_verb;
+VERBS(VERB_DECLARATION)
+
+/* sonject help KEY (key_help.c): prints the key of scene files of that name, or all keys below it;
+ * numbers in brackets do not matter. nearest: knows the verbs that may have been meant. Gives the
+ * exit code. */
+int key_help(const char *name, struct nearest *nearest);
 
 #endif

@@ -9,8 +9,8 @@ import pytest
 
 from conftest import COMMAND, assert_refused
 
-VERBS = {"run", "campaign", "merge", "trace", "form", "elements", "check", "measure", "quicklook",
-         "convert", "seabed", "devices"}
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+VERBS = set(re.findall(r"^ +ROW\((\w+)\)", (SOURCE / "tools" / "verbs.h").read_text(), flags=re.M))
 
 
 def test_version(sonject):
@@ -38,6 +38,28 @@ def test_help_of_a_verb(sonject, verb):
         assert_refused(refused, 2, "there is no option")
 
 
+def test_help_of_a_key_is_its_row(sonject):
+    answer = sonject("help", "sonar.altitude")
+    assert answer.returncode == 0
+    key, meaning, *facts = answer.stdout.splitlines()
+    assert key == "sonar.altitude (must be there)"
+    row = f"| `sonar.altitude` * | {meaning.strip()} |"
+    assert row in (SOURCE / "tools/scenes/KEYS.md").read_text(encoding="utf-8")
+    assert "    unit: m, km, cm, mm" in facts
+
+
+def test_help_of_a_section_is_all_its_keys(sonject):
+    reference = (SOURCE / "tools/scenes/KEYS.md").read_text(encoding="utf-8")
+    for section in ("sonar", "elements."):  # elements is a verb, too
+        answer = sonject("help", section)
+        listed = re.findall(r"^(\S+)", answer.stdout, flags=re.M)
+        name = section.rstrip(".")
+        assert answer.returncode == 0
+        assert set(re.findall(rf"^\| `({name}\.[^`]*)`", reference, flags=re.M)) <= set(listed)
+    words = sonject("help", "objects[3].shape").stdout
+    assert "words: plane, sphere," in words and words == sonject("help", "objects.shape").stdout
+
+
 def test_nothing_asked_is_a_usage_error(sonject):
     answer = sonject()
     assert answer.returncode == 2
@@ -57,6 +79,9 @@ def test_nothing_asked_is_a_usage_error(sonject):
         (["run", "a.yaml", "-o", "d", "--shard", "1/4x"], ["--shard", "1/4x"]),
         (["blend", "x"], ['no verb "blend"']),
         (["help", "rnu"], ["did you mean run?"]),
+        (["help", "sonar.altitud"], ['key "sonar.altitud"', "did you mean sonar.altitude?"]),
+        (["help", ""], ["sonject --help"]),
+        (["help", "xylophone[0]"], ["sonject --help"]),
         (["run"], ["SCENE.yaml is missing"]),
         (["run", ""], ["must not be empty"]),
         (["run", "a.yaml"], ["-o DIR is missing"]),
@@ -158,7 +183,7 @@ def test_the_command_uses_only_the_public_interface():
         ["nm", "-D", "--undefined-only", COMMAND], capture_output=True, text=True, check=True
     ).stdout
     used = set(re.findall(r"\bsonject_\w+", symbols))
-    headers = pathlib.Path(__file__).resolve().parents[2] / "include" / "sonject"
+    headers = SOURCE / "include" / "sonject"
     public = "".join(path.read_text() for path in headers.glob("*.h"))
     assert {"sonject_run", "sonject_check", "sonject_devices"} <= used
     assert used <= set(re.findall(r"\bsonject_\w+(?=\()", public))

@@ -1,0 +1,69 @@
+/* What the command says and how it ends: messages, exit codes, the progress bar, signals that ask
+ * it to stop. */
+#ifndef SONJECT_TOOLS_CONSOLE_H
+#define SONJECT_TOOLS_CONSOLE_H
+
+#include <stdbool.h>
+
+#include <sonject/sonject.h>
+
+/* Opens the missing ones of descriptors 0, 1 and 2, so that no image file gets such a number and
+ * messages end up in it. What is written to an output that was closed still fails. */
+void standard_streams_secure(void);
+
+/* Prints "sonject: ", the texts up to a NULL, and a newline, as one line whatever the texts hold.
+ */
+#define message(...) message_line((const char *const[]){__VA_ARGS__, NULL})
+
+void message_line(const char *const *texts);
+
+enum exit_code {
+    EXIT_CODE_DONE = 0,
+    EXIT_CODE_USAGE = 2,
+    EXIT_CODE_INPUT = 3,        /* a file, scene or image; or this build lacks what it needs */
+    EXIT_CODE_DEVICE = 4,       /* OpenCL */
+    EXIT_CODE_STORAGE = 5,      /* reading or writing files, or out of memory */
+    EXIT_CODE_STOPPED = 85,     /* SIGTERM: the same command again finishes the work */
+    EXIT_CODE_INTERRUPTED = 130 /* SIGINT */
+};
+
+int exit_code_of(sonject_status status);
+
+/* Prints the message of a call that failed and gives its exit code. */
+int fail_with(const sonject_context *context, sonject_status status);
+
+/* Flushes what went to standard output; says so where it did not arrive. */
+int finish_output(void);
+
+/* ---- Asking a long run to stop: SIGTERM and SIGINT. */
+
+/* From now on SIGTERM and SIGINT are only noted; a second SIGINT ends the process. */
+void stop_watch(void);
+
+/* 1 once a signal came. */
+int stop_is_asked(void);
+
+/* Says that the run stopped; exit code for the signal that came. */
+int stop_report(void);
+
+/* ---- The progress bar, on a terminal's standard error output only. */
+
+struct progress {
+    bool is_shown;
+    bool is_on_screen; /* a bar stands in the terminal's last line */
+    double start_s;
+    double drawn_s;
+};
+
+void progress_begin(struct progress *progress, bool is_quiet);
+
+/* A sonject_progress_function; user: struct progress. Cancels once a signal asks to stop. */
+int progress_update(void *user, double fraction, const char *stage);
+
+/* A sonject_log_function; user: struct progress. Prints the line, the bar comes back below it. */
+void progress_log(void *user, const char *line);
+
+/* Removes the bar. */
+void progress_end(struct progress *progress);
+
+#endif
