@@ -45,7 +45,7 @@ def test_help_of_a_key_is_its_row(sonject):
     assert key == "sonar.altitude (must be there)"
     row = f"| `sonar.altitude` * | {meaning.strip()} |"
     assert row in (SOURCE / "tools/scenes/KEYS.md").read_text(encoding="utf-8")
-    assert "    unit: m, km, cm, mm" in facts
+    assert "    unit: m, km, cm, mm, or from_file" in facts
 
 
 def test_help_of_a_section_is_all_its_keys(sonject):
