@@ -28,7 +28,6 @@ struct measure_options {
     const char *truth;
     struct number_argument row_spacing, column_spacing;
     const char *compared;
-    const char *picture;
 };
 
 #define FIND_MOST_LIMIT 100000
@@ -66,8 +65,6 @@ static const struct argument arguments[] = {
      MEMBER(column_spacing)},
     {"--compare", NULL, "FILE", "IMAGE and FILE hold measures of contacts: compares the sets",
      ARGUMENT_TEXT, false, MEMBER(compared)},
-    {"--picture", NULL, "PNG", "draws the sets' distributions", ARGUMENT_TEXT, false,
-     MEMBER(picture)},
 };
 
 /* JSON knows neither NaN nor infinity. */
@@ -184,10 +181,9 @@ static int work_on_contacts(const struct measure_options *options, sonject_measu
     } else if (options->compared || fill_contacts(options, params, boxes)) {
         sonject_status status = sonject_context_create(NULL, &context);
         if (status == SONJECT_OK)
-            status = options->compared
-                         ? sonject_compare_contacts(context, options->image, options->compared,
-                                                    options->picture, &text)
-                         : sonject_measure_contacts(context, params, &text);
+            status = options->compared ? sonject_compare_contacts(context, options->image,
+                                                                  options->compared, &text)
+                                       : sonject_measure_contacts(context, params, &text);
         if (text)
             puts(text);
         code = status == SONJECT_OK ? finish_output() : fail_with(context, status);
@@ -202,8 +198,6 @@ static int work_on_contacts(const struct measure_options *options, sonject_measu
 static const char *conflict(const struct measure_options *options)
 {
     const bool has_spacing = options->row_spacing.is_given || options->column_spacing.is_given;
-    if (options->picture && !options->compared)
-        return "measure: --picture is for --compare";
     if (options->compared && (wants_contacts(options) || options->transfer || has_spacing ||
                               options->channel || options->array))
         return "measure: --compare takes two files of measures, and no options of an image";

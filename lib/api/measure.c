@@ -148,7 +148,7 @@ sonject_status sonject_measure_contacts(sonject_context *context,
 }
 
 sonject_status sonject_compare_contacts(sonject_context *context, const char *first,
-                                        const char *second, const char *picture, char **text)
+                                        const char *second, char **text)
 {
     if (!context || !text)
         return SONJECT_ERROR_ARGUMENT;
@@ -156,5 +156,5 @@ sonject_status sonject_compare_contacts(sonject_context *context, const char *fi
     context_begin_call(context);
     if (!first || !second)
         return null_argument(&context->report, "first and second");
-    return compare_contact_files(&context->report, first, second, picture, text);
+    return compare_contact_files(&context->report, first, second, text);
 }

@@ -118,10 +118,10 @@ struct item {
 };
 
 struct swath_plan {
-    char *path;    /* to open; owned */
-    char *written; /* as the campaign file has it; owned */
-    char *split;   /* that it must be in; NULL: any; owned */
-    char **keys;   /* of the scene, for this swath, "key=value"; owned */
+    char *path;          /* to open; owned */
+    const char *written; /* as the campaign file has it; its tree's */
+    char *split;         /* that it must be in; NULL: any; owned */
+    char **keys;         /* of the scene, for this swath, "key=value"; owned */
     size_t key_count;
     struct region *avoid; /* owned */
     size_t avoid_count;
@@ -173,9 +173,10 @@ enum output {
     (OUTPUT_BIT(OUTPUT_IMAGE) | OUTPUT_BIT(OUTPUT_TRUTH) | OUTPUT_BIT(OUTPUT_RECORD))
 
 struct campaign {
-    char *path;   /* of its file */
-    char *folder; /* that its names of files are meant from */
-    char *scene_path, *scene_written;
+    char *path;                /* of its file */
+    char *folder;              /* that its names of files are meant from */
+    char *scene_path;          /* owned, as the two above */
+    const char *scene_written; /* the tree's */
     uint64_t images, seed;
     uint32_t design; /* enum design */
     uint32_t chip_rows, chip_columns;

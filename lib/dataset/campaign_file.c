@@ -170,26 +170,20 @@ static sonject_status read_clutter_number(struct reader *reader, const struct tr
 }
 
 /* The name of a file to open, and as it is written. */
-static sonject_status read_both_names(struct reader *reader, const struct tree_node *node,
-                                      char **path, char **written)
-{
-    CHECK(read_path(reader, node, path));
-    *written = copy_text(node->text);
-    return *written ? SONJECT_OK : report_out_of_memory(reader->report, "the campaign");
-}
-
 static sonject_status read_swath_path(struct reader *reader, const struct tree_node *node,
                                       void *structure)
 {
     struct swath_plan *swath = structure;
-    return read_both_names(reader, node, &swath->path, &swath->written);
+    swath->written = node->text;
+    return read_path(reader, node, &swath->path);
 }
 
 static sonject_status read_scene_name(struct reader *reader, const struct tree_node *node,
                                       void *structure)
 {
     struct campaign *campaign = structure;
-    return read_both_names(reader, node, &campaign->scene_path, &campaign->scene_written);
+    campaign->scene_written = node->text;
+    return read_path(reader, node, &campaign->scene_path);
 }
 
 static sonject_status read_swath_key(struct reader *reader, const struct tree_entry *entry,
@@ -547,7 +541,6 @@ static void clear_swath(struct swath_plan *swath)
         free(swath->keys[i]);
     free(swath->keys);
     free(swath->path);
-    free(swath->written);
     free(swath->split);
     free(swath->avoid);
     chip_room_clear(&swath->room);
@@ -568,7 +561,6 @@ void campaign_clear(struct campaign *campaign)
         free(campaign->splits[i].shares);
     }
     free(campaign->scene_path);
-    free(campaign->scene_written);
     free(campaign->folder);
     if (campaign->tree.file)
         tree_clear(&campaign->tree);

@@ -12,7 +12,6 @@
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "base/text.h"
-#include "measure/measures.h"
 
 #define DEGREES_PER_RADIAN 57.29577951308232
 
@@ -117,26 +116,16 @@ static sonject_status find_pixels(struct contact *contact, struct report *report
 
 static void describe(struct contact *contact, const struct label_request *request, uint32_t index)
 {
-    const sonject_object_params *object = &request->scene->objects[index];
     const sonject_object_truth *truth = &request->result->objects[index];
     contact->number = index + 1;
-    contact->name = object->name;
-    contact->class_name = object->class_name;
-    contact->confidence = 1.0;
+    contact->object = &request->scene->objects[index];
+    contact->truth = truth;
     contact->row = truth->row + (double)request->patch.first_row;
     contact->column = truth->column + (double)request->patch.first_column;
-    contact->along_track_m = truth->along_track_m;
-    contact->slant_range_m = truth->slant_range_m;
-    contact->ground_range_m = truth->ground_range_m;
-    contact->height_m = truth->height_m;
-    contact->length_m = truth->overall_length_m;
-    contact->width_m = truth->overall_width_m;
-    contact->body_height_m = truth->overall_height_m;
-    contact->heading_deg = object->heading_rad * DEGREES_PER_RADIAN;
     contact->is_truncated = truth->highlight_is_cut || truth->shadow_is_cut;
     contact->has_place =
         request->track &&
-        track_place(request->track, contact->row, contact->ground_range_m,
+        track_place(request->track, contact->row, truth->ground_range_m,
                     request->scene->geometry.side == SONJECT_SIDE_PORT, &contact->place);
 }
 
@@ -158,7 +147,8 @@ sonject_status image_labels_find(struct image_labels *labels, struct report *rep
         struct contact *contact = &labels->contacts[i];
         const sonject_object_truth *truth = &result->objects[i];
         describe(contact, request, i);
-        status = class_names_take(classes, report, contact->class_name, &contact->class_number);
+        status =
+            class_names_take(classes, report, contact->object->class_name, &contact->class_number);
         THEN(status, find_pixels(contact, report, request));
         contact->is_occluded = contact->pixels < truth->highlight_pixels + truth->shadow_pixels;
     }
@@ -216,43 +206,6 @@ static void add_field(struct growing_text *text, const char *words)
     growing_text_add(text, "\"");
 }
 
-json_t *place_document(bool is_geographic, const struct place *place)
-{
-    return JSON_OBJECT({is_geographic ? "longitude_deg" : "easting_m", json_number(place->x)},
-                       {is_geographic ? "latitude_deg" : "northing_m", json_number(place->y)});
-}
-
-#define NUMBER(member)                                                                             \
-    {                                                                                              \
-#member, json_number(contact->member)                                                      \
-    }
-
-static json_t *contact_document(const struct image_labels *labels, const struct contact *contact)
-{
-    json_t *dimensions = JSON_OBJECT({"length_m", json_number(contact->length_m)},
-                                     {"width_m", json_number(contact->width_m)},
-                                     {"height_m", json_number(contact->body_height_m)});
-    return JSON_OBJECT(
-        {"id", json_count(contact->number)}, {"name", json_text(contact->name)},
-        {"class", json_text(contact->class_name)}, NUMBER(confidence), NUMBER(row), NUMBER(column),
-        NUMBER(along_track_m), NUMBER(slant_range_m), NUMBER(ground_range_m),
-        {"position",
-         contact->has_place ? place_document(labels->is_geographic, &contact->place) : json_null()},
-        {"sonar_heading_deg",
-         contact->has_place ? json_number(contact->place.heading_deg) : json_null()},
-        {"dimensions", dimensions}, NUMBER(heading_deg), {"box", box_document(&contact->box)},
-        {"pixels", json_count(contact->pixels)}, {"truncated", json_boolean(contact->is_truncated)},
-        {"occluded", json_boolean(contact->is_occluded)});
-}
-
-static json_t *contacts_document(const struct image_labels *labels)
-{
-    json_t *contacts = json_array();
-    for (uint32_t i = 0; i < labels->count; i++)
-        json_append(&contacts, contact_document(labels, &labels->contacts[i]));
-    return JSON_OBJECT({"image", json_text(labels->file_name)}, {"contacts", contacts});
-}
-
 json_t *coco_annotations(const struct image_labels *labels)
 {
     uint64_t number = 0;
@@ -304,24 +257,34 @@ static json_t *coco_document(const struct image_labels *labels, const struct cla
                        {"annotations", coco_annotations(labels)}, {"categories", categories});
 }
 
+/* That an object is there is known: its confidence is 1. */
 static void add_row(struct growing_text *csv, const struct image_labels *labels,
                     const struct contact *contact)
 {
     const sonject_box *box = &contact->box;
+    const sonject_object_truth *truth = contact->truth;
     const double x = contact->has_place ? contact->place.x : NAN;
     const double y = contact->has_place ? contact->place.y : NAN;
     const bool has_degrees = labels->is_geographic;
-    const double values[] = {
-        contact->confidence,    contact->row,           contact->column,
-        contact->along_track_m, contact->slant_range_m, contact->ground_range_m,
-        has_degrees ? x : NAN,  has_degrees ? y : NAN,  has_degrees ? NAN : x,
-        has_degrees ? NAN : y,  contact->length_m,      contact->width_m,
-        contact->body_height_m, contact->heading_deg};
+    const double values[] = {1.0,
+                             contact->row,
+                             contact->column,
+                             truth->along_track_m,
+                             truth->slant_range_m,
+                             truth->ground_range_m,
+                             has_degrees ? x : NAN,
+                             has_degrees ? y : NAN,
+                             has_degrees ? NAN : x,
+                             has_degrees ? NAN : y,
+                             truth->overall_length_m,
+                             truth->overall_width_m,
+                             truth->overall_height_m,
+                             contact->object->heading_rad * DEGREES_PER_RADIAN};
     add_field(csv, labels->file_name);
     growing_text_add(csv, ",%u,", (unsigned)contact->number);
-    add_field(csv, contact->name);
+    add_field(csv, contact->object->name);
     growing_text_add(csv, ",");
-    add_field(csv, contact->class_name);
+    add_field(csv, contact->object->class_name);
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
         growing_text_add(csv, ",");
         add_number(csv, values[i]);
@@ -367,7 +330,7 @@ static void add_object(struct growing_text *xml, const struct contact *contact)
 {
     const sonject_box *box = &contact->box;
     growing_text_add(xml, "  <object>\n    <name>");
-    add_xml(xml, contact->class_name);
+    add_xml(xml, contact->object->class_name);
     growing_text_add(xml,
                      "</name>\n    <pose>Unspecified</pose>\n    <truncated>%d</truncated>\n"
                      "    <occluded>%d</occluded>\n    <difficult>0</difficult>\n"
@@ -404,9 +367,7 @@ sonject_status labels_write(struct report *report, const struct image_labels *la
     switch (file) {
     case LABEL_COCO:
         return json_document_write(report, coco_document(labels, classes), 12, path);
-    case LABEL_CONTACTS_JSON:
-        return json_document_write(report, contacts_document(labels), 12, path);
-    case LABEL_CONTACTS_CSV:
+    case LABEL_CONTACTS:
         add_csv(&text, labels);
         break;
     case LABEL_YOLO:

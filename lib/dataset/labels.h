@@ -23,14 +23,11 @@ void class_names_clear(struct class_names *classes);
 
 /* An object of the scene in the image. Rows and columns are the image file's. */
 struct contact {
-    uint32_t number;               /* among the scene's objects, from 1: its value in the labels */
-    const char *name, *class_name; /* the scene's */
+    uint32_t number; /* among the scene's objects, from 1: its value in the labels */
+    const sonject_object_params *object; /* the scene's */
+    const sonject_object_truth *truth;   /* the result's */
     uint32_t class_number;
-    double confidence;  /* 1: it is known */
     double row, column; /* of its centre */
-    double along_track_m, slant_range_m, ground_range_m, height_m;
-    double length_m, width_m, body_height_m; /* overall, its own axes */
-    double heading_deg;                      /* from along-track towards range */
     bool has_place;
     struct place place; /* of its centre; the heading is the sonar's */
     /* What the labels show of it: highlight and shadow, less what other objects take. */
@@ -61,19 +58,18 @@ struct label_request {
     const struct track *track;
 };
 
-/* Finds the labels and takes their classes; scene and names must outlive them. Errors: MEMORY. On
- * success to be given to image_labels_clear; on failure nothing is held. */
+/* Finds the labels and takes their classes; scene, result and names must outlive them. Errors:
+ * MEMORY. On success to be given to image_labels_clear; on failure nothing is held. */
 sonject_status image_labels_find(struct image_labels *labels, struct report *report,
                                  const struct label_request *request, struct class_names *classes);
 void image_labels_clear(struct image_labels *labels);
 
 enum label_file {
-    LABEL_COCO,          /* boxes, and masks as runs */
-    LABEL_CONTACTS_JSON, /* where each object lies and how large it is */
-    LABEL_CONTACTS_CSV,
-    LABEL_YOLO,    /* "class centre_x centre_y width height", fractions of the image's sides */
-    LABEL_CLASSES, /* names, one a line */
-    LABEL_VOC      /* Pascal VOC's XML, whole pixels counted from 1 */
+    LABEL_COCO,     /* boxes, and masks as runs */
+    LABEL_CONTACTS, /* CSV: where each object lies and how large it is */
+    LABEL_YOLO,     /* "class centre_x centre_y width height", fractions of the image's sides */
+    LABEL_CLASSES,  /* names, one a line */
+    LABEL_VOC       /* Pascal VOC's XML, whole pixels counted from 1 */
 };
 #define LABEL_FILES (LABEL_VOC + 1)
 
@@ -89,8 +85,5 @@ json_t *coco_annotations(const struct image_labels *labels);
 /* COCO's entry of an image, and of a class. */
 json_t *coco_image(uint64_t id, const char *name, uint64_t rows, uint64_t columns);
 json_t *coco_category(uint64_t id, const char *name);
-
-/* A place on the track's map: longitude_deg and latitude_deg, or easting_m and northing_m. */
-json_t *place_document(bool is_geographic, const struct place *place);
 
 #endif

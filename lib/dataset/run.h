@@ -77,7 +77,7 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
  * at all, and lists them in facts->files. Errors: STORAGE, MEMORY. */
 sonject_status write_layers(struct report *report, struct run_facts *facts, const char *folder);
 
-/* Writes coco.json, contacts.json, contacts.csv, and what facts->label_formats asks for, and lists
+/* Writes coco.json, contacts.csv, and what facts->label_formats asks for, and lists
  * them in facts->files; label files of other formats that an earlier run left are removed. Errors:
  * STORAGE, MEMORY. */
 sonject_status write_labels(struct report *report, struct run_facts *facts, const char *folder);

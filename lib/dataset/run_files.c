@@ -95,10 +95,12 @@ static json_t *position_document(const struct run_facts *facts, double row, doub
 {
     const struct track *track = &facts->swath->track;
     struct place place;
-    return track_place(track, row, ground_range_m, facts->scene->geometry.side == SONJECT_SIDE_PORT,
-                       &place)
-               ? place_document(track->is_geographic, &place)
-               : json_null();
+    if (!track_place(track, row, ground_range_m, facts->scene->geometry.side == SONJECT_SIDE_PORT,
+                     &place))
+        return json_null();
+    return JSON_OBJECT(
+        {track->is_geographic ? "longitude_deg" : "easting_m", json_number(place.x)},
+        {track->is_geographic ? "latitude_deg" : "northing_m", json_number(place.y)});
 }
 
 /* The size that a key gives, or where the shape has no such key what is left of its extent. */
@@ -416,64 +418,47 @@ static sonject_status write_quicklook(struct report *report, const struct run_fa
     return status;
 }
 
-enum layer_kind {
-    LAYER_COMPLEX,
-    LAYER_REAL,
-    LAYER_MASK,
-    LAYER_LABELS,
-    LAYER_QUICKLOOK
-};
-
-static sonject_status write_layer(struct report *report, const struct run_facts *facts,
-                                  enum layer_kind kind, const void *pixels, const char *path)
-{
-    switch (kind) {
-    case LAYER_COMPLEX:
-        return write_float_layer(report, facts, 2, pixels, path);
-    case LAYER_REAL:
-        return write_float_layer(report, facts, 1, pixels, path);
-    case LAYER_MASK:
-        return write_mask(report, facts->swath, pixels, path);
-    case LAYER_LABELS:
-        return write_label_mask(report, facts->swath, pixels, path);
-    default:
-        return write_quicklook(report, facts, path);
-    }
-}
-
 /* Orders that this result has not may be there from a run before. */
 sonject_status write_layers(struct report *report, struct run_facts *facts, const char *folder)
 {
     const struct injection_result *result = facts->result;
-    const struct {
+    const struct layer {
         const char *name;
-        enum layer_kind kind;
-        const void *pixels;
-    } layers[] = {{"patch.tif", LAYER_COMPLEX, result->field},
-                  {"energy.tif", LAYER_REAL, result->energy},
-                  {"highlight.png", LAYER_MASK, result->highlight},
-                  {"shadow.png", LAYER_MASK, result->shadow},
-                  {"labels.png", LAYER_LABELS, result->labels},
-                  {"influence.png", LAYER_MASK, result->influence},
-                  {"quicklook.png", LAYER_QUICKLOOK, NULL}};
-    sonject_status status = SONJECT_OK;
-    for (uint32_t i = 0; status == SONJECT_OK && i < COUNT(layers) + SCENE_INTERACTIONS_MAX; i++) {
+        uint32_t channels; /* of values */
+        const float *values;
+        const uint8_t *mask, *labels;
+    } layers[] = {{"patch.tif", 2, result->field, NULL, NULL},
+                  {"energy.tif", 1, result->energy, NULL, NULL},
+                  {"highlight.png", 0, NULL, result->highlight, NULL},
+                  {"shadow.png", 0, NULL, result->shadow, NULL},
+                  {"labels.png", 0, NULL, NULL, result->labels},
+                  {"influence.png", 0, NULL, result->influence, NULL},
+                  {"quicklook.png", 0, NULL, NULL, NULL}};
+    for (uint32_t i = 0; i < COUNT(layers) + SCENE_INTERACTIONS_MAX; i++) {
         const uint32_t order = i < COUNT(layers) ? 0 : i - (uint32_t)COUNT(layers) + 1;
-        char name[32];
-        char path[PATH_CAPACITY];
+        char name[32], path[PATH_CAPACITY];
+        struct layer layer = {name, 1, NULL, NULL, NULL};
         snprintf(name, sizeof name, "energy_order_%u.tif", (unsigned)order);
-        const char *file = order == 0 ? layers[i].name : name;
-        CHECK(path_in(report, path, folder, "%s", file));
-        if (order > result->orders)
+        if (order == 0)
+            layer = layers[i];
+        else if (order <= result->orders)
+            layer.values = result->order_energy[order - 1];
+        CHECK(path_in(report, path, folder, "%s", layer.name));
+        if (order > result->orders) {
             file_discard(path);
-        else if (order > 0)
-            status = write_float_layer(report, facts, 1, result->order_energy[order - 1], path);
+            continue;
+        }
+        if (i + 1 == COUNT(layers))
+            CHECK(write_quicklook(report, facts, path));
+        else if (layer.values)
+            CHECK(write_float_layer(report, facts, layer.channels, layer.values, path));
+        else if (layer.mask)
+            CHECK(write_mask(report, facts->swath, layer.mask, path));
         else
-            status = write_layer(report, facts, layers[i].kind, layers[i].pixels, path);
-        if (order <= result->orders)
-            THEN(status, file_list_add(&facts->files, report, folder, file, true));
+            CHECK(write_label_mask(report, facts->swath, layer.labels, path));
+        CHECK(file_list_add(&facts->files, report, folder, layer.name, true));
     }
-    return status;
+    return SONJECT_OK;
 }
 
 static const struct {
@@ -481,7 +466,6 @@ static const struct {
     uint32_t format; /* that it belongs to; 0: always written */
 } label_files[LABEL_FILES] = {
     {"coco.json", 0},
-    {"contacts.json", 0},
     {"contacts.csv", 0},
     {"image.txt", SONJECT_LABELS_YOLO},
     {"classes.txt", SONJECT_LABELS_YOLO},

@@ -69,14 +69,6 @@ static double shadow_length(const struct patch_view *view, double ground_range, 
     return top > 0.0 ? top / tan(water_way_grazing(&view->water, ground_range, top)) : 0.0;
 }
 
-static void describe_relief(struct growing_text *text, const struct relief *relief)
-{
-    if (relief)
-        growing_text_add(
-            text, "relief     %.3f...%.3f m over the mean seabed, points %.3g m x %.3g m apart\n",
-            relief->lowest_m, relief->highest_m, relief->row_step_m, relief->column_step_m);
-}
-
 static void describe_objects(struct growing_text *text, const struct scene *scene,
                              const struct patch_view *view, const struct placements *placements)
 {
@@ -96,14 +88,6 @@ static void describe_objects(struct growing_text *text, const struct scene *scen
     }
 }
 
-static uint32_t count_showing(const struct placements *placements, const struct mesh *mesh)
-{
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < placements->part_count; i++)
-        count += placements->parts[i].size.mesh == mesh;
-    return count;
-}
-
 static void describe_meshes(struct growing_text *text, const struct scene *scene,
                             const struct placements *placements)
 {
@@ -111,14 +95,15 @@ static void describe_meshes(struct growing_text *text, const struct scene *scene
         const struct mesh *mesh = &scene->meshes[i];
         const struct mesh_topology *topology = &mesh->topology;
         char excerpt[200];
-        growing_text_add(text,
-                         "mesh %-5u %s: %zu triangles, %.4g x %.4g x %.4g m, shown %lu time%s\n",
-                         (unsigned)(i + 1), text_excerpt(excerpt, sizeof excerpt, mesh->name),
-                         mesh->triangle_count, (double)mesh->upper_m[0] - (double)mesh->lower_m[0],
-                         (double)mesh->upper_m[1] - (double)mesh->lower_m[1],
-                         (double)mesh->upper_m[2] - (double)mesh->lower_m[2],
-                         (unsigned long)count_showing(placements, mesh),
-                         count_showing(placements, mesh) == 1 ? "" : "s");
+        unsigned shown = 0;
+        for (uint32_t k = 0; k < placements->part_count; k++)
+            shown += placements->parts[k].size.mesh == mesh;
+        growing_text_add(
+            text, "mesh %-5u %s: %zu triangles, %.4g x %.4g x %.4g m, shown %u time%s\n",
+            (unsigned)(i + 1), text_excerpt(excerpt, sizeof excerpt, mesh->name),
+            mesh->triangle_count, (double)mesh->upper_m[0] - (double)mesh->lower_m[0],
+            (double)mesh->upper_m[1] - (double)mesh->lower_m[1],
+            (double)mesh->upper_m[2] - (double)mesh->lower_m[2], shown, shown == 1 ? "" : "s");
         if (topology->is_closed)
             growing_text_add(text, "           watertight, %.4g m3", mesh->topology.volume);
         else
@@ -222,7 +207,13 @@ sonject_status describe_scene(struct report *report, struct device_slot *slot,
         const struct placements *placements = &setup.placements;
         struct growing_text text = {0};
         describe_patch(&text, scene, &swath, view);
-        describe_relief(&text, placements->relief);
+        const struct relief *relief = placements->relief;
+        if (relief)
+            growing_text_add(
+                &text,
+                "relief     %.3f...%.3f m over the mean seabed, points %.3g m x %.3g m "
+                "apart\n",
+                relief->lowest_m, relief->highest_m, relief->row_step_m, relief->column_step_m);
         describe_objects(&text, scene, view, placements);
         describe_meshes(&text, scene, placements);
         status = try_user_shapes(&text, report, slot, &scene->user_shapes);

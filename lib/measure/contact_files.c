@@ -22,8 +22,7 @@ struct contact_list {
 
 static sonject_status bad_truth(struct report *report, const char *path, const char *what)
 {
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: %s: give the truth.json of a run on this image", path, what);
+    return input_failure(report, path, "%s: give the truth.json of a run on this image", what);
 }
 
 static bool read_count(const json_t *object, const char *key, uint64_t *value)
@@ -91,7 +90,7 @@ static sonject_status take_truth(struct contact_list *list, struct report *repor
     return status;
 }
 
-json_t *box_document(const sonject_box *box)
+static json_t *box_document(const sonject_box *box)
 {
     return box->rows == 0 ? json_null()
                           : JSON_OBJECT({"row", json_count(box->first_row)},

@@ -138,14 +138,15 @@ static sonject_status read_image(struct report *report, const struct measured_im
     return status;
 }
 
-static sonject_status refuse_size(struct report *report, const char *path,
-                                  const struct raster_layout *layout,
-                                  const struct measured *measured)
+static sonject_status check_size(struct report *report, const char *path, uint64_t rows,
+                                 uint64_t columns, const struct measured *measured)
 {
+    if (rows == measured->rows && columns == measured->columns)
+        return SONJECT_OK;
     return report_failure(report, SONJECT_ERROR_INPUT,
                           "%s has %llu x %llu pixels, the image %zu x %zu: give masks of its size",
-                          path, (unsigned long long)layout->rows,
-                          (unsigned long long)layout->columns, measured->rows, measured->columns);
+                          path, (unsigned long long)rows, (unsigned long long)columns,
+                          measured->rows, measured->columns);
 }
 
 /* path NULL: no mask. */
@@ -158,9 +159,7 @@ static sonject_status read_mask(struct report *report, const char *path,
         return SONJECT_OK;
     const struct measured_image image = {path, NULL, SONJECT_CHANNEL_ONLY, NULL};
     sonject_status status = read_stored(report, &image, &layout, &stored);
-    if (status == SONJECT_OK &&
-        (layout.rows != measured->rows || layout.columns != measured->columns))
-        status = refuse_size(report, path, &layout, measured);
+    THEN(status, check_size(report, path, layout.rows, layout.columns, measured));
     if (status == SONJECT_OK) {
         const size_t bytes = layout.channels * pixel_bytes(layout.type);
         const size_t count = measured->rows * measured->columns;
@@ -197,11 +196,7 @@ static sonject_status read_before(struct report *report, const sonject_measure_p
     memset(&before, 0, sizeof before);
     sonject_status status = read_image(report, &image, &options->transfer, &before);
     measured->before = before.amplitudes;
-    if (status == SONJECT_OK &&
-        (before.rows != measured->rows || before.columns != measured->columns)) {
-        const struct raster_layout layout = {before.rows, before.columns, 1, PIXEL_UINT8};
-        status = refuse_size(report, path, &layout, measured);
-    }
+    THEN(status, check_size(report, path, before.rows, before.columns, measured));
     if (status != SONJECT_OK || measured->influence)
         return status;
     const size_t count = measured->rows * measured->columns;

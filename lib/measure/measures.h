@@ -2,8 +2,6 @@
 #ifndef SONJECT_MEASURE_MEASURES_H
 #define SONJECT_MEASURE_MEASURES_H
 
-#include <jansson.h>
-
 #include <sonject/measure.h>
 
 #include "base/report.h"
@@ -64,12 +62,9 @@ sonject_status measure_one_contact(struct report *report, const float *intensity
                                    size_t columns, const sonject_box *box, double row_spacing_m,
                                    double column_spacing_m, sonject_contact_measures *found);
 
-/* {row, column, rows, columns}; null where it is empty. */
-json_t *box_document(const sonject_box *box);
-
 /* Two files of contacts: sonject_compare_contacts. */
 sonject_status compare_contact_files(struct report *report, const char *first, const char *second,
-                                     const char *picture, char **text);
+                                     char **text);
 
 /* A member of sonject_contact_measures that is a number. */
 struct contact_number {

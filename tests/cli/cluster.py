@@ -149,26 +149,10 @@ class Cluster:
 
     def start_daemon(self, name, *command):
         """Jobs are nice as their daemons are, so that tests see in time what they do."""
-        environment = {**self.environment, "SONJECT_TEST_DAEMON": name}
         with open(self.folder / f"{name}.log", "wb") as log:
             self.daemons[name] = subprocess.Popen(
-                ["nice", "-n", "5", *command], env=environment, cwd=self.folder,
+                ["nice", "-n", "5", *command], env=self.environment, cwd=self.folder,
                 stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)
-
-    def lose(self, node):
-        """Ends a node as a power cut would: its daemon, and all that it runs."""
-        self.daemons[node].kill()
-        self.daemons[node].wait()
-        # The steps' shepherds have the daemon's environment, jobs their own.
-        kill(processes_with(self.mark, f"SONJECT_TEST_DAEMON={node}"))
-        kill(processes_with(self.mark, f"SLURMD_NODENAME={node}"))
-        self.call("scontrol", "update", f"nodename={node}", "state=down", "reason=lost")
-
-    def bring_back(self, node):
-        self.start_node(node)
-        self.wait_for("the node", lambda: node in self.nodes("idle,down"))
-        self.call("scontrol", "update", f"nodename={node}", "state=resume")
-        self.wait_for("three idle nodes", lambda: self.nodes("idle") == set(NODES))
 
     def stop(self):
         """Ends all daemons and jobs."""

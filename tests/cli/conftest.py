@@ -49,7 +49,8 @@ def environment(tmp_path_factory):
 
 @pytest.fixture
 def sonject(tmp_path, environment):
-    """Runs the command in a fresh folder; changes: of the environment, None removes."""
+    """Runs the command in a fresh folder; changes: of the environment, None removes. sonject.done runs
+    what must succeed."""
 
     def run(*arguments, changes=None, timeout=300, folder=".", **options):
         variables = {**environment, **(changes or {})}
@@ -65,23 +66,37 @@ def sonject(tmp_path, environment):
             **options,
         )
 
+    def done(*arguments, **options):
+        answer = run(*arguments, **options)
+        assert answer.returncode == 0, answer.stderr
+        return answer
+
+    run.done = done
     return run
 
 
-@pytest.fixture
-def swath():
+def make_swath():
     """Rayleigh amplitudes, rms 0.1."""
     random = numpy.random.default_rng(20240502)
     return random.rayleigh(0.1 / numpy.sqrt(2), (ROWS, COLUMNS)).astype(numpy.float32)
 
 
 @pytest.fixture
-def scene(tmp_path, swath):
+def swath():
+    return make_swath()
+
+
+def write_scene(folder, swath):
     """A scene file with a sphere on a float32 swath."""
-    (tmp_path / "swath.tif").write_bytes(images.tiff_bytes(swath))
-    path = tmp_path / "scene.yaml"
+    (folder / "swath.tif").write_bytes(images.tiff_bytes(swath))
+    path = folder / "scene.yaml"
     path.write_text(SCENE)
     return path
+
+
+@pytest.fixture
+def scene(tmp_path, swath):
+    return write_scene(tmp_path, swath)
 
 
 def files_below(folder):

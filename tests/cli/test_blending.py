@@ -94,10 +94,9 @@ def judge(before, after, folder, patch):
 
 
 def measure(sonject, folder, before, transfer):
-    answer = sonject("measure", "--seam", folder / f"image{before.suffix}", "--before", before,
-                     "--influence", folder / "influence.png", "--targets", folder / "labels.png",
-                     "--transfer", transfer)
-    assert answer.returncode == 0, answer.stderr
+    answer = sonject.done("measure", "--seam", folder / f"image{before.suffix}", "--before", before,
+                          "--influence", folder / "influence.png", "--targets", folder / "labels.png",
+                          "--transfer", transfer)
     return json.loads(answer.stdout)
 
 
@@ -121,8 +120,7 @@ def test_sonar_pictures(sonject, tmp_path, name):
         positions, path=path, patch=patch, row_spacing="2.5 cm", column_spacing="2.5 cm",
         first_range="43.6125 m", transfer="  transfer: {kind: schlick, parameter: 3}",
         sonar=SONAR))
-    answer = sonject("run", "scene.yaml", "-o", "out", "--quiet")
-    assert answer.returncode == 0, answer.stderr
+    sonject.done("run", "scene.yaml", "-o", "out", "--quiet")
     out = tmp_path / "out"
     linear = numpy.arange(256) / 255
     linear = linear / (3 - 2 * linear)
@@ -147,8 +145,7 @@ def test_sidescan(sonject, tmp_path):
         positions, path="port.tif", patch=patch, row_spacing="12 cm",
         column_spacing="2.928 cm", first_range="1.5 cm", transfer="",
         sonar=f"{{frequency: 600 kHz, bandwidth: 30 kHz, altitude: {altitude:.2f} m}}"))
-    answer = sonject("run", "scene.yaml", "-o", "out", "--quiet")
-    assert answer.returncode == 0, answer.stderr
+    sonject.done("run", "scene.yaml", "-o", "out", "--quiet")
     out = tmp_path / "out"
     before, after = (
         numpy.frombuffer(file.read_bytes(), "<u2", samples.size, 8).reshape(samples.shape) / 65535

@@ -27,13 +27,8 @@ def line(tmp_path, sides):
     return tmp_path / "line.xtf"
 
 
-def done(answer):
-    assert answer.returncode == 0, answer.stderr
-    return answer
-
-
 def test_a_recording_goes_through_rasters_and_back(sonject, tmp_path, line, sides):
-    done(sonject("convert", "line.xtf", "a.tif", "--channel", "port"))
+    sonject.done("convert", "line.xtf", "a.tif", "--channel", "port")
     assert numpy.array_equal(images.read_tiff(tmp_path / "a.tif"), sides[0])
     told = (tmp_path / "a.tif").read_bytes()
     for note in (b"sonject:row_spacing_m=0.1\n", b"sonject:column_spacing_m=0.25\n",
@@ -41,17 +36,17 @@ def test_a_recording_goes_through_rasters_and_back(sonject, tmp_path, line, side
                  b"sonject:side=port\n", b"sonject:range_axis=slant"):
         assert note in told
     assert b"frequency" not in told  # the recording's is not known
-    done(sonject("convert", "a.tif", "b.png"))
+    sonject.done("convert", "a.tif", "b.png")
     assert b"sonject:altitude_m=6\n" in (tmp_path / "b.png").read_bytes()
-    answer = done(sonject("convert", "b.png", "c.npy"))
+    answer = sonject.done("convert", "b.png", "c.npy")
     assert "c.npy keeps no geometry" in answer.stderr
     array = numpy.load(tmp_path / "c.npy")
     assert array.dtype == "<u2" and numpy.array_equal(array, sides[0])
     numpy.save(tmp_path / "d.npy", array[::-1])
-    done(sonject("convert", "d.npy", "new.xtf", "--into", "line.xtf", "--channel", "port"))
+    sonject.done("convert", "d.npy", "new.xtf", "--into", "line.xtf", "--channel", "port")
     changed = bytearray(line.read_bytes())
     assert changed != (tmp_path / "new.xtf").read_bytes()
-    done(sonject("convert", "c.npy", "same.xtf", "--into", "new.xtf", "--channel", "port"))
+    sonject.done("convert", "c.npy", "same.xtf", "--into", "new.xtf", "--channel", "port")
     assert (tmp_path / "same.xtf").read_bytes() == changed
 
 
@@ -64,44 +59,43 @@ objects: [{{name: ball, shape: sphere, diameter: 1 m}}]
 """
 
 
-def check_taken(sonject, folder, name, channel=""):
-    """sonject check of a scene that leaves geometry and altitude to the file."""
+def write_taken(folder, name, channel=""):
+    """A scene that leaves geometry and altitude to the file."""
     (folder / "taken.yaml").write_text(TAKEN.format(name, channel))
-    return sonject("check", "taken.yaml")
+    return "taken.yaml"
 
 
 def test_scenes_take_what_the_conversion_kept(sonject, tmp_path, line):
     extensions = [".tif", ".png"] + [".h5"] * (os.environ.get("SONJECT_HAS_HDF5") == "1")
-    expected = done(check_taken(sonject, tmp_path, "line.xtf", "channel: starboard,")).stdout
+    expected = sonject.done("check", write_taken(tmp_path, "line.xtf", "channel: starboard,")).stdout
     assert "3.00 m along-track" in expected and "starboard" in expected
     for extension in extensions:
-        done(sonject("convert", "line.xtf", "a" + extension, "--channel", "starboard"))
-        assert done(check_taken(sonject, tmp_path, "a" + extension)).stdout == expected
+        sonject.done("convert", "line.xtf", "a" + extension, "--channel", "starboard")
+        told = sonject.done("check", write_taken(tmp_path, "a" + extension)).stdout
+        assert told == expected
 
 
 def test_scenes_take_nothing_that_a_file_does_not_say(sonject, tmp_path, line):
     numpy.save(tmp_path / "a.npy", numpy.ones((ROWS, COLUMNS), "u1"))
-    assert_refused(check_taken(sonject, tmp_path, "a.npy"), 3, "does not say where its pixels lie",
+    assert_refused(sonject("check", write_taken(tmp_path, "a.npy")), 3, "does not say where its pixels lie",
                    "row_spacing, column_spacing and first_slant_range")
     notes = {"row_spacing_m": 0.1, "column_spacing_m": 0.25, "first_along_track_m": 0,
              "first_slant_range_m": 0.125, "altitude_m": 6, "side": "port", "range_axis": "slant"}
 
-    def refused(words, **changes):
+    for words, changes in (
+            (None, {}), ("does not say where its pixels lie", {"side": None}),
+            ("does not say where its pixels lie", {"side": "left"}),
+            ("does not say where its pixels lie", {"range_axis": None}),
+            ("does not say where its pixels lie", {"row_spacing_m": "1e999"}),
+            ("does not say where its pixels lie", {"column_spacing_m": -0.25}),
+            ("does not say the sonar's altitude", {"altitude_m": None}),
+            ("its altitude must be", {"altitude_m": "1e30"}),
+            ("--range-axis slant", {"range_axis": "ground"})):
         lines = {name: value for name, value in {**notes, **changes}.items() if value is not None}
         text = "\n".join(f"sonject:{name}={value}" for name, value in lines.items()).encode()
         (tmp_path / "a.png").write_bytes(images.png_bytes(numpy.zeros((ROWS, COLUMNS)), text))
-        answer = check_taken(sonject, tmp_path, "a.png")
-        assert_refused(answer, 3, words) if words else done(answer)
-
-    refused(None)
-    refused("does not say where its pixels lie", side=None)
-    refused("does not say where its pixels lie", side="left")
-    refused("does not say where its pixels lie", range_axis=None)
-    refused("does not say where its pixels lie", row_spacing_m="1e999")
-    refused("does not say where its pixels lie", column_spacing_m=-0.25)
-    refused("does not say the sonar's altitude", altitude_m=None)
-    refused("its altitude must be", altitude_m="1e30")
-    refused("--range-axis slant", range_axis="ground")
+        answer = sonject("check", write_taken(tmp_path, "a.png"))
+        assert answer.returncode == 0 if words is None else not assert_refused(answer, 3, words)
 
 
 def test_numbers_beyond_single_precision_are_refused(sonject, tmp_path):
@@ -129,9 +123,9 @@ objects: [{{name: ball, shape: sphere, diameter: 1 m}}]
 def check_injection(sonject, folder, name, before, extension):
     """The image of a run, which differs from the input's samples within the patch alone."""
     (folder / "scene.yaml").write_text(IMAGE.format(name))
-    answer = done(sonject("run", "scene.yaml", "-o", "out"))
+    answer = sonject.done("run", "scene.yaml", "-o", "out")
     image = folder / "out" / ("image" + extension)
-    done(sonject("convert", image, "after.npy"))
+    sonject.done("convert", image, "after.npy")
     after = numpy.load(folder / "after.npy")
     assert after.dtype == before.dtype
     inside = numpy.zeros(before.shape, bool)
@@ -146,18 +140,18 @@ def test_pgm_goes_out_as_tiff(sonject, tmp_path, sides):
     (tmp_path / "line.pgm").write_bytes(b"P5 %d %d 255\n" % (COLUMNS, ROWS) + before.tobytes())
     answer = check_injection(sonject, tmp_path, "line.pgm", before, ".tif")
     assert "note: image.tif is written anew" in answer.stderr
-    assert done(sonject("run", "scene.yaml", "-o", "again", "--quiet")).stderr == ""
+    assert sonject.done("run", "scene.yaml", "-o", "again", "--quiet").stderr == ""
     assert_refused(sonject("convert", "line.pgm", "b.pgm", "--into", "line.pgm"), 3,
                    "not changed in place: write a new .tif")
 
 
 def test_hdf5_keeps_samples_and_geometry(sonject, tmp_path, line, sides):
     h5py = pytest.importorskip("h5py")
-    done(sonject("convert", "line.xtf", "a.h5", "--channel", "starboard"))
+    sonject.done("convert", "line.xtf", "a.h5", "--channel", "starboard")
     with h5py.File(tmp_path / "a.h5") as file:
         assert numpy.array_equal(file["image"][()], sides[1])
         assert file["image"].attrs["sonject:side"] in ("starboard", b"starboard")
-    done(sonject("convert", "a.h5", "b.tif"))
+    sonject.done("convert", "a.h5", "b.tif")
     assert numpy.array_equal(images.read_tiff(tmp_path / "b.tif"), sides[1])
     assert b"sonject:side=starboard\n" in (tmp_path / "b.tif").read_bytes()
 
@@ -165,10 +159,10 @@ def test_hdf5_keeps_samples_and_geometry(sonject, tmp_path, line, sides):
 def test_complex_samples_and_their_magnitude(sonject, tmp_path, swath):
     image = (swath * numpy.exp(1j * swath * 50)).astype(numpy.complex64)
     numpy.save(tmp_path / "a.npy", image)
-    done(sonject("convert", "a.npy", "b.tif"))
-    done(sonject("convert", "b.tif", "c.npy"))
+    sonject.done("convert", "a.npy", "b.tif")
+    sonject.done("convert", "b.tif", "c.npy")
     assert numpy.array_equal(numpy.load(tmp_path / "c.npy"), image)
-    done(sonject("convert", "a.npy", "d.tif", "--magnitude"))
+    sonject.done("convert", "a.npy", "d.tif", "--magnitude")
     magnitude = images.read_tiff(tmp_path / "d.tif")
     assert numpy.abs(magnitude - numpy.abs(image)).max() <= 1e-7 * magnitude.max()
     assert_refused(sonject("convert", "a.npy", "d.png"), 3, "does not hold complex samples")
@@ -184,8 +178,8 @@ def test_types_change_by_a_stated_scale_alone(sonject, tmp_path, swath):
         sonject("convert", "a.npy", "b.png", "--type", "uint8", "--scale", 1.1 * scale), 3,
         "row {}, column {} would become".format(*numpy.argwhere(swath * 1.1 * scale >= 255.5)[0]))
     assert not (tmp_path / "b.png").exists()
-    done(sonject("convert", "a.npy", "b.png", "--type", "uint8", "--scale", scale))
-    done(sonject("convert", "b.png", "b.npy"))
+    sonject.done("convert", "a.npy", "b.png", "--type", "uint8", "--scale", scale)
+    sonject.done("convert", "b.png", "b.npy")
     rounded = numpy.floor(swath.astype("f8") * scale + 0.5).astype("u1")
     assert numpy.array_equal(numpy.load(tmp_path / "b.npy"), rounded)
     assert_refused(sonject("convert", "a.npy", "b.tif", "--type", "float32", "--scale", 1), 3,
@@ -193,7 +187,7 @@ def test_types_change_by_a_stated_scale_alone(sonject, tmp_path, swath):
 
 
 def test_ground_range_and_back(sonject, tmp_path, line, sides):
-    done(sonject("convert", "line.xtf", "g.tif", "--channel", "port", "--range-axis", "ground"))
+    sonject.done("convert", "line.xtf", "g.tif", "--channel", "port", "--range-axis", "ground")
     told = (tmp_path / "g.tif").read_bytes()
     assert b"sonject:range_axis=ground" in told and b"first_ground_range_m=0\n" in told
     assert b"sonject:resampled=nearest column" in told and b"first_slant" not in told
@@ -203,7 +197,7 @@ def test_ground_range_and_back(sonject, tmp_path, line, sides):
     slant = numpy.hypot(SPACING * numpy.arange(ground.shape[1]), ALTITUDE)
     nearest = numpy.floor((slant - SPACING / 2) / SPACING + 0.5).astype(int)
     assert numpy.array_equal(ground, sides[0][:, nearest])
-    done(sonject("convert", "g.tif", "s.tif", "--range-axis", "slant"))
+    sonject.done("convert", "g.tif", "s.tif", "--range-axis", "slant")
     back = images.read_tiff(tmp_path / "s.tif")
     # far out a column of the one is a column of the other
     first = COLUMNS - back.shape[1]
@@ -230,7 +224,7 @@ def test_a_recording_that_says_ground_range(sonject, tmp_path, line):
     for channel in range(3):
         struct.pack_into("<H", data, 256 + 128 * channel + 2, 2)
     line.write_bytes(data)
-    done(sonject("convert", "line.xtf", "a.tif", "--channel", "port"))
+    sonject.done("convert", "line.xtf", "a.tif", "--channel", "port")
     assert b"sonject:range_axis=ground" in (tmp_path / "a.tif").read_bytes()
 
 

@@ -12,8 +12,7 @@ ARRAY = "elements: {hydrophones: {count: 2}, pings: {count: 3, first: 1 m, spaci
 
 def test_files_hold_the_series(sonject, scene, tmp_path):
     scene.write_text(SCENE + ARRAY)
-    answer = sonject("elements", scene, "-o", "out", "--quiet")
-    assert answer.returncode == 0, answer.stderr
+    answer = sonject.done("elements", scene, "-o", "out", "--quiet")
     assert not answer.stdout and not answer.stderr
     names = [path.name for path in files_below(tmp_path / "out")]
     assert names == ["elements.json", "series.npy"]
@@ -29,26 +28,25 @@ def test_files_hold_the_series(sonject, scene, tmp_path):
     ground = math.sqrt((25 + 0.025 * (COLUMNS - 1) / 2) ** 2 - 10**2)
     nearest = math.hypot(ground, 10 - 0.25) - 0.25
     assert abs(peak * 1500 / 2 - nearest) < 0.5 * 0.025
-    answer = sonject("elements", scene, "-o", "real", "--set", "elements.form=passband")
-    assert answer.returncode == 0, answer.stderr
+    sonject.done("elements", scene, "-o", "real", "--set", "elements.form=passband")
     assert numpy.load(tmp_path / "real" / "series.npy").dtype == numpy.float32
 
 
 def test_series_of_other_inputs_are_refused_and_lost_ones_made_again(sonject, scene, tmp_path):
     scene.write_text(SCENE + ARRAY)
     file = tmp_path / "out" / "series.npy"
-    assert sonject("elements", scene, "-o", "out").returncode == 0
+    sonject.done("elements", scene, "-o", "out")
     first, made = file.read_bytes(), file.stat().st_mtime_ns
-    assert sonject("elements", scene, "-o", "out").returncode == 0
+    sonject.done("elements", scene, "-o", "out")
     assert file.stat().st_mtime_ns == made
     for key in ("injection.seed", "elements.pings.count", "objects[0].diameter"):
         changed = ["--set", f"{key}=2"]
         differs = key.removesuffix(".diameter").removesuffix(".pings.count")
         assert_refused(sonject("elements", scene, "-o", "out", *changed), 2, f"differs in {differs}")
     file.write_bytes(first[:-1])
-    assert sonject("elements", scene, "-o", "out").returncode == 0
+    sonject.done("elements", scene, "-o", "out")
     assert file.read_bytes() == first
-    assert sonject("elements", scene, "-o", "out", *changed, "--overwrite").returncode == 0
+    sonject.done("elements", scene, "-o", "out", *changed, "--overwrite")
     assert file.read_bytes() != first
 
 

@@ -82,8 +82,7 @@ def project(scene, tmp_path):
 def whole(sonject, scene, project):
     """What a run in one go leaves."""
     scene.write_text(scene.read_text() + MANY_RAYS)
-    answer = sonject("run", scene, "-o", "whole", "--quiet")
-    assert answer.returncode == 0, answer.stderr
+    sonject.done("run", scene, "-o", "whole", "--quiet")
     return contents(project / "whole")
 
 
@@ -211,20 +210,6 @@ def is_sonject(process):
         return False
 
 
-def test_the_parts_of_a_lost_node_go_on_elsewhere(slurm, project, whole):
-    parts, _ = start_and_freeze(slurm, project, "1-4", 2)
-    node = parts.task(2)["NodeList"]
-    slurm.lose(node)
-    slurm.start_again(f"{parts.array}_2")
-    said, code = parts.wait()
-    assert code == 0 and said.endswith("sonject: the result is in out\n")
-    assert parts.task(2)["Restarts"] == "1" and parts.task(2)["NodeList"] != node
-    assert "goes on with what is in out/work" in parts.log(2)
-    assert contents(project / "out") == whole
-    assert {path.name for path in (project / "out").iterdir()} == RESULTS
-    slurm.bring_back(node)
-
-
 def test_evicted_and_killed_parts_go_on_and_missing_ones_are_named(slurm, project, whole):
     parts, (evicted, killed) = start_and_freeze(slurm, project, "1,3", 1, 3)
     slurm.call("scontrol", "requeue", f"{parts.array}_1")
@@ -285,7 +270,7 @@ def in_parallel(project, named):
 
 
 def test_the_line_for_gnu_parallel_makes_a_run(sonject, scene, project, in_parallel):
-    assert sonject("run", scene, "-o", "whole").returncode == 0
+    sonject.done("run", scene, "-o", "whole")
     in_parallel(documented("parallel", " run "))
     assert contents(project / "out") == contents(project / "whole")
 
@@ -294,8 +279,7 @@ def test_the_line_for_gnu_parallel_makes_a_campaign(sonject, swath, project, in_
     grey = numpy.clip(numpy.rint(swath * 255), 1, 255).astype(numpy.uint8)
     (project / "swath.png").write_bytes(images.png_bytes(grey))
     (project / "campaign.yaml").write_text(CAMPAIGN)
-    answer = sonject("campaign", "campaign.yaml", "-o", "whole")
-    assert answer.returncode == 0, answer.stderr
+    sonject.done("campaign", "campaign.yaml", "-o", "whole")
     in_parallel(documented("parallel", " campaign "))
     made, wanted = data_set(project / "data"), data_set(project / "whole")
     assert made == wanted and any(name.endswith(".png") for name in made)

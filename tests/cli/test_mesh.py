@@ -36,22 +36,19 @@ def mesh(tmp_path, scene):
 
 
 def test_check_describes_meshes(sonject, scene, mesh):
-    answer = sonject("check", scene)
-    assert answer.returncode == 0, answer.stderr
+    answer = sonject.done("check", scene)
     assert "shapes/rock.obj: 4 triangles, 0.6 x 0.5 x 0.4 m, shown 2 times\n" in answer.stdout
     assert "watertight, 0.02 m3, 1 piece\n" in answer.stdout
     mesh.write_text(TETRAHEDRON.replace("f 2 3 4\n", ""))
     assert_refused(sonject("check", scene), 3, "scene.yaml:13:43", "rock.obj", "enclose a volume")
     scene.write_text(scene.read_text().replace("unit: mm", "unit: mm, open: true"))
-    answer = sonject("check", scene)
-    assert answer.returncode == 0, answer.stderr
+    answer = sonject.done("check", scene)
     assert "not watertight, thin sheets: 3 edges of one triangle" in answer.stdout
 
 
 def test_the_content_of_a_mesh_counts(sonject, scene, mesh, tmp_path):
     def run(*options):
-        answer = sonject("run", scene, "-o", "out", *options)
-        assert answer.returncode == 0, answer.stderr
+        answer = sonject.done("run", scene, "-o", "out", *options)
         return json.loads((tmp_path / "out" / "run.json").read_text())["scene_hash"], answer.stderr
 
     first, _ = run()

@@ -29,13 +29,11 @@ def test_help_lists_the_verbs_that_exist(sonject):
 
 @pytest.mark.parametrize("verb", sorted(VERBS))
 def test_help_of_a_verb(sonject, verb):
-    answer = sonject("help", verb)
-    assert answer.returncode == 0
-    assert answer.stdout.startswith(f"sonject {verb}")
-    assert sonject(verb, "--help").stdout == answer.stdout
-    for option in re.findall(r"--[a-z-]+", answer.stdout):
-        refused = sonject(verb, option + "x")
-        assert_refused(refused, 2, "there is no option")
+    told = sonject.done("help", verb).stdout
+    assert told.startswith(f"sonject {verb}")
+    assert sonject(verb, "--help").stdout == told
+    for option in re.findall(r"--[a-z-]+", told):
+        assert_refused(sonject(verb, option + "x"), 2, "there is no option")
 
 
 def test_help_of_a_key_is_its_row(sonject):
@@ -62,9 +60,7 @@ def test_help_of_a_section_is_all_its_keys(sonject):
 
 def test_nothing_asked_is_a_usage_error(sonject):
     answer = sonject()
-    assert answer.returncode == 2
-    assert not answer.stdout
-    assert "sonject run" in answer.stderr
+    assert answer.returncode == 2 and not answer.stdout and "sonject run" in answer.stderr
 
 
 @pytest.mark.parametrize(
@@ -131,9 +127,8 @@ def test_messages_stay_one_line_whatever_the_names(sonject):
 
 
 def test_check_prints_to_stdout(sonject, scene):
-    answer = sonject("check", scene)
-    assert (answer.returncode, answer.stderr) == (0, "")
-    assert "ball" in answer.stdout
+    answer = sonject.done("check", scene)
+    assert not answer.stderr and "ball" in answer.stdout
 
 
 def test_a_full_standard_output_is_noticed(sonject, scene):
@@ -155,18 +150,15 @@ def test_a_run_needs_no_standard_streams(sonject, scene, tmp_path):
         for descriptor in (0, 1, 2):
             os.close(descriptor)
 
-    assert sonject("run", scene, "-o", "result", preexec_fn=close_all).returncode == 0
+    sonject.done("run", scene, "-o", "result", preexec_fn=close_all)
     for path in (tmp_path / "result").iterdir():
         assert b"sonject: " not in path.read_bytes()[:64]
 
 
 def test_the_locale_does_not_change_numbers(tmp_path, sonject):
     for name in ("C", "de_DE.UTF-8", "nonsense"):
-        answer = sonject(
-            "seabed", "-o", f"{name}.tif", "--rows", "8", "--columns", "8", "--altitude", "9.5",
-            changes={"LC_ALL": name},
-        )
-        assert answer.returncode == 0, answer.stderr
+        sonject.done("seabed", "-o", f"{name}.tif", "--rows=8", "--columns=8", "--altitude=9.5",
+                     changes={"LC_ALL": name})
     assert (tmp_path / "C.tif").read_bytes() == (tmp_path / "de_DE.UTF-8.tif").read_bytes()
 
 

@@ -65,9 +65,8 @@ def test_code_within_the_scene_needs_consent_too(sonject, user_scene):
 
 
 def test_a_sphere_by_code_is_the_sphere(sonject, scene, user_scene, tmp_path):
-    assert sonject("run", scene, "-o", "sphere").returncode == 0
-    answer = sonject("run", user_scene, ALLOW, "-o", "user")
-    assert answer.returncode == 0, answer.stderr
+    sonject.done("run", scene, "-o", "sphere")
+    answer = sonject.done("run", user_scene, ALLOW, "-o", "user")
     truths = [
         json.loads((tmp_path / folder / "truth.json").read_text())["objects"][0]
         for folder in ("sphere", "user")
@@ -91,8 +90,7 @@ def test_a_sphere_by_code_is_the_sphere(sonject, scene, user_scene, tmp_path):
 
 
 def test_check_tells_what_it_tried(sonject, user_scene):
-    answer = sonject("check", ALLOW, user_scene)
-    assert answer.returncode == 0, answer.stderr
+    answer = sonject.done("check", ALLOW, user_scene)
     assert "ball.cl): 2416 of 4096 rays meet it, 0 of 2409 that leave it" in answer.stdout
 
 
@@ -138,7 +136,7 @@ def test_code_that_impulses_name_needs_consent(sonject, scene, tmp_path):
     target.write_text("sonject_target: 1\nshape: sphere\ndiameter: 0.5 m\n")
     text = scene.read_text()
     scene.write_text(text.replace("shape: sphere\n    diameter: 0.5 m", "target: ball.yaml"))
-    assert sonject("trace", scene, "-o", "impulses.sums").returncode == 0
+    sonject.done("trace", scene, "-o", "impulses.sums")
     target.write_text(
         "sonject_target: 1\nshape: user\n"
         "user: {file: ball.cl, bounding_radius: 25 cm, parameters: [0.25]}\n"
@@ -160,7 +158,7 @@ def test_a_campaign_with_code_names_its_device(sonject, user_scene, tmp_path):
     )
     command = ["campaign", "campaign.yaml", "-o", "data", "--only=0"]
     assert_refused(sonject(*command), 3, "objects[0].user", ALLOW)
-    assert sonject(*command, ALLOW).returncode == 0
+    sonject.done(*command, ALLOW)
     path = tmp_path / "data" / "campaign.json"
     head = json.loads(path.read_text())
     assert head["device"]["name"] in sonject("devices").stdout

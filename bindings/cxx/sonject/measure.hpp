@@ -48,14 +48,13 @@ inline std::string measure_contacts(const context &context, const sonject_measur
     return text.copy();
 }
 
-/* Two such sets compared, as JSON; picture "": none. */
+/* Two such sets compared, as JSON. */
 inline std::string compare_contacts(const context &context, const std::string &first,
-                                    const std::string &second, const std::string &picture = "")
+                                    const std::string &second)
 {
     detail::text text;
-    context.check(sonject_compare_contacts(context.get(), first.c_str(), second.c_str(),
-                                           picture.empty() ? nullptr : picture.c_str(),
-                                           text.out()));
+    context.check(
+        sonject_compare_contacts(context.get(), first.c_str(), second.c_str(), text.out()));
     return text.copy();
 }
 
