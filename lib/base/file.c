@@ -17,7 +17,6 @@
 #include <unistd.h>
 
 #define PATH_BYTES_MAX ((size_t)1 << 16)
-#define NAMES_MAX      ((size_t)1 << 20) /* in a folder */
 
 sonject_status input_failure(struct report *report, const char *path, const char *format, ...)
 {
@@ -63,25 +62,6 @@ sonject_status file_check_disk(struct report *report, const char *path, sonject_
     const bool is_of_disk = errno == EIO || errno == ESTALE || errno == ETIMEDOUT;
     return status == SONJECT_ERROR_INPUT && is_of_disk ? file_failure(report, path, "read", errno)
                                                        : status;
-}
-
-int file_open(const char *path)
-{
-    struct stat facts;
-    /* looked at first, for some devices do something when they are opened */
-    int descriptor = -1;
-    if (stat(path, &facts) != 0)
-        return -1;
-    if (S_ISREG(facts.st_mode))
-        descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    if (descriptor < 0 && S_ISREG(facts.st_mode))
-        return -1;
-    if (descriptor >= 0 && fstat(descriptor, &facts) == 0 && S_ISREG(facts.st_mode))
-        return descriptor;
-    if (descriptor >= 0)
-        close(descriptor);
-    errno = S_ISDIR(facts.st_mode) ? EISDIR : ESPIPE;
-    return -1;
 }
 
 /* From a '.' inside the last component to the end; "" if there is none. */
@@ -281,18 +261,25 @@ sonject_status growing_text_write(struct report *report, struct growing_text *te
 FILE *byte_file_open(const char *path, uint64_t *bytes)
 {
     struct stat facts;
-    const int descriptor = file_open(path);
-    FILE *file = descriptor >= 0 ? fdopen(descriptor, "rb") : NULL;
-    if (!file || fstat(descriptor, &facts) != 0) {
-        const int error = errno;
-        if (file)
-            fclose(file);
-        else if (descriptor >= 0)
-            close(descriptor);
-        errno = error;
+    FILE *file = NULL;
+    int descriptor = -1;
+    /* looked at first, for some devices do something when they are opened */
+    if (stat(path, &facts) != 0)
         return NULL;
+    if (S_ISREG(facts.st_mode)) {
+        descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+        if (descriptor < 0)
+            return NULL;
+    }
+    if (descriptor < 0 || fstat(descriptor, &facts) == 0) {
+        errno = S_ISDIR(facts.st_mode) ? EISDIR : ESPIPE;
+        file = S_ISREG(facts.st_mode) ? fdopen(descriptor, "rb") : NULL;
     }
     *bytes = (uint64_t)facts.st_size;
+    const int error = errno;
+    if (!file && descriptor >= 0)
+        close(descriptor);
+    errno = error;
     return file;
 }
 
@@ -441,53 +428,34 @@ void folder_names_clear(struct folder_names *list)
     memset(list, 0, sizeof *list);
 }
 
-static bool add_name(struct folder_names *list, const char *name)
+static int compare_names(const struct dirent **a, const struct dirent **b)
 {
-    if ((list->count & (list->count + 1)) == 0) { /* 0, 1, 3, 7...: room for twice as many */
-        char **more = list->count < NAMES_MAX
-                          ? realloc(list->names, (2 * list->count + 1) * sizeof *more)
-                          : NULL;
-        if (!more)
-            return false;
-        list->names = more;
-    }
-    list->names[list->count] = copy_text(name);
-    if (!list->names[list->count])
-        return false;
-    list->count++;
-    return true;
-}
-
-static int compare_names(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
-static bool is_wanted(const char *name, const char *prefix)
-{
-    return strcmp(name, ".") != 0 && strcmp(name, "..") != 0 &&
-           strncmp(name, prefix, strlen(prefix)) == 0;
+    return strcmp((*a)->d_name, (*b)->d_name);
 }
 
 sonject_status folder_names_read(struct folder_names *list, struct report *report, const char *path,
                                  const char *prefix)
 {
+    struct dirent **entries;
     memset(list, 0, sizeof *list);
-    DIR *folder = opendir(path);
-    if (!folder)
+    const int count = scandir(path, &entries, NULL, compare_names);
+    if (count < 0)
         return errno == ENOENT || errno == ENOTDIR ? SONJECT_OK
                                                    : file_failure(report, path, "read", errno);
-    sonject_status status = SONJECT_OK;
-    struct dirent *entry;
-    while (status == SONJECT_OK && (errno = 0, entry = readdir(folder)) != NULL)
-        if (is_wanted(entry->d_name, prefix) && !add_name(list, entry->d_name))
-            status = report_out_of_memory(report, path);
-    if (status == SONJECT_OK && errno != 0)
-        status = file_failure(report, path, "read", errno);
-    closedir(folder);
-    if (status != SONJECT_OK)
+    list->names = allocate_array((size_t)count, sizeof *list->names);
+    bool has_memory = list->names != NULL;
+    for (int i = 0; i < count; i++) {
+        const char *name = entries[i]->d_name;
+        if (has_memory && strcmp(name, ".") != 0 && strcmp(name, "..") != 0 &&
+            strncmp(name, prefix, strlen(prefix)) == 0) {
+            list->names[list->count] = copy_text(name);
+            has_memory = list->names[list->count] != NULL;
+            list->count += has_memory;
+        }
+        free(entries[i]);
+    }
+    free(entries);
+    if (!has_memory)
         folder_names_clear(list);
-    else if (list->count > 0)
-        qsort(list->names, list->count, sizeof *list->names, compare_names);
-    return status;
+    return has_memory ? SONJECT_OK : report_out_of_memory(report, path);
 }

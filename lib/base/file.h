@@ -36,10 +36,6 @@ sonject_status file_refuse(struct report *report, const char *path, int error);
  * read, the message is the system's, and STORAGE is returned; else status. */
 sonject_status file_check_disk(struct report *report, const char *path, sonject_status status);
 
-/* Opens a regular file for reading, and never waits. -1 with errno if that fails: EISDIR for a
- * folder, ESPIPE for pipes and devices, which may have no end. */
-int file_open(const char *path);
-
 /* A private name beside path for a file in the making:
  * "<path>.<place>-<process>-<unique>.part<extension of path>", so that writers that choose by
  * extension still work. To be given to free(); NULL when memory is out. */
@@ -79,7 +75,8 @@ sonject_status folder_make(struct report *report, const char *path);
 
 bool file_exists(const char *path);
 
-/* Opens for reading; NULL with errno, as file_open, if that fails. */
+/* Opens a regular file for reading, and never waits. NULL with errno if that fails: EISDIR for a
+ * folder, ESPIPE for pipes and devices, which may have no end. */
 FILE *byte_file_open(const char *path, uint64_t *bytes);
 
 /* False if the file does not hold as much. */
@@ -107,8 +104,8 @@ struct folder_names {
 };
 
 /* Lists what begins with prefix, "." and ".." left out; nothing where there is no such folder. On
- * success to be given to folder_names_clear; on failure nothing is held. Errors: STORAGE, MEMORY
- * (of more than a million names, too). */
+ * success to be given to folder_names_clear; on failure nothing is held. Errors: STORAGE, MEMORY.
+ */
 sonject_status folder_names_read(struct folder_names *list, struct report *report, const char *path,
                                  const char *prefix);
 void folder_names_clear(struct folder_names *list);

@@ -151,7 +151,7 @@ static sonject_status tell_end(struct report *report, struct decoder *decoder, c
         report, path, "is damaged: the program that reads it ended%s; copy it again", signal_name);
 }
 
-static bool send_all(int descriptor, const void *bytes, size_t count)
+bool decoder_send(int descriptor, const void *bytes, size_t count)
 {
     const char *rest = bytes;
     while (count > 0) {
@@ -166,7 +166,7 @@ static bool send_all(int descriptor, const void *bytes, size_t count)
     return true;
 }
 
-static bool receive_all(const struct report *report, int descriptor, void *bytes, size_t count)
+bool decoder_receive(const struct report *report, int descriptor, void *bytes, size_t count)
 {
     char *rest = bytes;
     int waits = 0;
@@ -197,14 +197,14 @@ static sonject_status ask_child(struct report *report, struct decoder *decoder, 
                                 struct decoder_reply *reply, void *out, size_t capacity)
 {
     char message[REPORT_CAPACITY] = "";
-    if (!send_all(decoder->socket, request, sizeof *request) ||
-        !send_all(decoder->socket, in, (size_t)request->bytes) ||
-        !receive_all(report, decoder->socket, reply, sizeof *reply))
+    if (!decoder_send(decoder->socket, request, sizeof *request) ||
+        !decoder_send(decoder->socket, in, (size_t)request->bytes) ||
+        !decoder_receive(report, decoder->socket, reply, sizeof *reply))
         return tell_end(report, decoder, path);
     const bool is_good = reply->status == SONJECT_OK;
     errno = 0;
     if (reply->bytes > (is_good ? capacity : sizeof message - 1) ||
-        !receive_all(report, decoder->socket, is_good ? out : message, (size_t)reply->bytes))
+        !decoder_receive(report, decoder->socket, is_good ? out : message, (size_t)reply->bytes))
         return tell_end(report, decoder, path);
     const bool is_known = is_good || reply->status == SONJECT_ERROR_STORAGE ||
                           reply->status == SONJECT_ERROR_MEMORY ||

@@ -55,6 +55,11 @@ struct decoder_reply {
 /* What the child's first argument must be. */
 void decoder_stamp(char stamp[64]);
 
+/* Bytes over the socket; false with errno where the other end is gone or silent for too long, or
+ * the caller has cancelled (ECANCELED). */
+bool decoder_send(int descriptor, const void *bytes, size_t count);
+bool decoder_receive(const struct report *report, int descriptor, void *bytes, size_t count);
+
 /* The files that one decoder has open, in the process that decodes. */
 struct decoder_state;
 struct decoder_state *decoder_state_make(void); /* NULL: memory is out */

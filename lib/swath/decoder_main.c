@@ -52,39 +52,24 @@ static void *end_with_the_socket(void *unused)
     _exit(0);
 }
 
-static bool transfer(void *bytes, size_t count, bool writes)
-{
-    char *rest = bytes;
-    while (count > 0) {
-        const ssize_t moved = writes ? write(SOCKET, rest, count) : read(SOCKET, rest, count);
-        if (moved < 0 && errno == EINTR)
-            continue;
-        if (moved <= 0)
-            return false;
-        rest += moved;
-        count -= (size_t)moved;
-    }
-    return true;
-}
-
 static bool serve(struct decoder_state *state)
 {
     struct report report = {{0}, NULL, NULL};
     struct decoder_request request;
     struct decoder_reply reply;
     void *out = NULL;
-    if (!transfer(&request, sizeof request, false))
+    if (!decoder_receive(&report, SOCKET, &request, sizeof request))
         return false;
     limit_time();
     memset(&reply, 0, sizeof reply);
     char *in = malloc((size_t)request.bytes + 1);
-    bool goes_on = in && transfer(in, (size_t)request.bytes, false);
+    bool goes_on = in && decoder_receive(&report, SOCKET, in, (size_t)request.bytes);
     if (goes_on) {
         reply.status = (int32_t)decoder_answer(&report, state, &request, in, &reply, &out);
         if (reply.status != SONJECT_OK)
             reply.bytes = strlen(report.message);
-        goes_on = transfer(&reply, sizeof reply, true) &&
-                  transfer(out ? out : report.message, (size_t)reply.bytes, true);
+        goes_on = decoder_send(SOCKET, &reply, sizeof reply) &&
+                  decoder_send(SOCKET, out ? out : report.message, (size_t)reply.bytes);
     }
     free(out);
     free(in);

@@ -1,8 +1,33 @@
-#include "fuzz.h"
-
+/* The fuzzers. Each gives a reader whatever bytes libFuzzer thinks of; the reader must take them or
+ * say why not, and hold nothing after a failure. KIND: the name of one. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "image/raster.h"
+#include "mesh/mesh.h"
+#include "mesh/mesh_reader.h"
+#include "schema/scene_file.h"
+#include "schema/tables.h"
+#include "swath/image_head.h"
+#include "swath/swath_format.h"
+#include "user/snippet.h"
+
+/* More than that and it is not read: compressed files may hold a thousand times their size. */
+#define BYTES_READ_MAX ((size_t)1 << 24)
+
+struct fuzzer {
+    const char *kind;
+    void (*run)(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count);
+    const struct swath_format *format;
+    sonject_status (*read_mesh)(struct mesh_soup *soup, const char *bytes, size_t count);
+};
+
+/* libFuzzer's entry: 0. */
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 static void fail(const char *what, const char *detail)
 {
@@ -10,14 +35,16 @@ static void fail(const char *what, const char *detail)
     abort();
 }
 
-void fuzz_write(const char *path, const uint8_t *bytes, size_t count)
+/* Writes the file, which is not flushed to disk. */
+static void put_file(const char *path, const uint8_t *bytes, size_t count)
 {
     FILE *file = fopen(path, "wb");
     if (!file || fwrite(bytes, 1, count, file) != count || fclose(file) != 0)
         fail("cannot write", path);
 }
 
-char *fuzz_text(const uint8_t *bytes, size_t count)
+/* A copy with one 0 byte beyond it, of just that size, so that reading on is found; for free(). */
+static char *text_of(const uint8_t *bytes, size_t count)
 {
     char *text = malloc(count + 1);
     if (!text)
@@ -28,6 +55,7 @@ char *fuzz_text(const uint8_t *bytes, size_t count)
     return text;
 }
 
+/* OK, or what bad input may have with one line of message, or a line for each mistake. */
 static void expect(sonject_status status, const struct report *report, bool has_lines)
 {
     if (status == SONJECT_OK)
@@ -42,12 +70,186 @@ static void expect(sonject_status status, const struct report *report, bool has_
             fail("not one line", report->message);
 }
 
-void fuzz_expect(sonject_status status, const struct report *report)
+/* With code of users allowed; among the targets in ../targets. */
+static void read_scene(const char *text, size_t count)
 {
-    expect(status, report, false);
+    struct report report = {{0}, NULL, NULL};
+    struct scene scene;
+    const struct scene_text source = {
+        .path = "scenes/fuzz.yaml", .text = text, .bytes = count, .allows_user_shapes = true};
+    scene_init(&scene);
+    expect(scene_text_read(&report, &source, &scene), &report, true);
+    scene_clear(&scene);
 }
 
-void fuzz_expect_lines(sonject_status status, const struct report *report)
+static void fuzz_scene(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
 {
-    expect(status, report, true);
+    char *text = text_of(bytes, count);
+    (void)fuzzer;
+    read_scene(text, count);
+    free(text);
+}
+
+/* Files of targets, as a scene reads them. */
+static void fuzz_target(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
+{
+    static const char text[] =
+        "sonject: 1\ninput: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, "
+        "column_spacing: 1, first_slant_range: 40}}\n"
+        "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+        "objects: [{target: ../targets/fuzz.yaml}]\n";
+    (void)fuzzer;
+    put_file("targets/fuzz.yaml", bytes, count);
+    read_scene(text, strlen(text));
+}
+
+/* Shapes that users write: what is refused before a compiler sees it. */
+static void fuzz_snippet(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct user_snippet snippet;
+    char *code = text_of(bytes, count);
+    (void)fuzzer;
+    const sonject_status status = snippet_make(&report, "fuzz.cl", 1, code, &snippet);
+    expect(status, &report, false);
+    if (status == SONJECT_OK)
+        snippet_clear(&snippet);
+    free(code);
+}
+
+static void fuzz_table(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
+{
+    static const struct table_format format = {.names = {"depth", "time", "speed", "other"},
+                                               .required = 1,
+                                               .samples_max = 100,
+                                               .bytes_max = 4000};
+    struct report report = {{0}, NULL, NULL};
+    struct number_table table;
+    (void)fuzzer;
+    put_file("fuzz.csv", bytes, count);
+    const sonject_status status = number_table_read(&report, "fuzz.csv", NULL, &format, &table);
+    expect(status, &report, false);
+    if (status != SONJECT_OK)
+        return;
+    for (size_t column = 0; column < TABLE_COLUMNS_MAX; column++)
+        for (size_t i = 0; table.values[column] && i < table.count; i++)
+            if (isnan(table.values[column][i])) /* infinite ones are for who reads it */
+                abort();
+    number_table_clear(&table);
+}
+
+/* What sonject itself reads of image files: the heads of BMP and PGM. Decoding is OpenImageIO's. */
+static void fuzz_image(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
+{
+    struct report report = {{0}, NULL, NULL};
+    (void)fuzzer;
+    put_file("fuzz.image", bytes, count);
+    if (count > 1 && (bytes[0] == 'B' || bytes[0] == 'P'))
+        expect((bytes[0] == 'B' ? bmp_check : pgm_check)(&report, "fuzz.image", "fuzz.image"),
+               &report, false);
+}
+
+/* From a file's bytes to a hierarchy. */
+static void fuzz_mesh(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct mesh_soup soup = {.report = &report, .path = "fuzz"};
+    struct mesh mesh = {0};
+    char *text = text_of(bytes, count);
+    sonject_status status = fuzzer->read_mesh(&soup, text, count);
+    expect(status, &report, false);
+    if (status == SONJECT_OK) {
+        for (size_t i = 0; i < 3 * soup.vertices; i++)
+            if (!isfinite(soup.positions[i]))
+                abort();
+        for (size_t i = 0; i < 3 * soup.triangles; i++)
+            if (soup.corners[i] >= soup.vertices)
+                abort();
+        mesh_options_init(&mesh.options);
+        mesh.options.smooth_angle_rad = 0.5;
+        status = mesh_of_soup(&soup, &mesh);
+        expect(status, &report, false);
+        if (status == SONJECT_OK)
+            expect(mesh_require_closed(&report, "fuzz", &mesh), &report, false);
+        mesh_clear(&mesh);
+    }
+    mesh_soup_clear(&soup);
+    free(text);
+}
+
+/* All lines that the file says to hold are in it. MATLAB's numbers, which may be compressed, are
+ * no lines. */
+static void expect_inside(const struct swath_file *file, size_t bytes)
+{
+    const struct sample_lines *lines = &file->lines;
+    const struct raster_layout *layout = &file->layout;
+    const uint64_t count = lines->is_transposed ? layout->columns : layout->rows;
+    for (uint64_t i = 0; (lines->places || lines->line_bytes > 0) && i < count; i++) {
+        const uint64_t place =
+            lines->places ? lines->places[i] : lines->first_place + i * lines->line_bytes;
+        const uint64_t line = lines->places ? bytes / count : lines->line_bytes;
+        if (place > file->bytes || line > file->bytes - place)
+            abort();
+    }
+}
+
+static void read_all(struct swath_file *file)
+{
+    struct report report = {{0}, NULL, NULL};
+    const struct region whole = {0, 0, file->layout.rows, file->layout.columns};
+    size_t size;
+    if (!region_bytes(&file->layout, &whole, &size))
+        abort();
+    expect_inside(file, size);
+    void *pixels = size <= BYTES_READ_MAX ? allocate_array(size, 1) : NULL;
+    if (pixels)
+        expect(file->format->read(&report, file, &whole, pixels), &report, false);
+    if (swath_file_xtf(file))
+        (void)xtf_geometry_of(&file->xtf, 0, file->layout.rows);
+    free(pixels);
+}
+
+/* Files that are read in this process: each choice of a channel or an array, its samples and its
+ * geometry. */
+static void fuzz_swath(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
+{
+    static const int32_t channels[] = {SONJECT_CHANNEL_ONLY, SONJECT_CHANNEL_ONLY,
+                                       SONJECT_CHANNEL_PORT, 1};
+    put_file("fuzz.swath", bytes, count);
+    for (int i = 0; i < 4; i++) {
+        struct report report = {{0}, NULL, NULL};
+        if ((i == 1 && !fuzzer->format->has_names) || (i > 1 && !fuzzer->format->has_channels))
+            continue;
+        struct swath_file *file = allocate_array(1, sizeof *file);
+        if (!file || !(file->path = copy_text("fuzz.swath")))
+            abort();
+        file->format = fuzzer->format;
+        file->stream = byte_file_open(file->path, &file->bytes);
+        if (!file->stream)
+            abort();
+        if (file->format->is_of(file, bytes, count)) {
+            const sonject_status status =
+                file->format->open(&report, file, channels[i], i == 1 ? "swath" : NULL);
+            expect(status, &report, false);
+            if (status == SONJECT_OK)
+                read_all(file);
+        }
+        swath_file_close(&file);
+    }
+}
+
+static const struct fuzzer fuzzers[] = {
+    {"scene", fuzz_scene, NULL, NULL},      {"target", fuzz_target, NULL, NULL},
+    {"xtf", fuzz_swath, &xtf_format, NULL}, {"npy", fuzz_swath, &npy_format, NULL},
+    {"mat", fuzz_swath, &mat_format, NULL}, {"stl", fuzz_mesh, NULL, stl_read},
+    {"obj", fuzz_mesh, NULL, obj_read},     {"ply", fuzz_mesh, NULL, ply_read},
+    {"image", fuzz_image, NULL, NULL},      {"table", fuzz_table, NULL, NULL},
+    {"snippet", fuzz_snippet, NULL, NULL}};
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
+{
+    for (size_t i = 0; i < sizeof fuzzers / sizeof *fuzzers; i++)
+        if (strcmp(fuzzers[i].kind, KIND) == 0)
+            fuzzers[i].run(&fuzzers[i], bytes, count);
+    return 0;
 }
