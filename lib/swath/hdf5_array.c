@@ -299,6 +299,7 @@ static sonject_status open_array(struct report *report, struct hdf5_array *array
 static sonject_status close_image(struct report *report, void *image)
 {
     struct hdf5_array *array = image;
+    const int before = errno; /* of what failed, where an image is closed for that */
     errno = 0;
     bool is_done = !array->writes || array->file < 0 || H5Fflush(array->file, H5F_SCOPE_LOCAL) >= 0;
     if (!is_done)
@@ -308,6 +309,7 @@ static sonject_status close_image(struct report *report, void *image)
     const sonject_status status = is_done ? SONJECT_OK : cannot_move(report, array);
     free(array->path);
     free(array);
+    errno = is_done ? before : errno;
     return status;
 }
 
