@@ -317,8 +317,7 @@ static int make_one_folder(const char *path)
 sonject_status folder_make(struct report *report, const char *path)
 {
     char *name = copy_text(path);
-    if (!name)
-        return report_out_of_memory(report, "a folder's name");
+    CHECK_MEMORY(report, name, "a folder's name");
     int error = 0;
     for (char *end = name; error == 0 && *end; end++) {
         if (*end != '/' || end == name)

@@ -43,9 +43,8 @@ void checkpoints_remove(const char *folder)
 
 sonject_status refuse_foreign_sums(struct report *report, const char *path, const char *what)
 {
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: traced by %s: choose another folder, or delete the work in this one",
-                          path, what);
+    return input_failure(
+        report, path, "traced by %s: choose another folder, or delete the work in this one", what);
 }
 
 /* Whose tallies this call's are. */
@@ -93,11 +92,11 @@ static sonject_status check_shards(const struct tracing *tracing)
     CHECK(sums_folder_shards(tracing->report, tracing->folder, mine, &others));
     if (others == 0)
         return SONJECT_OK;
-    return report_failure(tracing->report, SONJECT_ERROR_INPUT,
-                          "%s: holds work of a run in %llu shard%s, this is one in %llu: choose "
-                          "another folder, or delete that work",
-                          tracing->folder, (unsigned long long)others, others == 1 ? "" : "s",
-                          (unsigned long long)mine);
+    return input_failure(tracing->report, tracing->folder,
+                         "holds work of a run in %llu shard%s, this is one in %llu: choose "
+                         "another folder, or delete that work",
+                         (unsigned long long)others, others == 1 ? "" : "s",
+                         (unsigned long long)mine);
 }
 
 /* What is in the folder must be this scene's; what an earlier whole run left of another is dropped.
@@ -283,10 +282,9 @@ static sonject_status collect(const struct tracing *tracing, const struct sums_f
     if (status == SONJECT_OK && !names)
         status = report_out_of_memory(tracing->report, "shards");
     if (status == SONJECT_OK && missing_count > 0)
-        status =
-            report_failure(tracing->report, SONJECT_ERROR_INPUT,
-                           "%s: missing of %llu shards: %s; run each with --shard and merge again",
-                           tracing->folder, (unsigned long long)shards, names);
+        status = input_failure(tracing->report, tracing->folder,
+                               "missing of %llu shards: %s; run each with --shard and merge again",
+                               (unsigned long long)shards, names);
     free(names);
     return status;
 }
@@ -322,16 +320,15 @@ static sonject_status merge(struct tracing *tracing, struct injection_result *re
     sonject_status status =
         sums_folder_read(&folder, tracing->report, tracing->folder, 0, SIZE_MAX, false);
     if (status == SONJECT_OK && folder.count == 0)
-        status =
-            report_failure(tracing->report, SONJECT_ERROR_INPUT,
-                           "%s: holds no shards: run them with --shard I/K first", tracing->folder);
+        status = input_failure(tracing->report, tracing->folder,
+                               "holds no shards: run them with --shard I/K first");
     THEN(status, check_folder(tracing, &folder));
     if (status == SONJECT_OK) {
         tracing->head.shards = folder.files[0].head.shards;
         status = tracing->head.shards <= SHARDS_MAX
                      ? check_shards(tracing)
-                     : report_failure(tracing->report, SONJECT_ERROR_INPUT,
-                                      "%s: more shards than %d", folder.files[0].path, SHARDS_MAX);
+                     : input_failure(tracing->report, folder.files[0].path, "more shards than %d",
+                                     SHARDS_MAX);
     }
     THEN(status, add_up(tracing, &folder, result));
     sums_folder_clear(&folder);

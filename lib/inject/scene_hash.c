@@ -287,8 +287,7 @@ sonject_status traced_scene_hash(struct report *report, const struct scene *scen
 sonject_status code_hash(struct report *report, char hash_text[HASH_TEXT_CAPACITY])
 {
     struct hash *hash = hash_begin();
-    if (!hash)
-        return report_out_of_memory(report, "a hash");
+    CHECK_MEMORY(report, hash, "a hash");
     hash_add_text(hash, sonject_version());
     for (size_t i = 0; i < PROGRAM_COUNT; i++)
         hash_add(hash, embedded_sources[i].text, embedded_sources[i].bytes);

@@ -147,12 +147,11 @@ static sonject_status bad_pixel(struct report *report, const struct scene *scene
 {
     const size_t pixel = swath->is_complex ? index / 2 : index;
     const size_t columns = (size_t)swath->patch.columns;
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: the pixel at row %llu, column %llu is %s: mend the image or choose "
-                          "another patch",
-                          scene->input_path,
-                          (unsigned long long)(swath->patch.first_row + pixel / columns),
-                          (unsigned long long)(swath->patch.first_column + pixel % columns), what);
+    return input_failure(report, scene->input_path,
+                         "the pixel at row %llu, column %llu is %s: mend the image or choose "
+                         "another patch",
+                         (unsigned long long)(swath->patch.first_row + pixel / columns),
+                         (unsigned long long)(swath->patch.first_column + pixel % columns), what);
 }
 
 /* Bytes of a pixel as it is stored. */
@@ -410,10 +409,9 @@ sonject_status write_seabed(struct report *report, const struct scene *scene, co
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the scene's input is no synthetic seabed: set input.synthetic");
     if (!is_png && !ends_with(path, ".tif"))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: a synthetic seabed is written as .tif or .png", path);
+        return input_failure(report, path, "a synthetic seabed is written as .tif or .png");
     if (is_complex && is_png)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: complex pixels need .tif", path);
+        return input_failure(report, path, "complex pixels need .tif");
     CHECK(make_input(report, scene, &input));
     const struct raster_layout layout = {input.rows, input.columns, is_complex ? 2 : 1,
                                          is_png ? PIXEL_UINT8 : PIXEL_FLOAT32};

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "inject/echoes.h"
 #include "scene/point_response.h"
@@ -338,11 +339,10 @@ static sonject_status check_strips(const struct tracer *tracer, const struct lin
     const bool is_moved = tracer->response.motion != NULL;
     if (reach <= margin)
         return SONJECT_OK;
-    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
-                          "%s: the response reaches %.4g m, but %s was traced to %.4g m beyond the "
-                          "patch: trace again with %s",
-                          is_moved ? "sonar.motion" : "sonar.resolution", reach, path, margin,
-                          is_moved ? "this motion" : "a coarser resolution");
+    return input_failure(tracer->report, is_moved ? "sonar.motion" : "sonar.resolution",
+                         "the response reaches %.4g m, but %s was traced to %.4g m beyond the "
+                         "patch: trace again with %s",
+                         reach, path, margin, is_moved ? "this motion" : "a coarser resolution");
 }
 
 /* Of glints, whose bins are finer and as wide for all parts. */

@@ -193,9 +193,8 @@ sonject_status scene_file_load(struct report *report, const char *path, char **t
 {
     char excerpt[400];
     if (!file_exists(path))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: there is no such scene file; check its name",
-                              text_excerpt(excerpt, sizeof excerpt, path));
+        return input_failure(report, text_excerpt(excerpt, sizeof excerpt, path),
+                             "there is no such scene file; check its name");
     CHECK(file_read_whole(report, path, TREE_BYTES_MAX, text, bytes));
     if (strlen(*text) == *bytes)
         return SONJECT_OK;

@@ -1,4 +1,5 @@
 #include "schema/scene_source.h"
+#include "base/file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -206,8 +207,7 @@ sonject_status scene_source_set(struct scene_source *source, struct report *repo
         source->overrides = overrides;
     sonject_status status = !overrides || !override ? report_out_of_memory(report, "a scene")
                             : strchr(key, '=')
-                                ? report_failure(report, SONJECT_ERROR_INPUT,
-                                                 "%s: not a key; its value goes by itself", key)
+                                ? input_failure(report, key, "not a key; its value goes by itself")
                                 : check_override(source, report, override);
     if (status == SONJECT_OK) {
         keep_override(source, override);
@@ -257,19 +257,17 @@ sonject_status scene_source_set_array(struct scene_source *source, struct report
     bool is_grid;
     const char *key = array->name;
     if (!takes_array(key, &is_grid))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: takes no array; sonar.pulse.file, sonar.measured_response, "
-                              "sonar.motion.file, sonar.motion.yaw.file, medium.profile.file and "
-                              "seabed.relief[0].heights.file do",
-                              key);
+        return input_failure(report, key,
+                             "takes no array; sonar.pulse.file, sonar.measured_response, "
+                             "sonar.motion.file, sonar.motion.yaw.file, medium.profile.file and "
+                             "seabed.relief[0].heights.file do");
     if (is_grid != (array->columns == NULL))
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", key,
-                              is_grid ? "heights have no names of columns" : "name the columns");
+        return input_failure(report, key, "%s",
+                             is_grid ? "heights have no names of columns" : "name the columns");
     if (array->rows == 0 || array->column_count == 0 || array->rows > ARRAY_VALUES_MAX ||
         array->column_count > ARRAY_VALUES_MAX / array->rows)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: an array has 1 to 2^24 numbers, not %zu x %zu", key, array->rows,
-                              array->column_count);
+        return input_failure(report, key, "an array has 1 to 2^24 numbers, not %zu x %zu",
+                             array->rows, array->column_count);
     struct number_array copy;
     struct number_array *arrays =
         realloc(source->arrays, (source->array_count + 1) * sizeof *arrays);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "schema/keys.h"
 #include "swath/swath_file.h"
@@ -143,14 +144,14 @@ static sonject_status take_heights(struct scene *scene, struct report *report,
         swath_file_layout(file, &layout);
     }
     if (layout.channels != 1)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: has %lu channels; heights need one",
-                              text->path, (unsigned long)layout.channels);
+        return input_failure(report, text->path, "has %lu channels; heights need one",
+                             (unsigned long)layout.channels);
     if (!relief_grid_fits(layout.rows, layout.columns))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: has %llu rows and %llu columns; heights need 2...%u each, at "
-                              "most 2^24 points: cut out or thin out",
-                              text->path, (unsigned long long)layout.rows,
-                              (unsigned long long)layout.columns, RELIEF_GRID_SIDE_MAX);
+        return input_failure(report, text->path,
+                             "has %llu rows and %llu columns; heights need 2...%u each, at "
+                             "most 2^24 points: cut out or thin out",
+                             (unsigned long long)layout.rows, (unsigned long long)layout.columns,
+                             RELIEF_GRID_SIDE_MAX);
     const struct region all = {0, 0, layout.rows, layout.columns};
     const size_t count = (size_t)(layout.rows * layout.columns);
     void *pixels = array ? NULL : allocate_array(count, pixel_bytes(layout.type));

@@ -212,8 +212,7 @@ static sonject_status take_file(struct table_reader *reader, const char *path)
         file_read_whole(reader->report, path, reader->table->format->bytes_max, &text, &bytes);
     THEN(status, take_text(reader, text, bytes));
     if (status == SONJECT_OK && reader->column_count == 0)
-        status = report_failure(reader->report, SONJECT_ERROR_INPUT, "%s: there is nothing in it",
-                                reader->table->file);
+        status = input_failure(reader->report, reader->table->file, "there is nothing in it");
     free(text);
     return status;
 }

@@ -3,6 +3,7 @@
 
 #include <yaml.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "schema/yaml_tree.h"
@@ -215,9 +216,8 @@ sonject_status tree_parse(struct tree *tree, const char *text, size_t bytes)
 {
     static const char byte_order_mark[] = "\xEF\xBB\xBF";
     if (bytes > TREE_BYTES_MAX)
-        return report_failure(tree->report, SONJECT_ERROR_INPUT,
-                              "%s: larger than %d bytes; this is no scene file", tree->file,
-                              TREE_BYTES_MAX);
+        return input_failure(tree->report, tree->file,
+                             "larger than %d bytes; this is no scene file", TREE_BYTES_MAX);
     /* libyaml skips the mark only where it chooses the encoding itself. */
     const size_t skipped = bytes >= 3 && memcmp(text, byte_order_mark, 3) == 0 ? 3 : 0;
     struct builder builder = {.tree = tree, .text = text + skipped};

@@ -46,8 +46,7 @@ static sonject_status make_room(struct tree *tree, struct tree_node *node)
         return SONJECT_OK;
     const size_t capacity = node->capacity == 0 ? 4 : 2 * node->capacity;
     struct tree_entry *entries = realloc(node->entries, capacity * sizeof *entries);
-    if (!entries)
-        return report_out_of_memory(tree->report, "the scene file");
+    CHECK_MEMORY(tree->report, entries, "the scene file");
     node->entries = entries;
     node->capacity = capacity;
     return SONJECT_OK;
@@ -368,12 +367,10 @@ static sonject_status keep_path(struct tree *tree, const char *path, size_t leng
                                 const char **kept)
 {
     char **paths = realloc(tree->override_paths, (tree->override_count + 1) * sizeof *paths);
-    if (!paths)
-        return report_out_of_memory(tree->report, "an override");
+    CHECK_MEMORY(tree->report, paths, "an override");
     tree->override_paths = paths;
     paths[tree->override_count] = trimmed(path, length);
-    if (!paths[tree->override_count])
-        return report_out_of_memory(tree->report, "an override");
+    CHECK_MEMORY(tree->report, paths[tree->override_count], "an override");
     *kept = paths[tree->override_count++];
     return SONJECT_OK;
 }
@@ -411,8 +408,7 @@ sonject_status tree_override(struct tree *tree, const char *override)
     if (strlen(equals) > TREE_BYTES_MAX)
         return refuse(&walk, "the value is too long");
     char *value = trimmed(equals + 1, strlen(equals + 1));
-    if (!value)
-        return report_out_of_memory(tree->report, "an override");
+    CHECK_MEMORY(tree->report, value, "an override");
     if (!*value)
         status = refuse(&walk, "has no value; write key.path=value");
     else if (!text_is_printable(value) || !text_is_printable(walk.place.override))

@@ -104,8 +104,7 @@ static sonject_status start(struct report *report, struct decoder *decoder, cons
 {
     int ends[2];
     char *program = module_path(DECODER_PROGRAM);
-    if (!program)
-        return report_out_of_memory(report, "a path");
+    CHECK_MEMORY(report, program, "a path");
     int error = socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0 ? 0 : errno;
     sonject_status status = SONJECT_OK;
     if (error == 0) {

@@ -146,8 +146,7 @@ static sonject_status read_header(struct report *report, struct swath_file *file
     if (length > HEADER_MAX || length > file->bytes - place)
         return input_failure(report, file->path, "is damaged: its header is longer than the file");
     char *header = allocate_array((size_t)length + 1, 1);
-    if (!header)
-        return report_out_of_memory(report, "a header");
+    CHECK_MEMORY(report, header, "a header");
     file->lines.first_place = place + length;
     const sonject_status status =
         byte_file_read(file->stream, place, header, (size_t)length)

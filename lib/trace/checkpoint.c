@@ -1,4 +1,5 @@
 #include "trace/checkpoint.h"
+#include "base/file.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -152,11 +153,10 @@ sonject_status checkpoint_finish(struct checkpoint *checkpoint, struct trace_cou
         counts->impulses += file->head.impulses;
         if (strcmp(file->head.launches, head->launches) != 0 ||
             file->head.records != checkpoint->record)
-            return report_failure(checkpoint->report, SONJECT_ERROR_INPUT,
-                                  "%s: traced other rays than this machine would, whose "
-                                  "mathematics may differ: trace all, and merge or form, on "
-                                  "machines of one kind",
-                                  file->path);
+            return input_failure(checkpoint->report, file->path,
+                                 "traced other rays than this machine would, whose "
+                                 "mathematics may differ: trace all, and merge or form, on "
+                                 "machines of one kind");
     }
     return SONJECT_OK;
 }

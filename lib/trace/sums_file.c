@@ -211,8 +211,7 @@ sonject_status sums_writer_publish(struct sums_writer *writer, const struct sums
 
 static sonject_status refuse(struct report *report, const char *path)
 {
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: damaged, or cut short: delete it and trace again", path);
+    return input_failure(report, path, "damaged, or cut short: delete it and trace again");
 }
 
 /* So many bytes. A file that cannot be read is not damaged: STORAGE. */
@@ -312,9 +311,8 @@ static sonject_status read_all(struct sums_file *file, struct report *report, FI
         return refuse(report, file->path);
     CHECK(read_bytes(report, file->path, opened, magic, sizeof magic));
     if (memcmp(magic, SUMS_MAGIC, sizeof magic) != 0)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: not sums as this version of sonject writes them: trace again",
-                              file->path);
+        return input_failure(report, file->path,
+                             "not sums as this version of sonject writes them: trace again");
     while (!file->content) {
         struct block_head block;
         unsigned char *content;

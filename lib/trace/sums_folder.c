@@ -70,9 +70,8 @@ static sonject_status open_one(struct sums_folder *folder, struct report *report
     folder->count++;
     return file->head.shard == name->shard && file->head.shards == name->shards
                ? SONJECT_OK
-               : report_failure(report, SONJECT_ERROR_INPUT,
-                                "%s: is another shard's: give it back its name, or delete it",
-                                name->path);
+               : input_failure(report, name->path,
+                               "is another shard's: give it back its name, or delete it");
 }
 
 sonject_status sums_folder_read(struct sums_folder *folder, struct report *report, const char *path,

@@ -1,4 +1,5 @@
 #include "user/snippet.h"
+#include "base/file.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -178,9 +179,8 @@ sonject_status snippet_make(struct report *report, const char *name, uint32_t fi
                               "line",
                               SNIPPET_NAME_MAX);
     if (strlen(code) > SNIPPET_BYTES_MAX)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: the code of a shape must be at most %zu KiB", name,
-                              SNIPPET_BYTES_MAX >> 10);
+        return input_failure(report, name, "the code of a shape must be at most %zu KiB",
+                             SNIPPET_BYTES_MAX >> 10);
     snippet->name = copy_text(name);
     snippet->code = copy_text(code);
     snippet->first_line = first_line > 0 ? first_line : 1;
@@ -277,14 +277,13 @@ sonject_status explain_build_log(struct report *report, const struct user_snippe
         text[end - 1] = '\0';
     const char *what = find_place(text, &line);
     if (!what)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: device '%s' cannot compile it: %s",
-                              snippet->name, device_name, text);
+        return input_failure(report, snippet->name, "device '%s' cannot compile it: %s",
+                             device_name, text);
     what = skip_to_words(what);
     if (line <= before)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", snippet->name, what);
+        return input_failure(report, snippet->name, "%s", what);
     if (line > before + text_count_lines(snippet->code) + 1)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: at its end: %s", snippet->name,
-                              what);
+        return input_failure(report, snippet->name, "at its end: %s", what);
     return report_failure(report, SONJECT_ERROR_INPUT, "%s:%lu: %s", snippet->name,
                           snippet->first_line + (line - before - 1), what);
 }
