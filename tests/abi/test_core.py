@@ -1,20 +1,16 @@
 """The core alone: a library that loads no C++ runtime, and the Python package that pip makes of it."""
-import json
 import os
 import pathlib
 import shutil
 import subprocess
-import tomllib
 import zipfile
 
 import pytest
 
+from test_installed import MODULES
 from test_interface import LIBRARY, SOURCE, exported_symbols
 
 READERS = os.environ.get("SONJECT_READERS")
-PACKAGE = SOURCE / "bindings" / "python" / "sonject"
-MODULES = {f"sonject/{path.name}" for path in PACKAGE.iterdir() if path.suffix in (".py", ".typed")}
-MODULES |= {f"sonject/{name}.py" for name in ("_interface", "_classes", "enumerations", "keys")}  # made
 CORE = ["-Dopenimageio=disabled", "-Dhdf5=disabled", "-Dtests=disabled",
         "-Dstatic=disabled", "-Dbuildtype=debug", "-Db_sanitize=none"]
 # What pip asks meson-python for. The build folder is said, so that none is made among the sources.
@@ -84,22 +80,6 @@ def test_the_wheel_holds_package_and_library(wheel):
         names = {name for name in archive.namelist() if ".dist-info/" not in name}
     assert {"sonject/scene.py", "sonject/py.typed"} <= MODULES
     assert names == MODULES | {"sonject/libsonject.so", "sonject/sonject-decoder"}
-
-
-def test_a_wheel_with_image_files_has_their_module(tmp_path):
-    """By what meson would install; building it all again would show no more."""
-    if not (LIBRARY.parent / "openimageio.so").exists():
-        pytest.skip("built without image files")
-    project = tomllib.loads((SOURCE / "pyproject.toml").read_text(encoding="utf-8"))
-    settings = project["tool"]["meson-python"]["args"]
-    subprocess.run(["meson", "setup", tmp_path, SOURCE, *settings["setup"]], check=True,
-                   capture_output=True)
-    plan = json.loads((tmp_path / "meson-info" / "intro-install_plan.json").read_text())
-    entries = [entry for kind in plan.values() for entry in kind.values()]
-    assert settings["install"] == ["--tags=python-runtime"]
-    assert {entry["destination"] for entry in entries if entry["tag"] == "python-runtime"} == {
-        *(f"{{py_platlib}}/{name}" for name in MODULES), "{py_platlib}/sonject/libsonject.so",
-        "{py_platlib}/sonject/openimageio.so", "{py_platlib}/sonject/sonject-decoder"}
 
 
 def test_the_installed_package_finds_its_library(installed):

@@ -494,12 +494,11 @@ static bool is_compared(const struct bench *bench, const struct subject *subject
     return subject->part == GLINTS && w == 0 && !bench->tracer.relief;
 }
 
-/* Strips are traced all at once, twice, and few at a time; at the lower end, where each takes
- * longest, only some of these. Returns whether there was anything to compare. */
+/* Strips are traced all at once and few at a time. Returns whether there was anything to compare.
+ */
 static bool compare_bits(struct bench *bench, const struct subject *subject)
 {
     const int32_t least = subject->part == ROUGH ? 1 : subject->part == GLINTS ? 5 : 13;
-    const int32_t chunks[] = {1 << 20, 37, 1 << 20, least};
     struct device *own = bench->tracer.device;
     struct tallies expected = trace_as_c(bench, subject);
     const bool had_echoes = is_alive(subject, &expected);
@@ -509,11 +508,12 @@ static bool compare_bits(struct bench *bench, const struct subject *subject)
         bench->tracer.device = subject->part == CHAINS ? own : devices[w];
         print_message("%s, width %u\n", subject->scene->name,
                       (unsigned)bench->tracer.device->width);
-        for (size_t i = 0; i < (w == 0 && width_count > 1 ? 2 : COUNT(chunks)); i++) {
-            /* a strip alone would be traced again for each of its many neighbours */
-            if (chunks[i] == 1 && subject->scene->flags & WITH_ASPECTS &&
-                subject->scene->flags & ON_RELIEF)
-                continue;
+        /* at the lower end each takes longest; a strip alone would be traced again for each of its
+         * many neighbours */
+        const bool is_slow = (w == 0 && width_count > 1) || (subject->scene->flags & WITH_ASPECTS &&
+                                                             subject->scene->flags & ON_RELIEF);
+        const int32_t chunks[] = {1 << 20, is_slow ? 37 : least};
+        for (size_t i = 0; i < COUNT(chunks); i++) {
             struct tallies measured = trace_on_device(bench, subject, chunks[i]);
             expect_same(subject, &measured, &expected);
             tallies_clear(&measured);

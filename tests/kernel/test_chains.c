@@ -89,7 +89,7 @@ static void test_closed_sphere(void **state)
     free(tallies);
 }
 
-#define SAMPLES 400000
+#define SAMPLES 150000
 
 /* A wavy surface over a target that is near, with a lobe of its own kinds each. */
 static void lay_waves(struct chain_record *chains, struct sphere_record *sphere, int kind)
@@ -113,7 +113,7 @@ static void lay_waves(struct chain_record *chains, struct sphere_record *sphere,
  * rough part over all directions. */
 static double energy_sent_on(const struct chain_record *chains, const struct chain_hit *hit)
 {
-    const int steps = 1000;
+    const int steps = 500;
     const double cosine = (double)-hit->back.z;
     double sum = 0.0;
     for (int i = 0; i < steps; i++)
@@ -247,7 +247,7 @@ static int is_towards_some(const struct targets *targets, int count, struct vect
 /* What Lambert's law sends to each part of the sky, of all or only towards the targets. */
 static void light_sky(const struct targets *targets, int count, int is_all, double sky[SKY])
 {
-    const int steps = 200 * ROWS_OF_SKY;
+    const int steps = 100 * ROWS_OF_SKY;
     memset(sky, 0, SKY * sizeof *sky);
     for (int i = 0; i < steps; i++)
         for (int k = 0; k < steps; k++) {

@@ -8,7 +8,7 @@
 
 #include "trace/object_buffer.h"
 
-#define RAYS      15000
+#define RAYS      6000
 #define SHIFT_M   4e-6 /* so far aside a ray may act: rounding of coordinates up to 2 m (1e-7) */
 #define CLOSE_M   4e-6 /* rounding of distances up to 500 m from the closest approach: their own */
 #define FACES_MAX 4096

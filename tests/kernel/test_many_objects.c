@@ -10,7 +10,7 @@
 #include "trace/fan.h"
 #include "trace/object_buffer.h"
 
-#define RAYS     12800 /* of each of four kinds */
+#define RAYS     4800 /* of each of four kinds */
 #define ROWS     160
 #define COLUMNS  160
 #define MIDDLE_M 18.0

@@ -176,12 +176,13 @@ static struct reference find_reference(const struct mesh *mesh, const struct fli
     return best;
 }
 
+/* Every third ray, which are of all kinds. */
 static void compare_with_reference(const struct mesh *mesh, struct flight *rays)
 {
     uint32_t hits = 0, undecided = 0;
     double worst = 0.0;
     ask(mesh, rays);
-    for (uint32_t ray = 0; ray < RAYS; ray++) {
+    for (uint32_t ray = 0; ray < RAYS; ray += 3) {
         const struct reference expected = find_reference(mesh, rays, ray);
         const bool is_hit = is_met(rays, ray);
         assert_int_equal(is_blocked(rays, ray), is_hit);
@@ -202,10 +203,10 @@ static void compare_with_reference(const struct mesh *mesh, struct flight *rays)
         hits++;
     }
     print_message("%u rays: %u hits, %u undecided, worst distance %.3g of the radius\n",
-                  (unsigned)RAYS, (unsigned)hits, (unsigned)undecided, worst);
+                  (unsigned)RAYS / 3, (unsigned)hits, (unsigned)undecided, worst);
     assert_true(worst < 1e-5);
-    assert_true(hits > RAYS / 20);
-    assert_true(undecided < RAYS / 50);
+    assert_true(hits > RAYS / 60);
+    assert_true(undecided < RAYS / 150);
 }
 
 static void test_rays_meet_the_nearest_triangle(void **state)
@@ -492,9 +493,9 @@ static void test_bits_are_the_same_at_every_width(void **state)
     ask(&mesh, &flight);
     expect_same("16 lanes of plain C", &flight, &other_flight);
     for (size_t i = 0; i < devices; i++) {
-        uint32_t widths[BENCH_WIDTHS];
+        uint32_t widths[2];
         bench_device = names[i];
-        const size_t count = bench_widths(widths);
+        const size_t count = bench_end_widths(widths);
         for (size_t w = 0; w < count; w++)
             compare_device(names[i], widths[w], &mesh, &other_flight);
     }

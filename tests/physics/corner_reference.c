@@ -143,9 +143,10 @@ static struct shape_of_path shape_of_path(const struct search *search, const dou
     return shape;
 }
 
-/* Newton's iteration from `at` on, by steps of at most 2 cm; whether it came to an end on the face.
- */
-static bool ends_on_face(const struct search *search, double at[2], const double place[3])
+/* Newton's iteration from `at` on, by steps of at most 2 cm; whether it came to an end, and whether
+ * that is on the face. */
+static bool ends_on_face(const struct search *search, double at[2], const double place[3],
+                         bool *has_ended)
 {
     const struct face *first = search->first;
     double size = 1.0;
@@ -161,23 +162,27 @@ static bool ends_on_face(const struct search *search, double at[2], const double
         for (int k = 0; k < 2; k++)
             at[k] += scale * step[k] / here.scale[k];
     }
-    return size < 1e-7 && at[0] >= first->first[0] && at[0] <= first->last[0] &&
+    *has_ended = size < 1e-7;
+    return *has_ended && at[0] >= first->first[0] && at[0] <= first->last[0] &&
            at[1] >= first->first[1] && at[1] <= first->last[1];
 }
 
 #define STARTS 9
 
-/* From the last point's, or from anywhere on the face. */
+/* From the last point's, or from anywhere on the face. A plane has one such point, if not on this
+ * face. */
 static bool find_stationary(const struct search *search, double at[2], const double place[3])
 {
     const struct face *first = search->first;
-    if (ends_on_face(search, at, place))
-        return true;
+    bool has_ended;
+    if (ends_on_face(search, at, place, &has_ended) || (has_ended && first->kind == FACE_PLANE))
+        return has_ended && at[0] >= first->first[0] && at[0] <= first->last[0] &&
+               at[1] >= first->first[1] && at[1] <= first->last[1];
     for (int i = 0; i < STARTS * STARTS; i++) {
         const double share[2] = {(i / STARTS + 0.5) / STARTS, (i % STARTS + 0.5) / STARTS};
         for (int k = 0; k < 2; k++)
             at[k] = first->first[k] + share[k] * (first->last[k] - first->first[k]);
-        if (ends_on_face(search, at, place))
+        if (ends_on_face(search, at, place, &has_ended))
             return true;
     }
     return false;

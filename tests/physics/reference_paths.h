@@ -1,24 +1,20 @@
-/* Incoherent sound by several interactions over a plane seabed with a few bodies, as plainly as it
-   can be computed, in double precision: the energies that the library's kernels are held to. It
-   shares nothing with them but the physics:
-
-   A ray of the fan stands for the area dA = width x r1 x (elevation step) across it at its first
-   hit, r1 away. A path over X1 ... Xk brings, one-way patterns being 1,
-     E = dA / r1^2 x [product over i < k of f_i cos(theta_i) / pdf_i] x f_k cos(theta_k) / r_s^2,
-   f = mu (Lambert), pdf = cos(theta) / pi, r_s from Xk to the source, which moves with the ray.
-   Order 1 of a plain seabed is so mu sin(grazing) dA / r^4, times r^4 in a target-strength image.
- */
+/* Incoherent sound between a seabed, a body over it and the sea surface, as plainly as it can be
+ * computed, in double precision: what the library's chains are held to. It shares nothing with them
+ * but the physics. Rays leave the sonar all ways, upwards too, so every path is found in the
+ * direction in which it is run, from the sea surface on as well:
+ *
+ * A ray of the fan stands for the area dA = width x r1 x (elevation step) across it at its first
+ * hit, r1 away. A path over X1 ... Xk brings, one-way patterns being 1,
+ *   E = dA / r1^2 x [product over i < k of f_i cos(theta_i) / pdf_i] x f_k cos(theta_k) / r_s^2,
+ * f = mu (Lambert), r_s from Xk to the source, which moves with the ray; times half its length to
+ * the fourth power. */
 #ifndef SONJECT_TESTS_REFERENCE_PATHS_H
 #define SONJECT_TESTS_REFERENCE_PATHS_H
 
-#include <stdbool.h>
-#include <stdint.h>
+#include "sea.h"
 
-#include "estimate.h"
-
-#define REFERENCE_OBJECTS 8
-#define REFERENCE_ORDERS  8
-#define REFERENCE_BINS    256
+#define REFERENCE_ORDERS  3
+#define REFERENCE_BINS    16
 #define REFERENCE_BATCHES 32
 
 /* ---- surfaces ---- */
@@ -27,92 +23,91 @@ struct reference_vector {
     double x, y, z;
 };
 
+struct reference_vector reference_sum(struct reference_vector a, double scale,
+                                      struct reference_vector b); /* a + scale b */
+double reference_dot(struct reference_vector a, struct reference_vector b);
+
 enum reference_shape {
     REFERENCE_SPHERE,  /* radius */
     REFERENCE_CAPSULE, /* length with its round ends (>= 2 radius), radius; along the nose */
     REFERENCE_CYLINDER /* length, radius; flat ends; along the nose */
 };
 
-/* Lengths in m. `axes` are orthonormal: nose, own y, own z. `lambert` is mu, albedo pi mu. */
-struct reference_object {
+/* Lengths in m. `axes` are orthonormal: nose, own y, own z. lambert is mu, albedo pi mu. */
+struct reference_body {
     enum reference_shape shape;
-    struct reference_vector centre;
-    struct reference_vector axes[3];
-    double length, radius;
-    double lambert;
+    struct reference_vector centre, axes[3];
+    double length, radius, lambert;
 };
 
-/* The seabed is all of the plane z = 0. */
+/* What a path meets, in turn: digits of a number to the base 5, the first hit's first. */
+enum reference_surface {
+    MET_NOTHING,
+    MET_SEABED,
+    MET_TARGET,
+    MET_SURFACE, /* its rough part */
+    MET_MIRROR   /* its smooth part */
+};
+#define REFERENCE_PATHS 125
+
+/* Seabed z = 0, sonar (x, 0, altitude), one body. Lambert's law everywhere; the surface's times
+ * D(i) D(s), D = 1 - exp(-P^2), and its mirror R^2 exp(-P^2), P = phase * cosine, unless reflection
+ * is 0: then it has no mirror and D = 1. */
 struct reference_scene {
+    double altitude, depth; /* depth INFINITY: no sea surface */
     double seabed_lambert;
-    int object_count; /* 0 .. REFERENCE_OBJECTS */
-    struct reference_object objects[REFERENCE_OBJECTS];
+    double surface_lambert, reflection, phase;
+    bool rough_is_apart; /* the surface's rough part is Lambert's law beside a mirror too */
+    struct reference_body body;
+    double source_side;    /* of a square source, 0: a point; one edge along x, one across */
+    double source_grazing; /* its normal's, rad; it is heard before it alone */
 };
 
-/* `normal` faces the side that the ray came from, so closed bodies may hold a sonar. `point` is
-   lifted off the surface by a nanometre, ready to start another ray. */
+/* `point` is lifted off the surface by a nanometre, ready to start another ray; `normal` faces the
+ * side that the ray came from. */
 struct reference_hit {
     double distance;
     struct reference_vector point, normal;
-    double lambert;
-    bool on_object;
 };
 
-struct reference_vector reference_vector(double x, double y, double z);
-struct reference_vector reference_sum(struct reference_vector a, double scale,
-                                      struct reference_vector b); /* a + scale b */
-double reference_dot(struct reference_vector a, struct reference_vector b);
-struct reference_vector reference_cross(struct reference_vector a, struct reference_vector b);
-struct reference_vector reference_unit(struct reference_vector a);
+/* The nearest surface along a ray of unit direction from outside the body; the sea surface is one.
+ */
+enum reference_surface reference_nearest(const struct reference_scene *scene,
+                                         struct reference_vector origin,
+                                         struct reference_vector direction,
+                                         struct reference_hit *hit);
 
-/* An unturned object at the origin, its nose along x; other sizes 0. The scene must have room. */
-struct reference_object *reference_add_object(struct reference_scene *scene,
-                                              enum reference_shape shape, double radius,
-                                              double lambert);
-
-/* Nearest surface along a ray of unit direction; false, and *hit untouched, if there is none. */
-bool reference_nearest(const struct reference_scene *scene, struct reference_vector origin,
-                       struct reference_vector direction, struct reference_hit *hit);
-
-/* Whether anything lies between. */
+/* Whether the body lies between. */
 bool reference_blocked(const struct reference_scene *scene, struct reference_vector from,
                        struct reference_vector to);
 
 /* ---- paths ---- */
 
-/* Surfaces of a path's first and last hits. */
-enum reference_ends {
-    REFERENCE_SEABED_SEABED,
-    REFERENCE_SEABED_OBJECT,
-    REFERENCE_OBJECT_SEABED,
-    REFERENCE_OBJECT_OBJECT,
-    REFERENCE_ENDS
-};
-
-/* Sonar at (x, 0, altitude), x uniform from first_x to last_x, looking along
-   (0, cos(elevation), -sin(elevation)), elevation (rad, downwards) uniform from first to last.
-   Every hit is joined with the sonar's own point, if that is seen. */
 struct reference_request {
-    int limit;     /* highest order, 1 .. REFERENCE_ORDERS */
-    uint64_t rays; /* rounded down to a multiple of REFERENCE_BATCHES */
-    uint64_t seed;
-    double altitude;
-    double first_x, last_x;
-    double first_elevation, last_elevation;
-    bool pressure; /* energies as they are; else times (half the path length)^4 */
-    int bins;      /* of half the path length, 1 .. REFERENCE_BINS */
-    double first_range, bin_width;
+    double first_x, last_x; /* columns that are counted */
+    /* where seabed must be that a path begins on: the library's fan looks there; x about the body
+     */
+    double near_ground, far_ground, reach_x;
+    struct ranges ranges; /* of half the path length; at most REFERENCE_BINS */
+    bool is_focused; /* columns in the middle between first and last hit, receiver abreast of it:
+                        that lengthens the first leg, whose angles stay those of its own column */
+    uint64_t rays, seed;
 };
 
-/* Index [ends][order - 1][bin]: energies over the whole track interval, of 32 batches. Those of
-   `all_ranges` count every path, also outside the bins: meant for `pressure`, as r^4 gives rare far
-   paths over an endless seabed a variance without bound. */
+/* Energies in m^2 over the whole track by number of the path and range, of 32 batches. */
 struct reference_energy {
-    struct estimate bins[REFERENCE_ENDS][REFERENCE_ORDERS][REFERENCE_BINS];
-    struct estimate all_ranges[REFERENCE_ENDS][REFERENCE_ORDERS];
+    struct estimate in_first[REFERENCE_PATHS][REFERENCE_BINS]; /* column of the first hit */
+    struct estimate in_both[REFERENCE_PATHS][REFERENCE_BINS];  /* and that of the last is counted */
 };
+
+/* The scene of a sea with one object and level water, and its track, after sea_ready. */
+void reference_of_sea(const struct sea *sea, enum reference_shape shape,
+                      struct reference_scene *scene, struct reference_request *request);
 
 void reference_trace(const struct reference_scene *scene, const struct reference_request *request,
                      struct reference_energy *energy);
+
+/* How many surfaces a path meets, and which. */
+int reference_met(int path, int met[REFERENCE_ORDERS]);
 
 #endif

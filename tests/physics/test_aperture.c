@@ -202,9 +202,9 @@ CLAIM(the_seabeds_level_over_aspects)
  * too. */
 CLAIM(a_highlight_stays_where_it_is)
 {
-    static const double heights[] = {0.0, 0.5, 1.5, 1.5};
-    static const double rows[] = {MIDDLE_ROW, MIDDLE_ROW, MIDDLE_ROW, 1.0};
-    for (size_t i = 0; i < 4; i++) {
+    static const double heights[] = {0.5, 1.5};
+    static const double rows[] = {MIDDLE_ROW, 1.0};
+    for (size_t i = 0; i < 2; i++) {
         struct tile_sums sums[2];
         for (int is_on = 0; is_on < 2; is_on++) {
             struct strips tile;

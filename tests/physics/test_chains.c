@@ -1,20 +1,18 @@
 /* Paths of several interactions: against references that share nothing with the kernels but the
  * physics, against closed forms, and ways of finding the same paths against one another. */
 #include "reference_paths.h"
-#include "reference_slab.h"
-#include "sea.h"
 
-#define ORDERS   3
-#define SEEDS    24
-#define RANGE_M  0.5
-#define MIDDLE_M 50.0
-#define FAR_M    400.0
-#define NEAR_M   20.0
+#define ORDERS     3
+#define SEEDS      24
+#define MIDDLE_M   50.0
+#define FEW_RANGES 4
+#define FAR_M      400.0
+#define NEAR_M     20.0
 
-/* Twelve ranges about the middle of a patch. */
-static struct ranges ranges_about(double middle)
+/* So many ranges, 6 m in all, about the middle of a patch. */
+static struct ranges ranges_about(double middle, int count)
 {
-    const struct ranges ranges = {CHAIN_RANGES, middle - 0.5 * CHAIN_RANGES * RANGE_M, RANGE_M};
+    const struct ranges ranges = {count, middle - 3.0, 6.0 / count};
     return ranges;
 }
 
@@ -22,7 +20,7 @@ static struct ranges ranges_about(double middle)
  * standard errors better. */
 static struct sea *open_with(sonject_shape shape, double length_m, double diameter_m)
 {
-    struct sea *sea = sea_open(240, 240, MIDDLE_M);
+    struct sea *sea = sea_open(160, 240, MIDDLE_M);
     sonject_object_params *object = sea_add(sea, shape, length_m, 0.0, diameter_m);
     object->heading_rad = 35.0 * PI / 180.0;
     make_rough(object, 0.2);
@@ -58,9 +56,10 @@ static struct sea *open_overhang(sonject_shape shape, double diameter_m)
     return sea;
 }
 
+/* Few ranges need few rays. */
 static struct energies trace_seeds(struct sea *sea, double middle, uint64_t first_seed)
 {
-    const struct ranges ranges = ranges_about(middle);
+    const struct ranges ranges = ranges_about(middle, FEW_RANGES);
     return sea_chains(sea, &ranges, first_seed, SEEDS);
 }
 
@@ -73,9 +72,9 @@ static void expect_ratio(const char *what, const struct energies *a, const struc
     for (int order = first_order; order <= last_order; order++) {
         int compared = 0;
         double most = 0.0;
-        for (int range = 0; range < CHAIN_RANGES; range++)
+        for (int range = 0; range < FEW_RANGES; range++)
             most = fmax(most, energy_of(b, order, range).mean);
-        for (int range = 0; range < CHAIN_RANGES; range++) {
+        for (int range = 0; range < FEW_RANGES; range++) {
             const struct estimate one = energy_of(a, order, range);
             const struct estimate other = energy_of(b, order, range);
             const double error = hypot(one.error / ratio, other.error);
@@ -86,7 +85,7 @@ static void expect_ratio(const char *what, const struct energies *a, const struc
             expect_estimate("energy over the other's", measured, 1.0, systematic);
             compared++;
         }
-        assert_true(compared >= 3);
+        assert_true(compared >= 2);
     }
 }
 
@@ -107,21 +106,21 @@ static void compare_estimators(const char *what, struct sea *sea, double middle,
 /* Over relief: visibility, normals, and directions towards the target. */
 CLAIM(brute_force_finds_what_connections_find)
 {
-    compare_estimators("brute force", open_capsule(false), MIDDLE_M, 3.0);
-    compare_estimators("over relief", open_capsule(true), MIDDLE_M, 3.0);
+    compare_estimators("brute force", open_capsule(false), MIDDLE_M, 1.0);
+    compare_estimators("over relief", open_capsule(true), MIDDLE_M, 0.6);
     struct sea *sea = open_overhang(SONJECT_SHAPE_TORUS, 1.2);
     sea_object(sea, 0)->height_m = 0.4;
-    compare_estimators("under a torus", sea, NEAR_M, 2.0);
+    compare_estimators("under a torus", sea, NEAR_M, 0.7);
     sea = open_overhang(SONJECT_SHAPE_MESH, 0.0);
     sea_object(sea, 0)->pitch_rad = PI; /* on its tip */
     sea_add_tetrahedron(sea);
-    compare_estimators("under a mesh", sea, NEAR_M, 2.0);
+    compare_estimators("under a mesh", sea, NEAR_M, 0.7);
 }
 
 /* What mirrors alone send into the source's rectangle is a glint, and none of the energies. */
 CLAIM(brute_force_leaves_glints_out)
 {
-    const struct ranges ranges = ranges_about(MIDDLE_M);
+    const struct ranges ranges = ranges_about(MIDDLE_M, CHAIN_RANGES);
     struct sea *sea = open_capsule(false);
     sonject_object_params *capsule = sea_object(sea, 0);
     capsule->heading_rad = 0.0;
@@ -146,6 +145,7 @@ CLAIM(one_way_stands_for_both)
         sea->sonar->altitude_m = 80.0;
         sea_move(sea, FAR_M);
         sea->injection->column_rule = SONJECT_COLUMNS_FOCUSED;
+        sea->injection->ray_scale = 0.1;
         const struct energies reciprocal = trace_seeds(sea, FAR_M, 100);
         sea->sonar->transducer_side_m = 1e-3;
         const struct energies plain = trace_seeds(sea, FAR_M, 900);
@@ -155,88 +155,51 @@ CLAIM(one_way_stands_for_both)
 
 /* ---- against the reference ---- */
 
-/* The reference's scene and request for the same sea: first hits on the strips of the grid, seabed
- * from well before the patch to its end. */
-static void lay_reference(struct sea *sea, enum reference_shape shape,
-                          struct reference_scene *scene, struct reference_request *request)
-{
-    const sonject_object_params *params = sea_object(sea, 0);
-    const double *centre = sea_centre(sea, 0);
-    memset(scene, 0, sizeof *scene);
-    memset(request, 0, sizeof *request);
-    scene->seabed_lambert = sea->seabed->lambert;
-    struct reference_object *object =
-        reference_add_object(scene, shape, 0.5 * params->diameter_m, params->material.lambert);
-    object->length = params->length_m;
-    object->centre = reference_vector(centre[0], centre[1], centre[2]);
-    for (int axis = 0; axis < 3; axis++) {
-        const double *own = sea_axes(sea, 0)[axis];
-        object->axes[axis] = reference_vector(own[0], own[1], own[2]);
-    }
-    request->limit = ORDERS;
-    request->rays = 6000000;
-    request->seed = 7;
-    request->altitude = sea->sonar->altitude_m;
-    sea_grid(sea, &request->first_x, &request->last_x);
-    request->first_elevation = asin(sea->sonar->altitude_m / 52.9);
-    request->last_elevation = asin(sea->sonar->altitude_m / 34.0);
-    const struct ranges ranges = ranges_about(MIDDLE_M);
-    request->bins = ranges.count;
-    request->first_range = ranges.first_m;
-    request->bin_width = ranges.width_m;
-}
-
-/* What the reference's order comes to where seabed and target scatter this much more: sound goes to
- * and fro between them. */
-static struct estimate scaled_reference(const struct reference_energy *reference, int order,
-                                        int range, double seabed, double target)
-{
-    const int meetings = order + 1;
-    struct estimate sum = {0.0, 0.0};
-    for (int ends = 0; ends < REFERENCE_ENDS; ends++) {
-        const int on_seabed = (meetings + (ends == REFERENCE_SEABED_SEABED)) / 2;
-        const double factor = pow(seabed, on_seabed) * pow(target, meetings - on_seabed);
-        sum.mean += factor * reference->bins[ends][order][range].mean;
-        sum.error = hypot(sum.error, factor * reference->bins[ends][order][range].error);
-    }
-    return sum;
-}
-
-/* Of Figure 7's capsule, however weak the surfaces are; and of a drum on its side, all within one
- * sphere, which seabed under its overhang is within too. A bin of 3 mm, shared at either end of a
- * range, is systematic. */
+/* Of Figure 7's capsule, however weak the surfaces are: sound goes to and fro between them, so that
+ * each path's share of the reference goes by what it meets; and of a drum on its side, all within
+ * one sphere, which seabed under its overhang is within too. Paths begin on seabed from well before
+ * the patch to its end. A bin of 3 mm, shared at either end of a range, is systematic. */
 CLAIM(orders_have_the_references_energy)
 {
-    static struct reference_energy reference;
-    static const double seabed_and_target_db[][2] = {{-7.0, -7.0},   {-10.0, -10.0},
-                                                     {-36.0, -36.0}, {-60.0, -60.0},
-                                                     {-10.0, -60.0}, {-60.0, -10.0}};
+    static struct reference_energy energy;
+    static const double seabed_and_target_db[][2] = {
+        {-7.0, -7.0}, {-60.0, -60.0}, {-10.0, -60.0}, {-60.0, -10.0}};
     for (int is_drum = 0; is_drum < 2; is_drum++) {
         struct reference_scene scene;
         struct reference_request request;
         struct sea *sea =
             is_drum ? open_with(SONJECT_SHAPE_CYLINDER, 0.6, 0.6) : open_capsule(false);
         sea_ready(sea);
-        lay_reference(sea, is_drum ? REFERENCE_CYLINDER : REFERENCE_CAPSULE, &scene, &request);
-        reference_trace(&scene, &request, &reference);
+        reference_of_sea(sea, is_drum ? REFERENCE_CYLINDER : REFERENCE_CAPSULE, &scene, &request);
+        request.ranges = ranges_about(MIDDLE_M, CHAIN_RANGES);
+        request.near_ground = sqrt(34.0 * 34.0 - scene.altitude * scene.altitude);
+        request.far_ground = sqrt(52.9 * 52.9 - scene.altitude * scene.altitude);
+        request.rays = 800000;
+        reference_trace(&scene, &request, &energy);
         for (size_t i = 0; i < (is_drum ? 1 : COUNT(seabed_and_target_db)); i++) {
-            const double seabed = pow(10.0, 0.1 * seabed_and_target_db[i][0]);
-            const double target = pow(10.0, 0.1 * seabed_and_target_db[i][1]);
-            sea->seabed->lambert = seabed;
-            sea_object(sea, 0)->material.lambert = target;
-            const struct energies traced = trace_seeds(sea, MIDDLE_M, 100);
-            for (int order = 1; order < ORDERS; order++)
-                for (int range = CHAIN_RANGES / 2 - 2; range < CHAIN_RANGES / 2 + 2; range++) {
-                    const struct estimate expected =
-                        scaled_reference(&reference, order, range, seabed / scene.seabed_lambert,
-                                         target / scene.objects[0].lambert);
-                    struct estimate measured = energy_of(&traced, order, range);
-                    measured.error = hypot(measured.error, expected.error);
-                    print_message("%g dB, %g dB, order %d, range %d: ", seabed_and_target_db[i][0],
-                                  seabed_and_target_db[i][1], order + 1, range);
-                    assert_true(measured.error < 0.1 * expected.mean || expected.mean == 0.0);
-                    expect_estimate("energy, m2", measured, expected.mean, 0.01 * expected.mean);
+            struct estimate expected[CHAIN_ORDERS][CHAIN_RANGES] = {0};
+            sea->seabed->lambert = pow(10.0, 0.1 * seabed_and_target_db[i][0]);
+            sea_object(sea, 0)->material.lambert = pow(10.0, 0.1 * seabed_and_target_db[i][1]);
+            for (int path = 0; path < REFERENCE_PATHS; path++) {
+                int met[REFERENCE_ORDERS];
+                const int count = reference_met(path, met);
+                double factor = 1.0;
+                for (int k = 0; k < count; k++)
+                    factor *= met[k] == MET_SEABED
+                                  ? sea->seabed->lambert / scene.seabed_lambert
+                                  : sea_object(sea, 0)->material.lambert / scene.body.lambert;
+                for (int range = 0; count > 1 && range < CHAIN_RANGES; range++) {
+                    const struct estimate value = energy.in_first[path][range];
+                    struct estimate *sum = &expected[count - 1][range];
+                    sum->mean += factor * value.mean;
+                    sum->error = hypot(sum->error, factor * value.error);
                 }
+            }
+            const struct energies traced = sea_chains(sea, &request.ranges, 100, SEEDS);
+            print_message("%g dB, %g dB\n", seabed_and_target_db[i][0], seabed_and_target_db[i][1]);
+            for (int order = 1; order < ORDERS; order++)
+                expect_energies("orders", &traced, order, expected[order], CHAIN_RANGES, 0.01, 0.1,
+                                4);
         }
     }
 }
@@ -246,7 +209,7 @@ CLAIM(orders_have_the_references_energy)
  * to find. */
 CLAIM(a_mirrored_object_is_left_to_image_pairs)
 {
-    const struct ranges ranges = ranges_about(MIDDLE_M);
+    const struct ranges ranges = ranges_about(MIDDLE_M, CHAIN_RANGES);
     struct sea *sea = open_capsule(false);
     sea->injection->interactions = 2;
     sea->injection->column_rule = SONJECT_COLUMNS_FOCUSED;
@@ -266,8 +229,8 @@ CLAIM(the_narrowest_cone_is_in_scale)
 {
     static const double slopes[] = {0.01, 0.03};
     for (size_t i = 0; i < COUNT(slopes); i++) {
-        double energies[SEEDS];
-        struct sea *sea = sea_open(120, 160, MIDDLE_M);
+        double energies[SEEDS / 2];
+        struct sea *sea = sea_open(80, 160, MIDDLE_M);
         sea_add_sphere(sea, 0.25, 0.0);
         sea_add(sea, SONJECT_SHAPE_PLANE, 1.0, 0.6, 0.0)->roll_rad = 68.0 * PI / 180.0;
         for (uint32_t k = 0; k < 2; k++) {
@@ -278,13 +241,13 @@ CLAIM(the_narrowest_cone_is_in_scale)
         sea->injection->interactions = 8;
         sea->injection->order_energies = i == 0;
         sea_ready(sea);
-        for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        for (uint64_t seed = 0; seed < SEEDS / 2; seed++) {
             sea->injection->seed = seed;
             energies[seed] = sum_of(sea_image(sea)->target_energy, sea->pixels);
         }
-        const struct estimate energy = estimate_of(energies, SEEDS);
+        const struct estimate energy = estimate_of(energies, SEEDS / 2);
         print_message("slope %g: %.4g +- %.2g m2\n", slopes[i], energy.mean, energy.error);
-        assert_true(energy.error < 0.1 * energy.mean);
+        assert_true(energy.error < 0.15 * energy.mean);
         assert_true(energy.mean >= 0.25 * 0.25 * 0.25 - 4.0 * energy.error);
     }
 }
@@ -296,7 +259,7 @@ struct lit {
     struct ranges ranges;           /* beyond the sphere's centre */
     int steps;                      /* of the integral, each way */
 };
-static const struct lit lit = {0.5, 1.5, 0.02, {3, 0.25, 0.25}, 3000};
+static const struct lit lit = {0.5, 1.5, 0.02, {3, 0.25, 0.25}, 1000};
 
 /* One bundle of rays: wavefront dx by r dphi at the sphere; its energy over the square of the range
  * goes by the mirror to the seabed, which sends mu cos(angle) / r^2 of it to the sonar: abreast of
@@ -307,13 +270,13 @@ static void add_bundle(const struct sea *sea, const struct reference_scene *scen
     const double altitude = sea->sonar->altitude_m;
     const struct reference_vector sonar = {x, 0.0, altitude};
     const struct reference_vector out = {0.0, cos(elevation), sin(elevation)};
-    const struct reference_vector centre = scene->objects[0].centre;
+    const struct reference_vector centre = scene->body.centre;
     struct reference_hit first, last;
-    if (!reference_nearest(scene, sonar, out, &first) || !first.on_object)
+    if (reference_nearest(scene, sonar, out, &first) != MET_TARGET)
         return;
     const struct reference_vector on =
         reference_sum(out, -2.0 * reference_dot(out, first.normal), first.normal);
-    if (!reference_nearest(scene, first.point, on, &last) || last.on_object)
+    if (reference_nearest(scene, first.point, on, &last) != MET_SEABED)
         return;
     const bool is_focused = sea->injection->column_rule == SONJECT_COLUMNS_FOCUSED;
     const double aside = is_focused ? 0.5 * (last.point.x - x) : 0.0;
@@ -346,9 +309,9 @@ CLAIM(a_glint_lights_the_seabed)
         sea->injection->column_rule = is_focused ? SONJECT_COLUMNS_FOCUSED : SONJECT_COLUMNS_PAPER;
         sea_ready(sea);
         const double *centre = sea_centre(sea, 0);
-        struct reference_scene scene = {.seabed_lambert = lit.lambert};
-        reference_add_object(&scene, REFERENCE_SPHERE, lit.radius, 0.0)->centre =
-            reference_vector(centre[0], centre[1], centre[2]);
+        struct reference_scene scene;
+        struct reference_request request;
+        reference_of_sea(sea, REFERENCE_SPHERE, &scene, &request);
         const double drop = sea->sonar->altitude_m - centre[2];
         const double middle = -atan2(drop, centre[1]);
         const double half_angle = 1.02 * lit.radius / hypot(drop, centre[1]);
@@ -362,7 +325,7 @@ CLAIM(a_glint_lights_the_seabed)
         ranges.first_m += sea_slant_range(sea, 0);
         for (int range = 0; range < ranges.count; range++)
             expected[range].mean *= is_focused ? 4.0 : 2.0;
-        const struct energies measured = sea_chains(sea, &ranges, 1, 16);
+        const struct energies measured = sea_chains(sea, &ranges, 1, 8);
         expect_energies(is_focused ? "focused columns" : "paper columns", &measured, 1, expected,
                         ranges.count, 0.01, 1.0, ranges.count);
     }
@@ -373,8 +336,8 @@ CLAIM(a_glint_lights_the_seabed)
 #define OVER_M      52.0 /* of the patch's middle, and of the first range */
 #define HEIGHT_M    1.5
 #define RADIUS_M    0.4
-#define RINGS       300 /* of seabed, ever wider */
-#define SECTORS     400
+#define RINGS       150 /* of seabed, ever wider */
+#define SECTORS     200
 #define PARALLEL    12 /* pieces of the sphere */
 #define MERIDIAN    24
 #define REFERENCE_M 200.0 /* the reference's depth: its seabed, black, is out of hearing */
@@ -402,8 +365,8 @@ static void add_pieces(const struct sea *sea, struct reference_vector centre,
     const double first = hypot(bottom.y, altitude);
     const double lit_by = sea->seabed->lambert * area * altitude / pow(first, 3.0);
     const struct reference_vector abreast = {bottom.x, 0.0, altitude}, up = {0.0, 0.0, 1.0};
-    struct reference_scene scene = {.seabed_lambert = 0.0};
-    reference_add_object(&scene, REFERENCE_SPHERE, RADIUS_M, 0.0)->centre = centre;
+    const struct reference_scene scene = {
+        .body = {.shape = REFERENCE_SPHERE, .centre = centre, .radius = RADIUS_M}};
     if (reference_blocked(&scene, abreast, reference_sum(bottom, 1e-9, up)))
         return;
     for (int i = 0; i < PARALLEL; i++)
@@ -457,55 +420,46 @@ CLAIM(far_seabed_is_heard)
 }
 
 /* How often a path of three interactions is in the image. */
-static double ways_of(int first, int middle, int last)
+static double ways_of(int path)
 {
-    const int targets = (first == SLAB_TARGET) + (middle == SLAB_TARGET) + (last == SLAB_TARGET);
-    if (targets == 0 || first < SLAB_TARGET || middle < SLAB_TARGET || last < SLAB_TARGET ||
-        last == SLAB_MIRROR)
+    int met[REFERENCE_ORDERS];
+    if (reference_met(path, met) < 3 ||
+        (met[0] != MET_TARGET && met[1] != MET_TARGET && met[2] != MET_TARGET) ||
+        met[2] == MET_MIRROR)
         return 0.0; /* what ends on the mirror is a reverse */
-    if (first == last)
+    if (met[0] == met[2])
         return 2.0;
-    return first == SLAB_TARGET ? 0.0 : 4.0;
+    return met[0] == MET_TARGET ? 0.0 : 4.0;
 }
 
 /* The seabed's mirror first, above all sonar, seabed's mirror, sphere, seabed, sonar: as a sphere
- * under the reference's sea surface, upside down. The mirror's point is 7.7 m in front of the
- * sphere, whose sound spreads 8 m more than it would from there. */
+ * under the reference's sea surface, upside down, its seabed black. The mirror's point is 7.7 m in
+ * front of the sphere, whose sound spreads 8 m more than it would from there. */
 CLAIM(sound_spreads_from_the_mirrored_sonar)
 {
-    static struct slab_energy energy;
+    static struct reference_energy energy;
+    struct reference_scene scene;
+    struct reference_request request;
     struct estimate expected[2] = {{0.0, 0.0}, {0.0, 0.0}};
     struct sea *sea = open_over_seabed(3);
-    double first_x, last_x;
     sea->seabed->forward.reflection = 0.9;
     sea_ready(sea);
-    sea_grid(sea, &first_x, &last_x);
+    reference_of_sea(sea, REFERENCE_SPHERE, &scene, &request);
+    scene.depth = REFERENCE_M;
+    scene.altitude = REFERENCE_M - scene.altitude;
+    scene.body.centre.z = REFERENCE_M - scene.body.centre.z;
+    scene.surface_lambert = scene.seabed_lambert;
+    scene.seabed_lambert = 0.0;
     /* the mirror has what the rough part leaves of it */
-    const struct slab_scene scene = {
-        .depth = REFERENCE_M,
-        .altitude = REFERENCE_M - sea->sonar->altitude_m,
-        .surface_lambert = sea->seabed->lambert,
-        .reflection = sqrt(1.0 - PI * sea->seabed->lambert) * 0.9,
-        .rough_is_apart = 1,
-        .centre_y = sea_centre(sea, 0)[1],
-        .centre_z = REFERENCE_M - sea_centre(sea, 0)[2],
-        .radius = RADIUS_M,
-        .target_lambert = 0.3,
-    };
-    const struct slab_request request = {
-        .half_track = 0.5 * (last_x - first_x),
-        .far_ground = INFINITY,
-        .reach_x = INFINITY,
-        .first_range = behind.first_m,
-        .bin_width = behind.width_m,
-        .bins = behind.count,
-        .is_focused = 1,
-        .rays = 24000000,
-        .seed = 7,
-    };
-    slab_trace(&scene, &request, &energy);
-    for (int path = 0; path < SLAB_PATHS; path++) {
-        const double ways = ways_of(path / 25, path / 5 % 5, path % 5);
+    scene.reflection = sqrt(1.0 - PI * sea->seabed->lambert) * 0.9;
+    scene.phase = 0.0;
+    scene.rough_is_apart = true;
+    request.ranges = behind;
+    request.is_focused = true;
+    request.rays = 3000000;
+    reference_trace(&scene, &request, &energy);
+    for (int path = 0; path < REFERENCE_PATHS; path++) {
+        const double ways = ways_of(path);
         for (int range = 0; range < behind.count; range++) {
             const struct estimate value = energy.in_first[path][range];
             expected[range].mean += ways * value.mean;

@@ -64,7 +64,7 @@ CLAIM(each_is_what_it_is_alone)
     }
 }
 
-#define SEEDS  24
+#define SEEDS  16
 #define ORDERS 3
 
 /* Plain cosine sampling: nobody is led anywhere. */
@@ -83,8 +83,8 @@ static void make_plain(struct bench *bench, struct chain_trace *trace)
 }
 
 /* Led from the seabed to one of 160 targets, or not led at all: the same energy, in the ranges that
- * plain sampling finds to 10 % and better. Strewn; heaped so that spheres overlap and hold the
- * seabed about them; and below waves, to which sound is led from the seabed besides. */
+ * plain sampling finds to 10 % and better. Strewn; and heaped, so that spheres overlap and hold the
+ * seabed about them, below waves, to which sound is led from the seabed besides. */
 CLAIM(sound_led_to_many_targets_has_its_energy)
 {
     static const struct {
@@ -92,8 +92,7 @@ CLAIM(sound_led_to_many_targets_has_its_energy)
         bool is_heap;
         double depth_m; /* 0: no sea surface */
         int compared;
-    } seas[] = {
-        {"strewn", false, 0.0, 4}, {"heap", true, 0.0, 4}, {"heap below waves", true, 12.0, 2}};
+    } seas[] = {{"strewn", false, 0.0, 4}, {"heap below waves", true, 12.0, 2}};
     for (size_t i = 0; i < COUNT(seas); i++) {
         struct sea *sea = sea_open(160, 160, MIDDLE_M);
         double first_x, last_x;

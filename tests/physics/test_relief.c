@@ -196,7 +196,7 @@ CLAIM(ripples_by_integration)
  * touches it. */
 CLAIM(the_shadow_of_a_mound)
 {
-    struct sea *sea = open_sea(16.0);
+    struct sea *sea = open_sea(4.0);
     double highest = -INFINITY, touch = 0.0;
     sea_add_mound(sea, 0.8, 0.5, 0.0);
     sea_ready(sea);
@@ -305,7 +305,7 @@ CLAIM(a_glint_over_a_mound)
 CLAIM(a_shadow_on_a_slope)
 {
     const double slope = 0.25;
-    struct sea *sea = open_sea(16.0);
+    struct sea *sea = open_sea(4.0);
     sea_add(sea, SONJECT_SHAPE_BOX, 2.0, 0.1, 0.0)->height_m = 0.6;
     lay_slope(sea, 0.0, slope);
     const double *visibility = visibility_of(sea_image(sea)) + (ROWS / 2) * COLUMNS;

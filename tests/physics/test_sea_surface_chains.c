@@ -1,21 +1,20 @@
 /* The sea surface within chains of several interactions: its rough part, its mirror inside and at
  * an end of a path, and which path is counted how often. */
-#include "reference_slab.h"
-#include "sea.h"
+#include "reference_paths.h"
 #include "trace/chains.h"
 
 #define ORDERS   2 /* of two and three interactions */
 #define RANGES   10
 #define MIDDLE_M 52.0
 #define SEEDS    16
-#define ROWS     300
+#define ROWS     160
 #define COLUMNS  480
 #define DEPTH_M  15.0
-#define RAYS     6000000 /* of the reference */
+#define RAYS     600000 /* of each fan of the reference */
 
 static const struct ranges ranges = {RANGES, MIDDLE_M - 0.5 * RANGES, 1.0};
 
-/* A Lambert sphere over a Lambert seabed, 30 m of track, the surface 5 m over the sonar. */
+/* A Lambert sphere over a Lambert seabed, 16 m of track, the surface 5 m over the sonar. */
 static struct sea *open_scene(double height_m, double radius_m)
 {
     struct sea *sea = sea_open(ROWS, COLUMNS, MIDDLE_M);
@@ -42,7 +41,7 @@ static double half_track(struct sea *sea)
 /* --- A small disc that faces a Lambert surface: double integral --- */
 
 #define DISC_M 0.2
-#define STEPS  1500 /* of the integral over the surface, each way */
+#define STEPS  600 /* of the integral over the surface, each way */
 
 /* What the disc sends to a piece of the surface at (x, y), dx dy, and that to the sonar; ways: 1 in
  * the disc's column, and the reverse in the other's. */
@@ -81,7 +80,7 @@ CLAIM(a_disc_under_a_lambert_surface)
         struct sea *sea = sea_open(ROWS, COLUMNS, MIDDLE_M);
         sonject_object_params *disc = sea_add(sea, SONJECT_SHAPE_DISC, 0.0, 0.0, DISC_M);
         sea->geometry->row_spacing_m = 0.1;
-        sea->injection->ray_scale = 8.0;
+        sea->injection->ray_scale = 4.0;
         disc->burial_m = -1.5;
         make_rough(disc, 0.3);
         sea->surface->water_depth_m = DEPTH_M;
@@ -111,41 +110,31 @@ enum convention {
     AS_BY_CHANCE  /* brute force: what ends on the surface once more, for its reverse */
 };
 
-static int digits_of(int path, int digit[SLAB_ORDERS])
+static bool is_of_surface(int met)
 {
-    int count = 0;
-    for (int rest = path; rest > 0; rest /= 5)
-        count++;
-    for (int i = count - 1, rest = path; i >= 0; i--, rest /= 5)
-        digit[i] = rest % 5;
-    return count;
-}
-
-static bool is_of_surface(int digit)
-{
-    return digit == SLAB_SURFACE || digit == SLAB_MIRROR;
+    return met == MET_SURFACE || met == MET_MIRROR;
 }
 
 /* How often the image holds a path: kernels/MATH.md, "Chains by way of the sea surface". */
 static double ways_of(int path, enum convention convention, int *order)
 {
-    int digit[SLAB_ORDERS];
-    const int count = digits_of(path, digit);
+    int met[REFERENCE_ORDERS];
+    const int count = reference_met(path, met);
     int targets = 0, mirrors = 0;
     for (int i = 0; i < count; i++) {
-        if (digit[i] == 0)
+        if (met[i] == 0)
             return 0.0;
-        targets += digit[i] == SLAB_TARGET;
-        mirrors += digit[i] == SLAB_MIRROR;
+        targets += met[i] == MET_TARGET;
+        mirrors += met[i] == MET_MIRROR;
     }
     *order = count - 2;
     if (count < 2 || targets == 0 ||
         (convention != AS_BY_CHANCE && targets == 1 && mirrors == count - 1))
         return 0.0;
-    const int last = digit[count - 1];
-    const bool begins_there = is_of_surface(digit[0]);
-    const bool goes_there = digit[0] == SLAB_SEABED && is_of_surface(digit[1]);
-    const bool comes_from_there = last == SLAB_SEABED && is_of_surface(digit[count - 2]);
+    const int last = met[count - 1];
+    const bool begins_there = is_of_surface(met[0]);
+    const bool goes_there = met[0] == MET_SEABED && is_of_surface(met[1]);
+    const bool comes_from_there = last == MET_SEABED && is_of_surface(met[count - 2]);
     if (convention == AS_CONNECTED)
         return begins_there && is_of_surface(last) ? 0.0 : 1.0;
     /* what the library runs in the other direction */
@@ -155,35 +144,15 @@ static double ways_of(int path, enum convention convention, int *order)
         return is_of_surface(last) ? 2.0 : 1.0;
     if (is_of_surface(last) || comes_from_there)
         return 4.0;
-    if (digit[0] == last)
+    if (met[0] == last)
         return 2.0;
-    return digit[0] == SLAB_SEABED ? 4.0 : 0.0;
-}
-
-static struct slab_scene slab_of(struct sea *sea)
-{
-    const sonject_material_params *surface = &sea->surface->material;
-    const struct slab_scene scene = {
-        .altitude = sea->sonar->altitude_m,
-        .depth = DEPTH_M,
-        .seabed_lambert = sea->seabed->lambert,
-        .surface_lambert = surface->lambert,
-        .reflection = surface->reflection,
-        .phase = 2.0 * sea_wavenumber(sea) * surface->roughness_m,
-        .centre_y = sea_centre(sea, 0)[1],
-        .centre_z = sea_centre(sea, 0)[2],
-        .radius = 0.5 * sea_object(sea, 0)->diameter_m,
-        .target_lambert = sea_object(sea, 0)->material.lambert,
-        .source_side = sea->sonar->transducer_side_m,
-        .source_grazing = asin(sea->sonar->altitude_m / MIDDLE_M),
-    };
-    return scene;
+    return met[0] == MET_SEABED ? 4.0 : 0.0;
 }
 
 /* Connected chains begin on seabed that is not too far from the target, brute force on the patch's.
  */
 static void look_at_seabed(struct sea *sea, enum convention convention,
-                           struct slab_request *request)
+                           struct reference_request *request)
 {
     const struct tracer *tracer = &sea->bench->tracer;
     const struct chain_reach reach = chain_reach_of(tracer, &sea->bench->placements[0]);
@@ -202,18 +171,17 @@ static void look_at_seabed(struct sea *sea, enum convention convention,
 static void find_expected(struct sea *sea, enum convention convention,
                           struct estimate expected[ORDERS][RANGES])
 {
-    static struct slab_energy energy;
-    const struct slab_scene scene = slab_of(sea);
-    struct slab_request request = {.half_track = half_track(sea),
-                                   .first_range = ranges.first_m,
-                                   .bin_width = ranges.width_m,
-                                   .bins = RANGES,
-                                   .rays = RAYS,
-                                   .seed = 7};
+    static struct reference_energy energy;
+    struct reference_scene scene;
+    struct reference_request request;
+    reference_of_sea(sea, REFERENCE_SPHERE, &scene, &request);
+    scene.source_grazing = asin(sea->sonar->altitude_m / MIDDLE_M);
+    request.ranges = ranges;
+    request.rays = RAYS;
     look_at_seabed(sea, convention, &request);
-    slab_trace(&scene, &request, &energy);
+    reference_trace(&scene, &request, &energy);
     memset(expected, 0, ORDERS * sizeof *expected);
-    for (int path = 0; path < SLAB_PATHS; path++) {
+    for (int path = 0; path < REFERENCE_PATHS; path++) {
         int order = 0;
         const double ways = ways_of(path, convention, &order);
         for (int range = 0; range < RANGES && ways > 0.0; range++) {
@@ -252,14 +220,15 @@ CLAIM(every_path_has_its_energy)
             sea->sonar->transducer_side_m = 8.0;
             sea->injection->estimator = SONJECT_ESTIMATOR_BRUTE_FORCE;
             sea->injection->mode = SONJECT_MODE_RESYNTHESISE;
-            sea->injection->ray_scale = 8.0;
+            sea->injection->ray_scale = 5.0;
         }
         sea_ready(sea);
         find_expected(sea, cases[i].convention, expected);
         const struct energies measured = sea_chains(sea, &ranges, 1, SEEDS);
         for (int order = 0; order < ORDERS; order++)
             expect_energies(cases[i].name, &measured, order + 1, expected[order], RANGES,
-                            cases[i].systematic, 0.1, 3);
+                            cases[i].systematic, cases[i].convention == AS_BY_CHANCE ? 0.13 : 0.1,
+                            3);
     }
 }
 
