@@ -1,7 +1,7 @@
 /* Directions of the rough part: generalised Lambert's law and the specular cone. Directions are
  * unit vectors away from the surface. */
-#ifndef SONJECT_KERNELS_LOBES_H
-#define SONJECT_KERNELS_LOBES_H
+#ifndef SONJECT_KERNELS_BRDF_H
+#define SONJECT_KERNELS_BRDF_H
 
 #include "elementary.h"
 #include "vector3.h"

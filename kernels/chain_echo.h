@@ -112,7 +112,7 @@ struct chain_echo {
 
 #define NO_STRIP (-1073741824)
 
-/* The strip of the whole track at x; NO_STRIP outside it. */
+/* The strip of the whole track at x, limited: the tally drops what is beside it. */
 FUNCTION vint strip_at(const struct fan_record *fan, vfloat x)
 {
     const vfloat strip = (x - fan->first_strip_x) / fan->strip_width;
@@ -140,10 +140,10 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
         const int reverse = echo->reverse_strip[lane] - chains->tally_first_strip;
         GLOBAL TALLY *lines = tallies + (long)plane * chains->tally_strips * fan->bins;
         if (strip >= 0 && strip < chains->tally_strips)
-            tally_shares(lines + (long)strip * fan->bins, fan->bins, 0, echo->bin[lane],
+            tally_shares(lines + (long)strip * fan->bins, fan->bins, 1, echo->bin[lane],
                          echo->later[lane], energy, chance, &outcome->faults);
         if (reverse >= 0 && reverse < chains->tally_strips)
-            tally_shares(lines + (long)reverse * fan->bins, fan->bins, 0, echo->bin[lane],
+            tally_shares(lines + (long)reverse * fan->bins, fan->bins, 1, echo->bin[lane],
                          echo->later[lane], energy, chance, &outcome->faults);
     }
     outcome->impulses += (RECORD_WORD)count;
@@ -217,7 +217,8 @@ FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_
     const vint none = VINT_OF(SPLAT((float)NO_STRIP));
     vint strip, reverse;
     if (chains->is_focused) {
-        /* a path and its reverse are one echo of twice the amplitude */
+        /* a path and its reverse are one echo of twice the amplitude, four times the energy: 4
+         * where this path counts for both, 2 where the reverse is found by itself */
         kept = SELECT(both, kept * 4.0f, kept * 2.0f);
         strip = strip_at(fan, 0.5f * (chain->first_x + chain->hit.point.x));
         reverse = none;
@@ -226,7 +227,7 @@ FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_
         reverse = SELECT(both, strip_at(fan, chain->hit.point.x), none);
     }
     kept = SELECT(ways.is_counted & chain->is_alive, kept, SPLAT(0.0f));
-    const struct bin_pair bins = bins_about(range * fan->bins_per_metre + fan->first_bin);
+    const struct bin_pair bins = bins_about(range * fan->bins_per_metre + fan->bin_at_reference);
     /* what is not a number is heard too, and then reported */
     const mask is_heard =
         ~MASK_OF(kept <= 0.0f) & MASK_OF(bins.bin >= -1) & MASK_OF(bins.bin < fan->bins);

@@ -132,9 +132,6 @@ FUNCTION vfloat scattering_at(const struct fan_record *fan, GLOBAL const struct 
     return scattering;
 }
 
-/* m: more than a hit's rounding, less than anything that throws a shadow. */
-#define START_OFF_SURFACE 2.0e-5f
-
 FUNCTION struct vector3 start_from(const struct chain_hit *hit)
 {
     return along3(hit->point, hit->normal, SPLAT(START_OFF_SURFACE));
@@ -160,8 +157,8 @@ struct chain {
     struct chain_hit hit;
     struct random_key key;
     word number;        /* of the ray, for its random numbers */
-    vfloat energy;      /* what the receiver would get per unit of irradiance at the hit and unit of
-                         scattering, m^2 sr, in quanta of the hit's order */
+    vfloat energy;      /* solid angle of the ray times the weights so far, sr, in quanta of the
+                         hit's order */
     vfloat chance;      /* of rounding its echoes up */
     vfloat range;       /* from the receiver to the first hit less the reference range */
     vfloat length;      /* from the first hit to this one */

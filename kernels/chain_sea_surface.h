@@ -37,7 +37,7 @@ FUNCTION void leave_out_unheard(const struct fan_record *fan,
     const vfloat shortest =
         0.5f * (chain->range + chain->length + broadside_range(fan, pieces, chain->hit.point)) -
         fan->source_side;
-    const vfloat bin = shortest * fan->bins_per_metre + fan->first_bin;
+    const vfloat bin = shortest * fan->bins_per_metre + fan->bin_at_reference;
     chain->is_alive = chain->is_alive & MASK_OF(bin < (float)fan->bins + 1.0f);
     if (order == 1 && chains->estimator == CHAINS_CONNECT)
         chain->is_alive = chain->is_alive & ~(MASK_OF(chain->first_surface == SEABED) &

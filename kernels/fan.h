@@ -84,7 +84,10 @@ FUNCTION float strip_position(const struct fan_record *fan, int strip)
 /* The bins between whose middles a bin coordinate lies; far outside -> bins that do not exist. */
 struct bin_pair {
     vint bin;     /* the first */
-    vfloat later; /* 0...1: the share of the second */
+    vfloat later; /* The bin coordinate of what no bin is to hold. */
+#define BEFORE_BINS (-9.0f)
+
+    /* 0...1: the share of the second */
 };
 
 FUNCTION struct bin_pair bins_about(vfloat coordinate)

@@ -329,6 +329,9 @@ struct nearest_hit {
 
 #include "object_tree.h"
 
+/* m: more than a hit's rounding, less than anything that throws a shadow. */
+#define START_OFF_SURFACE 2.0e-5f
+
 FUNCTION struct nearest_hit find_nearest_hit(GLOBAL const struct object_record *objects, int count,
                                              struct vector3 point, struct vector3 direction,
                                              float minimum)

@@ -84,7 +84,8 @@ struct cut_record {
 
 #define OBJECT_CUTS 2
 
-/* One object in the frame of a launch. */
+/* One object without parts, or one part, in the frame of a launch: `objects` are these wherever the
+ * kernels count them. */
 struct object_record {
     RECORD_INT shape;                   /* enum shape_kind (shapes/shapes.h) */
     float centre_x, centre_y, centre_z; /* m, in the frame */
@@ -112,7 +113,7 @@ struct object_record {
     RECORD_WORD tile_offset;     /* first element */
     RECORD_INT tile_first_strip; /* strips of the launch's track */
     RECORD_INT tile_strips;
-    RECORD_INT tile_first_bin;
+    RECORD_INT tile_first_bin; /* bins of the launch's grid, whose first is 0 */
     RECORD_INT tile_bins;
 };
 
@@ -173,24 +174,23 @@ struct fan_record {
     float seabed_height;                      /* z of the mean seabed in the frame, m */
     float first_strip_x;                      /* x of the middle of strip 0, m */
     float strip_width;                        /* m */
-    float first_elevation; /* upper... lower edge of the fan, rad from the central direction, upward
-                            */
-    float elevation_step;  /* rad a ray */
-    RECORD_WORD rays;      /* in elevation, a strip and along-track stratum */
-    RECORD_WORD strata;    /* along-track strata of a strip */
+    float first_elevation;  /* lower edge of the fan, rad from the central direction, upward */
+    float elevation_step;   /* rad a ray */
+    RECORD_WORD rays;       /* in elevation, a strip and along-track stratum */
+    RECORD_WORD strata;     /* along-track strata of a strip */
     RECORD_INT first_strip; /* number of the first strip of this launch; strips are numbered over
                                the whole track, so that chunks change nothing */
     RECORD_INT strips;      /* of this launch */
     float bins_per_metre;   /* of true range; processor range scales it */
-    float first_bin;        /* bin coordinate of reference_range */
-    RECORD_INT bins;
-    float source_side;    /* m; 0: the source is a point at the receiver */
-    float seabed_lambert; /* mu0; 0: no seabed energy wanted */
-    float quanta;         /* quanta per m^2 (energy) or per m (amplitude), a power of two */
+    float bin_at_reference; /* bin coordinate of reference_range; the grid's first bin is 0 */
+    RECORD_INT bins;        /* of the grid */
+    float source_side;      /* m; 0: the source is a point at the receiver */
+    float seabed_lambert;   /* mu0; 0: no seabed energy wanted */
+    float quanta;           /* quanta per m^2 (energy) or per m (amplitude), a power of two */
     RECORD_INT map_rows, map_columns; /* of the reflectivity map; 0: uniform */
     float map_row_at_origin;          /* map row at x = 0 of the frame */
     float map_rows_per_metre;
-    float map_first_column; /* map column of reference_range */
+    float map_column_at_reference; /* map column of reference_range */
     float map_columns_per_metre;
     float cycles_per_metre; /* 2 / wavelength: phase of a two-way path, in cycles per m of range */
     float first_cycles;     /* phase at reference_range, a fraction of a cycle */
@@ -276,7 +276,7 @@ struct source_record {
 };
 
 /* Two sources between which an object carries sound. The launch's fan goes out from `outgoing`; its
- * first_bin and first_cycles belong to half the path by way of the frame's origin. */
+ * bin_at_reference and first_cycles belong to half the path by way of the frame's origin. */
 struct image_pair_record {
     struct source_record outgoing, returning;
     struct mirror_record mirrors[MIRROR_KINDS];

@@ -56,7 +56,7 @@ FUNCTION vfloat map_factor(const struct fan_record *fan,
     const vfloat range = has_relief(fan) ? range_in_plan(fan, pieces, hit->point)
                                          : broadside_range(fan, pieces, hit->point);
     const vfloat row = fan->map_row_at_origin + hit->point.x * fan->map_rows_per_metre;
-    const vfloat column = fan->map_first_column + range * fan->map_columns_per_metre;
+    const vfloat column = fan->map_column_at_reference + range * fan->map_columns_per_metre;
     const vfloat safe_row = smaller(larger(row, SPLAT(-1.0f)), SPLAT(1.0e8f));
     const vfloat safe_column = smaller(larger(column, SPLAT(-1.0f)), SPLAT(1.0e8f));
     float rows[WIDTH], columns[WIDTH], values[WIDTH];

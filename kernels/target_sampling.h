@@ -1,7 +1,7 @@
 /* Directions from a point towards the targets: uniform over the cones of the spheres that hold
  * them, so that sound between seabed and target is looked for where it can be. */
-#ifndef SONJECT_KERNELS_TARGET_CONES_H
-#define SONJECT_KERNELS_TARGET_CONES_H
+#ifndef SONJECT_KERNELS_TARGET_SAMPLING_H
+#define SONJECT_KERNELS_TARGET_SAMPLING_H
 
 #include "elementary.h"
 #include "layout.h"

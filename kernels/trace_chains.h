@@ -196,6 +196,7 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
     const int is_connected = chains->estimator == CHAINS_CONNECT;
     begin_chain(fan, pieces, objects, strip, key, first_ray, throughput, choice, &chain);
     for (int order = 1; order <= chains->interactions && ANY(chain.is_alive); order++) {
+        /* an interaction's four draws: 0 and 1 of its step, 2 and 3 of its connections */
         const RECORD_WORD draw = 4u * (RECORD_WORD)order;
         if (is_connected && order >= chains->first_order) {
             connect_chain(fan, pieces, chains, objects, map, order, &chain, draw + 2, &echo,

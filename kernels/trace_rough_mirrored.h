@@ -39,7 +39,8 @@ FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
                           path.cosine_back * wavefront * (path.spreading * path.spreading) *
                           mirrors * (pair->echoes * pair->echoes * fan->quanta);
     const vfloat kept = SELECT(path.is_open, energy, SPLAT(0.0f));
-    const struct bin_pair bins = bins_about(path.range * fan->bins_per_metre + fan->first_bin);
+    const struct bin_pair bins =
+        bins_about(path.range * fan->bins_per_metre + fan->bin_at_reference);
     STORE_VFLOAT(kept, echo->energy);
     STORE_VFLOAT(chance, echo->chance);
     STORE_VINT(bins.bin, echo->bin);

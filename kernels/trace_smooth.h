@@ -88,7 +88,7 @@ FUNCTION void put_smooth_echo(const struct fan_record *fan, mask is_hit, struct 
     const vfloat limited = smaller(larger(phase.range, SPLAT(-1.0e4f)), SPLAT(1.0e4f));
     sine_cosine_of_cycles(limited * fan->cycles_per_metre + fan->first_cycles, &sine_of_phase,
                           &cosine_of_phase);
-    const vfloat position = limited * fan->bins_per_metre + fan->first_bin;
+    const vfloat position = limited * fan->bins_per_metre + fan->bin_at_reference;
     const mask is_counted =
         is_hit & MASK_OF(position >= 0.0f) & MASK_OF(position < (float)(fan->bins - 1));
     const vfloat kept = SELECT(is_counted, position, SPLAT(0.0f));

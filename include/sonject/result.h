@@ -157,8 +157,9 @@ SONJECT_API sonject_status sonject_result_object(const sonject_result *result, u
 typedef struct sonject_statistics {
     uint32_t struct_size;
     uint32_t reserved;
-    uint64_t pings;       /* rows that were traced, margins included */
-    uint64_t rays;        /* primary rays */
+    uint64_t pings; /* track positions that were traced, margins included; there may be several to a
+                       row */
+    uint64_t rays;  /* primary rays */
     uint64_t ray_queries; /* rays and visibility tests */
     uint64_t impulses;    /* echoes that were recorded */
     double trace_s;       /* wall-clock time of the stages */

@@ -60,7 +60,7 @@ struct run_facts {
     const struct swath *swath;
     const struct injection_result *result;
     const struct device *device;
-    const char *scene_hash; /* of scene and input: see run.c */
+    const char *scene_hash; /* of scene and input: inject/scene_hash.h */
     json_t *inputs;         /* of what that is made */
     json_t *files;          /* that were written, as file_list_add has them */
     const char *image_name;

@@ -26,11 +26,11 @@ struct span next_filled_strips(const struct filled_span *filled, int32_t count, 
 
 /* What is formed: complex amplitudes, by G and W; or energies, by |G|^2 and |W|^2: one plane of
  * them, or two side by side. Glints are kept over the whole patch (of a beam, to
- * -60 dB), since their side lobes stand out of the seabed that far; speckle and energies where 99.9
- * % of |W|^2 lies. */
+ * -60 dB), since their side lobes stand out of the seabed that far; a field (speckle, the measured
+ * seabed, a glint's peak) and energies where 99.9 % of |W|^2 lies. */
 enum form_kind {
     FORM_GLINT,
-    FORM_SPECKLE,
+    FORM_FIELD,
     FORM_ENERGY, /* the real plane; the imaginary plane is 0 */
     FORM_TWO_ENERGIES
 };

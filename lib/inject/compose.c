@@ -66,7 +66,8 @@ static double gain_at(const struct patch_level *level, const struct echoes *echo
     return level->level[i] / (double)level->cell_energy[i % echoes->columns];
 }
 
-#define CLEARLY_HIDDEN 0.1 /* share of a pixel's energy; such pixels are always the target's */
+#define CLEARLY_HIDDEN                                                                             \
+    0.1 /* share of a pixel's energy: then the pixel counts as hidden by as much */
 
 /* What the objects and the relief take from the seabed's energy, over its level: not over the
  * pixel's own, or the influence would end at dark pixels later than at bright ones and its edge

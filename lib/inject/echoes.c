@@ -90,7 +90,7 @@ sonject_status form_speckle(struct tracer *tracer, const struct line_grid *grid,
     struct form_lines lines;
     formed->planes = NULL;
     CHECK(form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view, &tracer->response,
-                           FORM_SPECKLE, grid));
+                           FORM_FIELD, grid));
     sonject_status status = form_lines_add_speckle(&lines, grid->strips.first, grid->strips.count,
                                                    energy, tracer->scene->injection.seed, stream);
     THEN(status, form_end(&lines, formed));
@@ -153,7 +153,7 @@ static sonject_status add_seabed(struct forming *forming, const struct impulse_l
         return SONJECT_OK;
     if (impulse_lines_begin(lines))
         CHECK(form_lines_begin(field, tracer->report, tracer->device, &tracer->view,
-                               &tracer->response, FORM_SPECKLE, &lines->grid));
+                               &tracer->response, FORM_FIELD, &lines->grid));
     CHECK(forming->request->field == SEABED_FIELD_COHERENT
               ? add_coherent(forming, lines)
               : form_lines_add_speckle(field, lines->strips.first, lines->strips.count,

@@ -26,7 +26,7 @@ struct echoes {
     void *memory;         /* of the planes but for those of orders; owned */
     float *seabed_energy; /* expected without objects, m^2 */
     float *level_energy;  /* expected without objects and relief; NULL: there is no relief */
-    float *lost_energy;   /* of it, hidden by objects */
+    float *lost_energy;   /* of seabed_energy, hidden by objects */
     float *target_energy; /* expected from all objects */
     float *target_real, *target_imaginary;     /* one realisation, m */
     float *coherent_real, *coherent_imaginary; /* the part of it that is the same in every look:

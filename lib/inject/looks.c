@@ -198,7 +198,7 @@ static void cut_grid(struct line_grid *grid, const struct tracer *tracer,
     const double per_row = grid->strips_per_row;
     const double per_pixel = grid->bins_per_pixel;
     const double reach =
-        form_reach(&tracer->view, &tracer->response, FORM_SPECKLE, grid->strips_per_row) + per_row;
+        form_reach(&tracer->view, &tracer->response, FORM_FIELD, grid->strips_per_row) + per_row;
     const double pulse = pulse_reach_bins(&tracer->view, &tracer->response, grid->bins_per_pixel);
     const struct span strips = grid->strips;
     const struct span bins = grid->bins;
@@ -263,7 +263,7 @@ sonject_status coloured_noise(struct tracer *tracer, uint32_t stream, const stru
     line_grid_for_patch(&grid, &tracer->view, &tracer->response);
     cut_grid(&grid, tracer, window);
     CHECK(form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view, &tracer->response,
-                           FORM_SPECKLE, &grid));
+                           FORM_FIELD, &grid));
     sonject_status status = draw_noise(&lines, tracer, stream);
     THEN(status, form_end(&lines, &formed));
     for (size_t k = 0; status == SONJECT_OK && k < window->rows; k++) {

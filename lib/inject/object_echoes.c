@@ -332,7 +332,7 @@ static sonject_status find_glint_peak(struct object_former *former, struct trace
     if (!lattice->planes)
         status = peak_lattice_init(lattice, tracer, &former->grid, &lines->grid);
     if (status == SONJECT_OK && impulse_lines_begin(lines))
-        status = peak_lattice_begin(lattice, tracer, FORM_SPECKLE, &lines->grid);
+        status = peak_lattice_begin(lattice, tracer, FORM_FIELD, &lines->grid);
     THEN(status, form_lines_add(&lattice->lines, lines->strips.first - lattice->grid.strips.first,
                                 lines->strips.count, lines->plane[0], lines->plane[1]));
     return status == SONJECT_OK && impulse_lines_end(lines) ? peak_lattice_finish(lattice) : status;

@@ -16,7 +16,7 @@ struct swath {
     struct region patch;
     sonject_transfer_params
         transfer;  /* the scene's, with the file's largest number as full scale */
-    void *stored;  /* the patch's pixels as the file stores them; NULL if made */
+    void *stored;  /* the patch's pixels as the file stores them; if made, the whole swath's */
     float *pixels; /* the patch, linear: amplitudes or pairs */
     bool is_complex;
     bool is_made;  /* by sonject */
@@ -24,8 +24,8 @@ struct swath {
     const char *new_extension; /* of the image; NULL: it is the input's file with other pixels */
     struct track track;        /* of a recording */
     uint64_t clipped;          /* pixels at full scale */
-    char identity[HASH_TEXT_CAPACITY]; /* of path, size, time and patch pixels; of parameters if
-                                          made */
+    char identity[HASH_TEXT_CAPACITY]; /* of the swath's size and the patch's pixels; if made, of
+                                          all pixels */
 };
 
 /* Finds layout and patch without reading pixels (a made swath: from its parameters). Errors: INPUT,

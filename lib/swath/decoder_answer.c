@@ -25,7 +25,7 @@ struct opened {
 };
 
 struct decoder_state {
-    struct opened files[DECODER_FILES_MAX]; /* a handle is a place here, and 1 */
+    struct opened files[DECODER_FILES_MAX]; /* a handle is a place here plus 1 */
 };
 
 /* One request. */

@@ -29,10 +29,11 @@ struct chain_fan {
     struct span strips;
 };
 
-/* 1 + number of objects; 1 by brute force, whose fan is the patch's. */
+/* 1 + number of parts (an object without parts is one); 1 by brute force, whose fan is the patch's.
+ */
 uint32_t chain_fan_count(const struct tracer *tracer);
 
-/* Fan number i: 0 the seabed's, then the objects'. grid: that echoes are tallied on. Errors: INPUT
+/* Fan number i: 0 the seabed's, then the parts'. grid: that echoes are tallied on. Errors: INPUT
  * (too many rays). */
 sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,
                               const struct line_grid *grid, bool has_map, uint32_t i);

@@ -281,9 +281,9 @@ sonject_status image_pair_aim(struct fan_record *fan, struct image_pair_record *
     fan->cosine_depression = record->outgoing.cosine_depression;
     fan->sine_depression = record->outgoing.sine_depression;
     fan->first_cycles = (float)(cycles - floor(cycles));
-    fan->first_bin = (float)((range * view->range_ratio - view->first_range_m) *
-                                 grid->bins_per_pixel / view->column_spacing_m -
-                             grid->bins.first);
+    fan->bin_at_reference = (float)((range * view->range_ratio - view->first_range_m) *
+                                        grid->bins_per_pixel / view->column_spacing_m -
+                                    grid->bins.first);
     sonject_status status =
         object_rays_add(rays, tracer, object, &pair->outgoing->way, &record->outgoing.table);
     THEN(status,

@@ -52,14 +52,14 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
     fan->strip_width = (float)(view->row_spacing_m / grid->strips_per_row);
     fan->strata = 1;
     fan->bins_per_metre = (float)(bins_per_processor_metre * view->range_ratio);
-    fan->first_bin =
+    fan->bin_at_reference =
         (float)((range * view->range_ratio - view->first_range_m) * bins_per_processor_metre -
                 grid->bins.first);
     fan->bins = grid->bins.count;
     fan->source_side = (float)tracer->scene->sonar.transducer_side_m;
     fan->map_row_at_origin = (float)view_row_of_x(view, origin[0]);
     fan->map_rows_per_metre = (float)(1.0 / view->row_spacing_m);
-    fan->map_first_column = (float)view_column_of_range(view, range * view->range_ratio);
+    fan->map_column_at_reference = (float)view_column_of_range(view, range * view->range_ratio);
     fan->map_columns_per_metre = (float)(view->range_ratio / view->column_spacing_m);
     fan->cycles_per_metre = (float)(2.0 / view->wavelength_m);
     fan->first_cycles = (float)(cycles - floor(cycles));

@@ -23,7 +23,7 @@ static void lay_sphere(struct fan_record *fan, struct chain_record *chains,
     fan->strips = 1;
     fan->bins_per_metre = BINS_A_METRE;
     fan->bins = BINS;
-    fan->first_bin = 1.0f;        /* echoes come up to 0.04 bins before the middle one */
+    fan->bin_at_reference = 1.0f; /* echoes come up to 0.04 bins before the middle one */
     fan->quanta = 17179869184.0f; /* so fine that rounding does not count */
     fan->seed_low = 11;
     fan->stream = STREAM_CHAIN_RAYS;
@@ -55,8 +55,9 @@ static void raw_energies(const struct fan_record *fan, const int64_t *tallies,
     for (int order = 0; order < ORDERS; order++) {
         energy[order] = 0.0;
         for (int bin = 0; bin < BINS; bin++) {
-            const double half_path = (double)fan->reference_range +
-                                     (bin - (double)fan->first_bin) / (double)fan->bins_per_metre;
+            const double half_path =
+                (double)fan->reference_range +
+                (bin - (double)fan->bin_at_reference) / (double)fan->bins_per_metre;
             energy[order] += (double)tallies[order * BINS + bin] / pow(half_path, 4.0);
         }
     }

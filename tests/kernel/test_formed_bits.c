@@ -310,7 +310,7 @@ static void compare_patch(struct bench *bench)
     struct line_grid patch;
     bench_ready(bench);
     line_grid_for_patch(&patch, &bench->tracer.view, &bench->tracer.response);
-    compare_forming(bench, FORM_SPECKLE, &patch, 1);
+    compare_forming(bench, FORM_FIELD, &patch, 1);
     compare_forming(bench, FORM_TWO_ENERGIES, &patch, 0);
     compare_forming(bench, FORM_GLINT, &corner, 0);
 }
