@@ -67,13 +67,12 @@ static bool is_raster(const char *path, enum image_kind *kind)
 }
 
 static sonject_status find_library(const struct question *question,
-                                   const struct image_library **library)
+                                   const struct image_library **library, enum image_kind *kind)
 {
     const struct raster_module *module;
-    enum image_kind kind;
-    if (!*question->texts[2] && is_raster(question->texts[1], &kind)) {
+    if (!*question->texts[2] && is_raster(question->texts[1], kind)) {
         CHECK(raster_module_find(question->report, question->texts[0], &module));
-        *library = kind == IMAGE_TIFF ? module->tiff : module->others;
+        *library = *kind == IMAGE_TIFF ? module->tiff : module->others;
         return SONJECT_OK;
     }
 #ifdef HAS_HDF5
@@ -90,7 +89,7 @@ static sonject_status open_image(struct question *question)
 {
     const char *name = question->texts[0];
     const char *array = *question->texts[2] ? question->texts[2] : NULL;
-    struct image_facts facts = {{0, 0, 0, PIXEL_UINT8}, 0, false, NULL};
+    struct image_facts facts = {.description = NULL};
     uint32_t place = 0;
     while (place < DECODER_FILES_MAX && question->state->files[place].path)
         place++;
@@ -98,7 +97,7 @@ static sonject_status open_image(struct question *question)
         return report_failure(question->report, SONJECT_ERROR_STORAGE, "%s: %d files are open",
                               name, DECODER_FILES_MAX);
     struct opened *file = question->file = &question->state->files[place];
-    CHECK(find_library(question, &file->library));
+    CHECK(find_library(question, &file->library, &facts.kind));
     file->path = copy_text(name);
     CHECK_MEMORY(question->report, file->path, name);
     const sonject_status status =

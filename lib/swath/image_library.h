@@ -17,6 +17,7 @@ extern "C" {
 #define DESCRIPTION_MAX ((size_t)1 << 16) /* bytes of one that is kept, its final 0 among them */
 
 struct image_facts {
+    enum image_kind kind; /* that the file's beginning told; not of HDF5's */
     struct raster_layout layout;
     uint32_t largest; /* that it may hold; 0: its type's */
     bool is_turned;   /* columns lie together in the file */
@@ -85,8 +86,8 @@ struct module_stamp {
 struct raster_module {
     struct module_stamp stamp;
     /* TIFF alone is changed; the others' copies are new images. Refused is what they cannot read,
-     * more than 2^40 pixels, sides of 0, palettes, several channels, and of the others what is not of
-     * 8 or 16 bits. */
+     * more than 2^40 pixels, sides of 0, palettes, several channels, and of the others what is not
+     * of 8 or 16 bits. */
     const struct image_library *tiff, *others;
     /* Streams in strips of at most about 64 MB. What failed is left to the caller to remove.
      * Errors: STORAGE, MEMORY, those of give_rows. */

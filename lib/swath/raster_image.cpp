@@ -176,18 +176,7 @@ sonject_status open_file(struct report *report, struct raster_image &file)
 {
     const char *name = file.name.c_str();
     const char *path = file.path.c_str();
-    unsigned char head[16];
-    uint64_t bytes = 0;
-    FILE *stream = byte_file_open(path, &bytes);
-    const size_t count = stream ? std::fread(head, 1, sizeof head, stream) : 0;
-    const int error = stream && !std::ferror(stream) ? 0 : errno;
     bool is_coloured = false;
-    if (stream)
-        std::fclose(stream);
-    if (error != 0)
-        return file_refuse(report, name, error);
-    if (!image_kind_of_beginning(head, count, &file.kind))
-        return image_kind_refuse(report, name, head, count);
     if (file.kind == IMAGE_PNG)
         CHECK(png_check(report, name, path, &is_coloured));
     if (file.kind == IMAGE_BMP)
@@ -224,6 +213,7 @@ sonject_status raster_open(struct report *report, const char *name, const char *
         std::unique_ptr<struct raster_image> file(new struct raster_image);
         file->name = name;
         file->path = path;
+        file->kind = facts->kind;
         CHECK(open_file(report, *file));
         const std::string text(file->spec.get_string_attribute(description_name));
         facts->layout = file->layout;
