@@ -201,7 +201,6 @@ def write_inputs(folder):
         "swath.mat": mat(turned, rows),
         "swath.bmp": bmp(bytes8, columns),
         "swath.pgm": b"P5\n%d %d\n255\n" % (columns, rows) + bytes8.tobytes(),
-        "swath.pfm": b"Pf\n%d %d\n-1.0\n" % (columns, rows) + floats.tobytes(),
         "figure.png": png(grey(seabed(472, 512, 2), 255), 512),
         "heights.npy": npy(array.array("f", heights), (60, 80)),
         "line.xtf": xtf(160, 200, 30.0),
