@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #define PATH_BYTES_MAX ((size_t)1 << 16)
+#define NAMES_MAX      ((size_t)1 << 20) /* in a folder */
 
 sonject_status input_failure(struct report *report, const char *path, const char *format, ...)
 {
@@ -427,34 +428,53 @@ void folder_names_clear(struct folder_names *list)
     memset(list, 0, sizeof *list);
 }
 
-static int compare_names(const struct dirent **a, const struct dirent **b)
+static bool add_name(struct folder_names *list, const char *name)
 {
-    return strcmp((*a)->d_name, (*b)->d_name);
+    if ((list->count & (list->count + 1)) == 0) { /* 0, 1, 3, 7...: room for twice as many */
+        char **more = list->count < NAMES_MAX
+                          ? realloc(list->names, (2 * list->count + 1) * sizeof *more)
+                          : NULL;
+        if (!more)
+            return false;
+        list->names = more;
+    }
+    list->names[list->count] = copy_text(name);
+    if (!list->names[list->count])
+        return false;
+    list->count++;
+    return true;
+}
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+static bool is_wanted(const char *name, const char *prefix)
+{
+    return strcmp(name, ".") != 0 && strcmp(name, "..") != 0 &&
+           strncmp(name, prefix, strlen(prefix)) == 0;
 }
 
 sonject_status folder_names_read(struct folder_names *list, struct report *report, const char *path,
                                  const char *prefix)
 {
-    struct dirent **entries;
     memset(list, 0, sizeof *list);
-    const int count = scandir(path, &entries, NULL, compare_names);
-    if (count < 0)
+    DIR *folder = opendir(path);
+    if (!folder)
         return errno == ENOENT || errno == ENOTDIR ? SONJECT_OK
                                                    : file_failure(report, path, "read", errno);
-    list->names = allocate_array((size_t)count, sizeof *list->names);
-    bool has_memory = list->names != NULL;
-    for (int i = 0; i < count; i++) {
-        const char *name = entries[i]->d_name;
-        if (has_memory && strcmp(name, ".") != 0 && strcmp(name, "..") != 0 &&
-            strncmp(name, prefix, strlen(prefix)) == 0) {
-            list->names[list->count] = copy_text(name);
-            has_memory = list->names[list->count] != NULL;
-            list->count += has_memory;
-        }
-        free(entries[i]);
-    }
-    free(entries);
-    if (!has_memory)
+    sonject_status status = SONJECT_OK;
+    struct dirent *entry;
+    while (status == SONJECT_OK && (errno = 0, entry = readdir(folder)) != NULL)
+        if (is_wanted(entry->d_name, prefix) && !add_name(list, entry->d_name))
+            status = report_out_of_memory(report, path);
+    if (status == SONJECT_OK && errno != 0)
+        status = file_failure(report, path, "read", errno);
+    closedir(folder);
+    if (status != SONJECT_OK)
         folder_names_clear(list);
-    return has_memory ? SONJECT_OK : report_out_of_memory(report, path);
+    else if (list->count > 0)
+        qsort(list->names, list->count, sizeof *list->names, compare_names);
+    return status;
 }
