@@ -104,8 +104,8 @@ struct folder_names {
 };
 
 /* Lists what begins with prefix, "." and ".." left out; nothing where there is no such folder. On
- * success to be given to folder_names_clear; on failure nothing is held. Errors: STORAGE, MEMORY.
- */
+ * success to be given to folder_names_clear; on failure nothing is held. Errors: STORAGE, MEMORY
+ * (of more than a million names, too). */
 sonject_status folder_names_read(struct folder_names *list, struct report *report, const char *path,
                                  const char *prefix);
 void folder_names_clear(struct folder_names *list);

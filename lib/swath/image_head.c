@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <zlib.h>
+
 #include "base/byte_order.h"
 #include "base/file.h"
 #include "base/text.h"
@@ -176,16 +178,10 @@ sonject_status pgm_check(struct report *report, const char *name, const char *pa
 static unsigned char *put_chunk(unsigned char *to, const char *name, const void *content,
                                 size_t count)
 {
-    uint32_t sum = UINT32_C(0xFFFFFFFF);
     number_to_bytes(count, to, 4, true);
     memcpy(to + 4, name, 4);
     memcpy(to + 8, content, count);
-    for (size_t i = 4; i < 8 + count; i++) {
-        sum ^= to[i];
-        for (int bit = 0; bit < 8; bit++)
-            sum = sum & 1 ? sum >> 1 ^ UINT32_C(0xEDB88320) : sum >> 1;
-    }
-    number_to_bytes(~(uint64_t)sum, to + 8 + count, 4, true);
+    number_to_bytes(crc32(0, to + 4, (uInt)(4 + count)), to + 8 + count, 4, true);
     return to + count + 12;
 }
 
