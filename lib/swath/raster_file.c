@@ -153,28 +153,22 @@ static sonject_status kind_to_write(struct report *report, const char *path,
     return SONJECT_OK;
 }
 
-/* Writes at result the pixels of an 8 bit grey PNG as numbers of a palette's colours. */
-static sonject_status colour_png(struct report *report, const char *grey, const uint8_t *palette,
-                                 const char *result, const char *name)
+/* Publishes at path the pixels of an 8 bit grey PNG as numbers of a palette's colours. */
+static sonject_status publish_coloured(struct report *report, const char *grey,
+                                       const uint8_t *palette, const char *path)
 {
-    unsigned char header[PNG_HEADER_PLACE + PNG_HEADER_BYTES];
+    const size_t header = PNG_HEADER_PLACE + PNG_HEADER_BYTES;
     unsigned char head[PNG_HEAD_BYTES];
-    uint64_t bytes = 0;
-    errno = 0;
-    FILE *from = byte_file_open(grey, &bytes);
-    FILE *to = from ? fopen(result, "wb") : NULL;
-    bool is_good = to && bytes >= sizeof header && byte_file_read(from, 0, header, sizeof header);
-    if (is_good) {
-        png_colour_head(header, palette, head);
-        is_good = fwrite(head, 1, sizeof head, to) == sizeof head &&
-                  byte_file_copy(from, sizeof header, bytes - sizeof header, to);
-    }
-    if (to && fclose(to) != 0)
-        is_good = false;
-    const int error = errno != 0 ? errno : EIO;
-    if (from)
-        fclose(from);
-    return is_good ? SONJECT_OK : file_failure(report, name, "write", error);
+    char *bytes;
+    size_t count;
+    CHECK(file_read_whole(report, grey, SIZE_MAX / 2, &bytes, &count));
+    if (count >= header)
+        png_colour_head((const unsigned char *)bytes, palette, head);
+    const sonject_status status = count < header ? file_failure(report, path, "write", EIO)
+                                                 : file_write_parts(report, path, head, sizeof head,
+                                                                    bytes + header, count - header);
+    free(bytes);
+    return status;
 }
 
 static sonject_status write_rows(struct patched_rows *rows, const char *path,
@@ -183,18 +177,11 @@ static sonject_status write_rows(struct patched_rows *rows, const char *path,
     enum image_kind kind = IMAGE_TIFF;
     CHECK(kind_to_write(rows->report, path, &rows->layout, &kind));
     char *part = file_part_name(path);
-    char *coloured = part ? file_part_name(part) : NULL;
-    const char *last = palette ? coloured : part;
-    sonject_status status = coloured ? encode(rows, part, path, kind, description, is_drawn)
-                                     : report_out_of_memory(rows->report, "a file name");
-    if (palette)
-        THEN(status, colour_png(rows->report, part, palette, coloured, path));
-    THEN(status, file_publish(rows->report, last, path));
-    if (coloured)
-        file_discard(coloured);
-    if (part)
-        file_discard(part);
-    free(coloured);
+    CHECK_MEMORY(rows->report, part, "a file name");
+    sonject_status status = encode(rows, part, path, kind, description, is_drawn);
+    THEN(status, palette ? publish_coloured(rows->report, part, palette, path)
+                         : file_publish(rows->report, part, path));
+    file_discard(part);
     free(part);
     return status;
 }
