@@ -186,31 +186,27 @@ static sonject_status read_scene_name(struct reader *reader, const struct tree_n
     return read_path(reader, node, &campaign->scene_path);
 }
 
-static sonject_status read_swath_key(struct reader *reader, const struct tree_entry *entry,
-                                     struct swath_plan *swath)
-{
-    char *value = NULL;
-    struct growing_text pair = {NULL, 0, 0, false};
-    CHECK(check_scene_key(reader, entry, entry->key, false));
-    CHECK(grow_list(reader->report, &swath->keys, swath->key_count, sizeof *swath->keys));
-    CHECK(tree_override_text(reader->report, &entry->value, &value));
-    growing_text_add(&pair, "%s=%s", entry->key, value);
-    free(value);
-    swath->keys[swath->key_count] = growing_text_end(&pair);
-    CHECK_MEMORY(reader->report, swath->keys[swath->key_count], "the campaign");
-    swath->key_count++;
-    return SONJECT_OK;
-}
-
 static sonject_status read_swath_keys(struct reader *reader, const struct tree_node *node,
                                       void *structure)
 {
-    sonject_status status = SONJECT_OK;
+    struct swath_plan *swath = structure;
     if (node->kind != TREE_SECTION)
         return refuse_value(reader, node, "must be a section of 'key: value' lines");
-    for (size_t i = 0; !reading_ends(status) && i < node->count; i++)
-        status = read_swath_key(reader, &node->entries[i], structure);
-    return status;
+    for (size_t i = 0; i < node->count; i++) {
+        const struct tree_entry *entry = &node->entries[i];
+        char *value = NULL;
+        struct growing_text pair = {NULL, 0, 0, false};
+        if (check_scene_key(reader, entry, entry->key, false) != SONJECT_OK)
+            continue;
+        CHECK(grow_list(reader->report, &swath->keys, swath->key_count, sizeof *swath->keys));
+        CHECK(tree_override_text(reader->report, &entry->value, &value));
+        growing_text_add(&pair, "%s=%s", entry->key, value);
+        free(value);
+        swath->keys[swath->key_count] = growing_text_end(&pair);
+        CHECK_MEMORY(reader->report, swath->keys[swath->key_count], "the campaign");
+        swath->key_count++;
+    }
+    return SONJECT_OK;
 }
 
 #define STRUCTURE struct region
@@ -505,8 +501,7 @@ sonject_status campaign_read(struct report *report, const char *path, const char
     campaign->folder = path_folder(path);
     CHECK_MEMORY(report, campaign->path && campaign->folder, "the campaign");
     if (!file_exists(path))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: there is no such campaign file; check its name", path);
+        return input_failure(report, path, "there is no such campaign file; check its name");
     CHECK(file_read_whole(report, path, TREE_BYTES_MAX, &text, &bytes));
     struct mistakes mistakes = {NULL, 0, 0, 0};
     struct tree *tree = &campaign->tree;

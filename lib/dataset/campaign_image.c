@@ -188,26 +188,18 @@ static void take_alone(struct campaign_image *image, struct scene *scene, struct
     swath->patch = all;
 }
 
-/* An image of one channel, or of real and imaginary parts. */
-static sonject_status write_raster(struct sonject_campaign *campaign, const struct scene *scene,
-                                   const struct raster_layout *layout, bool is_complex,
-                                   const void *pixels, const char *path)
-{
-    static const char *const complex_names[] = {"real", "imag"};
-    struct geometry_notes notes;
-    geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
-    return raster_file_write(campaign->report, path, layout, is_complex ? complex_names : NULL,
-                             notes.attributes, notes.count, pixels);
-}
-
 static sonject_status write_pixels(struct sonject_campaign *campaign, const struct scene *scene,
                                    struct swath *swath, struct injection_result *result,
                                    const char *path)
 {
+    static const char *const complex_names[] = {"real", "imag"};
+    struct geometry_notes notes;
     void *stored = swath_stored_result(swath, result, &result->statistics.output_clipped);
     CHECK_MEMORY(campaign->report, stored, "an image");
-    const sonject_status status =
-        write_raster(campaign, scene, &swath->layout, swath->is_complex, stored, path);
+    geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
+    const sonject_status status = raster_file_write(campaign->report, path, &swath->layout,
+                                                    swath->is_complex ? complex_names : NULL,
+                                                    notes.attributes, notes.count, stored);
     free(stored);
     return status;
 }
@@ -278,34 +270,28 @@ static sonject_status write_file(struct sonject_campaign *campaign, struct campa
 {
     struct report *report = campaign->report;
     struct injection_result *result = &image->result;
-    const struct swath *swath = &parts->swath;
     const struct run_facts facts = {.scene = &parts->scene,
-                                    .swath = swath,
+                                    .swath = &parts->swath,
                                     .result = result,
                                     .image_name = parts->labels.file_name};
-    struct raster_layout layout = {swath->layout.rows, swath->layout.columns, 1, PIXEL_FLOAT32};
+    static const enum layer layers[OUTPUT_KINDS] = {[OUTPUT_HIGHLIGHT] = LAYER_HIGHLIGHT,
+                                                    [OUTPUT_SHADOW] = LAYER_SHADOW,
+                                                    [OUTPUT_MASKS] = LAYER_LABELS,
+                                                    [OUTPUT_ENERGY] = LAYER_ENERGY,
+                                                    [OUTPUT_FIELD] = LAYER_FIELD};
     switch (output) {
     case OUTPUT_IMAGE:
         return write_pixels(campaign, &parts->scene, &parts->swath, result, path);
     case OUTPUT_TRUTH:
         return write_truth(report, &facts, path);
-    case OUTPUT_HIGHLIGHT:
-        return write_mask(report, swath, result->highlight, path);
-    case OUTPUT_SHADOW:
-        return write_mask(report, swath, result->shadow, path);
-    case OUTPUT_MASKS:
-        return write_label_mask(report, swath, result->labels, path);
-    case OUTPUT_ENERGY:
-        return write_raster(campaign, &parts->scene, &layout, false, result->energy, path);
-    case OUTPUT_FIELD:
-        layout.channels = 2;
-        return write_raster(campaign, &parts->scene, &layout, true, result->field, path);
     case OUTPUT_YOLO:
         return labels_write(report, &parts->labels, &campaign->classes, LABEL_YOLO, path);
     case OUTPUT_VOC:
         return labels_write(report, &parts->labels, &campaign->classes, LABEL_VOC, path);
-    default:
+    case OUTPUT_RECORD:
         return write_record(campaign, image, parts, path);
+    default:
+        return write_layer(report, &facts, layers[output], path);
     }
 }
 

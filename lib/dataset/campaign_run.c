@@ -127,52 +127,41 @@ static sonject_status write_times(const struct sweep *sweep)
     return json_document_write(sweep->campaign->report, document, 9, path);
 }
 
-static sonject_status finish_whole(struct sweep *sweep, int *was_finished)
+/* The documents of the whole; *is_finished: they were there. */
+static sonject_status finish_whole(struct sweep *sweep, bool *is_finished)
 {
-    bool is_finished = false;
     sweep->set.progress = sweep->progress;
     sweep->set.user = sweep->user;
-    sonject_status status = SONJECT_OK;
+    *is_finished = false;
     if (sweep->missing == 0)
-        status = data_set_is_finished(&sweep->set, &is_finished);
-    if (status == SONJECT_OK && !is_finished)
-        status = data_set_finish(&sweep->set);
-    if (was_finished)
-        *was_finished = is_finished;
-    return status;
-}
-
-static sonject_status run_sweep(struct sweep *sweep, int *was_finished)
-{
-    const bool is_whole = sweep->params->shard_count == 1 && !sweep->params->only_one;
-    sonject_status status = begin_set(sweep);
-    THEN(status, find_missing(sweep));
-    sweep->start_s = clock_seconds();
-    THEN(status, make_missing(sweep));
-    if (status == SONJECT_OK && sweep->made > 0)
-        status = write_times(sweep);
-    if (was_finished)
-        *was_finished = sweep->missing == 0;
-    if (status == SONJECT_OK && is_whole)
-        status = finish_whole(sweep, was_finished);
-    data_set_clear(&sweep->set);
-    free(sweep->is_missing);
-    return status;
+        CHECK(data_set_is_finished(&sweep->set, is_finished));
+    return *is_finished ? SONJECT_OK : data_set_finish(&sweep->set);
 }
 
 sonject_status campaign_run(struct sonject_campaign *campaign, struct device_slot *slot,
                             const sonject_campaign_run_params *params,
                             sonject_progress_function progress, void *user, int *was_finished)
 {
-    const double begin_s = clock_seconds();
     struct sweep sweep = {.slot = slot,
                           .campaign = campaign,
                           .params = params,
                           .progress = progress,
                           .user = user,
-                          .start_s = begin_s,
-                          .begin_s = begin_s};
-    return run_sweep(&sweep, was_finished);
+                          .begin_s = clock_seconds()};
+    sonject_status status = begin_set(&sweep);
+    THEN(status, find_missing(&sweep));
+    sweep.start_s = clock_seconds();
+    THEN(status, make_missing(&sweep));
+    if (status == SONJECT_OK && sweep.made > 0)
+        status = write_times(&sweep);
+    bool is_finished = sweep.missing == 0;
+    if (status == SONJECT_OK && params->shard_count == 1 && !params->only_one)
+        status = finish_whole(&sweep, &is_finished);
+    if (was_finished)
+        *was_finished = status == SONJECT_OK && is_finished;
+    data_set_clear(&sweep.set);
+    free(sweep.is_missing);
+    return status;
 }
 
 sonject_status campaign_merge(struct report *report, const char *folder,

@@ -22,21 +22,12 @@ struct thumbnail {
     float *values;
 };
 
-static float stored_value(enum pixel_type type, const void *pixels, size_t i)
-{
-    if (type == PIXEL_UINT8)
-        return ((const uint8_t *)pixels)[i];
-    if (type == PIXEL_UINT16)
-        return ((const uint16_t *)pixels)[i];
-    return ((const float *)pixels)[i];
-}
-
 static float value_at(const struct raster_layout *layout, const void *pixels, size_t i)
 {
-    if (layout->channels == 2)
-        return hypotf(stored_value(layout->type, pixels, 2 * i),
-                      stored_value(layout->type, pixels, 2 * i + 1));
-    return stored_value(layout->type, pixels, i);
+    const size_t k = i * layout->channels;
+    const float first = (float)pixel_number(layout->type, pixels, k);
+    return layout->channels == 2 ? hypotf(first, (float)pixel_number(layout->type, pixels, k + 1))
+                                 : first;
 }
 
 /* Means of the pixels that a smaller one stands for. */

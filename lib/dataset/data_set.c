@@ -276,58 +276,31 @@ sonject_status data_set_is_finished(const struct data_set *set, bool *is_finishe
     return status;
 }
 
-/* Ids that are missing, as ranges while they fit. */
-struct missing {
-    uint64_t count, first, last; /* of the range that is being found */
-    size_t ranges;
-    struct growing_text text;
-};
-
-#define RANGES_TOLD 12
-
-static void tell_range(struct missing *missing)
-{
-    if (missing->ranges++ == RANGES_TOLD)
-        growing_text_add(&missing->text, ", ...");
-    if (missing->ranges > RANGES_TOLD)
-        return;
-    growing_text_add(&missing->text, "%s%" PRIu64, missing->ranges > 1 ? ", " : "", missing->first);
-    if (missing->last > missing->first)
-        growing_text_add(&missing->text, "-%" PRIu64, missing->last);
-}
-
-static void add_missing(struct missing *missing, uint64_t id)
-{
-    if (missing->count > 0 && id != missing->last + 1)
-        tell_range(missing);
-    if (missing->count == 0 || id != missing->last + 1)
-        missing->first = id;
-    missing->last = id;
-    missing->count++;
-}
+#define MISSING_TOLD 24 /* by their numbers */
 
 static sonject_status check_complete(const struct data_set *set)
 {
-    struct missing missing;
+    uint64_t count = 0;
+    struct growing_text text = {NULL, 0, 0, false};
     char changed[PATH_CAPACITY] = "";
     sonject_status status = SONJECT_OK;
-    memset(&missing, 0, sizeof missing);
     for (size_t i = 0; i < set->split_count; i++)
         for (uint64_t k = 0; status == SONJECT_OK && k < set->split_images[i]; k++) {
             bool has = false;
-            status = data_set_has_image(set, i, set->split_first[i] + k, changed, &has);
-            if (status == SONJECT_OK && !has)
-                add_missing(&missing, set->split_first[i] + k);
+            const uint64_t id = set->split_first[i] + k;
+            status = data_set_has_image(set, i, id, changed, &has);
+            if (status == SONJECT_OK && !has && count++ < MISSING_TOLD)
+                growing_text_add(&text, "%s%" PRIu64, count > 1 ? ", " : "", id);
         }
-    if (missing.count > 0)
-        tell_range(&missing);
-    char *ids = growing_text_end(&missing.text);
-    if (status == SONJECT_OK && missing.count > 0)
+    if (count > MISSING_TOLD)
+        growing_text_add(&text, ", ...");
+    char *ids = growing_text_end(&text);
+    if (status == SONJECT_OK && count > 0)
         status =
             input_failure(set->report, set->folder,
                           "%" PRIu64 " of %" PRIu64
                           " images are missing%s: %s%s%s; run the campaign or its shards again",
-                          missing.count, set->images, *changed ? " or changed" : "", ids ? ids : "",
+                          count, set->images, *changed ? " or changed" : "", ids ? ids : "",
                           *changed ? "; not as it was written: " : "", changed);
     free(ids);
     return status;

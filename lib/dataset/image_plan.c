@@ -27,6 +27,7 @@ enum {
 /* What a plan is drawn with. */
 struct drawing {
     struct report *report;
+    sonject_status status; /* so far */
     const struct campaign *campaign;
     struct image_plan *plan;
     uint32_t trial;        /* step of a trial */
@@ -56,27 +57,26 @@ static uint64_t category_seed(const struct campaign *campaign, uint32_t category
     return campaign->seed ^ (UINT64_C(0x9E3779B97F4A7C15) * (category + 1));
 }
 
-/* Adds a key to the plan; text is given up, and NULL counts as memory that was out. Errors: MEMORY.
- */
-static sonject_status add_key(struct drawing *drawing, struct tree_place place, char *text)
+/* Adds a key to the plan; text is given up, and NULL counts as memory that was out. */
+static void add_key(struct drawing *drawing, struct tree_place place, char *text)
 {
     struct image_plan *plan = drawing->plan;
-    CHECK_MEMORY(drawing->report, text, "an image's scene");
-    const sonject_status status =
-        grow_list(drawing->report, &plan->keys, plan->key_count, sizeof *plan->keys);
-    if (status == SONJECT_OK)
+    if (drawing->status == SONJECT_OK && !text)
+        drawing->status = report_out_of_memory(drawing->report, "an image's scene");
+    THEN(drawing->status,
+         grow_list(drawing->report, &plan->keys, plan->key_count, sizeof *plan->keys));
+    if (drawing->status == SONJECT_OK)
         plan->keys[plan->key_count++] = (struct plan_key){text, place};
     else
         free(text);
-    return status;
 }
 
-static sonject_status add_value(struct drawing *drawing, struct tree_place place,
-                                const char *prefix, const char *key, const char *value)
+static void add_value(struct drawing *drawing, struct tree_place place, const char *prefix,
+                      const char *key, const char *value)
 {
     struct growing_text text = {NULL, 0, 0, false};
     growing_text_add(&text, "%s%s=%s", prefix, key, value);
-    return add_key(drawing, place, growing_text_end(&text));
+    add_key(drawing, place, growing_text_end(&text));
 }
 
 static const char *trial_value(const struct distribution *distribution, uint32_t step,
@@ -171,8 +171,8 @@ static void choose_kind(struct drawing *drawing, uint64_t within)
 
 /* Draws that an object has of its own, and those of all objects that it has not. number: of the
  * object; 0 is the target, if there is one. */
-static sonject_status draw_object(struct drawing *drawing, const struct item *item, uint32_t number,
-                                  bool is_clutter)
+static void draw_object(struct drawing *drawing, const struct item *item, uint32_t number,
+                        bool is_clutter)
 {
     const struct campaign *campaign = drawing->campaign;
     const struct draws *both[] = {&campaign->object_draws, &item->draws};
@@ -192,9 +192,8 @@ static sonject_status draw_object(struct drawing *drawing, const struct item *it
                     ? distribution_value(distribution,
                                          uniform_number(seed, distribution->stream, place), text)
                     : draw_value(drawing, distribution, seed, drawing->index, drawing->count, text);
-            CHECK(add_value(drawing, distribution->place, prefix, distribution->key, value));
+            add_value(drawing, distribution->place, prefix, distribution->key, value);
         }
-    return SONJECT_OK;
 }
 
 /* A place in the middle part of the chip: the first candidate for the first object, for others the
@@ -292,7 +291,7 @@ static uint32_t choose_objects(struct drawing *drawing, const struct item *trial
 }
 
 /* The objects in one value, and then what is drawn of each. */
-static sonject_status draw_objects(struct drawing *drawing, const struct item *trial_clutter)
+static void draw_objects(struct drawing *drawing, const struct item *trial_clutter)
 {
     const struct tree_place nowhere = {NULL, 0, 0};
     const struct item *items[OBJECTS_OF_IMAGE];
@@ -304,10 +303,9 @@ static sonject_status draw_objects(struct drawing *drawing, const struct item *t
     for (uint32_t i = 0; i < count; i++)
         write_object(drawing, items[i], &text);
     growing_text_add(&text, "]");
-    CHECK(add_key(drawing, nowhere, growing_text_end(&text)));
+    add_key(drawing, nowhere, growing_text_end(&text));
     for (uint32_t i = 0; i < count; i++)
-        CHECK(draw_object(drawing, items[i], i, i >= first_clutter));
-    return SONJECT_OK;
+        draw_object(drawing, items[i], i, i >= first_clutter);
 }
 
 /* The swath's own keys, the chip and the seed, what is drawn of the scene, and the objects. */
@@ -319,20 +317,21 @@ static sonject_status fill_plan(struct drawing *drawing, const struct item *tria
     const struct swath_plan *swath = &campaign->swaths[drawing->plan->swath];
     char text[160];
     for (size_t i = 0; i < swath->key_count; i++)
-        CHECK(add_key(drawing, swath->place, copy_text(swath->keys[i])));
+        add_key(drawing, swath->place, copy_text(swath->keys[i]));
     snprintf(text, sizeof text, "{row: %llu, column: %llu, rows: %llu, columns: %llu}",
              (unsigned long long)chip->first_row, (unsigned long long)chip->first_column,
              (unsigned long long)chip->rows, (unsigned long long)chip->columns);
-    CHECK(add_value(drawing, nowhere, "", "patch", text));
+    add_value(drawing, nowhere, "", "patch", text);
     snprintf(text, sizeof text, "%llu", (unsigned long long)drawing->plan->seed);
-    CHECK(add_value(drawing, nowhere, "", "injection.seed", text));
+    add_value(drawing, nowhere, "", "injection.seed", text);
     for (size_t i = 0; i < campaign->draws.count; i++) {
         const struct distribution *distribution = &campaign->draws.list[i];
         const char *value = draw_value(drawing, distribution, campaign->seed, drawing->plan->id,
                                        campaign->images, text);
-        CHECK(add_value(drawing, distribution->place, "", distribution->key, value));
+        add_value(drawing, distribution->place, "", distribution->key, value);
     }
-    return draw_objects(drawing, trial_clutter);
+    draw_objects(drawing, trial_clutter);
+    return drawing->status;
 }
 
 sonject_status image_plan_make(struct report *report, const struct campaign *campaign, uint64_t id,

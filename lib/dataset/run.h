@@ -72,6 +72,23 @@ struct run_facts {
 sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path);
 sonject_status write_run(struct report *report, const struct run_facts *facts, const char *path);
 
+/* What of a result is a file of its own: masks are images of the swath's size, all else of its
+ * patch. */
+enum layer {
+    LAYER_FIELD,
+    LAYER_ENERGY,
+    LAYER_HIGHLIGHT,
+    LAYER_SHADOW,
+    LAYER_LABELS, /* the numbers of objects */
+    LAYER_INFLUENCE,
+    LAYER_QUICKLOOK
+};
+#define LAYERS (LAYER_QUICKLOOK + 1)
+
+/* Errors: STORAGE, MEMORY. */
+sonject_status write_layer(struct report *report, const struct run_facts *facts, enum layer layer,
+                           const char *path);
+
 /* Writes patch.tif, energy.tif, highlight.png, shadow.png, labels.png, influence.png, quicklook.png
  * and, where the result has them, energy_order_1.tif and so on into the folder, each whole or not
  * at all, and lists them in facts->files. Errors: STORAGE, MEMORY. */
@@ -81,13 +98,6 @@ sonject_status write_layers(struct report *report, struct run_facts *facts, cons
  * them in facts->files; label files of other formats that an earlier run left are removed. Errors:
  * STORAGE, MEMORY. */
 sonject_status write_labels(struct report *report, struct run_facts *facts, const char *folder);
-
-/* A mask of the swath's patch in an image of the swath's size, and the numbers of objects, each in
- * a colour of its own. Errors: STORAGE, MEMORY. */
-sonject_status write_mask(struct report *report, const struct swath *swath, const uint8_t *mask,
-                          const char *path);
-sonject_status write_label_mask(struct report *report, const struct swath *swath,
-                                const uint8_t *labels, const char *path);
 
 /* The formats (sum of sonject_labels) that a run.json names. */
 uint32_t labels_of_document(const json_t *run);

@@ -313,22 +313,17 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
     return status;
 }
 
-static sonject_status write_placed(struct report *report, const struct swath *swath,
-                                   const uint8_t *mask, const uint8_t *palette, const char *path)
+static sonject_status write_mask(struct report *report, const struct swath *swath,
+                                 const uint8_t *mask, const uint8_t *palette, const char *path)
 {
     const struct raster_layout layout = {swath->layout.rows, swath->layout.columns, 1, PIXEL_UINT8};
     return raster_file_write_placed(report, path, &layout, &swath->patch, mask, palette);
 }
 
-sonject_status write_mask(struct report *report, const struct swath *swath, const uint8_t *mask,
-                          const char *path)
-{
-    return write_placed(report, swath, mask, NULL, path);
-}
-
-/* 0 is black; neighbours lie a golden angle apart on the wheel of six sectors of colours. */
-sonject_status write_label_mask(struct report *report, const struct swath *swath,
-                                const uint8_t *labels, const char *path)
+/* The numbers of objects, each in a colour of its own: 0 is black; neighbours lie a golden angle
+ * apart on the wheel of six sectors of colours. */
+static sonject_status write_label_mask(struct report *report, const struct swath *swath,
+                                       const uint8_t *labels, const char *path)
 {
     static const uint8_t order[6][3] = {{0, 1, 2}, {1, 0, 2}, {2, 0, 1},
                                         {2, 1, 0}, {1, 2, 0}, {0, 2, 1}};
@@ -340,7 +335,7 @@ sonject_status write_label_mask(struct report *report, const struct swath *swath
         for (int i = 0; i < 3; i++)
             palette[3 * number + (unsigned)i] = parts[order[hue / 256][i]];
     }
-    return write_placed(report, swath, labels, palette, path);
+    return write_mask(report, swath, labels, palette, path);
 }
 
 static sonject_status write_float_layer(struct report *report, const struct run_facts *facts,
@@ -369,94 +364,91 @@ static void amplitude_of(const float *pixels, size_t count, bool is_complex, flo
 }
 
 /* Amplitudes before and after, and 20 log10 of their ratio, 0 where nothing changed. */
-static void fill_planes(const struct run_facts *facts, size_t count, float *planes)
-{
-    const struct injection_result *result = facts->result;
-    const float *before = planes;
-    const float *after = planes + count;
-    amplitude_of(facts->swath->pixels, count, result->is_complex, planes);
-    amplitude_of(result->image, count, result->is_complex, planes + count);
-    for (size_t i = 0; i < count; i++)
-        planes[2 * count + i] = result->influence[i] && before[i] > 0.0f && after[i] > 0.0f
-                                    ? 20.0f * log10f(after[i] / before[i])
-                                    : 0.0f;
-}
-
 static sonject_status write_quicklook(struct report *report, const struct run_facts *facts,
                                       const char *path)
 {
-    const size_t count = facts->result->rows * facts->result->columns;
+    const struct injection_result *result = facts->result;
+    const size_t count = result->rows * result->columns;
     const sonject_geometry_params *geometry = &facts->scene->geometry;
     const struct region *patch = &facts->swath->patch;
-    float *planes = allocate_array(count, 3 * sizeof *planes);
-    CHECK_MEMORY(report, planes, "the quicklook");
-    const struct plot_panel panels[] = {{"before", planes, false},
-                                        {"after", planes + count, false},
-                                        {"difference, dB", planes + 2 * count, true}};
-    struct plot_frame frame;
-    memset(&frame, 0, sizeof frame);
-    frame.rows = patch->rows;
-    frame.columns = patch->columns;
-    frame.first_along_track_m =
-        geometry->first_along_track_m + (double)patch->first_row * geometry->row_spacing_m;
-    frame.row_spacing_m = geometry->row_spacing_m;
-    frame.first_range_m =
-        geometry->first_slant_range_m + (double)patch->first_column * geometry->column_spacing_m;
-    frame.column_spacing_m = geometry->column_spacing_m;
-    frame.range_label = "slant range, m";
-    frame.difference_db = 20.0;
+    float *before = allocate_array(count, 3 * sizeof *before);
+    CHECK_MEMORY(report, before, "the quicklook");
+    float *after = before + count;
+    float *difference = after + count;
+    amplitude_of(facts->swath->pixels, count, result->is_complex, before);
+    amplitude_of(result->image, count, result->is_complex, after);
+    for (size_t i = 0; i < count; i++)
+        difference[i] = result->influence[i] && before[i] > 0.0f && after[i] > 0.0f
+                            ? 20.0f * log10f(after[i] / before[i])
+                            : 0.0f;
+    const struct plot_panel panels[] = {
+        {"before", before, false}, {"after", after, false}, {"difference, dB", difference, true}};
+    const struct plot_frame frame = {
+        .rows = patch->rows,
+        .columns = patch->columns,
+        .first_along_track_m =
+            geometry->first_along_track_m + (double)patch->first_row * geometry->row_spacing_m,
+        .row_spacing_m = geometry->row_spacing_m,
+        .first_range_m = geometry->first_slant_range_m +
+                         (double)patch->first_column * geometry->column_spacing_m,
+        .column_spacing_m = geometry->column_spacing_m,
+        .range_label = "slant range, m",
+        .difference_db = 20.0};
     uint8_t *picture = NULL;
     uint32_t height, width;
-    fill_planes(facts, count, planes);
     sonject_status status = plot_panels(report, &frame, panels, 3, &picture, &height, &width);
     if (status == SONJECT_OK) {
         const struct raster_layout layout = {height, width, 3, PIXEL_UINT8};
         status = raster_file_write(report, path, &layout, NULL, NULL, 0, picture);
     }
     free(picture);
-    free(planes);
+    free(before);
     return status;
+}
+
+sonject_status write_layer(struct report *report, const struct run_facts *facts, enum layer layer,
+                           const char *path)
+{
+    const struct injection_result *result = facts->result;
+    switch (layer) {
+    case LAYER_FIELD:
+        return write_float_layer(report, facts, 2, result->field, path);
+    case LAYER_ENERGY:
+        return write_float_layer(report, facts, 1, result->energy, path);
+    case LAYER_HIGHLIGHT:
+        return write_mask(report, facts->swath, result->highlight, NULL, path);
+    case LAYER_SHADOW:
+        return write_mask(report, facts->swath, result->shadow, NULL, path);
+    case LAYER_LABELS:
+        return write_label_mask(report, facts->swath, result->labels, path);
+    case LAYER_INFLUENCE:
+        return write_mask(report, facts->swath, result->influence, NULL, path);
+    default:
+        return write_quicklook(report, facts, path);
+    }
 }
 
 /* Orders that this result has not may be there from a run before. */
 sonject_status write_layers(struct report *report, struct run_facts *facts, const char *folder)
 {
-    const struct injection_result *result = facts->result;
-    const struct layer {
-        const char *name;
-        uint32_t channels; /* of values */
-        const float *values;
-        const uint8_t *mask, *labels;
-    } layers[] = {{"patch.tif", 2, result->field, NULL, NULL},
-                  {"energy.tif", 1, result->energy, NULL, NULL},
-                  {"highlight.png", 0, NULL, result->highlight, NULL},
-                  {"shadow.png", 0, NULL, result->shadow, NULL},
-                  {"labels.png", 0, NULL, NULL, result->labels},
-                  {"influence.png", 0, NULL, result->influence, NULL},
-                  {"quicklook.png", 0, NULL, NULL, NULL}};
-    for (uint32_t i = 0; i < COUNT(layers) + SCENE_INTERACTIONS_MAX; i++) {
-        const uint32_t order = i < COUNT(layers) ? 0 : i - (uint32_t)COUNT(layers) + 1;
-        char name[32], path[PATH_CAPACITY];
-        struct layer layer = {name, 1, NULL, NULL, NULL};
+    static const char *const names[LAYERS] = {"patch.tif",    "energy.tif", "highlight.png",
+                                              "shadow.png",   "labels.png", "influence.png",
+                                              "quicklook.png"};
+    char name[32], path[PATH_CAPACITY];
+    for (int layer = 0; layer < LAYERS; layer++) {
+        CHECK(path_in(report, path, folder, "%s", names[layer]));
+        CHECK(write_layer(report, facts, (enum layer)layer, path));
+        CHECK(file_list_add(&facts->files, report, folder, names[layer], true));
+    }
+    for (uint32_t order = 1; order <= SCENE_INTERACTIONS_MAX; order++) {
         snprintf(name, sizeof name, "energy_order_%u.tif", (unsigned)order);
-        if (order == 0)
-            layer = layers[i];
-        else if (order <= result->orders)
-            layer.values = result->order_energy[order - 1];
-        CHECK(path_in(report, path, folder, "%s", layer.name));
-        if (order > result->orders) {
+        CHECK(path_in(report, path, folder, "%s", name));
+        if (order > facts->result->orders) {
             file_discard(path);
             continue;
         }
-        if (i + 1 == COUNT(layers))
-            CHECK(write_quicklook(report, facts, path));
-        else if (layer.values)
-            CHECK(write_float_layer(report, facts, layer.channels, layer.values, path));
-        else if (layer.mask)
-            CHECK(write_mask(report, facts->swath, layer.mask, path));
-        else
-            CHECK(write_label_mask(report, facts->swath, layer.labels, path));
-        CHECK(file_list_add(&facts->files, report, folder, layer.name, true));
+        CHECK(write_float_layer(report, facts, 1, facts->result->order_energy[order - 1], path));
+        CHECK(file_list_add(&facts->files, report, folder, name, true));
     }
     return SONJECT_OK;
 }

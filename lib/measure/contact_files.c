@@ -164,31 +164,6 @@ static sonject_status find_contacts(struct report *report, const struct contact_
     return status;
 }
 
-/* The contacts of an image whose intensities are at hand. */
-static sonject_status measure_all(struct report *report, const struct contact_list *list,
-                                  const sonject_measure_params *params, const float *intensity,
-                                  size_t rows, size_t columns, char **text)
-{
-    const bool looks = !params->truth && list->count == 0;
-    const double contrast = pow(10.0, 0.1 * params->find_contrast_db);
-    size_t count = looks ? params->find_most : list->count;
-    size_t left_off = 0;
-    struct contact_image image;
-    sonject_contact_measures *measures = allocate_array(count, sizeof *measures);
-    sonject_status status = contact_image_create(&image, report, intensity, rows, columns);
-    if (status == SONJECT_OK && !measures)
-        status = report_out_of_memory(report, "contacts");
-    THEN(status,
-         looks ? find_contacts(report, list, contrast, &image, count, measures, &count, &left_off)
-               : measure_list(report, list, &image, measures));
-    THEN(status, contacts_add_seabed(report, &image, measures, count));
-    THEN(status,
-         write_list(report, params->image ? params->image : "", measures, count, left_off, text));
-    contact_image_clear(&image);
-    free(measures);
-    return status;
-}
-
 static sonject_status take_boxes(struct contact_list *list, struct report *report,
                                  const sonject_measure_params *params, size_t rows, size_t columns)
 {
@@ -206,10 +181,28 @@ sonject_status measure_listed_contacts(struct report *report, const sonject_meas
                                        const struct measured *intensities, char **text)
 {
     struct contact_list list = {NULL, 0, 0.0, 0.0};
+    struct contact_image image;
+    sonject_contact_measures *measures = NULL;
+    size_t left_off = 0;
+    memset(&image, 0, sizeof image);
     sonject_status status =
         take_boxes(&list, report, params, intensities->rows, intensities->columns);
-    THEN(status, measure_all(report, &list, params, intensities->amplitudes, intensities->rows,
-                             intensities->columns, text));
+    const bool looks = !params->truth && list.count == 0;
+    size_t count = looks ? params->find_most : list.count;
+    if (status == SONJECT_OK) {
+        measures = allocate_array(count, sizeof *measures);
+        status = measures ? contact_image_create(&image, report, intensities->amplitudes,
+                                                 intensities->rows, intensities->columns)
+                          : report_out_of_memory(report, "contacts");
+    }
+    THEN(status, looks ? find_contacts(report, &list, pow(10.0, 0.1 * params->find_contrast_db),
+                                       &image, count, measures, &count, &left_off)
+                       : measure_list(report, &list, &image, measures));
+    THEN(status, contacts_add_seabed(report, &image, measures, count));
+    THEN(status,
+         write_list(report, params->image ? params->image : "", measures, count, left_off, text));
+    contact_image_clear(&image);
+    free(measures);
     free(list.boxes);
     return status;
 }

@@ -430,7 +430,6 @@ def test_the_example_runs_as_it_says(ground, environment):
 
 HOSTILE = [
     (["images=1000000000000000000"], "images", "1...10000000"),
-    (["images=0"], "images", "1...10000000"),
     (["images=-3"], "images", "whole number"),
     (["scene=nowhere.yaml"], "nowhere.yaml", "there is no such scene file"),
     (["swaths[1].path=nowhere.png"], "nowhere.png", "there is no"),
@@ -440,7 +439,6 @@ HOSTILE = [
     (['draw={"objects[].headnig": 3}'], "headnig", "did you mean 'heading'?"),
     (['draw={patch.rows: 3}'], "patch.rows", "the campaign itself"),
     (['draw={seabed.lambert: {uniform: [-3 dB, -30 dB]}}'], "seabed.lambert", "swap them"),
-    (['draw={seabed.lambert: {uniform: [nan, 1]}}'], "seabed.lambert", "not a finite number"),
     (['draw={seabed.lambert: {uniform: [-30 dB, 1]}}'], "seabed.lambert", "same unit"),
     (['draw={seabed.lambert: {log_uniform: [-30 dB, -3 dB]}}'], "seabed.lambert", "above 0"),
     (['draw={seabed.lambert: {unifrom: [-30 dB, -3 dB]}}'], "seabed.lambert", "'uniform'"),
@@ -453,7 +451,6 @@ HOSTILE = [
       'sonar.resolution: {uniform: [3 cm, 4 cm], steps: 1000000}, '
       'sonar.frequency: {uniform: [90 kHz, 91 kHz], steps: 1000000}}'], "grid", "more than"),
     (["chip.rows=200"], "swath0.png", "too few for images of 200 x 64"),
-    (["chip.rows=0"], "chip.rows", "16...8192"),
     (["swaths[0].avoid=[{row: 0, column: 0, rows: 1099511627776, columns: 1099511627776}]"],
      "swath0.png", "leave no room"),
     (["chip.slant_range=[60 m, 70 m]"], "swath0.png", "60 to 70 m"),
@@ -465,7 +462,6 @@ HOSTILE = [
     (["splits={train: 0.5}"], "splits", "add up to 0.5"),
     (["targets[0].class=''"], "class", "1 to"),
     (["targets[0].object={shape: sphere, diamter: 1 m}"], "diamter", "did you mean 'diameter'?"),
-    (["empty=1.5"], "empty", "0...1"),
     (["clutter.number=51"], "clutter.number", "0 to 50"),
     (["outputs=[shadows]"], "outputs", "did you mean 'shadow'?"),
     (["draw={seabed.lambert: {choice: [" + "0.1, " * 20000 + "0.1]}}"], "campaign.yaml",

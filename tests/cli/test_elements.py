@@ -52,11 +52,9 @@ def test_series_of_other_inputs_are_refused_and_lost_ones_made_again(sonject, sc
 
 def test_what_is_wrong_leaves_nothing(sonject, scene, tmp_path):
     scene.write_text(SCENE + ARRAY)
-    refused = sonject("elements", scene, "-o", "out", "--set", "elements.sampling_rate=20 kHz")
-    assert_refused(refused, 3, "elements.sampling_rate: must be at least 30000 Hz")
-    moved = sonject("elements", scene, "-o", "out",
-                    "--set", "sonar.motion={random: {rms: 1 mm, correlation: 1 m}}")
-    assert_refused(moved, 3, "sonar.motion moves images alone")
+    for setting, words in (
+            ("elements.sampling_rate=20 kHz", "elements.sampling_rate: must be at least 30000 Hz"),
+            ("sonar.motion={random: {rms: 1 mm, correlation: 1 m}}", "sonar.motion moves images alone")):
+        assert_refused(sonject("elements", scene, "-o", "out", "--set", setting), 3, words)
     assert not files_below(tmp_path / "out")
-    (tmp_path / "file").write_text("")
-    assert_refused(sonject("elements", scene, "-o", "file/out", "--quiet"), 5, "file")
+    assert_refused(sonject("elements", scene, "-o", "scene.yaml/out", "--quiet"), 5, "scene.yaml")

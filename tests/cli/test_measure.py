@@ -27,17 +27,6 @@ def told(answer):
     return json.loads(answer.stdout)
 
 
-def test_statistics_of_speckle(sonject, tmp_path):
-    """Uncorrelated speckle of 1 and 3 looks: 80 blocks of 1024 values know the squared intensity
-    contrast to sqrt(20 / 1024) / looks, their median to 1.25 / sqrt(80) of that: 2 %."""
-    for looks, amplitude_contrast in ((1, 0.5227), (3, 0.2940)):
-        seabed = told(sonject("measure", write(tmp_path / "bed.tif", speckle(looks))))["seabed"]
-        assert seabed["amplitude_contrast"] == pytest.approx(amplitude_contrast, rel=0.04)
-        assert seabed["intensity_contrast"] == pytest.approx(looks**-0.5, rel=0.04)
-        assert seabed["looks"] == pytest.approx(looks, rel=0.08)
-        assert seabed["row_correlation"] < 0.03 and seabed["column_correlation"] < 0.03
-
-
 def test_arrays_are_measured_as_images_are(sonject, tmp_path):
     mask = numpy.zeros((ROWS, COLUMNS), numpy.uint8)
     mask[90:170, 100:220] = 255
@@ -211,39 +200,33 @@ def add_contact(pixels, row, column, rows, gain, shadow):
 
 
 def test_contacts_are_looked_for(sonject, tmp_path):
-    """The brightest first; what lies in another's shadow and what is faint is none. A gap between
-    highlight and shadow is told, and that a shadow leaves the image."""
+    """The brightest first; what is faint is none. A gap between highlight and shadow is told, and that a
+    shadow leaves the image."""
     pixels = speckle(seed=7)
     add_contact(pixels, 40, 60, 21, 20, 50)
     pixels[40:61, 76:118] /= 0.05  # the shadow goes away, and comes again further off
     pixels[40:61, 80:118] *= 0.05
     add_contact(pixels, 120, 150, 21, 10, 50)
     add_contact(pixels, 200, 290, 21, 6, 50)
-    add_contact(pixels, 124, 180, 9, 120, 0)
     add_contact(pixels, 120, 40, 21, 2.5, 30)
     write(tmp_path / "image.tif", pixels)
     answer = told(sonject("measure", "image.tif", "--find"))
     places = [(entry["measured_box"]["row"], entry["measured_box"]["column"]) for entry in answer["contacts"]]
     assert answer["left_off"] == 0
-    expected = [(34, 54), (114, 144), (194, 284)]
-    assert numpy.abs(numpy.subtract(places, expected)).max() <= 8, places
+    assert numpy.abs(numpy.subtract(places, [(34, 54), (114, 144), (194, 284)])).max() <= 8, places
     first = answer["contacts"][0]
     assert first["shadow_range_pixels"] == pytest.approx(38, abs=1.5)
     assert first["gap_range_pixels"] == pytest.approx(12, abs=1.5)
     assert 0 < first["shadow_range_error_pixels"] < 1
     assert [entry["cut"] for entry in answer["contacts"]] == [False, False, True]
-    box = first["measured_box"]
-    again = told(sonject("measure", "image.tif", "--box",
-                         ",".join(str(box[key]) for key in ("row", "column", "rows", "columns"))))
-    assert again["contacts"][0]["shadow_range_pixels"] == first["shadow_range_pixels"]
     limited = told(sonject("measure", "image.tif", "--find", "--find-most=1"))
     assert [entry["measured_box"] for entry in limited["contacts"]] == [first["measured_box"]]
-    assert limited["left_off"] == 3  # with the one in the second contact's shadow
+    assert limited["left_off"] == 2
     bright = told(sonject("measure", "image.tif", "--find", "--find-contrast=20"))
     assert len(bright["contacts"]) == 2
-    for bad in (["--find-most=0"], ["--find-contrast=5"], ["--find-contrast=nan"]):
-        assert_refused(sonject("measure", "image.tif", "--find", *bad), 2, bad[0].split("=")[0])
-    assert_refused(sonject("measure", "image.tif", "--find-most=2"), 2, "--find")
+    for bad in (["--find", "--find-most=0"], ["--find", "--find-contrast=5"],
+                ["--find", "--find-contrast=nan"], ["--find-most=2"]):
+        assert_refused(sonject("measure", "image.tif", *bad), 2, bad[-1].split("=")[0])
 
 
 def test_first_return_is_no_contact(sonject, tmp_path):

@@ -241,27 +241,6 @@ def test_a_limit_on_file_sizes_leaves_nothing_half(sonject, tmp_path):
     assert contents(tmp_path / "result") == contents(tmp_path / "first")
 
 
-@pytest.fixture
-def small_disk(tmp_path):
-    """A file system of 32 KiB, or None where nothing can be mounted."""
-    folder = tmp_path / "disk"
-    folder.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=32k", "sonject-test", str(folder)]
-    mounted = os.geteuid() == 0 and subprocess.run(mount, capture_output=True).returncode == 0
-    yield folder if mounted else None
-    if mounted:
-        subprocess.run(["umount", str(folder)], check=True)
-
-
-def test_a_full_disk_leaves_nothing_half(sonject, scene, small_disk):
-    if small_disk is None:
-        pytest.skip("nothing can be mounted here; the limit on file sizes is tested instead")
-    answer = sonject("run", scene, "-o", small_disk)
-    assert_refused(answer, 5, str(small_disk), "No space left")
-    assert not (small_disk / "run.json").exists()
-    assert {path.name for path in files_below(small_disk)} <= RESULTS
-
-
 def test_a_folder_that_cannot_be_made(sonject, scene):
     answer = sonject("run", scene, "-o", scene / "result")
     assert_refused(answer, 5, "scene.yaml")

@@ -10,7 +10,7 @@ import pytest
 
 import images
 from conftest import COMMAND, assert_refused, files_below, make_swath, write_scene
-from test_run import DEMO, contents, limit_file_size, small_disk, stop_at_the_bar  # noqa: F401
+from test_run import DEMO, contents, limit_file_size, stop_at_the_bar
 
 HAS_HDF5 = os.environ.get("SONJECT_HAS_HDF5") == "1"
 
@@ -241,13 +241,6 @@ def test_a_limit_on_file_sizes_leaves_no_trace(sonject, tmp_path):
     assert_refused(answer, 5, "impulses.sums", "cannot write")
     assert left_by_trace(tmp_path) == {"first.sums"}
     assert_refused(sonject("trace", DEMO, "-o", "none/impulses.sums"), 5, "none/impulses.sums")
-
-
-def test_a_full_disk_leaves_no_trace(sonject, scene, small_disk):
-    if small_disk is None:
-        pytest.skip("nothing can be mounted here; the limit on file sizes is tested instead")
-    assert_refused(sonject("trace", scene, "-o", small_disk / "a.sums"), 5, "No space left")
-    assert not files_below(small_disk)
 
 
 @pytest.mark.parametrize("number, code", [(signal.SIGTERM, 85), (signal.SIGKILL, -signal.SIGKILL)])

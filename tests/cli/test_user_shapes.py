@@ -118,18 +118,6 @@ def test_check_refuses_wrong_shapes(sonject, user_scene, old, new, words):
     assert_our_line(sonject("check", user_scene, ALLOW), 3, "ball.cl: ", words)
 
 
-def test_hostile_code_is_refused_before_any_compiler(sonject, user_scene):
-    code = user_scene.parent / "ball.cl"
-    for text, words in (
-        ('#include "/etc/passwd"\n' + SPHERE, "ball.cl:1: #include"),
-        (SPHERE + "_Pragma(\"x\")\n", "ball.cl:15: _Pragma"),
-        (SPHERE + " " * 65536, "ball.cl"),
-        (SPHERE + "\0", "ball.cl"),
-    ):
-        code.write_text(text)
-        assert_refused(sonject("check", ALLOW, user_scene), 3, words)
-
-
 def test_code_that_impulses_name_needs_consent(sonject, scene, tmp_path):
     """What a target was when its impulses were traced says nothing about what it is now."""
     target = tmp_path / "ball.yaml"
