@@ -15,7 +15,6 @@
 
 #include "base/json_document.h"
 #include "base/text.h"
-#include "dataset/earlier_result.h"
 #include "dataset/run.h"
 
 #define FORMAT_VERSION 2

@@ -1,4 +1,3 @@
-#include "dataset/earlier_result.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -13,7 +13,6 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
-#include "dataset/earlier_result.h"
 #include "inject/injection.h"
 #include "inject/scene_hash.h"
 #include "inject/swath.h"

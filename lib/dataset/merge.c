@@ -7,7 +7,6 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "dataset/earlier_result.h"
 #include "dataset/run.h"
 #include "inject/checkpoints.h"
 #include "schema/scene_file.h"

@@ -11,7 +11,6 @@
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "base/report.h"
-#include "dataset/earlier_result.h"
 #include "inject/checkpoints.h"
 #include "inject/impulses.h"
 #include "inject/scene_hash.h"

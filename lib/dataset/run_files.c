@@ -13,7 +13,6 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
-#include "dataset/earlier_result.h"
 #include "dataset/labels.h"
 #include "image/plot.h"
 #include "swath/geometry_notes.h"

@@ -5,6 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <jansson.h>
+
+#include "base/file.h"
+#include "base/json_document.h"
 #include "base/memory.h"
 #include "image/statistics.h"
 
@@ -153,8 +157,9 @@ sonject_status check_spacings(struct report *report, double row_spacing_m, doubl
     return SONJECT_OK;
 }
 
-sonject_status place_in_box(struct report *report, const sonject_box *box, size_t rows,
-                            size_t columns, struct contact_place *place)
+/* A box of the image, in which all of a contact is. Errors: INPUT (it is not inside). */
+static sonject_status place_in_box(struct report *report, const sonject_box *box, size_t rows,
+                                   size_t columns, struct contact_place *place)
 {
     if (box->first_row >= rows || box->rows > rows - box->first_row ||
         box->first_column >= columns || box->columns > columns - box->first_column ||
@@ -174,9 +179,10 @@ sonject_status place_in_box(struct report *report, const sonject_box *box, size_
     return SONJECT_OK;
 }
 
-sonject_status contact_measure(struct report *report, struct contact_image *image,
-                               const struct contact_place *place, double row_spacing_m,
-                               double column_spacing_m, sonject_contact_measures *measures)
+/* All but the seabed's speckle. Errors: INPUT, MEMORY. */
+static sonject_status contact_measure(struct report *report, struct contact_image *image,
+                                      const struct contact_place *place, double row_spacing_m,
+                                      double column_spacing_m, sonject_contact_measures *measures)
 {
     struct contact_sizes sizes;
     forget(measures);
@@ -191,8 +197,10 @@ sonject_status contact_measure(struct report *report, struct contact_image *imag
     return SONJECT_OK;
 }
 
-sonject_status contacts_add_seabed(struct report *report, const struct contact_image *image,
-                                   sonject_contact_measures *measures, size_t count)
+/* The seabed's speckle in all that no contact was found in so far, for so many contacts. Errors:
+ * MEMORY. */
+static sonject_status contacts_add_seabed(struct report *report, const struct contact_image *image,
+                                          sonject_contact_measures *measures, size_t count)
 {
     struct speckle_statistics seabed;
     const sonject_status status =
@@ -220,5 +228,204 @@ sonject_status measure_one_contact(struct report *report, const float *intensity
     THEN(status, contact_measure(report, &image, &place, row_spacing_m, column_spacing_m, found));
     THEN(status, contacts_add_seabed(report, &image, found, 1));
     contact_image_clear(&image);
+    return status;
+}
+
+/* ---- Contacts of boxes, of a truth.json or looked for, as JSON. */
+
+#define TRUTH_BYTES_MAX ((size_t)1 << 26)
+#define LENGTH_MOST     1e6 /* m */
+
+/* The contacts to measure. */
+struct contact_list {
+    sonject_box *boxes; /* owned */
+    size_t count;
+    double row_spacing_m, column_spacing_m;
+};
+
+static sonject_status bad_truth(struct report *report, const char *path, const char *what)
+{
+    return input_failure(report, path, "%s: give the truth.json of a run on this image", what);
+}
+
+static bool read_count(const json_t *object, const char *key, uint64_t *value)
+{
+    const json_t *member = json_object_get(object, key);
+    const json_int_t number = json_integer_value(member);
+    *value = (uint64_t)number;
+    return json_is_integer(member) && number >= 0 && number <= (json_int_t)1 << 31;
+}
+
+/* A truth's box with a margin, within the image: its masks end where they are half dark. */
+static bool take_truth_box(const json_t *box, size_t rows, size_t columns, sonject_box *taken)
+{
+    uint64_t row, column, box_rows, box_columns;
+    if (!read_count(box, "row", &row) || !read_count(box, "column", &column) ||
+        !read_count(box, "rows", &box_rows) || !read_count(box, "columns", &box_columns) ||
+        box_rows == 0 || box_columns == 0 || row + box_rows > rows ||
+        column + box_columns > columns)
+        return false;
+    const uint64_t last_row = row + box_rows + CONTACT_MARGIN;
+    const uint64_t last_column = column + box_columns + CONTACT_MARGIN;
+    taken->first_row = row > CONTACT_MARGIN ? row - CONTACT_MARGIN : 0;
+    taken->first_column = column > CONTACT_MARGIN ? column - CONTACT_MARGIN : 0;
+    taken->rows = (last_row < rows ? last_row : rows) - taken->first_row;
+    taken->columns = (last_column < columns ? last_column : columns) - taken->first_column;
+    return true;
+}
+
+static sonject_status take_truth(struct contact_list *list, struct report *report, const char *path,
+                                 size_t rows, size_t columns)
+{
+    char *text = NULL;
+    size_t bytes;
+    sonject_status status = file_read_whole(report, path, TRUTH_BYTES_MAX, &text, &bytes);
+    if (status != SONJECT_OK)
+        return status == SONJECT_ERROR_STORAGE ? SONJECT_ERROR_INPUT : status;
+    json_t *truth = json_loadb(text, bytes, 0, NULL);
+    const json_t *objects = json_object_get(truth, "objects");
+    free(text);
+    if (!json_is_array(objects) || json_array_size(objects) > BOXES_MAX)
+        status = bad_truth(report, path, "it lists no objects");
+    sonject_box *boxes =
+        realloc(list->boxes, (list->count + json_array_size(objects) + 1) * sizeof *boxes);
+    if (!boxes)
+        status = report_out_of_memory(report, path);
+    else
+        list->boxes = boxes;
+    for (size_t i = 0; status == SONJECT_OK && i < json_array_size(objects); i++) {
+        const json_t *box = json_object_get(json_array_get(objects, i), "box");
+        if (!box || json_is_null(box))
+            continue;
+        if (!take_truth_box(box, rows, columns, &list->boxes[list->count]))
+            status = bad_truth(report, path, "a box is not inside the image");
+        const double length = json_number_value(json_object_get(box, "length_m"));
+        const double width = json_number_value(json_object_get(box, "width_m"));
+        if (!(length >= 0.0 && length <= LENGTH_MOST && width >= 0.0 && width <= LENGTH_MOST))
+            status = bad_truth(report, path, "a box has impossible lengths in metres");
+        if (!(list->row_spacing_m > 0.0))
+            list->row_spacing_m = length / json_number_value(json_object_get(box, "rows"));
+        if (!(list->column_spacing_m > 0.0))
+            list->column_spacing_m = width / json_number_value(json_object_get(box, "columns"));
+        list->count++;
+    }
+    json_decref(truth);
+    return status;
+}
+
+static json_t *box_document(const sonject_box *box)
+{
+    return box->rows == 0 ? json_null()
+                          : JSON_OBJECT({"row", json_count(box->first_row)},
+                                        {"column", json_count(box->first_column)},
+                                        {"rows", json_count(box->rows)},
+                                        {"columns", json_count(box->columns)});
+}
+
+static json_t *measures_document(const char *image, const sonject_contact_measures *measures)
+{
+    json_t *document = JSON_OBJECT(
+        {"image", json_text(image)}, {"measured_box", box_document(&measures->box)},
+        {"highlight_box", box_document(&measures->highlight)},
+        {"shadow_box", box_document(&measures->shadow)}, {"cut", json_boolean(measures->is_cut)});
+    for (size_t i = 0; i < CONTACT_NUMBERS; i++) {
+        double value;
+        memcpy(&value, (const char *)measures + contact_numbers[i].offset, sizeof value);
+        json_add(&document, contact_numbers[i].name, json_number(value));
+    }
+    return document;
+}
+
+/* *text is NULL where memory is out. */
+static sonject_status write_list(struct report *report, const char *image,
+                                 const sonject_contact_measures *measures, size_t count,
+                                 size_t left_off, char **text)
+{
+    json_t *contacts = json_array();
+    for (size_t i = 0; i < count; i++)
+        json_append(&contacts, measures_document(image, &measures[i]));
+    json_t *document = JSON_OBJECT({"contacts", contacts}, {"left_off", json_count(left_off)});
+    *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+    json_decref(document);
+    return *text ? SONJECT_OK : report_out_of_memory(report, image);
+}
+
+/* Those of the list; measures: as many. */
+static sonject_status measure_list(struct report *report, const struct contact_list *list,
+                                   struct contact_image *image, sonject_contact_measures *measures)
+{
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < list->count; i++) {
+        struct contact_place place;
+        status = place_in_box(report, &list->boxes[i], image->rows, image->columns, &place);
+        THEN(status, contact_measure(report, image, &place, list->row_spacing_m,
+                                     list->column_spacing_m, &measures[i]));
+    }
+    return status;
+}
+
+/* The brightest of the image; measures: `most` of them. */
+static sonject_status find_contacts(struct report *report, const struct contact_list *list,
+                                    double contrast, struct contact_image *image, size_t most,
+                                    sonject_contact_measures *measures, size_t *count,
+                                    size_t *left_off)
+{
+    struct contact_search search;
+    struct contact_place place;
+    sonject_status status = contact_search_begin(&search, report, image);
+    *count = 0;
+    while (status == SONJECT_OK && *count < most) {
+        status = contact_search_next(&search, report, image, contrast, &place);
+        if (status != SONJECT_OK || place.box.rows == 0)
+            break;
+        status = contact_measure(report, image, &place, list->row_spacing_m, list->column_spacing_m,
+                                 &measures[*count]);
+        ++*count;
+    }
+    *left_off = contact_search_left(&search, image, contrast);
+    contact_search_clear(&search);
+    return status;
+}
+
+static sonject_status take_boxes(struct contact_list *list, struct report *report,
+                                 const sonject_measure_params *params, size_t rows, size_t columns)
+{
+    list->row_spacing_m = params->row_spacing_m;
+    list->column_spacing_m = params->column_spacing_m;
+    list->boxes = allocate_array((size_t)params->box_count + 1, sizeof *list->boxes);
+    CHECK_MEMORY(report, list->boxes, "boxes");
+    if (params->box_count > 0)
+        memcpy(list->boxes, params->boxes, params->box_count * sizeof *list->boxes);
+    list->count = params->box_count;
+    return params->truth ? take_truth(list, report, params->truth, rows, columns) : SONJECT_OK;
+}
+
+sonject_status measure_listed_contacts(struct report *report, const sonject_measure_params *params,
+                                       const struct measured *intensities, char **text)
+{
+    struct contact_list list = {NULL, 0, 0.0, 0.0};
+    struct contact_image image;
+    sonject_contact_measures *measures = NULL;
+    size_t left_off = 0;
+    memset(&image, 0, sizeof image);
+    sonject_status status =
+        take_boxes(&list, report, params, intensities->rows, intensities->columns);
+    const bool looks = !params->truth && list.count == 0;
+    size_t count = looks ? params->find_most : list.count;
+    if (status == SONJECT_OK) {
+        measures = allocate_array(count, sizeof *measures);
+        status = measures ? contact_image_create(&image, report, intensities->amplitudes,
+                                                 intensities->rows, intensities->columns)
+                          : report_out_of_memory(report, "contacts");
+    }
+    THEN(status, looks ? find_contacts(report, &list, pow(10.0, 0.1 * params->find_contrast_db),
+                                       &image, count, measures, &count, &left_off)
+                       : measure_list(report, &list, &image, measures));
+    THEN(status, contacts_add_seabed(report, &image, measures, count));
+    THEN(status,
+         write_list(report, params->image ? params->image : "", measures, count, left_off, text));
+    contact_image_clear(&image);
+    free(measures);
+    free(list.boxes);
     return status;
 }

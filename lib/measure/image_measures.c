@@ -7,7 +7,6 @@
 #include "base/memory.h"
 #include "image/raster.h"
 #include "image/statistics.h"
-#include "measure/seam.h"
 #include "swath/swath_file.h"
 
 #define NEAR 2 /* pixels around changed ones: rounding hides small changes */

@@ -10,19 +10,22 @@
 
 #define BOXES_MAX 100000 /* contacts that are measured at once */
 
-/* All but the seabed's speckle. Errors: INPUT, MEMORY. */
-sonject_status contact_measure(struct report *report, struct contact_image *image,
-                               const struct contact_place *place, double row_spacing_m,
-                               double column_spacing_m, sonject_contact_measures *measures);
+/* The seam of an injection: can what was put around a target be told from untouched seabed?
+ * Formulas: kernels/MATH.md, "Blending". */
+struct seam {
+    double auc;                 /* area under the classifier's curve: 0.5 chance, 1 certain */
+    double error;               /* standard error */
+    size_t patches, background; /* that were compared */
+};
 
-/* The seabed's speckle in all that no contact was found in so far, for so many contacts. Errors:
- * MEMORY. */
-sonject_status contacts_add_seabed(struct report *report, const struct contact_image *image,
-                                   sonject_contact_measures *measures, size_t count);
-
-/* A box of the image, in which all of a contact is. Errors: INPUT (it is not inside). */
-sonject_status place_in_box(struct report *report, const sonject_box *box, size_t rows,
-                            size_t columns, struct contact_place *place);
+/* Compares patches of the band around the targets (influence not 0, not beside labels
+ * not 0) with patches of the same outlines on untouched seabed near by, by a linear classifier on
+ * local statistics, trained on other parts of the image than those it judges. amplitudes >= 0,
+ * influence, labels (may be NULL): rows x columns. Where there are too few patches, patches tells
+ * how many, and auc and error are NaN. Errors: MEMORY. */
+sonject_status measure_seam(struct report *report, const float *amplitudes,
+                            const uint8_t *influence, const uint8_t *labels, size_t rows,
+                            size_t columns, struct seam *seam);
 
 /* Errors: INPUT: not 0...1000 km. */
 sonject_status check_spacings(struct report *report, double row_spacing_m, double column_spacing_m);

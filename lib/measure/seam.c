@@ -1,4 +1,4 @@
-#include "measure/seam.h"
+#include "measure/measures.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include "scene/params.h"
 
 #include "image/synthetic.h"
-#include "measure/seam.h"
+#include "measure/measures.h"
 #include "scene/scene.h"
 
 #define ROWS    400
