@@ -127,9 +127,7 @@ FUNCTION struct chosen_spheres choose_spheres(GLOBAL const struct chain_record *
     GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
     float from[3][WIDTH], uniforms[WIDTH];
     float x[WIDTH], y[WIDTH], z[WIDTH], radius[WIDTH], rest[WIDTH];
-    STORE_VFLOAT(point.x, from[0]);
-    STORE_VFLOAT(point.y, from[1]);
-    STORE_VFLOAT(point.z, from[2]);
+    store_vector3(point, from);
     STORE_VFLOAT(uniform, uniforms);
     for (int lane = 0; lane < WIDTH; lane++) {
         x[lane] = y[lane] = radius[lane] = rest[lane] = 0.0f;
@@ -240,6 +238,10 @@ FUNCTION struct target_density single_density(GLOBAL const struct chain_record *
     return density;
 }
 
+struct rays_lanes {
+    float point[3][WIDTH], direction[3][WIDTH];
+};
+
 FUNCTION void densities_towards(GLOBAL const struct chain_record *chains,
                                 GLOBAL const struct sphere_record *spheres,
                                 const struct target_choice *shared, const struct target_choice *own,
@@ -247,26 +249,18 @@ FUNCTION void densities_towards(GLOBAL const struct chain_record *chains,
                                 vfloat *by_solid_angle, vfloat *brdf_share)
 {
     GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
-    float lanes[6][WIDTH], cones[WIDTH], shares[WIDTH];
-    STORE_VFLOAT(point.x, lanes[0]);
-    STORE_VFLOAT(point.y, lanes[1]);
-    STORE_VFLOAT(point.z, lanes[2]);
-    STORE_VFLOAT(direction.x, lanes[3]);
-    STORE_VFLOAT(direction.y, lanes[4]);
-    STORE_VFLOAT(direction.z, lanes[5]);
+    struct rays_lanes lanes;
+    const struct rays_lanes *rays = &lanes;
+    float cones[WIDTH], shares[WIDTH];
+    store_vector3(point, lanes.point);
+    store_vector3(direction, lanes.direction);
     for (int lane = 0; lane < WIDTH; lane++)
         cones[lane] = shares[lane] = 0.0f;
     for (RECORD_WORD left = lane_bits(is_wanted); left != 0; left &= left - 1) {
         const int lane = lowest_bit(left);
-        struct vector3 from, way;
-        from.x = SPLAT(lanes[0][lane]);
-        from.y = SPLAT(lanes[1][lane]);
-        from.z = SPLAT(lanes[2][lane]);
-        way.x = SPLAT(lanes[3][lane]);
-        way.y = SPLAT(lanes[4][lane]);
-        way.z = SPLAT(lanes[5][lane]);
         const struct target_density density =
-            single_density(chains, groups, shared ? shared : &own[lane], from, way);
+            single_density(chains, groups, shared ? shared : &own[lane],
+                           splat_vector3(rays->point, lane), splat_vector3(rays->direction, lane));
         cones[lane] = density.by_solid_angle;
         shares[lane] = density.brdf_share;
     }

@@ -44,45 +44,28 @@ FUNCTION struct vector3 splat_point(float x, float y, float z)
     return point;
 }
 
-/* Corners of a box; one value for all rays. */
-struct mesh_box {
-    float lower[3], upper[3];
-};
-
+/* Of a box with the same corners for all rays. */
 FUNCTION vfloat packet_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
-                             const struct mesh_box *box, vfloat maximum)
+                             struct vector3 lower, struct vector3 upper, vfloat maximum)
 {
-    const struct vector3 lower = splat_point(box->lower[0], box->lower[1], box->lower[2]);
-    const struct vector3 upper = splat_point(box->upper[0], box->upper[1], box->upper[2]);
+    const int *downward = heading->downward;
+    struct vector3 first, last;
     if (!heading->is_common)
         return box_entry(ray, lower, upper, maximum);
-    const int *downward = heading->downward;
-    const struct vector3 first = splat_point(downward[0] ? box->upper[0] : box->lower[0],
-                                             downward[1] ? box->upper[1] : box->lower[1],
-                                             downward[2] ? box->upper[2] : box->lower[2]);
-    const struct vector3 last = splat_point(downward[0] ? box->lower[0] : box->upper[0],
-                                            downward[1] ? box->lower[1] : box->upper[1],
-                                            downward[2] ? box->lower[2] : box->upper[2]);
+    first.x = downward[0] ? upper.x : lower.x;
+    first.y = downward[1] ? upper.y : lower.y;
+    first.z = downward[2] ? upper.z : lower.z;
+    last.x = downward[0] ? lower.x : upper.x;
+    last.y = downward[1] ? lower.y : upper.y;
+    last.z = downward[2] ? lower.z : upper.z;
     return entry_by_faces(ray, first, last, maximum);
 }
 
-FUNCTION vfloat group_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
-                            GLOBAL const struct mesh_group_boxes *groups, int group, vfloat maximum)
-{
-    const struct mesh_box box = {
-        {groups->lower_x[group], groups->lower_y[group], groups->lower_z[group]},
-        {groups->upper_x[group], groups->upper_y[group], groups->upper_z[group]}};
-    return packet_entry(ray, heading, &box, maximum);
-}
-
-FUNCTION vfloat child_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
-                            GLOBAL const struct mesh_branch *branch, int slot, vfloat maximum)
-{
-    const struct mesh_box box = {
-        {branch->lower_x[slot], branch->lower_y[slot], branch->lower_z[slot]},
-        {branch->upper_x[slot], branch->upper_y[slot], branch->upper_z[slot]}};
-    return packet_entry(ray, heading, &box, maximum);
-}
+/* Of box i of a branch, or of its groups. */
+#define ENTRY_OF(ray, heading, boxes, i, maximum)                                                  \
+    packet_entry(                                                                                  \
+        ray, heading, splat_point((boxes)->lower_x[i], (boxes)->lower_y[i], (boxes)->lower_z[i]),  \
+        splat_point((boxes)->upper_x[i], (boxes)->upper_y[i], (boxes)->upper_z[i]), maximum)
 
 /* Puts those of the group's children on the stack that some ray may meet, the farthest first. set:
  * bits of the slots to be tested. */
@@ -95,7 +78,7 @@ FUNCTION void open_group(const struct mesh_ray *ray, const struct mesh_heading *
     for (int k = 0; k < MESH_GROUP; k++, slot += step) {
         if ((set >> slot & 1u) == 0)
             continue;
-        const vfloat entry = child_entry(ray, heading, branch, slot, maximum);
+        const vfloat entry = ENTRY_OF(ray, heading, branch, slot, maximum);
         if (ANY(MASK_OF(entry < FAR_AWAY))) {
             stack->child[stack->count] = branch->child[slot];
             stack->entry[stack->count++] = entry;
@@ -109,17 +92,17 @@ FUNCTION RECORD_WORD group_slots(const struct mesh_ray *ray, const struct mesh_h
 {
     const int children = branch->children[group];
     if (children > 1 &&
-        !ANY(MASK_OF(group_entry(ray, heading, &branch->groups, group, maximum) < FAR_AWAY)))
+        !ANY(MASK_OF(ENTRY_OF(ray, heading, &branch->groups, group, maximum) < FAR_AWAY)))
         return 0;
     return ((1u << children) - 1u) << group * MESH_GROUP;
 }
 
 FUNCTION void open_branch(const struct mesh_ray *ray, const struct mesh_heading *heading,
-                          const struct mesh_beam *beam, GLOBAL const struct mesh_branch *branch,
+                          const struct ray_bounds *beam, GLOBAL const struct mesh_branch *branch,
                           vfloat maximum, struct mesh_stack *stack)
 {
     const int is_beam = WIDTH > 1 && heading->is_common;
-    const RECORD_WORD met = is_beam ? beam_meets(beam, heading, branch) : 0;
+    const RECORD_WORD met = is_beam ? CHILDREN_MET(beam, branch, MESH_SLOTS, SPLAT(FAR_AWAY)) : 0;
     const int step = heading->downward[branch->axes >> 2 * MESH_GROUPS & 3] ? 1 : -1;
     int group = step > 0 ? 0 : MESH_GROUPS - 1;
     for (int k = 0; k < MESH_GROUPS; k++, group += step) {
@@ -156,8 +139,7 @@ FUNCTION void test_leaf(const struct mesh_ray *ray, const struct mesh_heading *h
                         struct mesh_hit *hit)
 {
     for (int first = 0, group = 0; first < leaf->triangles; first += MESH_GROUP, group++) {
-        if (!ANY(
-                MASK_OF(group_entry(ray, heading, &leaf->groups, group, hit->distance) < FAR_AWAY)))
+        if (!ANY(MASK_OF(ENTRY_OF(ray, heading, &leaf->groups, group, hit->distance) < FAR_AWAY)))
             continue;
         const int left = leaf->triangles - first;
         const int last = first + (left < MESH_GROUP ? left : MESH_GROUP);
@@ -201,7 +183,7 @@ FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
 {
     const struct mesh_ray ray = mesh_ray_of(point, direction, minimum, mesh.padding);
     const struct mesh_heading heading = mesh_heading_of(&ray);
-    struct mesh_beam beam;
+    struct ray_bounds beam;
     if (WIDTH > 1 && heading.is_common)
         beam = mesh_beam_of(&ray, &heading);
     struct mesh_hit hit;

@@ -92,10 +92,7 @@ FUNCTION float crossings_of_leaf(const struct mesh_ray *ray, GLOBAL const struct
 {
     float sum = 0.0f;
     for (int first = 0; first < leaf->triangles; first += WIDTH) {
-        struct mesh_corners corners;
-        corners.a = load_vector3(leaf->a_x, leaf->a_y, leaf->a_z, first);
-        corners.b = load_vector3(leaf->b_x, leaf->b_y, leaf->b_z, first);
-        corners.c = load_vector3(leaf->c_x, leaf->c_y, leaf->c_z, first);
+        const struct mesh_corners corners = leaf_corners(leaf, first);
         vfloat distance;
         const mask is_met = meets_triangle(ray, &corners, &distance);
         RECORD_WORD met = lane_bits(is_met & MASK_OF(distance > ray->minimum));

@@ -21,15 +21,22 @@ FUNCTION vfloat one_over_component(vfloat component)
     return 1.0f / SELECT(MASK_OF(magnitude(component) < 1.0e-20f), SPLAT(1.0e-20f), component);
 }
 
+FUNCTION struct vector3 one_over_components(struct vector3 direction)
+{
+    struct vector3 inverse;
+    inverse.x = one_over_component(direction.x);
+    inverse.y = one_over_component(direction.y);
+    inverse.z = one_over_component(direction.z);
+    return inverse;
+}
+
 FUNCTION struct mesh_ray mesh_ray_of(struct vector3 point, struct vector3 direction, vfloat minimum,
                                      float padding)
 {
     struct mesh_ray ray;
     ray.point = point;
     ray.direction = direction;
-    ray.inverse.x = one_over_component(direction.x);
-    ray.inverse.y = one_over_component(direction.y);
-    ray.inverse.z = one_over_component(direction.z);
+    ray.inverse = one_over_components(direction);
     tangents3(direction, &ray.across, &ray.upward);
     ray.seen.x = dot3(point, ray.across);
     ray.seen.y = dot3(point, ray.upward);
@@ -82,9 +89,68 @@ FUNCTION vfloat box_entry(const struct mesh_ray *ray, struct vector3 lower, stru
     return SELECT(MASK_OF(entry <= smaller(inside.exit, maximum)), entry, SPLAT(FAR_AWAY));
 }
 
+/* Bounds over rays that run the same way along each axis, the same in every lane. What they miss,
+ * every ray misses: they are formed from the rays' own numbers by the operations of the exact test,
+ * and rounding is monotonic. */
+struct ray_bounds {
+    struct vector3 to_first, to_last; /* the point that is nearest to a box's first faces each way,
+                                         farthest from its last ones */
+    struct vector3 least, most;       /* of the inverse directions */
+    vfloat minimum;
+    int downward[3]; /* 0 or 1: the rays run down the axis */
+};
+
+/* Bit i: some of the rays may meet box i of `slots` before `reach`. */
+FUNCTION RECORD_WORD boxes_met(const struct ray_bounds *rays, GLOBAL const float *lower_x,
+                               GLOBAL const float *lower_y, GLOBAL const float *lower_z,
+                               GLOBAL const float *upper_x, GLOBAL const float *upper_y,
+                               GLOBAL const float *upper_z, int slots, vfloat reach)
+{
+    const int *down = rays->downward;
+    const struct vector3 least = rays->least, most = rays->most;
+    RECORD_WORD met = 0;
+    for (int slot = 0; slot < slots; slot += WIDTH) {
+        const struct vector3 first =
+            load_vector3(down[0] ? upper_x : lower_x, down[1] ? upper_y : lower_y,
+                         down[2] ? upper_z : lower_z, slot);
+        const struct vector3 last =
+            load_vector3(down[0] ? lower_x : upper_x, down[1] ? lower_y : upper_y,
+                         down[2] ? lower_z : upper_z, slot);
+        const vfloat x_first = first.x - rays->to_first.x;
+        const vfloat y_first = first.y - rays->to_first.y;
+        const vfloat z_first = first.z - rays->to_first.z;
+        const vfloat x_last = last.x - rays->to_last.x;
+        const vfloat y_last = last.y - rays->to_last.y;
+        const vfloat z_last = last.z - rays->to_last.z;
+        const vfloat entry =
+            larger(larger(smaller(x_first * least.x, x_first * most.x),
+                          smaller(y_first * least.y, y_first * most.y)),
+                   larger(smaller(z_first * least.z, z_first * most.z), rays->minimum));
+        const vfloat exit = smaller(smaller(larger(x_last * least.x, x_last * most.x),
+                                            larger(y_last * least.y, y_last * most.y)),
+                                    smaller(larger(z_last * least.z, z_last * most.z), reach));
+        met |= lane_bits(MASK_OF(entry <= exit)) << slot;
+    }
+    return met;
+}
+
+/* Of the children of a branch. */
+#define CHILDREN_MET(rays, branch, slots, reach)                                                   \
+    boxes_met(rays, (branch)->lower_x, (branch)->lower_y, (branch)->lower_z, (branch)->upper_x,    \
+              (branch)->upper_y, (branch)->upper_z, slots, reach)
+
 struct mesh_corners {
     struct vector3 a, b, c;
 };
+
+FUNCTION struct mesh_corners leaf_corners(GLOBAL const struct mesh_leaf *leaf, int first)
+{
+    struct mesh_corners corners;
+    corners.a = load_vector3(leaf->a_x, leaf->a_y, leaf->a_z, first);
+    corners.b = load_vector3(leaf->b_x, leaf->b_y, leaf->b_z, first);
+    corners.c = load_vector3(leaf->c_x, leaf->c_y, leaf->c_z, first);
+    return corners;
+}
 
 /* A point as seen along the ray: across, upward and along it. */
 FUNCTION struct vector3 seen_along(const struct mesh_ray *ray, struct vector3 point)

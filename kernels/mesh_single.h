@@ -22,31 +22,6 @@ struct mesh_ray_lanes {
     float padding;
 };
 
-FUNCTION void store_vector3(struct vector3 v, float lanes[3][WIDTH])
-{
-    STORE_VFLOAT(v.x, lanes[0]);
-    STORE_VFLOAT(v.y, lanes[1]);
-    STORE_VFLOAT(v.z, lanes[2]);
-}
-
-FUNCTION struct vector3 splat_vector3(const float lanes[3][WIDTH], int lane)
-{
-    struct vector3 v;
-    v.x = SPLAT(lanes[0][lane]);
-    v.y = SPLAT(lanes[1][lane]);
-    v.z = SPLAT(lanes[2][lane]);
-    return v;
-}
-
-FUNCTION struct vector3 load_lanes3(float lanes[3][WIDTH])
-{
-    struct vector3 v;
-    v.x = LOAD_VFLOAT(lanes[0]);
-    v.y = LOAD_VFLOAT(lanes[1]);
-    v.z = LOAD_VFLOAT(lanes[2]);
-    return v;
-}
-
 FUNCTION void store_mesh_ray(const struct mesh_ray *ray, struct mesh_ray_lanes *lanes)
 {
     store_vector3(ray->point, lanes->point);
@@ -72,16 +47,6 @@ FUNCTION struct mesh_ray one_mesh_ray(const struct mesh_ray_lanes *lanes, int la
     ray.minimum = SPLAT(lanes->minimum[lane]);
     ray.padding = lanes->padding;
     return ray;
-}
-
-FUNCTION struct vector3 load_vector3(GLOBAL const float *x, GLOBAL const float *y,
-                                     GLOBAL const float *z, int slot)
-{
-    struct vector3 v;
-    v.x = LOAD_VFLOAT(x + slot);
-    v.y = LOAD_VFLOAT(y + slot);
-    v.z = LOAD_VFLOAT(z + slot);
-    return v;
 }
 
 struct single_hit {
@@ -121,10 +86,7 @@ FUNCTION void test_leaf_single(const struct mesh_ray *ray, GLOBAL const struct m
                                int first_number, float minimum, struct single_hit *hit)
 {
     for (int first = 0; first < leaf->triangles; first += WIDTH) {
-        struct mesh_corners corners;
-        corners.a = load_vector3(leaf->a_x, leaf->a_y, leaf->a_z, first);
-        corners.b = load_vector3(leaf->b_x, leaf->b_y, leaf->b_z, first);
-        corners.c = load_vector3(leaf->c_x, leaf->c_y, leaf->c_z, first);
+        const struct mesh_corners corners = leaf_corners(leaf, first);
         vfloat distance;
         RECORD_WORD met = lane_bits(meets_triangle(ray, &corners, &distance));
         if (met == 0)

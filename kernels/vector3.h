@@ -69,4 +69,42 @@ FUNCTION struct vector3 combine3(struct vector3 first, vfloat a, struct vector3 
     return sum;
 }
 
+/* The vectors of all lanes, to be taken one by one. */
+FUNCTION void store_vector3(struct vector3 v, float lanes[3][WIDTH])
+{
+    STORE_VFLOAT(v.x, lanes[0]);
+    STORE_VFLOAT(v.y, lanes[1]);
+    STORE_VFLOAT(v.z, lanes[2]);
+}
+
+/* That of one lane in every lane. */
+FUNCTION struct vector3 splat_vector3(const float lanes[3][WIDTH], int lane)
+{
+    struct vector3 v;
+    v.x = SPLAT(lanes[0][lane]);
+    v.y = SPLAT(lanes[1][lane]);
+    v.z = SPLAT(lanes[2][lane]);
+    return v;
+}
+
+FUNCTION struct vector3 load_lanes3(float lanes[3][WIDTH])
+{
+    struct vector3 v;
+    v.x = LOAD_VFLOAT(lanes[0]);
+    v.y = LOAD_VFLOAT(lanes[1]);
+    v.z = LOAD_VFLOAT(lanes[2]);
+    return v;
+}
+
+/* One vector a lane, from elements `slot` on. */
+FUNCTION struct vector3 load_vector3(GLOBAL const float *x, GLOBAL const float *y,
+                                     GLOBAL const float *z, int slot)
+{
+    struct vector3 v;
+    v.x = LOAD_VFLOAT(x + slot);
+    v.y = LOAD_VFLOAT(y + slot);
+    v.z = LOAD_VFLOAT(z + slot);
+    return v;
+}
+
 #endif

@@ -232,4 +232,30 @@ FUNCTION int lowest_bit(RECORD_WORD bits)
     return LOWEST_BIT(bits);
 }
 
+/* The least value of all lanes. */
+FUNCTION float least_lane(vfloat value)
+{
+#if WIDTH == 1
+    return value;
+#elif defined(__OPENCL_C_VERSION__)
+#if WIDTH == 16
+    const float8 eight = select(value.lo, value.hi, value.hi < value.lo);
+    const float4 four = select(eight.lo, eight.hi, eight.hi < eight.lo);
+#elif WIDTH == 8
+    const float4 four = select(value.lo, value.hi, value.hi < value.lo);
+#else
+    const float4 four = value;
+#endif
+    const float2 two = select(four.lo, four.hi, four.hi < four.lo);
+    return two.y < two.x ? two.y : two.x;
+#else
+    float lanes[WIDTH];
+    STORE_VFLOAT(value, lanes);
+    for (int span = WIDTH / 2; span > 0; span /= 2)
+        for (int lane = 0; lane < span; lane++)
+            lanes[lane] = lanes[lane + span] < lanes[lane] ? lanes[lane + span] : lanes[lane];
+    return lanes[0];
+#endif
+}
+
 #endif
