@@ -5,18 +5,12 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "device/device.h"
-#include "kernels/layout.h"
-#include "scene/motion_response.h"
 #include "scene/point_response.h"
 
 #define SEARCH_STEP          64    /* bins that are looked at together */
 #define SHORT_GAP            8     /* strips: their copy takes as long as another launch */
 #define SPECKLE_ENERGY_SHARE 0.001 /* of |W|^2 that is cut off from speckle and energies */
 #define COLUMN_STEP          16    /* lines are padded to whole groups of any width */
-#define ROWS_PER_ITEM        8     /* FORM_ROWS of kernels/image_formation.h */
-#define BLOCK_COLUMNS        16    /* that share a response; holds whole groups of any width */
-#define TAPS_OF_A_RUN        ((size_t)1 << 22)
 
 typedef char filled_span_is_packed[sizeof(struct filled_span) == 2 * 4 ? 1 : -1];
 
@@ -83,17 +77,12 @@ static void choose_window(struct form_lines *lines, const struct patch_view *vie
     lines->stride = (lines->columns + COLUMN_STEP - 1) / COLUMN_STEP * COLUMN_STEP;
 }
 
-static bool is_of_energies(const struct form_lines *lines)
-{
-    return lines->kind == FORM_ENERGY || lines->kind == FORM_TWO_ENERGIES;
-}
-
 /* G, or |G|^2; both parts where it is complex. */
 static sonject_status make_pulse(struct form_lines *lines, const struct patch_view *view,
                                  int32_t taps_each_side)
 {
     const double bin = view->column_spacing_m / lines->grid.bins_per_pixel;
-    const bool is_real = is_of_energies(lines) || range_response_is_real(&lines->response);
+    const bool is_real = form_is_of_energies(lines) || range_response_is_real(&lines->response);
     lines->pulse_taps = 2 * taps_each_side + 1;
     lines->pulse_first = -taps_each_side - lines->grid.bins.first;
     const size_t count = (size_t)lines->pulse_taps;
@@ -104,7 +93,7 @@ static sonject_status make_pulse(struct form_lines *lines, const struct patch_vi
         const struct complex_number g =
             range_response_complex(&lines->response, (taps_each_side - tap) * bin);
         const double energy = g.real_part * g.real_part + g.imaginary_part * g.imaginary_part;
-        taps[tap] = (float)(is_of_energies(lines) ? energy : g.real_part);
+        taps[tap] = (float)(form_is_of_energies(lines) ? energy : g.real_part);
         taps[count + (size_t)tap] = (float)g.imaginary_part;
     }
     sonject_status status =
@@ -309,222 +298,18 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
     return status;
 }
 
-/* W (or |W|^2) at the offsets n * strips_per_row - q of pixel row n from strip q, among the zeros
- * that let a work-item take one strip into all of its rows. */
-static float *response_taps(const struct form_lines *lines, size_t *count)
-{
-    const double per_row = lines->grid.strips_per_row;
-    const size_t zeros = (ROWS_PER_ITEM - 1) * (size_t)lines->grid.strips_per_row;
-    *count = 2 * (size_t)lines->reach + 1 + 2 * zeros;
-    float *taps = allocate_array(*count, sizeof *taps);
-    for (size_t i = 0; taps && i <= 2 * (size_t)lines->reach; i++) {
-        const double strips = (double)i - lines->reach;
-        const double rows = strips / per_row + 0.5 - 0.5 / per_row;
-        const double w = along_track_response(&lines->response, rows * lines->row_spacing_m);
-        taps[zeros + i] = (float)(is_of_energies(lines) ? w * w : w);
-    }
-    return taps;
-}
-
-/* One real response for all rows and columns. */
-static sonject_status combine_plain(struct form_lines *lines, const device_buffer out[2])
-{
-    size_t count;
-    const int32_t first_strip = lines->grid.strips.first;
-    const int32_t end_strip = first_strip + lines->grid.strips.count;
-    const int32_t per_row = (int32_t)lines->grid.strips_per_row;
-    const int32_t stride = (int32_t)lines->stride;
-    const int32_t rows = (int32_t)lines->rows;
-    device_buffer buffer = NULL;
-    device_kernel kernel = NULL;
-    float *taps = response_taps(lines, &count);
-    CHECK_MEMORY(lines->report, taps, "image formation");
-    sonject_status status = kernel_create(lines->report, lines->device, PROGRAM_IMAGE_FORMATION, 0,
-                                          "combine_aspects", &kernel);
-    THEN(status, buffer_create(lines->report, lines->device, count * sizeof *taps, taps, &buffer));
-    if (status == SONJECT_OK) {
-        const struct kernel_argument arguments[] = {
-            ARGUMENT(first_strip),   ARGUMENT(end_strip),       ARGUMENT(per_row),
-            ARGUMENT(lines->reach),  ARGUMENT(lines->lines[0]), ARGUMENT(lines->lines[1]),
-            ARGUMENT(lines->filled), ARGUMENT(stride),          ARGUMENT(buffer),
-            ARGUMENT(rows),          ARGUMENT(out[0]),          ARGUMENT(out[1])};
-        const size_t global[3] = {lines->stride / lines->device->width,
-                                  (lines->rows + ROWS_PER_ITEM - 1) / ROWS_PER_ITEM, lines->planes};
-        status = kernel_run(lines->report, lines->device, kernel, arguments,
-                            sizeof arguments / sizeof *arguments, 3, global);
-    }
-    buffer_release(&buffer);
-    kernel_release(&kernel);
-    free(taps);
-    return status;
-}
-
-/* The taps of a run of rows, where the cross-range response is not one real function: complex (a
- * measured one), another at each range (a real aperture), or another for each row (residual
- * motion). */
-struct taps {
-    size_t each;         /* taps of one response */
-    size_t rows, blocks; /* responses: 1 where all rows, all columns share one */
-    float *parts[2];
-    double *response[2]; /* one response */
-};
-
-static sonject_status taps_init(struct taps *taps, const struct form_lines *lines)
-{
-    memset(taps, 0, sizeof *taps);
-    taps->each = 2 * (size_t)lines->reach + 1;
-    taps->blocks = lines->response.array_length_m > 0.0
-                       ? (lines->columns + BLOCK_COLUMNS - 1) / BLOCK_COLUMNS
-                       : 1;
-    taps->rows = 1;
-    if (lines->response.motion) {
-        const size_t most = TAPS_OF_A_RUN / taps->each / ROWS_PER_ITEM * ROWS_PER_ITEM;
-        taps->rows = most < ROWS_PER_ITEM ? ROWS_PER_ITEM : most;
-        taps->rows = taps->rows < lines->rows ? taps->rows : lines->rows;
-    }
-    for (int part = 0; part < 2; part++) {
-        taps->parts[part] = allocate_array(taps->each * taps->rows * taps->blocks, sizeof(float));
-        taps->response[part] = allocate_array(taps->each, sizeof(double));
-        CHECK_MEMORY(lines->report, taps->parts[part] && taps->response[part], "image formation");
-    }
-    return SONJECT_OK;
-}
-
-static void taps_clear(struct taps *taps)
-{
-    for (int part = 0; part < 2; part++) {
-        free(taps->parts[part]);
-        free(taps->response[part]);
-    }
-}
-
-/* Distance of a pixel from the middle of the strip of the tap in the middle: rows' middles are
- * those of their strips. */
-static double offset_of(const struct form_lines *lines)
-{
-    return (0.5 - 0.5 / lines->grid.strips_per_row) * lines->row_spacing_m;
-}
-
-/* Keeps the response as one of many: W, or |W|^2. */
-static void store(struct taps *taps, const struct form_lines *lines, size_t number)
-{
-    const size_t first = number * taps->each;
-    for (size_t i = 0; i < taps->each; i++) {
-        const double a = taps->response[0][i];
-        const double b = taps->response[1][i];
-        taps->parts[0][first + i] = (float)(is_of_energies(lines) ? a * a + b * b : a);
-        taps->parts[1][first + i] = is_of_energies(lines) ? 0.0f : (float)b;
-    }
-}
-
-/* One response for each block of columns. */
-static void fill_blocks(struct taps *taps, const struct form_lines *lines)
-{
-    const double strip = lines->row_spacing_m / lines->grid.strips_per_row;
-    for (size_t block = 0; block < taps->blocks; block++) {
-        const double column =
-            (double)lines->first_column + ((double)block + 0.5) * BLOCK_COLUMNS - 0.5;
-        const double range = view_processor_range(lines->view, column);
-        for (size_t i = 0; i < taps->each; i++) {
-            const struct complex_number w = cross_range_response(
-                &lines->response, range, ((double)i - lines->reach) * strip + offset_of(lines));
-            taps->response[0][i] = w.real_part;
-            taps->response[1][i] = w.imaginary_part;
-        }
-        store(taps, lines, block);
-    }
-}
-
-static sonject_status run_rows(struct form_lines *lines, device_kernel kernel,
-                               const struct taps *taps, size_t first_row,
-                               const device_buffer out[2])
-{
-    const size_t bytes = taps->each * taps->rows * taps->blocks * sizeof(float);
-    device_buffer parts[2] = {NULL, NULL};
-    sonject_status status = SONJECT_OK;
-    for (int part = 0; part < 2; part++)
-        THEN(status,
-             buffer_create(lines->report, lines->device, bytes, taps->parts[part], &parts[part]));
-    if (status == SONJECT_OK) {
-        const bool by_row = lines->response.motion != NULL;
-        const size_t left = lines->rows - first_row;
-        const size_t some = by_row && taps->rows < left ? taps->rows : left;
-        const int32_t first_strip = lines->grid.strips.first;
-        const int32_t end_strip = first_strip + lines->grid.strips.count;
-        const int32_t per_row = (int32_t)lines->grid.strips_per_row;
-        const int32_t row = (int32_t)first_row;
-        const int32_t row_step = by_row ? (int32_t)taps->each : 0;
-        const int32_t block_columns = BLOCK_COLUMNS;
-        const int32_t block_step = taps->blocks > 1 ? (int32_t)taps->each : 0;
-        const int32_t stride = (int32_t)lines->stride;
-        const int32_t rows = (int32_t)(first_row + some);
-        const struct kernel_argument arguments[] = {
-            ARGUMENT(first_strip),     ARGUMENT(end_strip),     ARGUMENT(per_row),
-            ARGUMENT(lines->reach),    ARGUMENT(row),           ARGUMENT(row_step),
-            ARGUMENT(block_columns),   ARGUMENT(block_step),    ARGUMENT(lines->lines[0]),
-            ARGUMENT(lines->lines[1]), ARGUMENT(lines->filled), ARGUMENT(stride),
-            ARGUMENT(parts[0]),        ARGUMENT(parts[1]),      ARGUMENT(rows),
-            ARGUMENT(out[0]),          ARGUMENT(out[1])};
-        const size_t global[2] = {lines->stride / lines->device->width,
-                                  (some + ROWS_PER_ITEM - 1) / ROWS_PER_ITEM};
-        status = kernel_run(lines->report, lines->device, kernel, arguments,
-                            sizeof arguments / sizeof *arguments, 2, global);
-    }
-    buffer_release(&parts[0]);
-    buffer_release(&parts[1]);
-    return status;
-}
-
-/* Rows of their own responses, some at a time. */
-static sonject_status run_moved(struct form_lines *lines, device_kernel kernel, struct taps *taps,
-                                const device_buffer out[2])
-{
-    const double strip = lines->row_spacing_m / lines->grid.strips_per_row;
-    struct motion_response motion;
-    CHECK(motion_response_begin(&motion, lines->report, &lines->response, lines->view, strip,
-                                offset_of(lines), lines->reach));
-    sonject_status status = SONJECT_OK;
-    for (size_t first = 0; status == SONJECT_OK && first < lines->rows; first += taps->rows) {
-        for (size_t i = 0; i < taps->rows && first + i < lines->rows; i++) {
-            motion_response_row(&motion, (double)(first + i), taps->response[0], taps->response[1]);
-            store(taps, lines, i);
-        }
-        status = run_rows(lines, kernel, taps, first, out);
-    }
-    motion_response_end(&motion);
-    return status;
-}
-
-static sonject_status combine_varied(struct form_lines *lines, const device_buffer out[2])
-{
-    struct taps taps;
-    device_kernel kernel = NULL;
-    sonject_status status = taps_init(&taps, lines);
-    THEN(status, kernel_create(lines->report, lines->device, PROGRAM_IMAGE_FORMATION, 0,
-                               "combine_varied", &kernel));
-    if (status == SONJECT_OK && lines->response.motion) {
-        status = run_moved(lines, kernel, &taps, out);
-    } else if (status == SONJECT_OK) {
-        fill_blocks(&taps, lines);
-        status = run_rows(lines, kernel, &taps, 0, out);
-    }
-    kernel_release(&kernel);
-    taps_clear(&taps);
-    return status;
-}
-
 /* Reads a plane and drops the padding of its rows. */
 static sonject_status read_plane(struct form_lines *lines, device_buffer plane, float *out)
 {
-    float *padded = allocate_array(lines->rows * lines->stride, sizeof *padded);
-    CHECK_MEMORY(lines->report, padded, "image formation");
-    const sonject_status status = buffer_read(lines->report, lines->device, plane, 0,
-                                              lines->rows * lines->stride * sizeof(float), padded);
-    for (size_t row = 0; status == SONJECT_OK && row < lines->rows; row++)
+    const void *mapped;
+    CHECK(buffer_map(lines->report, lines->device, plane, lines->rows * lines->stride * sizeof *out,
+                     &mapped));
+    const float *padded = mapped;
+    for (size_t row = 0; row < lines->rows; row++)
         memcpy(out + row * lines->columns, padded + row * lines->stride,
                lines->columns * sizeof *out);
-    free(padded);
-    return status;
+    buffer_unmap(lines->device, plane, mapped);
+    return SONJECT_OK;
 }
 
 sonject_status form_lines_finish(struct form_lines *lines, float *real_part, float *imaginary_part)
@@ -538,8 +323,7 @@ sonject_status form_lines_finish(struct form_lines *lines, float *real_part, flo
     THEN(status, buffer_create(lines->report, lines->device,
                                (size_t)lines->grid.strips.count * sizeof *lines->filled_columns,
                                lines->filled_columns, &lines->filled));
-    THEN(status, cross_range_is_plain(&lines->response) ? combine_plain(lines, out)
-                                                        : combine_varied(lines, out));
+    THEN(status, form_combine(lines, out));
     THEN(status, read_plane(lines, out[0], real_part));
     if (status == SONJECT_OK && lines->planes == 2 && imaginary_part)
         status = read_plane(lines, out[1], imaginary_part);

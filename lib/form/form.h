@@ -88,4 +88,12 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
  * for FORM_ENERGY. Errors: DEVICE, MEMORY. */
 sonject_status form_lines_finish(struct form_lines *lines, float *real_part, float *imaginary_part);
 
+/* The second half of it, into padded planes on the device, of rows x lines->stride. */
+sonject_status form_combine(struct form_lines *lines, const device_buffer out[2]);
+
+static inline bool form_is_of_energies(const struct form_lines *lines)
+{
+    return lines->kind == FORM_ENERGY || lines->kind == FORM_TWO_ENERGIES;
+}
+
 #endif

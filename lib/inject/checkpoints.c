@@ -186,15 +186,6 @@ static sonject_status end_checkpoint(struct tracing *tracing, sonject_status tra
     return status;
 }
 
-static sonject_status take_nothing(void *taker, const struct impulse_lines *lines)
-{
-    (void)taker;
-    (void)lines;
-    return SONJECT_OK;
-}
-
-static const struct impulse_sink nobody = {take_nothing, NULL};
-
 sonject_status trace_into_file(const struct checkpoint_job *job, const char *path,
                                const struct impulse_sink *sink, struct trace_counts *counts)
 {
@@ -203,8 +194,8 @@ sonject_status trace_into_file(const struct checkpoint_job *job, const char *pat
     input.checkpoint = &tracing.checkpoint;
     sonject_status status = identify(&tracing);
     THEN(status, checkpoint_begin(&tracing.checkpoint, job->report, path, NULL, &tracing.head));
-    THEN(status, injection_trace(job->report, job->device, job->request->scene, &input,
-                                 sink ? sink : &nobody, job->progress, job->user, counts));
+    THEN(status, injection_trace(job->report, job->device, job->request->scene, &input, sink,
+                                 job->progress, job->user, counts));
     THEN(status, checkpoint_publish(&tracing.checkpoint, job->request->source));
     checkpoint_clear(&tracing.checkpoint);
     return status;
@@ -220,8 +211,8 @@ static sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is
         struct trace_counts counts;
         CHECK(begin_checkpoint(tracing, next));
         const sonject_status status =
-            injection_trace(tracing->report, job->device, job->request->scene, &input, &nobody,
-                            tell, tracing, &counts);
+            injection_trace(tracing->report, job->device, job->request->scene, &input, NULL, tell,
+                            tracing, &counts);
         CHECK(end_checkpoint(tracing, status, &next, &is_complete));
     }
     return SONJECT_OK;

@@ -66,7 +66,8 @@ static inline int impulse_lines_end(const struct impulse_lines *lines)
            lines->grid.strips.first + lines->grid.strips.count;
 }
 
-/* By rays: traces everything that the request asks for, and hands it on as it comes. Errors: INPUT,
+/* By rays: traces everything that the request asks for, and hands it on as it comes, unless the
+ * sink is NULL, so that only a checkpoint keeps it. Errors: INPUT,
  * DEVICE, MEMORY, CANCELLED, and the sink's own. */
 sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *request,
                               const struct impulse_sink *sink);

@@ -292,12 +292,13 @@ static sonject_status begin_object(struct object_former *former, struct echoes *
     return SONJECT_OK;
 }
 
-/* Adds formed pixels to the target's field. */
-static void add_field(struct echoes *echoes, const struct formed *formed)
+/* Adds formed pixels to a field of the whole patch. */
+static void add_field(const struct echoes *echoes, const struct formed *formed, float *real_part,
+                      float *imaginary_part)
 {
-    add_window(echoes->target_real, echoes, formed->planes, formed->first_column, formed->columns);
-    add_window(echoes->target_imaginary, echoes, formed->planes + formed->count,
-               formed->first_column, formed->columns);
+    add_window(real_part, echoes, formed->planes, formed->first_column, formed->columns);
+    add_window(imaginary_part, echoes, formed->planes + formed->count, formed->first_column,
+               formed->columns);
 }
 
 /* Adds formed pixels to the object's glint, and to what is the same in every look. */
@@ -313,12 +314,8 @@ static void add_glint(struct object_former *former, struct echoes *echoes,
         former->glint[at] += formed->planes[i];
         former->glint[echoes->rows * echo->columns + at] += formed->planes[formed->count + i];
     }
-    if (!echoes->coherent_real)
-        return;
-    add_window(echoes->coherent_real, echoes, formed->planes, formed->first_column,
-               formed->columns);
-    add_window(echoes->coherent_imaginary, echoes, formed->planes + formed->count,
-               formed->first_column, formed->columns);
+    if (echoes->coherent_real)
+        add_field(echoes, formed, echoes->coherent_real, echoes->coherent_imaginary);
 }
 
 /* Lines of glints between pixels. */
@@ -352,7 +349,7 @@ static sonject_status form_glint(struct object_former *former, struct echoes *ec
         return SONJECT_OK;
     const sonject_status status = form_end(&former->lines, &formed);
     if (status == SONJECT_OK) {
-        add_field(echoes, &formed);
+        add_field(echoes, &formed, echoes->target_real, echoes->target_imaginary);
         add_glint(former, echoes, &formed);
     }
     free(formed.planes);
@@ -375,7 +372,7 @@ sonject_status object_echoes_finish(struct object_former *former, struct echoes 
         const sonject_status status = form_speckle(tracer, &former->grid, former->rough_energy,
                                                    STREAM_OBJECT_SPECKLE + former->number, &drawn);
         if (status == SONJECT_OK)
-            add_field(echoes, &drawn);
+            add_field(echoes, &drawn, echoes->target_real, echoes->target_imaginary);
         free(drawn.planes);
         CHECK(status);
     }

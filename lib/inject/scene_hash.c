@@ -46,45 +46,26 @@ static bool is_part(const struct field *field)
 static void add_rows(struct hash *hash, const struct section *section, const void *structure,
                      const struct scene *scene)
 {
+    /* 0: not by its bytes, or not at all */
+    static const uint8_t value_bytes[] = {
+        [FIELD_COUNT64] = sizeof(uint64_t), [FIELD_COUNT32] = sizeof(uint32_t),
+        [FIELD_FLAG32] = sizeof(uint32_t),  [FIELD_WORD] = sizeof(uint32_t),
+        [FIELD_SPECIAL] = sizeof(uint32_t), [FIELD_BOOL] = sizeof(bool)};
     for (size_t i = 0; i < section->count; i++) {
         const struct field *field = &section->fields[i];
         const void *of = field->is_in_scene ? (const void *)scene : structure;
         const void *member = (const char *)of + field->offset;
         const void *below;
-        switch (field->kind) {
-        case FIELD_QUANTITY:
+        if (field->kind == FIELD_QUANTITY)
             add_number(hash, *(const double *)member);
-            break;
-        case FIELD_COUNT64:
-            hash_add(hash, member, sizeof(uint64_t));
-            break;
-        case FIELD_COUNT32:
-        case FIELD_FLAG32:
-        case FIELD_WORD:
-            hash_add(hash, member, sizeof(uint32_t));
-            break;
-        case FIELD_BOOL:
-            hash_add(hash, member, sizeof(bool));
-            break;
-        case FIELD_LABEL:
+        else if (field->kind == FIELD_LABEL)
             hash_add_text(hash, member);
-            break;
-        case FIELD_TEXT:
+        else if (field->kind == FIELD_TEXT)
             hash_add_text(hash, *(char *const *)member ? *(char *const *)member : "");
-            break;
-        case FIELD_ENTRIES:
+        else if (field->kind == FIELD_ENTRIES)
             hash_add(hash, (const char *)structure + field->count_offset, sizeof(uint32_t));
-            break;
-        case FIELD_SPECIAL:
-            if (field->member)
-                hash_add(hash, member, sizeof(uint32_t));
-            break;
-        case FIELD_PATH:
-        case FIELD_FILE:
-        case FIELD_SECTION:
-        case FIELD_NAMED:
-            break;
-        }
+        else if (field->kind != FIELD_SPECIAL || field->member)
+            hash_add(hash, member, value_bytes[field->kind]);
         for (uint32_t k = 0; !is_part(field) && k < field_entry_count(field, structure); k++) {
             const struct section *inner = field_below(field, structure, scene, k, &below);
             if (inner)

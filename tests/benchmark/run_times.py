@@ -53,7 +53,8 @@ def time_injection():
 
 def write_ring(path, around=1000, across=500):
     """A ring with bumps and hollows, 2 x around x across triangles, as binary STL."""
-    u, v = numpy.meshgrid(*(2 * numpy.pi * numpy.arange(n + 1) / n for n in (around, across)), indexing="ij")
+    turns = (2 * numpy.pi / n * (numpy.arange(n + 1) % n) for n in (around, across))  # it closes to the bit
+    u, v = numpy.meshgrid(*turns, indexing="ij")
     tube = 0.25 + 0.02 * numpy.sin(7 * u) * numpy.cos(5 * v)
     points = numpy.stack([(0.65 + tube * numpy.cos(v)) * numpy.cos(u), (0.65 + tube * numpy.cos(v)) * numpy.sin(u),
                           tube * numpy.sin(v)], axis=-1)
