@@ -18,9 +18,7 @@
 #include "swath/raster_file.h"
 #include "swath/swath_format.h"
 
-#define NAME_BYTES  256 /* of a data set's path, the final 0 among them */
-#define DEPTH_MAX   16
-#define OBJECTS_MAX 100000
+#define NAME_BYTES 256 /* of a data set's path, the final 0 among them */
 
 /* What a data set is. */
 struct data_set {
@@ -113,73 +111,38 @@ static bool look_at(hid_t file, const char *name, struct data_set *set)
     return is_plane;
 }
 
-/* A walk through the groups, the innermost of which is at the end of the path. */
+/* A walk through all links of the file, of which hard ones count. */
 struct walk {
-    hid_t file;
     struct array_list list;
     struct data_set *chosen;
-    char path[NAME_BYTES];
-    unsigned depth, objects;
 };
 
-static void visit_group(struct walk *walk, hid_t group);
-
-static void visit_link(struct walk *walk, hid_t group, const char *name)
+static herr_t visit_link(hid_t root, const char *name, const H5L_info_t *link, void *user)
 {
+    struct walk *walk = user;
     struct data_set set;
-    const size_t before = strlen(walk->path);
-    H5L_info_t link;
-    if (before + strlen(name) + 2 > sizeof walk->path || name[0] == '#' ||
-        H5Lget_info(group, name, &link, H5P_DEFAULT) < 0 || link.type != H5L_TYPE_HARD)
-        return; /* MATLAB keeps what its cells refer to under names that begin with # */
-    if (before > 0)
-        strcat(walk->path, "/");
-    strcat(walk->path, name);
-    const hid_t object = H5Oopen(group, name, H5P_DEFAULT);
-    const H5I_type_t kind = object >= 0 ? H5Iget_type(object) : H5I_BADID;
-    if (kind == H5I_GROUP && walk->depth < DEPTH_MAX) {
-        walk->depth++;
-        visit_group(walk, object);
-        walk->depth--;
-    } else if (kind == H5I_DATASET && look_at(walk->file, walk->path, &set)) {
-        const uint64_t rows = set.sides[set.is_turned];
-        const uint64_t columns = set.sides[!set.is_turned];
-        if (array_list_add(&walk->list, walk->path, rows, columns,
-                           set.is_read && rows > 1 && columns > 1))
-            *walk->chosen = set;
-    }
-    release(object);
-    walk->path[before] = '\0';
+    /* MATLAB keeps what its cells refer to under names that begin with # */
+    if (link->type != H5L_TYPE_HARD || name[0] == '#' || strstr(name, "/#") ||
+        !look_at(root, name, &set))
+        return 0;
+    const uint64_t rows = set.sides[set.is_turned];
+    const uint64_t columns = set.sides[!set.is_turned];
+    if (array_list_add(&walk->list, name, rows, columns, set.is_read && rows > 1 && columns > 1))
+        *walk->chosen = set;
+    return 0;
 }
 
-static void visit_group(struct walk *walk, hid_t group)
-{
-    H5G_info_t facts;
-    char name[NAME_BYTES];
-    if (H5Gget_info(group, &facts) < 0)
-        return;
-    for (hsize_t i = 0; i < facts.nlinks && walk->objects < OBJECTS_MAX; i++) {
-        const ssize_t length = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name,
-                                                  sizeof name, H5P_DEFAULT);
-        walk->objects++;
-        if (length > 0 && (size_t)length < sizeof name)
-            visit_link(walk, group, name);
-    }
-}
-
-/* Walks through the file's groups and keeps the data set that is wanted. */
+/* Looks at the file's data sets and keeps the one that is wanted. */
 static sonject_status choose_set(struct report *report, struct hdf5_array *array,
                                  const char *wanted)
 {
-    struct walk walk = {.file = array->file, .chosen = &array->set};
+    struct walk walk = {.chosen = &array->set};
     while (wanted && *wanted == '/')
         wanted++;
     walk.list.wanted = wanted;
-    const hid_t root = H5Gopen2(array->file, "/", H5P_DEFAULT);
-    if (root < 0)
+    if (H5Lvisit(array->file, H5_INDEX_NAME, H5_ITER_INC, visit_link, &walk) < 0 &&
+        walk.list.matches == 0)
         return input_failure(report, array->path, "is damaged: HDF5 cannot read it; copy it again");
-    visit_group(&walk, root);
-    release(root);
     CHECK(array_list_check(report, array->path, &walk.list));
     if (array->set.is_read)
         return SONJECT_OK;
