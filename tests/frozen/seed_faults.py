@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Makes the faults of faults.md, one at a time, in a copy of the tree, and tells which the tests catch.
 
-    seed_faults.py                all, after a run of all their suites without any fault
+    seed_faults.py                all, after a run of all tests that the table names without any fault
     seed_faults.py 3 17           these alone, without that run
     --scratch DIR                 keeps copy and build there for the next time
 
-One line each: caught by which test, survived, does not build, or stale, if the code is no longer
-what the table says. Exit status: 0 all were caught."""
+Of each the test that caught it last is built and run; all suites only if that passes, up to the first
+failure. One line each: caught by which test, survived, does not build, or stale, if the code is no
+longer what the table says. Exit status: 0 all were caught."""
 
 import argparse
 import json
@@ -20,7 +21,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 ROW = re.compile(r"\| (\d+) \| (.+?) \| `(.+?)` \| `(.+?)` \| (?:`(.+?)`)? ?\| (.+?) \|$", re.M)
 FAILED = ("FAIL", "ERROR", "TIMEOUT")
-ORDER = ["unit", "kernel", "physics", "cli"]  # the quickest first
+SUITES = ["unit", "kernel", "physics", "cli"]  # the quickest first
 
 
 def done(tree, *command):
@@ -40,27 +41,51 @@ def make_copy(tree):
             sys.exit("seed_faults.py: meson setup failed")
 
 
-def outcome(tree, suites):
-    """Builds and runs the suites up to the first test that fails."""
+def targets_of(tree, test):
+    """What ninja must build for a test, "suite / name"; exits where there is no such test."""
+    suite, name = test.split(" / ")
+    told = {kind: json.loads((tree / "build" / "meson-info" / f"intro-{kind}.json").read_text())
+            for kind in ("tests", "targets")}
+    files = {target["id"]: target["filename"] for target in told["targets"]}
+    for entry in told["tests"]:
+        if entry["name"] == name and f"sonject:{suite}" in entry["suite"]:
+            return [str(pathlib.Path(file).relative_to((tree / "build").resolve()))
+                    for key in entry["depends"] for file in files[key]]
+    return sys.exit(f"seed_faults.py: there is no test {test}")
+
+
+def failure(tree, *chosen):
+    """The first test that fails, "" where none does."""
+    command = ["meson", "test", "-C", "build", "--no-rebuild", "--maxfail", "1", *chosen]
+    if done(tree, *command):
+        return ""
+    log = (tree / "build" / "meson-logs" / "testlog.json").read_text().splitlines()
+    failed = [test["name"] for test in map(json.loads, log) if test["result"] in FAILED]
+    return failed[0] if failed else " ".join(chosen)
+
+
+def outcome(tree, test):
+    if not done(tree, "ninja", "-C", "build", *targets_of(tree, test)):
+        return "does not build"
+    suite, name = test.split(" / ")
+    if failure(tree, "--suite", suite, name):
+        return f"caught by {test}"
     if not done(tree, "ninja", "-C", "build"):
         return "does not build"
-    for suite in suites:
-        test = ["meson", "test", "-C", "build", "--no-rebuild", "--maxfail", "1", "--suite", suite]
-        if not done(tree, *test):
-            log = (tree / "build" / "meson-logs" / "testlog.json").read_text().splitlines()
-            failed = [test for test in map(json.loads, log) if test["result"] in FAILED]
-            return "caught by " + (failed[0]["name"] if failed else suite)
+    for suite in SUITES:
+        if name := failure(tree, "--suite", suite):
+            return f"caught by {name}, no longer by {test}"
     return "survived"
 
 
-def with_fault(tree, name, old, new, suites):
+def with_fault(tree, name, old, new, test):
     path = tree / name
     sound = path.read_text() if path.exists() else ""
     if sound.count(old) != 1:
         return "stale"
     path.write_text(sound.replace(old, new))
     try:
-        return outcome(tree, suites)
+        return outcome(tree, test)
     finally:
         path.write_text(sound)
 
@@ -72,15 +97,19 @@ def main():
     parser.add_argument("numbers", nargs="*", type=int)
     parser.add_argument("--scratch", type=pathlib.Path)
     options = parser.parse_args()
+    rows = ROW.findall((HERE / "faults.md").read_text())
     caught = True
     with tempfile.TemporaryDirectory(prefix="faults-") as temporary:
-        tree = options.scratch or pathlib.Path(temporary)
+        tree = (options.scratch or pathlib.Path(temporary)).resolve()
         make_copy(tree)
-        if not options.numbers and (answer := outcome(tree, ORDER)) != "survived":
-            sys.exit(f"seed_faults.py: without any fault: {answer}")
-        for number, claim, name, old, new, suites in ROW.findall((HERE / "faults.md").read_text()):
+        for test in () if options.numbers else sorted({row[-1] for row in rows}):
+            suite, name = test.split(" / ")
+            built = done(tree, "ninja", "-C", "build", *targets_of(tree, test))
+            if not built or failure(tree, "--suite", suite, name):
+                sys.exit(f"seed_faults.py: without any fault {test} fails")
+        for number, claim, name, old, new, test in rows:
             if not options.numbers or int(number) in options.numbers:
-                answer = with_fault(tree, name, old, new, suites.split())
+                answer = with_fault(tree, name, old, new, test)
                 print(f"{number:>2}  {answer}: {claim}", flush=True)
                 caught = caught and answer.startswith("caught")
     return 0 if caught else 1

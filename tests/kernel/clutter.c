@@ -12,20 +12,6 @@ static double draw(uint32_t *counter)
     return u;
 }
 
-static void add_tetrahedron(struct bench *bench)
-{
-    static const double positions[] = {0.0,  0.0, 0.3,  0.4,  0.0,  -0.1,
-                                       -0.2, 0.3, -0.1, -0.2, -0.3, -0.1};
-    static const uint32_t corners[] = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
-    struct mesh_options options;
-    mesh_options_init(&options);
-    bench->scene.meshes = calloc(1, sizeof *bench->scene.meshes);
-    assert_non_null(bench->scene.meshes);
-    bench->scene.mesh_count = 1;
-    EXPECT_OK(&bench->report, mesh_from_arrays(&bench->report, "tetrahedron", positions, 4, corners,
-                                               4, &options, &bench->scene.meshes[0]));
-}
-
 static void shape_object(sonject_object_params *object, uint32_t number, double size,
                          uint32_t *counter)
 {
@@ -59,7 +45,7 @@ static void shape_object(sonject_object_params *object, uint32_t number, double 
 void clutter_strew(struct bench *bench, uint32_t count, double size)
 {
     uint32_t counter = 0;
-    add_tetrahedron(bench);
+    bench_add_tetrahedron(bench);
     for (uint32_t i = 0; i < count; i++) {
         sonject_object_params object;
         shape_object(&object, i, size * (0.2 + 0.8 * draw(&counter)), &counter);

@@ -7,6 +7,7 @@
 
 #include "device/opencl.h"
 #include "physics/bench.h"
+#include "physics/user_codes.h"
 
 #define ROWS    96
 #define COLUMNS 128
@@ -28,7 +29,8 @@ enum scene_flag {
     ROUGH_AT_1 = 4096,
     GLINTS = 8192,
     MIRRORS = 16384,
-    CHAINS = 32768
+    CHAINS = 32768,
+    TILES = 65536 /* of the rough part by all ways, at the least and the most lanes */
 };
 
 /* Objects of a scene. */
@@ -36,7 +38,8 @@ enum object_set {
     NO_OBJECTS,
     FOUR_OBJECTS,
     MORE_SHAPES, /* shapes that are not plain, whole and cut */
-    TWO_OBJECTS
+    TWO_OBJECTS,
+    CROWD /* a mesh, a user's shape and spheres, too many for one launch */
 };
 
 static const struct scene_case {
@@ -46,14 +49,15 @@ static const struct scene_case {
     double source_side; /* m; not 0: visibility is tested */
     uint32_t interactions;
 } scenes[] = {
-    {"plain", FOUR_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | GLINTS | MIRRORS, 0.0, 1},
+    {"plain", FOUR_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | GLINTS | MIRRORS | TILES, 0.0, 1},
     {"wide source", FOUR_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1, 0.2, 1},
     {"map", FOUR_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | WITH_MAP, 0.2, 1},
     {"seabed alone", NO_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1, 0.0, 1},
     {"more shapes", MORE_SHAPES, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | GLINTS, 0.2, 1},
-    {"layers", FOUR_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | GLINTS | MIRRORS | IN_LAYERS, 0.0,
-     1},
-    {"relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | GLINTS | MIRRORS | ON_RELIEF, 0.0, 1},
+    {"layers", FOUR_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | GLINTS | MIRRORS | TILES | IN_LAYERS,
+     0.0, 1},
+    {"relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | GLINTS | MIRRORS | TILES | ON_RELIEF, 0.0, 1},
+    {"crowd over relief", CROWD, TILES | ON_RELIEF, 0.0, 1},
     {"wide source over relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | ON_RELIEF | WITH_MAP, 0.2, 1},
     {"aspects", FOUR_OBJECTS, ROUGH | WITH_ASPECTS, 0.0, 1},
     {"aspects over relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | WITH_ASPECTS | ON_RELIEF | WITH_MAP,
@@ -132,8 +136,29 @@ static void place_more_shapes(struct bench *bench)
     objects[7].nose_end = objects[7].tail_end = SONJECT_END_OPEN;
 }
 
+static void place_crowd(struct bench *bench)
+{
+    sonject_user_shape_params params = {0};
+    params.name = "sphere.cl";
+    params.code = SPHERE_CODE;
+    params.bounding_radius_m = params.parameters[0] = 0.2;
+    params.parameter_count = 1;
+    EXPECT_OK(&bench->report,
+              user_shapes_append(&bench->scene.user_shapes, &bench->report, &params));
+    bench_add_tetrahedron(bench);
+    for (int i = 0; i < 22; i++) {
+        const sonject_shape shape = i == 0   ? SONJECT_SHAPE_MESH
+                                    : i == 1 ? SONJECT_SHAPE_USER
+                                             : SONJECT_SHAPE_SPHERE;
+        place(bench_add(bench, shape, 0.0, 0.0, i < 2 ? 0.0 : 0.08 + 0.002 * i),
+              12.0 + 18.0 * (i % 5), 15.0 + 22.0 * (i / 5), 0.0, 0.0, 0.0);
+    }
+}
+
 static void place_objects(struct bench *bench, enum object_set set)
 {
+    if (set == CROWD)
+        place_crowd(bench);
     if (set == MORE_SHAPES) {
         place_more_shapes(bench);
     } else if (set == FOUR_OBJECTS) {
@@ -315,21 +340,13 @@ static void tallies_clear(struct tallies *tallies)
     free(tallies->tiles);
 }
 
-static void expect_same_sums(const char *what, const int64_t *a, const int64_t *b, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        if (a[i] != b[i])
-            fail_msg("%s: element %zu of %zu is %lld, not %lld", what, i, count, (long long)a[i],
-                     (long long)b[i]);
-}
-
 static void expect_same(const struct subject *subject, const struct tallies *a,
                         const struct tallies *b)
 {
     assert_int_equal(a->count, b->count);
     assert_int_equal(a->tile_count, b->tile_count);
-    expect_same_sums(subject->scene->name, a->sums, b->sums, a->count);
-    expect_same_sums("tiles", a->tiles, b->tiles, a->tile_count);
+    bench_expect_sums(subject->scene->name, a->sums, b->sums, a->count);
+    bench_expect_sums("tiles", a->tiles, b->tiles, a->tile_count);
     assert_int_equal(a->counts.rays, b->counts.rays);
     assert_int_equal(a->counts.impulses, b->counts.impulses);
     assert_int_equal(a->counts.queries, b->counts.queries);
@@ -616,44 +633,46 @@ static void test_mirrored_tallies(void **state)
     on_scenes_with(MIRRORS, compare_mirrored);
 }
 
-/* Tiles of the rough part by way of mirrors, on a fresh trace. */
-static int64_t *mirrored_tiles(struct bench *bench, size_t *elements)
+/* Tiles of the rough part, straight and by way of mirrors, on a fresh trace. */
+static int64_t *all_tiles(struct bench *bench, size_t *elements)
 {
     static struct rough_trace trace;
     EXPECT_OK(&bench->report, rough_trace_begin(&trace, &bench->tracer, NULL));
+    float *energy = calloc(line_grid_cells(&trace.grid), sizeof *energy);
+    assert_non_null(energy);
+    EXPECT_OK(&bench->report,
+              rough_trace_strips(&trace, &bench->tracer, trace.grid.strips, energy));
     EXPECT_OK(&bench->report, rough_trace_mirrored(&trace, &bench->tracer));
+    free(energy);
     *elements = trace.tile_elements;
     int64_t *tiles = bench_copy_buffer(bench, trace.launch.buffers[ROUGH_TILES]);
     rough_trace_end(&trace);
     return tiles;
 }
 
-static void compare_rough_mirrored(struct bench *bench, const struct scene_case *scene)
+static void compare_tiles(struct bench *bench, const struct scene_case *scene)
 {
     struct device *own = bench->tracer.device;
     int64_t *tiles[2];
-    size_t elements[2], filled = 0;
+    size_t elements[2];
     bench->scene.seabed.forward.reflection = scene->flags & ON_RELIEF ? 0.0 : 0.9;
     bench->scene.surface.water_depth_m = 7.5;
     make_scene(bench, scene);
     bench->scene.injection.interactions = 4;
     for (int end = 0; end < 2; end++) { /* of the row of widths, where that has one alone, twice */
         bench->tracer.device = devices[end == 0 ? 0 : width_count - 1];
-        tiles[end] = mirrored_tiles(bench, &elements[end]);
+        tiles[end] = all_tiles(bench, &elements[end]);
     }
     bench->tracer.device = own;
-    for (size_t i = 0; i < elements[0]; i++)
-        filled += tiles[0][i] != 0;
-    assert_true(filled > 1000);
     assert_int_equal(elements[0], elements[1]);
-    expect_same_sums("mirrored tiles", tiles[1], tiles[0], elements[0]);
+    assert_true(bench_expect_sums("tiles", tiles[1], tiles[0], elements[0]) > 1000);
     free(tiles[0]);
     free(tiles[1]);
 }
 
-static void test_rough_mirrored_tallies(void **state)
+static void test_tiles_by_all_ways(void **state)
 {
-    on_scenes_with(MIRRORS, compare_rough_mirrored);
+    on_scenes_with(TILES, compare_tiles);
 }
 
 /* One core of a device instead of all. */
@@ -703,8 +722,8 @@ static void test_one_core(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_rough_tallies),          TEST(test_smooth_tallies), TEST(test_mirrored_tallies),
-        TEST(test_rough_mirrored_tallies), TEST(test_chain_tallies),  TEST(test_one_core),
+        TEST(test_rough_tallies),     TEST(test_smooth_tallies), TEST(test_mirrored_tallies),
+        TEST(test_tiles_by_all_ways), TEST(test_chain_tallies),  TEST(test_one_core),
     };
     return bench_run_on_devices(tests, COUNT(tests));
 }

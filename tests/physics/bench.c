@@ -151,6 +151,19 @@ void *bench_copy_buffer(struct bench *bench, device_buffer buffer)
     return copy;
 }
 
+size_t bench_expect_sums(const char *what, const int64_t *measured, const int64_t *expected,
+                         size_t count)
+{
+    size_t filled = 0;
+    for (size_t i = 0; i < count; i++) {
+        filled += expected[i] != 0;
+        if (measured[i] != expected[i])
+            fail_msg("%s: element %zu of %zu is %lld, not %lld", what, i, count,
+                     (long long)measured[i], (long long)expected[i]);
+    }
+    return filled;
+}
+
 void bench_ready(struct bench *bench)
 {
     struct tracer *tracer = &bench->tracer;

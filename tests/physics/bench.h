@@ -55,6 +55,10 @@ void bench_add_tetrahedron(struct bench *bench);
 /* A copy of a whole buffer of the device, for free(). */
 void *bench_copy_buffer(struct bench *bench, device_buffer buffer);
 
+/* Fails where two lists of sums differ; how many of them are not 0. */
+size_t bench_expect_sums(const char *what, const int64_t *measured, const int64_t *expected,
+                         size_t count);
+
 /* Works out view, response and placements from the scene as it now is; before any trace. */
 void bench_ready(struct bench *bench);
 
