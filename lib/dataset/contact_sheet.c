@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "dataset/data_set.h"
 #include "image/canvas.h"
+#include "measure/contacts.h"
 #include "swath/raster_file.h"
 
 #define CELLS_ACROSS 8
@@ -50,13 +51,6 @@ static void reduce(const struct raster_layout *layout, const void *pixels, struc
         }
 }
 
-static int compare_values(const void *a, const void *b)
-{
-    const float first = *(const float *)a;
-    const float second = *(const float *)b;
-    return first < second ? -1 : first > second;
-}
-
 /* Grey levels as they are; other pixels in dB, from the 1st to the 99.8th percentile. */
 static sonject_status shade(struct report *report, enum pixel_type type, struct thumbnail *small)
 {
@@ -69,7 +63,7 @@ static sonject_status shade(struct report *report, enum pixel_type type, struct 
         for (size_t i = 0; i < count; i++)
             small->values[i] = 20.0f * log10f(fmaxf(small->values[i], 1e-20f));
         memcpy(sorted, small->values, count * sizeof *sorted);
-        qsort(sorted, count, sizeof *sorted, compare_values);
+        qsort(sorted, count, sizeof *sorted, compare_floats);
         low = sorted[count / 100];
         high = sorted[count - 1 - count / 500];
         free(sorted);

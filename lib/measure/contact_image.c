@@ -286,7 +286,7 @@ void contact_image_clear(struct contact_image *image)
     memset(image, 0, sizeof *image);
 }
 
-static int by_size(const void *a, const void *b)
+int compare_floats(const void *a, const void *b)
 {
     const float x = *(const float *)a;
     const float y = *(const float *)b;
@@ -322,7 +322,7 @@ static double level_beside(const struct contact_image *image, const struct windo
                 (!box || !boxes_overlap(&block, box)))
                 blocks[count++] = mean_of_box(image, &block);
         }
-    qsort(blocks, count, sizeof *blocks, by_size);
+    qsort(blocks, count, sizeof *blocks, compare_floats);
     return count > 0 ? (double)blocks[count / 2] : -1.0;
 }
 

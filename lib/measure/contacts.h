@@ -30,6 +30,9 @@ struct window_box {
     size_t first_row, first_column, rows, columns;
 };
 
+/* For qsort: the smallest first. */
+int compare_floats(const void *a, const void *b);
+
 /* The box with so many pixels around it, within the image. */
 struct window_box box_with_margin(const struct window_box *box, size_t margin, size_t rows,
                                   size_t columns);

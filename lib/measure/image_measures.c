@@ -173,16 +173,6 @@ static sonject_status read_mask(struct report *report, const char *path,
     return status;
 }
 
-static void mark_near(struct measured *measured, size_t i)
-{
-    const size_t row = i / measured->columns;
-    const size_t column = i % measured->columns;
-    for (size_t r = row > NEAR ? row - NEAR : 0; r <= row + NEAR && r < measured->rows; r++)
-        for (size_t c = column > NEAR ? column - NEAR : 0;
-             c <= column + NEAR && c < measured->columns; c++)
-            measured->influence[r * measured->columns + c] = 255;
-}
-
 /* The image before, and where no mask tells it, what changed since. */
 static sonject_status read_before(struct report *report, const sonject_measure_params *params,
                                   const struct image_options *options, struct measured *measured)
@@ -204,7 +194,7 @@ static sonject_status read_before(struct report *report, const sonject_measure_p
     for (size_t i = 0; i < count; i++)
         if (measured->before[i] < measured->amplitudes[i] ||
             measured->before[i] > measured->amplitudes[i])
-            mark_near(measured, i);
+            fill_square(measured->influence, measured->rows, measured->columns, i, NEAR, 255);
     return SONJECT_OK;
 }
 

@@ -27,6 +27,10 @@ sonject_status measure_seam(struct report *report, const float *amplitudes,
                             const uint8_t *influence, const uint8_t *labels, size_t rows,
                             size_t columns, struct seam *seam);
 
+/* Gives the pixels of a mask that lie so near to one, along both axes, a value. */
+void fill_square(uint8_t *mask, size_t rows, size_t columns, size_t at, size_t radius,
+                 uint8_t value);
+
 /* Errors: INPUT: not 0...1000 km. */
 sonject_status check_spacings(struct report *report, double row_spacing_m, double column_spacing_m);
 

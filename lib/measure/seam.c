@@ -64,23 +64,15 @@ static bool pixel_at(const struct seam_search *search, size_t row, size_t column
     return true;
 }
 
-static bool is_in_patch(size_t i)
+void fill_square(uint8_t *mask, size_t rows, size_t columns, size_t at, size_t radius,
+                 uint8_t value)
 {
-    const size_t row = i / SURROUNDINGS;
-    const size_t column = i % SURROUNDINGS;
-    return row >= MARGIN && row < MARGIN + SEAM_PATCH && column >= MARGIN &&
-           column < MARGIN + SEAM_PATCH;
-}
-
-/* Makes a square of so many pixels around one of a kind. */
-static void fill_square(const struct seam_search *search, size_t at, size_t radius, uint8_t kind)
-{
-    const size_t row = at / search->columns;
-    const size_t column = at % search->columns;
-    for (size_t r = row > radius ? row - radius : 0; r <= row + radius && r < search->rows; r++)
-        for (size_t c = column > radius ? column - radius : 0;
-             c <= column + radius && c < search->columns; c++)
-            search->kinds[r * search->columns + c] = kind;
+    const size_t row = at / columns;
+    const size_t column = at % columns;
+    for (size_t r = row > radius ? row - radius : 0; r <= row + radius && r < rows; r++)
+        for (size_t c = column > radius ? column - radius : 0; c <= column + radius && c < columns;
+             c++)
+            mask[r * columns + c] = value;
 }
 
 /* Spreads the pixels of a kind over squares of GAPS pixels around them. scratch: as kinds. */
@@ -89,7 +81,7 @@ static void spread(const struct seam_search *search, uint8_t kind, uint8_t *scra
     memcpy(scratch, search->kinds, search->rows * search->columns);
     for (size_t i = 0; i < search->rows * search->columns; i++)
         if (scratch[i] == kind)
-            fill_square(search, i, GAPS, kind);
+            fill_square(search->kinds, search->rows, search->columns, i, GAPS, kind);
 }
 
 /* Where little changes, dark pixels change first: gaps in the influence are closed, or the band
@@ -107,7 +99,7 @@ static void mark_kinds(struct seam_search *search, const uint8_t *influence, con
             search->kinds[i] = PIXEL_BAND;
     for (size_t i = 0; labels && i < count; i++)
         if (labels[i])
-            fill_square(search, i, GUARD, PIXEL_TARGET);
+            fill_square(search->kinds, search->rows, search->columns, i, GUARD, PIXEL_TARGET);
 }
 
 static void take_outline(const struct seam_search *search, size_t row, size_t column,
@@ -119,7 +111,9 @@ static void take_outline(const struct seam_search *search, size_t row, size_t co
         if (!pixel_at(search, row, column, i, &at))
             continue;
         const uint8_t kind = search->kinds[at];
-        outline->is_in[i] = is_in_patch(i) && kind == PIXEL_BAND;
+        const size_t down = i / SURROUNDINGS - MARGIN; /* in the patch, or large */
+        const size_t right = i % SURROUNDINGS - MARGIN;
+        outline->is_in[i] = down < SEAM_PATCH && right < SEAM_PATCH && kind == PIXEL_BAND;
         outline->is_around[i] = kind == PIXEL_UNTOUCHED || kind == PIXEL_TAKEN;
         outline->pixels += outline->is_in[i];
         outline->around += outline->is_around[i];
@@ -283,23 +277,10 @@ static void centre(struct seam_sample *group, size_t count)
     }
 }
 
-/* Contiguous fifths of the samples, each with its own background. */
-static void deal_folds(struct seam_search *search, size_t injected)
-{
-    size_t before = 0;
-    size_t seen = 0;
-    for (size_t i = 0; i < search->count; i++) {
-        before = seen;
-        seen += search->samples[i].is_injected;
-        const size_t number = search->samples[i].is_injected ? before : seen - 1;
-        search->samples[i].group = number;
-        search->samples[i].fold = (int)(number * SEAM_FOLDS / injected);
-    }
-}
-
 /* Takes a patch and its backgrounds; false where it has too little of the band, or nothing near to
  * be compared with. */
-static bool add_group(struct seam_search *search, size_t row, size_t column, size_t least)
+static bool add_group(struct seam_search *search, size_t row, size_t column, size_t least,
+                      size_t number)
 {
     struct outline outline;
     const size_t first = search->count;
@@ -312,6 +293,8 @@ static bool add_group(struct seam_search *search, size_t row, size_t column, siz
     }
     take(search, row, column, &outline, PIXEL_TARGET);
     centre(search->samples + first, search->count - first);
+    for (size_t i = first; i < search->count; i++)
+        search->samples[i].group = number;
     return true;
 }
 
@@ -325,7 +308,7 @@ static size_t collect(struct seam_search *search)
         for (size_t row = 0; row + SEAM_PATCH <= search->rows; row += STEP)
             for (size_t column = 0;
                  column + SEAM_PATCH <= search->columns && injected < SAMPLES_MAX; column += STEP)
-                injected += add_group(search, row, column, least[pass]);
+                injected += add_group(search, row, column, least[pass], injected);
     return injected;
 }
 
@@ -507,7 +490,8 @@ static sonject_status classify_seam(struct report *report, struct seam_search *s
 {
     seam->patches = injected;
     seam->background = search->count - injected;
-    deal_folds(search, injected);
+    for (size_t i = 0; i < search->count; i++) /* contiguous fifths, with their backgrounds */
+        search->samples[i].fold = (int)(search->samples[i].group * SEAM_FOLDS / injected);
     if (!has_enough(search->samples, search->count))
         return SONJECT_OK;
     double *scores = allocate_array(search->count, sizeof *scores);

@@ -16,7 +16,7 @@ from documents import SOURCE, comment_commands
 from measured_images import read_png
 
 ROWS, COLUMNS, CHIP = 110, 150, 64
-IMAGES = 20
+IMAGES = 10
 
 SCENE = """\
 sonject: 1
@@ -132,13 +132,13 @@ def test_no_swath_is_in_two_splits_and_classes_are_balanced_in_each(whole):
         splits.setdefault(record["swath"]["hash"], set()).add(record["split"])
     assert sorted(map(len, splits.values())) == [1, 1, 1]
     assert set.union(*splits.values()) == {"train", "test"}
-    # ten images a split: two are empty, the others have one of two targets
+    # five images a split: one is empty, the others have one of two targets
     for split in ("train", "test"):
         targets = [record["target"] for record in records(whole) if record["split"] == split]
         assert {name: targets.count(name) for name in [None, *TARGETS]} == {
-            None: 2, TARGETS[0]: 4, TARGETS[1]: 4}
+            None: 1, TARGETS[0]: 2, TARGETS[1]: 2}
         # and come mixed, so that shards and the first images have all
-        assert sum(one != other for one, other in zip(targets, targets[1:])) > 2
+        assert sum(one != other for one, other in zip(targets, targets[1:])) > 1
 
 
 def test_images_keep_away_from_contacts_and_draws_are_stratified(whole):
@@ -165,7 +165,7 @@ def test_an_image_without_objects_is_the_swath(whole, ground):
         assert numpy.array_equal(read_png(whole / of_image(record, "images", ".png")), chip)
         assert not read_png(whole / of_image(record, "masks", ".png")).any()
         checked += 1
-    assert checked == 4
+    assert checked == 2
 
 
 def test_coco_is_what_truth_and_masks_say(whole):
@@ -174,7 +174,7 @@ def test_coco_is_what_truth_and_masks_say(whole):
         names = {entry["id"]: entry["name"] for entry in coco["categories"]}
         assert list(names.values()) == [*TARGETS, "stone"]
         ids = [entry["id"] for entry in coco["images"]]
-        assert ids == sorted(ids) and len(ids) == 10
+        assert ids == sorted(ids) and len(ids) == IMAGES // 2
         assert [entry["id"] for entry in coco["annotations"]] == list(
             range(1, len(coco["annotations"]) + 1))
         for image in coco["images"]:
@@ -228,7 +228,7 @@ def test_the_record_of_an_image_is_a_run(command, whole, ground):
 def test_shards_and_merge_are_one_run(command, whole, ground):
     for shard in ("2/2", "1/2"):
         answer = command("merge", "shards")
-        assert_refused(answer, 3, "no campaign" if shard == "2/2" else "10 of 20 images are missing: 0, 2")
+        assert_refused(answer, 3, "no campaign" if shard == "2/2" else "5 of 10 images are missing: 0, 2")
         assert command("campaign", "campaign.yaml", "-o", "shards", "--shard", shard).returncode == 0
         made = {record["id"] % 2 for record in records(ground / "shards")}
         assert made == ({1} if shard == "2/2" else {0, 1})
@@ -301,14 +301,14 @@ def test_a_head_that_was_tampered_with_is_refused(command, whole, ground):
     (ground / "odd").mkdir()
     for change in ({"classes": [1, 2, 3]}, {"classes": {}}, {"classes": ["a\nb"]}, {"splits": []},
                    {"splits": [{"name": "<b>", "images": 20}]}, {"rows": 10**18}, {"rows": "64"},
-                   {"splits": [{"name": "train", "images": -1}]}, {"outputs": None}, {"images": 19},
+                   {"splits": [{"name": "train", "images": -1}]}, {"outputs": None}, {"images": 9},
                    {"swaths": None}, {"swaths": [{"path": "\u202e"}]}, {"sonject_campaign": 1}):
         (ground / "odd" / "campaign.json").write_text(json.dumps({**head, **change}))
         assert_refused(command("merge", "odd"), 3, "odd/campaign.json", "damaged")
 
 
 @pytest.mark.parametrize("setting, differs", [
-    ("seed=6", "seed (5 there, 6 here)"), ("images=10", "images (20 there, 10 here)"),
+    ("seed=6", "seed (5 there, 6 here)"), ("images=6", "images (10 there, 6 here)"),
     ("targets[0].object.diameter=20 cm", "targets"), ("scene=other.yaml", "scene"),
     ("swaths[1].path=swath2.png", "swaths")])
 def test_another_campaign_is_refused_by_name(command, whole, ground, setting, differs):
@@ -356,7 +356,7 @@ def test_what_was_changed_is_named_by_merge_and_made_again(command, damaged, who
             words = [f"missing or changed: {record['id']};", str(path.relative_to(damaged))]
             if not path.exists() and path == paths[-1]:
                 words = [f"missing: {record['id']};"]
-            assert_refused(command("merge", damaged.name), 3, "1 of 20 images", *words)
+            assert_refused(command("merge", damaged.name), 3, "1 of 10 images", *words)
             path.write_bytes(sound)
     for each, path in zip(records(damaged), paths):  # five images of which another file is gone
         (damaged / of_image(each, path.parent.name, path.suffix)).unlink()
