@@ -41,6 +41,7 @@ TYPED = {
         "sonject convert ground.tif slant.tif --range-axis slant",
     "sonject seabed -o IMAGE": "sonject seabed -o seabed.tif",
     "sonject VERB --help": "sonject measure --help",
+    "sonject help KEY": "sonject help sonar.frequency && sonject help sonar.",
     "SONJECT_MUTATIONS=100000 build/tests/unit/unit_scene_hostile":
         "SONJECT_MUTATIONS=500 build/tests/unit/unit_scene_hostile",
     "build/tests/unit/unit_scene_reference tools/scenes/KEYS.md":
