@@ -131,13 +131,6 @@ typedef struct sonject_sonar_params {
 
 /* The compressed pulse: what a point looks like in range. */
 
-typedef enum sonject_pulse_kind {
-    SONJECT_PULSE_GAUSSIAN = 0, /* half-power width c / (2 bandwidth) */
-    SONJECT_PULSE_CHIRP = 1,    /* a linear sweep over the bandwidth, compressed: the transform of
-                                   the spectrum's weighting */
-    SONJECT_PULSE_TABLE = 2     /* samples: the scene's pulse_table */
-} sonject_pulse_kind;
-
 /* Weighting of a compressed sweep's spectrum over the bandwidth B. Half-power widths, in c / 2B:
  * 0.886, 1.441, and Taylor's between them. */
 typedef enum sonject_pulse_window {

@@ -98,49 +98,6 @@ void point_response_init(struct point_response *response, const sonject_sonar_pa
     }
 }
 
-static void set_chirp(struct point_response *response, const sonject_pulse_params *pulse)
-{
-    const double cell = response->range_resolution_m;
-    response->pulse_kind = SONJECT_PULSE_CHIRP;
-    if (pulse->window == SONJECT_PULSE_HANN) {
-        response->pulse_terms = 1;
-        response->pulse_weights[0] = 0.5;
-    } else if (pulse->window == SONJECT_PULSE_TAYLOR) {
-        response->pulse_terms = taylor_weights(response->pulse_weights, pulse->taylor_sidelobe_db,
-                                               (int)pulse->taylor_terms);
-    }
-    response->pulse_tail_m =
-        cell * transform_tail(response->pulse_weights, response->pulse_terms, TAIL_LEVEL);
-}
-
-static void set_pulse_table(struct point_response *response, const struct response_table *table,
-                            double reference_sound_speed_mps)
-{
-    const double length = fmax(-table->positions[0], table->positions[table->count - 1]);
-    response->pulse_kind = SONJECT_PULSE_TABLE;
-    response->pulse_table = table;
-    response->metres_per_position = table->is_time ? 0.5 * reference_sound_speed_mps : 1.0;
-    const double width = response_table_width(table) * response->metres_per_position;
-    response->range_resolution_m = fmin(response->range_resolution_m, width);
-    response->range_deviation_m = response->range_resolution_m / (2.0 * sqrt(log(2.0)));
-    response->pulse_energy_m =
-        response_table_energy(table, -HUGE_VAL, HUGE_VAL) * response->metres_per_position;
-    response->pulse_tail_m = length * response->metres_per_position;
-}
-
-void point_response_set_pulse(struct point_response *response, const sonject_pulse_params *pulse,
-                              const struct response_table *table, double reference_sound_speed_mps)
-{
-    if (pulse->kind == SONJECT_PULSE_CHIRP)
-        set_chirp(response, pulse);
-    else if (pulse->kind == SONJECT_PULSE_TABLE)
-        set_pulse_table(response, table, reference_sound_speed_mps);
-    else
-        return;
-    response->pulse_reach_m = range_energy_reach(response, PULSE_ENERGY_SHARE);
-    response->pulse_margin_m = range_energy_reach(response, MARGIN_ENERGY_SHARE);
-}
-
 double along_track_response(const struct point_response *response, double distance_m)
 {
     return transform_at(response->weights, response->terms, distance_m / response->resolution_m);
@@ -179,16 +136,128 @@ double along_track_energy_reach(const struct point_response *response, double sh
                     4096.0 * response->resolution_m, share, window_energy_at);
 }
 
-double range_response(const struct point_response *response, double distance_m)
+/* ---- Pulses: how each begins after point_response_set_widths, G, the integral of |G|^2, and the
+ * half width beyond which less than a share of that lies. */
+
+/* From a G that is real and even. */
+static double energy_at(const struct point_response *response, double distance_m)
 {
-    if (response->pulse_kind == SONJECT_PULSE_CHIRP)
-        return transform_at(response->pulse_weights, response->pulse_terms,
-                            distance_m / response->range_resolution_m);
-    if (response->pulse_kind == SONJECT_PULSE_TABLE)
-        return response_table_at(response->pulse_table, distance_m / response->metres_per_position)
-            .real_part;
+    const double g = range_response(response, distance_m);
+    return 2.0 * g * g;
+}
+
+static void gaussian_init(struct point_response *response, const sonject_pulse_params *pulse,
+                          const struct response_table *table, double reference_sound_speed_mps)
+{
+    (void)response, (void)pulse, (void)table, (void)reference_sound_speed_mps; /* it is one */
+}
+
+static double gaussian_at(const struct point_response *response, double distance_m)
+{
     const double x = distance_m / response->range_deviation_m;
     return exp(-0.5 * x * x);
+}
+
+static double gaussian_energy_width(const struct point_response *response)
+{
+    return sqrt(PI) * response->range_deviation_m;
+}
+
+static double gaussian_energy_reach(const struct point_response *response, double share)
+{
+    (void)share;
+    return GAUSSIAN_REACH * response->range_deviation_m;
+}
+
+static void chirp_init(struct point_response *response, const sonject_pulse_params *pulse,
+                       const struct response_table *table, double reference_sound_speed_mps)
+{
+    (void)table, (void)reference_sound_speed_mps;
+    if (pulse->window == SONJECT_PULSE_HANN) {
+        response->pulse_terms = 1;
+        response->pulse_weights[0] = 0.5;
+    } else if (pulse->window == SONJECT_PULSE_TAYLOR) {
+        response->pulse_terms = taylor_weights(response->pulse_weights, pulse->taylor_sidelobe_db,
+                                               (int)pulse->taylor_terms);
+    }
+    response->pulse_tail_m =
+        response->range_resolution_m *
+        transform_tail(response->pulse_weights, response->pulse_terms, TAIL_LEVEL);
+}
+
+static double chirp_at(const struct point_response *response, double distance_m)
+{
+    return transform_at(response->pulse_weights, response->pulse_terms,
+                        distance_m / response->range_resolution_m);
+}
+
+static double chirp_energy_width(const struct point_response *response)
+{
+    return response->range_resolution_m *
+           transform_energy(response->pulse_weights, response->pulse_terms);
+}
+
+static double chirp_energy_reach(const struct point_response *response, double share)
+{
+    const double cell = response->range_resolution_m;
+    return fmax(3.0 * cell, reach_of(response, chirp_energy_width(response), cell / 8.0,
+                                     TAIL_MAX * cell, share, energy_at));
+}
+
+static void table_init(struct point_response *response, const sonject_pulse_params *pulse,
+                       const struct response_table *table, double reference_sound_speed_mps)
+{
+    const double length = fmax(-table->positions[0], table->positions[table->count - 1]);
+    (void)pulse;
+    response->pulse_table = table;
+    response->metres_per_position = table->is_time ? 0.5 * reference_sound_speed_mps : 1.0;
+    const double width = response_table_width(table) * response->metres_per_position;
+    response->range_resolution_m = fmin(response->range_resolution_m, width);
+    response->range_deviation_m = response->range_resolution_m / (2.0 * sqrt(log(2.0)));
+    response->pulse_energy_m =
+        response_table_energy(table, -HUGE_VAL, HUGE_VAL) * response->metres_per_position;
+    response->pulse_tail_m = length * response->metres_per_position;
+}
+
+static double table_at(const struct point_response *response, double distance_m)
+{
+    return range_response_complex(response, distance_m).real_part;
+}
+
+static double table_energy_width(const struct point_response *response)
+{
+    return response->pulse_energy_m;
+}
+
+static double table_energy_reach(const struct point_response *response, double share)
+{
+    return fmin(response->pulse_tail_m, fmax(3.0 * response->range_resolution_m,
+                                             response_table_reach(response->pulse_table, share) *
+                                                 response->metres_per_position));
+}
+
+static const struct {
+    void (*init)(struct point_response *response, const sonject_pulse_params *pulse,
+                 const struct response_table *table, double reference_sound_speed_mps);
+    double (*at)(const struct point_response *response, double distance_m);
+    double (*energy_width)(const struct point_response *response);
+    double (*energy_reach)(const struct point_response *response, double share);
+} pulses[PULSE_KINDS] = {
+#define PULSE_ROW(NUMBER, word) {word##_init, word##_at, word##_energy_width, word##_energy_reach},
+    PULSES(PULSE_ROW)};
+
+void point_response_set_pulse(struct point_response *response, const sonject_pulse_params *pulse,
+                              const struct response_table *table, double reference_sound_speed_mps)
+{
+    response->pulse_kind = (sonject_pulse_kind)pulse->kind;
+    pulses[pulse->kind].init(response, pulse, table, reference_sound_speed_mps);
+    response->pulse_reach_m = range_energy_reach(response, PULSE_ENERGY_SHARE);
+    response->pulse_margin_m = range_energy_reach(response, MARGIN_ENERGY_SHARE);
+}
+
+double range_response(const struct point_response *response, double distance_m)
+{
+    return pulses[response->pulse_kind].at(response, distance_m);
 }
 
 bool range_response_is_real(const struct point_response *response)
@@ -201,35 +270,15 @@ struct complex_number range_response_complex(const struct point_response *respon
 {
     if (response->pulse_kind == SONJECT_PULSE_TABLE)
         return response_table_at(response->pulse_table, distance_m / response->metres_per_position);
-    const struct complex_number g = {range_response(response, distance_m), 0.0};
-    return g;
+    return (struct complex_number){range_response(response, distance_m), 0.0};
 }
 
 double range_energy_width(const struct point_response *response)
 {
-    if (response->pulse_kind == SONJECT_PULSE_CHIRP)
-        return response->range_resolution_m *
-               transform_energy(response->pulse_weights, response->pulse_terms);
-    if (response->pulse_kind == SONJECT_PULSE_TABLE)
-        return response->pulse_energy_m;
-    return sqrt(PI) * response->range_deviation_m;
-}
-
-static double chirp_energy_at(const struct point_response *response, double distance_m)
-{
-    const double g = range_response(response, distance_m);
-    return 2.0 * g * g;
+    return pulses[response->pulse_kind].energy_width(response);
 }
 
 double range_energy_reach(const struct point_response *response, double share)
 {
-    const double cell = response->range_resolution_m;
-    if (response->pulse_kind == SONJECT_PULSE_CHIRP)
-        return fmax(3.0 * cell, reach_of(response, range_energy_width(response), cell / 8.0,
-                                         TAIL_MAX * cell, share, chirp_energy_at));
-    if (response->pulse_kind == SONJECT_PULSE_TABLE)
-        return fmin(response->pulse_tail_m,
-                    fmax(3.0 * cell, response_table_reach(response->pulse_table, share) *
-                                         response->metres_per_position));
-    return GAUSSIAN_REACH * response->range_deviation_m;
+    return pulses[response->pulse_kind].energy_reach(response, share);
 }

@@ -16,6 +16,19 @@
 #define MARGIN_ENERGY_SHARE 0.005 /* of |W|^2 and |G|^2 that lies beyond a grid's margins */
 #define MOTION_SHARES       3
 
+/* ROW(number: SONJECT_PULSE_ and this, word in scene files). Functions of point_response.c with the
+ * word before their names say what a pulse is. */
+#define PULSES(ROW)                                                                                \
+    ROW(GAUSSIAN, gaussian) /* half-power width c / (2 bandwidth) */                               \
+    ROW(CHIRP, chirp)       /* linear sweep over the bandwidth, compressed: the transform of the   \
+                               spectrum's weighting */                                             \
+    ROW(TABLE, table)       /* samples */
+
+#define PULSE_NUMBER(NUMBER, word) SONJECT_PULSE_##NUMBER,
+typedef enum sonject_pulse_kind {
+    PULSES(PULSE_NUMBER) PULSE_KINDS
+} sonject_pulse_kind;
+
 struct point_response {
     double resolution_m; /* delta: the aspects integrated are within +-wavelength/(4 delta) */
     double strip_m;      /* longest strip of independent deviates that W does not alias */

@@ -2,6 +2,7 @@
  * whose hydrophones are heard one by one. */
 #include <stdlib.h>
 
+#include "scene/point_response.h"
 #include "schema/keys.h"
 #include "schema/tables.h"
 
@@ -123,13 +124,11 @@ static const struct field pulse_window_fields[] = {
 };
 static const struct section pulse_window_section = {ROWS(pulse_window_fields)};
 
+#define PULSE_WORD(NUMBER, word) #word,
 /* Kinds come first: only a table has a file to read. */
 static const struct field pulse_fields[] = {
-    {"kind", "gaussian, a compressed linear sweep, or a table",
-     WORD(kind) = {[SONJECT_PULSE_GAUSSIAN] = "gaussian",
-                   [SONJECT_PULSE_CHIRP] = "chirp",
-                   [SONJECT_PULSE_TABLE] = "table"},
-     REQUIRED},
+    {"kind", "what a point is in range; a chirp is a compressed linear sweep",
+     WORD(kind) = {PULSES(PULSE_WORD)}, REQUIRED},
     {"window", "of a chirp's spectrum: rectangular, hann or {taylor: {sidelobes: , terms: }}",
      WORD(window) = {[SONJECT_PULSE_RECTANGULAR] = "rectangular",
                      [SONJECT_PULSE_HANN] = "hann",

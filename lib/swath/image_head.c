@@ -9,6 +9,7 @@
 #include "base/byte_order.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "swath/swath_format.h"
 
 #define HEAD_MAX      8192 /* bytes, comments among them */
 #define BMP_HEAD      54   /* bytes that all of Windows' versions have */
@@ -58,9 +59,9 @@ static const struct {
 sonject_status image_kind_refuse(struct report *report, const char *path, const unsigned char *head,
                                  size_t count)
 {
-    static const char readable[] =
-        "TIFF, PNG, JPEG, PGM (P5), BMP, XTF, NumPy (.npy), HDF5 and MATLAB "
-        "(.mat)";
+#define FORMAT_FILES(name, files) ", " files
+    static const char listed[] = SWATH_FORMATS(FORMAT_FILES);
+    const char *readable = listed + strlen(", ");
     for (size_t i = 0; i < sizeof foreign_kinds / sizeof *foreign_kinds; i++)
         if (count >= foreign_kinds[i].count &&
             memcmp(head, foreign_kinds[i].bytes, foreign_kinds[i].count) == 0)

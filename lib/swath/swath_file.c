@@ -12,9 +12,8 @@
 
 #define COPIED_AT_ONCE ((uint64_t)8 << 20)
 
-/* Recognised in this order. */
-static const struct swath_format *const formats[] = {&xtf_format, &npy_format, &mat_format,
-                                                     &image_format, &hdf5_format};
+#define FORMAT_ADDRESS(name, files) &name##_format,
+static const struct swath_format *const formats[] = {SWATH_FORMATS(FORMAT_ADDRESS)};
 
 void swath_file_close(struct swath_file **file)
 {

@@ -113,7 +113,17 @@ struct swath_format {
                            const struct swath_copy *copy);
 };
 
-extern const struct swath_format xtf_format, npy_format, mat_format, image_format, hdf5_format;
+/* ROW(name, files of it): NAME_format is what there is of it, in a file that may have its name.
+ * They are recognised in this order. */
+#define SWATH_FORMATS(ROW)                                                                         \
+    ROW(xtf, "XTF")                                                                                \
+    ROW(npy, "NumPy (.npy)")                                                                       \
+    ROW(mat, "MATLAB (.mat)")                                                                      \
+    ROW(image, "TIFF, PNG, JPEG, PGM (P5), BMP")                                                   \
+    ROW(hdf5, "HDF5")
+
+#define FORMAT_DECLARATION(name, files) extern const struct swath_format name##_format;
+SWATH_FORMATS(FORMAT_DECLARATION)
 
 /* Reading and copying of files of sample_lines. */
 sonject_status sample_lines_read(struct report *report, struct swath_file *file,

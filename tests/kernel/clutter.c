@@ -15,18 +15,12 @@ static double draw(uint32_t *counter)
 static void shape_object(sonject_object_params *object, uint32_t number, double size,
                          uint32_t *counter)
 {
-    static const sonject_shape shapes[] = {
-        SONJECT_SHAPE_SPHERE,    SONJECT_SHAPE_CYLINDER, SONJECT_SHAPE_CAPSULE, SONJECT_SHAPE_PLANE,
-        SONJECT_SHAPE_DISC,      SONJECT_SHAPE_BOX,      SONJECT_SHAPE_WEDGE,   SONJECT_SHAPE_CONE,
-        SONJECT_SHAPE_ELLIPSOID, SONJECT_SHAPE_TORUS,    SONJECT_SHAPE_MESH,    SONJECT_SHAPE_BOX};
     object_init(object);
-    object->shape = shapes[number % (COUNT(shapes))];
+    object->shape = number % SHAPE_USER; /* all but users' and parts */
     object->length_m = size * (0.5 + draw(counter));
     object->width_m = 0.6 * object->length_m;
-    object->height_m = 0.3 * object->length_m;
+    object->height_m = 0.15 * object->length_m;
     object->diameter_m = object->shape == SONJECT_SHAPE_SPHERE ? size : 0.4 * object->length_m;
-    if (object->shape == SONJECT_SHAPE_TORUS)
-        object->height_m = 0.3 * object->diameter_m;
     if (object->shape == SONJECT_SHAPE_MESH) {
         object->cut_count = 1 + number / 12 % 2;
         object->cuts[0] = (sonject_cut){0.4 * number, 0.3, 0.05};

@@ -2,32 +2,6 @@
 
 #include <complex.h>
 
-enum surface_kind {
-    PLANE,     /* numbers: normal, offset */
-    BALL,      /* centre along x, radius */
-    TUBE,      /* about x: radius */
-    ELLIPSOID, /* three semi-axes */
-    CONE,      /* about z: radius at z = 0, its growth with z */
-    TORUS      /* radius, radius of the ring */
-};
-
-struct surface {
-    enum surface_kind kind;
-    double numbers[4];
-    double from, to; /* of x: the part that counts */
-    int is_cut;
-};
-
-struct body {
-    const sonject_object_params *solid;
-    struct surface surfaces[12];
-    int count;
-    int is_thin;                    /* has no inside */
-    double rim;                     /* radius of a disc */
-    double half_length, half_width; /* of a plate */
-    double size;
-};
-
 static double value_at(const struct surface *surface, struct point p)
 {
     const double *n = surface->numbers;
@@ -68,7 +42,44 @@ static struct surface *add_surface(struct body *body, enum surface_kind kind, do
     return &body->surfaces[body->count++];
 }
 
-static void add_box(struct body *body, const sonject_object_params *solid, double more)
+static void build_plane(struct body *body, const sonject_object_params *solid, double more)
+{
+    add_surface(body, PLANE, 0.0, 0.0, 1.0, 0.0);
+    body->is_thin = 1;
+    body->half_length = 0.5 * solid->length_m + more;
+    body->half_width = 0.5 * solid->width_m + more;
+}
+
+static void build_disc(struct body *body, const sonject_object_params *solid, double more)
+{
+    add_surface(body, PLANE, 0.0, 0.0, 1.0, 0.0);
+    body->is_thin = 1;
+    body->rim = 0.5 * solid->diameter_m + more;
+}
+
+static void build_sphere(struct body *body, const sonject_object_params *solid, double more)
+{
+    add_surface(body, BALL, 0.0, 0.5 * solid->diameter_m + more, 0.0, 0.0);
+}
+
+static void build_ellipsoid(struct body *body, const sonject_object_params *solid, double more)
+{
+    add_surface(body, ELLIPSOID, 0.5 * solid->length_m + more, 0.5 * solid->width_m + more,
+                0.5 * solid->height_m + more, 0.0);
+}
+
+static void build_torus(struct body *body, const sonject_object_params *solid, double more)
+{
+    add_surface(body, TORUS, 0.5 * (solid->diameter_m - solid->height_m),
+                0.5 * solid->height_m + more, 0.0, 0.0);
+}
+
+static void fit_torus(sonject_object_params *solid, double thinnest)
+{
+    solid->height_m = solid->diameter_m * uniform(thinnest, 0.48);
+}
+
+static void build_box(struct body *body, const sonject_object_params *solid, double more)
 {
     const double x = 0.5 * solid->length_m + more;
     const double y = 0.5 * solid->width_m + more;
@@ -78,14 +89,23 @@ static void add_box(struct body *body, const sonject_object_params *solid, doubl
         add_surface(body, PLANE, 0.0, sense, 0.0, y);
         add_surface(body, PLANE, 0.0, 0.0, sense, z);
     }
-    if (solid->shape == SONJECT_SHAPE_WEDGE) {
-        /* the top goes through the tail's upper edge and the nose's */
-        const double fall = (solid->height_m - solid->front_height_m) / solid->length_m;
-        const double length = sqrt(1.0 + fall * fall);
-        const double middle = 0.5 * solid->front_height_m; /* height of the top over x = 0 */
-        body->surfaces[body->count - 1].numbers[3] += solid->height_m; /* no level top */
-        add_surface(body, PLANE, fall / length, 0.0, 1.0 / length, middle / length + more);
-    }
+}
+
+/* The top goes through the tail's upper edge and the nose's. */
+static void build_wedge(struct body *body, const sonject_object_params *solid, double more)
+{
+    const double fall = (solid->height_m - solid->front_height_m) / solid->length_m;
+    const double length = sqrt(1.0 + fall * fall);
+    const double middle = 0.5 * solid->front_height_m; /* height of the top over x = 0 */
+    build_box(body, solid, more);
+    body->surfaces[body->count - 1].numbers[3] += solid->height_m; /* no level top */
+    add_surface(body, PLANE, fall / length, 0.0, 1.0 / length, middle / length + more);
+}
+
+static void fit_wedge(sonject_object_params *solid, double thinnest)
+{
+    (void)thinnest;
+    solid->front_height_m = uniform(0.0, 1.0) < 0.3 ? 0.0 : uniform(0.0, solid->height_m);
 }
 
 static void add_end(struct body *body, const sonject_object_params *solid, double outward,
@@ -108,11 +128,69 @@ static void add_end(struct body *body, const sonject_object_params *solid, doubl
     }
 }
 
-static void add_cone(struct body *body, const sonject_object_params *solid, double more)
+static void build_capsule(struct body *body, const sonject_object_params *solid, double more)
+{
+    const double radius = 0.5 * solid->diameter_m;
+    struct surface *side = add_surface(body, TUBE, radius + more, 0.0, 0.0, 0.0);
+    add_end(body, solid, 1.0, SONJECT_END_SPHERICAL, radius, more, side);
+    add_end(body, solid, -1.0, SONJECT_END_SPHERICAL, radius, more, side);
+    body->is_round = 1;
+}
+
+static void fit_capsule(sonject_object_params *solid, double thinnest)
+{
+    solid->length_m = solid->diameter_m * uniform(1.1, 0.2 / thinnest);
+}
+
+static void build_cylinder(struct body *body, const sonject_object_params *solid, double more)
+{
+    struct surface *side = add_surface(body, TUBE, 0.5 * solid->diameter_m + more, 0.0, 0.0, 0.0);
+    add_end(body, solid, 1.0, solid->nose_end, solid->nose_end_depth_m, more, side);
+    add_end(body, solid, -1.0, solid->tail_end, solid->tail_end_depth_m, more, side);
+    body->is_round = 1;
+    body->is_thin = solid->nose_end == SONJECT_END_OPEN || solid->tail_end == SONJECT_END_OPEN;
+}
+
+static uint32_t random_end(double open)
+{
+    const double choice = uniform(0.0, 1.0);
+    return choice < open         ? SONJECT_END_OPEN
+           : choice < 0.3 + open ? SONJECT_END_FLAT
+                                 : SONJECT_END_SPHERICAL;
+}
+
+static void fit_ends(sonject_object_params *solid)
+{
+    const double radius = 0.5 * solid->diameter_m;
+    if (solid->nose_end == SONJECT_END_SPHERICAL && uniform(0.0, 1.0) < 0.7)
+        solid->nose_end_depth_m = radius * pow(10.0, uniform(-2.0, 0.0));
+    if (solid->tail_end == SONJECT_END_SPHERICAL && uniform(0.0, 1.0) < 0.7)
+        solid->tail_end_depth_m = radius * pow(10.0, uniform(-2.0, 0.0));
+}
+
+/* Ends flat or spherical. */
+static void fit_cylinder(sonject_object_params *solid, double thinnest)
+{
+    fit_capsule(solid, thinnest);
+    solid->nose_end = random_end(0.0);
+    solid->tail_end = random_end(0.0);
+    fit_ends(solid);
+}
+
+/* At least one end open. */
+static void fit_tube(sonject_object_params *solid, double thinnest)
+{
+    fit_capsule(solid, thinnest);
+    solid->nose_end = random_end(0.3);
+    solid->tail_end =
+        solid->nose_end == SONJECT_END_OPEN ? random_end(0.3) : (uint32_t)SONJECT_END_OPEN;
+    fit_ends(solid);
+}
+
+static void build_truncated_cone(struct body *body, const sonject_object_params *solid, double more)
 {
     const double base = 0.5 * solid->diameter_m;
-    const double top =
-        solid->shape == SONJECT_SHAPE_TRUNCATED_CONE ? 0.5 * solid->top_diameter_m : 0.0;
+    const double top = 0.5 * solid->top_diameter_m;
     const double growth = (top - base) / solid->height_m;
     add_surface(body, CONE, 0.5 * (base + top) + more * sqrt(1.0 + growth * growth), growth, 0.0,
                 0.0);
@@ -120,62 +198,37 @@ static void add_cone(struct body *body, const sonject_object_params *solid, doub
     add_surface(body, PLANE, 0.0, 0.0, -1.0, 0.5 * solid->height_m + more);
 }
 
-double solid_size(const sonject_object_params *solid)
+static void fit_cone(sonject_object_params *solid, double thinnest)
 {
-    return 0.5 * fmax(fmax(solid->length_m, solid->width_m),
-                      fmax(fmax(solid->diameter_m, solid->top_diameter_m), solid->height_m));
+    (void)thinnest;
+    solid->top_diameter_m = 0.0;
 }
 
-static void body_init(struct body *body, const sonject_object_params *solid, double more)
+const struct solid_row solid_rows[] = {
+    {"plane", SHAPE_PLANE, build_plane, NULL},
+    {"sphere", SHAPE_SPHERE, build_sphere, NULL},
+    {"cylinder", SHAPE_CYLINDER, build_cylinder, fit_cylinder},
+    {"tube", SHAPE_CYLINDER, build_cylinder, fit_tube},
+    {"capsule", SHAPE_CAPSULE, build_capsule, fit_capsule},
+    {"disc", SHAPE_DISC, build_disc, NULL},
+    {"ellipsoid", SHAPE_ELLIPSOID, build_ellipsoid, NULL},
+    {"box", SHAPE_BOX, build_box, NULL},
+    {"wedge", SHAPE_WEDGE, build_wedge, fit_wedge},
+    {"cone", SHAPE_CONE, build_truncated_cone, fit_cone},
+    {"truncated cone", SHAPE_TRUNCATED_CONE, build_truncated_cone, NULL},
+    {"torus", SHAPE_TORUS, build_torus, fit_torus},
+};
+const int solid_row_count = sizeof solid_rows / sizeof *solid_rows;
+
+void body_init(struct body *body, const sonject_object_params *solid, double more)
 {
-    const double radius = 0.5 * solid->diameter_m;
-    body->solid = solid;
-    body->count = 0;
-    body->size = solid_size(solid);
-    body->rim = body->half_length = body->half_width = INFINITY;
-    body->is_thin = solid->shape == SONJECT_SHAPE_DISC || solid->shape == SONJECT_SHAPE_PLANE;
-    switch (solid->shape) {
-    case SONJECT_SHAPE_DISC:
-        add_surface(body, PLANE, 0.0, 0.0, 1.0, 0.0);
-        body->rim = radius + more;
-        break;
-    case SONJECT_SHAPE_PLANE:
-        add_surface(body, PLANE, 0.0, 0.0, 1.0, 0.0);
-        body->half_length = 0.5 * solid->length_m + more;
-        body->half_width = 0.5 * solid->width_m + more;
-        break;
-    case SONJECT_SHAPE_SPHERE:
-        add_surface(body, BALL, 0.0, radius + more, 0.0, 0.0);
-        break;
-    case SONJECT_SHAPE_CAPSULE: {
-        struct surface *side = add_surface(body, TUBE, radius + more, 0.0, 0.0, 0.0);
-        add_end(body, solid, 1.0, SONJECT_END_SPHERICAL, radius, more, side);
-        add_end(body, solid, -1.0, SONJECT_END_SPHERICAL, radius, more, side);
-        break;
-    }
-    case SONJECT_SHAPE_ELLIPSOID:
-        add_surface(body, ELLIPSOID, 0.5 * solid->length_m + more, 0.5 * solid->width_m + more,
-                    0.5 * solid->height_m + more, 0.0);
-        break;
-    case SONJECT_SHAPE_BOX:
-    case SONJECT_SHAPE_WEDGE:
-        add_box(body, solid, more);
-        break;
-    case SONJECT_SHAPE_CYLINDER: {
-        struct surface *side = add_surface(body, TUBE, radius + more, 0.0, 0.0, 0.0);
-        add_end(body, solid, 1.0, solid->nose_end, solid->nose_end_depth_m, more, side);
-        add_end(body, solid, -1.0, solid->tail_end, solid->tail_end_depth_m, more, side);
-        body->is_thin = solid->nose_end == SONJECT_END_OPEN || solid->tail_end == SONJECT_END_OPEN;
-        break;
-    }
-    case SONJECT_SHAPE_TORUS:
-        add_surface(body, TORUS, radius - 0.5 * solid->height_m, 0.5 * solid->height_m + more, 0.0,
-                    0.0);
-        break;
-    default:
-        add_cone(body, solid, more);
-        break;
-    }
+    const struct solid_row *row = solid_rows;
+    while (row->shape != solid->shape)
+        row++;
+    *body = (struct body){.rim = INFINITY, .half_length = INFINITY, .half_width = INFINITY};
+    body->size = 0.5 * fmax(fmax(solid->length_m, solid->width_m),
+                            fmax(fmax(solid->diameter_m, solid->top_diameter_m), solid->height_m));
+    row->build(body, solid, more);
     for (uint32_t i = 0; i < solid->cut_count; i++) {
         const sonject_cut *cut = &solid->cuts[i];
         add_surface(body, PLANE, cos(cut->azimuth_rad) * cos(cut->elevation_rad),
@@ -185,18 +238,11 @@ static void body_init(struct body *body, const sonject_object_params *solid, dou
     }
 }
 
-/* A straight part with two ends. */
-static int is_round(const struct body *body)
-{
-    return body->solid->shape == SONJECT_SHAPE_CYLINDER ||
-           body->solid->shape == SONJECT_SHAPE_CAPSULE;
-}
-
 /* Whether a point lies within all surfaces but one. A cylinder is the union of its straight part
  * and its ends. */
 static int is_within(const struct body *body, const struct surface *but, struct point p)
 {
-    const int is_cylinder = is_round(body);
+    const int is_cylinder = body->is_round;
     int in_part = !is_cylinder || (but && !but->is_cut);
     for (int i = 0; i < body->count; i++) {
         const struct surface *surface = &body->surfaces[i];
@@ -217,6 +263,14 @@ static int is_within(const struct body *body, const struct surface *but, struct 
     return in_part;
 }
 
+int body_holds(const struct body *body, struct point p)
+{
+    struct body filled = *body;
+    filled.is_thin = 0;
+    return hypot(p.x, p.y) <= body->rim && fabs(p.x) <= body->half_length &&
+           fabs(p.y) <= body->half_width && is_within(&filled, NULL, p);
+}
+
 static int is_on(const struct body *body, const struct surface *surface, struct point p)
 {
     if (surface->is_cut)
@@ -226,7 +280,7 @@ static int is_on(const struct body *body, const struct surface *surface, struct 
         return 0;
     if (surface->kind == CONE && surface->numbers[0] + surface->numbers[1] * p.z < 0.0)
         return 0;
-    if (is_round(body)) {
+    if (body->is_round) {
         for (int i = 0; i < body->count; i++)
             if (body->surfaces[i].is_cut && value_at(&body->surfaces[i], p) > 0.0)
                 return 0;

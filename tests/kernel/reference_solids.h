@@ -8,18 +8,59 @@
 
 #include "random_rays.h"
 
+enum surface_kind {
+    PLANE,     /* numbers: normal, offset */
+    BALL,      /* centre along x, radius */
+    TUBE,      /* about x: radius */
+    ELLIPSOID, /* three semi-axes */
+    CONE,      /* about z: radius at z = 0, its growth with z */
+    TORUS      /* radius, radius of the ring */
+};
+
+struct surface {
+    enum surface_kind kind;
+    double numbers[4];
+    double from, to; /* of x: the part that counts */
+    int is_cut;
+};
+
+struct body {
+    struct surface surfaces[12];
+    int count;
+    int is_thin;                    /* has no inside */
+    int is_round;                   /* a straight part with two ends */
+    double rim;                     /* radius of a disc */
+    double half_length, half_width; /* of a plate */
+    double size;                    /* longest half size */
+};
+
+/* Every shape that has sizes. What tests ask of rays, lanes, extents and poses they ask of all
+ * rows.
+ */
+extern const struct solid_row {
+    const char *name;
+    uint32_t shape;
+    /* Its surfaces, `more` m further out. */
+    void (*build)(struct body *body, const sonject_object_params *solid, double more);
+    /* Makes random sizes fit together, none thinner than that part of another; NULL: they do. */
+    void (*fit)(sonject_object_params *solid, double thinnest);
+} solid_rows[];
+extern const int solid_row_count;
+
+/* With its cuts; `more`: m that every surface is moved outwards. */
+void body_init(struct body *body, const sonject_object_params *solid, double more);
+
+/* Whether a point lies in it, or in the plane of a sheet on it; tubes are taken as filled. */
+int body_holds(const struct body *body, struct point p);
+
 struct solid_hit {
     double distance;     /* INFINITY: none */
     struct point normal; /* outward; of sheets and tubes towards the ray's start */
     double to_edge;      /* about how far the next other surface or rim is */
 };
 
-/* The first surface beyond minimum, all in the solid's own frame; `more`: m that every surface is
- * moved outwards. */
+/* The first surface beyond minimum, all in the solid's own frame. */
 struct solid_hit solid_first_hit(const sonject_object_params *solid, struct point start,
                                  struct point direction, double minimum, double more);
-
-/* Longest half size. */
-double solid_size(const sonject_object_params *solid);
 
 #endif

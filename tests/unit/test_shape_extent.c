@@ -3,91 +3,16 @@
  * nothing. */
 #include "claims.h"
 #include "kernel/mesh_samples.h"
+#include "kernel/reference_solids.h"
 #include "mesh_arrays.h"
 #include "scene/placement.h"
 #include "schema/keys.h"
 
 #define POINTS 150000
 
-static double dot(const double a[3], const double b[3])
+static double product(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* A round end bulges beyond the joint, as high as a sphere through rim and tip. */
-static bool is_in_end(const sonject_object_params *object, double beyond, double square,
-                      uint32_t kind, double depth)
-{
-    const double radius = 0.5 * object->diameter_m;
-    if (kind != SONJECT_END_SPHERICAL)
-        return false;
-    const double h = depth > 0.0 ? depth : radius;
-    const double ball = (radius * radius + h * h) / (2.0 * h);
-    return beyond <= h && beyond - h + ball >= 0.0 &&
-           pow(beyond - h + ball, 2.0) + square <= ball * ball;
-}
-
-static double depth_of(const sonject_object_params *object, uint32_t kind, double depth)
-{
-    return kind != SONJECT_END_SPHERICAL ? 0.0 : depth > 0.0 ? depth : 0.5 * object->diameter_m;
-}
-
-static bool is_in_shape(const sonject_object_params *object, const double p[3])
-{
-    const double x = p[0], y = p[1], z = p[2];
-    const double a = 0.5 * object->length_m, b = 0.5 * object->width_m, c = 0.5 * object->height_m;
-    const double radius = 0.5 * object->diameter_m;
-    switch (object->shape) {
-    case SONJECT_SHAPE_PLANE:
-        return fabs(x) <= a && fabs(y) <= b;
-    case SONJECT_SHAPE_SPHERE:
-        return dot(p, p) <= radius * radius;
-    case SONJECT_SHAPE_CYLINDER: {
-        const double nose = a - depth_of(object, object->nose_end, object->nose_end_depth_m);
-        const double tail = a - depth_of(object, object->tail_end, object->tail_end_depth_m);
-        const double square = y * y + z * z;
-        if (x > nose)
-            return is_in_end(object, x - nose, square, object->nose_end, object->nose_end_depth_m);
-        if (-x > tail)
-            return is_in_end(object, -x - tail, square, object->tail_end, object->tail_end_depth_m);
-        return square <= radius * radius;
-    }
-    case SONJECT_SHAPE_CAPSULE:
-        return hypot(fmax(fabs(x) - (a - radius), 0.0), hypot(y, z)) <= radius;
-    case SONJECT_SHAPE_DISC:
-        return hypot(x, y) <= radius;
-    case SONJECT_SHAPE_ELLIPSOID:
-        return pow(x / a, 2.0) + pow(y / b, 2.0) + pow(z / c, 2.0) <= 1.0;
-    case SONJECT_SHAPE_BOX:
-        return fabs(x) <= a && fabs(y) <= b && fabs(z) <= c;
-    case SONJECT_SHAPE_WEDGE: {
-        const double from_tail = (x + a) / object->length_m;
-        const double top =
-            object->height_m * (1.0 - from_tail) + object->front_height_m * from_tail;
-        return fabs(x) <= a && fabs(y) <= b && z >= -c && z + c <= top;
-    }
-    case SONJECT_SHAPE_CONE:
-        return fabs(z) <= c && hypot(x, y) <= radius * (c - z) / object->height_m;
-    case SONJECT_SHAPE_TRUNCATED_CONE:
-        return fabs(z) <= c &&
-               hypot(x, y) <=
-                   (radius * (c - z) + 0.5 * object->top_diameter_m * (c + z)) / object->height_m;
-    default:
-        return hypot(hypot(x, y) - (radius - c), z) <= c;
-    }
-}
-
-static bool is_left(const sonject_object_params *object, const double p[3])
-{
-    for (uint32_t i = 0; i < object->cut_count; i++) {
-        const sonject_cut *cut = &object->cuts[i];
-        const double normal[3] = {cos(cut->azimuth_rad) * cos(cut->elevation_rad),
-                                  sin(cut->azimuth_rad) * cos(cut->elevation_rad),
-                                  sin(cut->elevation_rad)};
-        if (dot(normal, p) > cut->distance_m)
-            return false;
-    }
-    return is_in_shape(object, p);
 }
 
 static void draw_cuts(sonject_object_params *object, uint32_t count, double least_m, double most_m)
@@ -102,23 +27,18 @@ static void draw_cuts(sonject_object_params *object, uint32_t count, double leas
     }
 }
 
-static sonject_object_params random_object(uint32_t shape, uint32_t cuts)
+static sonject_object_params random_object(const struct solid_row *row, uint32_t cuts)
 {
     sonject_object_params object;
     object_init(&object);
-    object.shape = shape;
+    object.shape = row->shape;
     object.diameter_m = sample_uniform(0.5, 1.0);
-    object.length_m = shape == SONJECT_SHAPE_CYLINDER || shape == SONJECT_SHAPE_CAPSULE
-                          ? sample_uniform(1.1, 2.0)
-                          : sample_uniform(0.4, 1.0);
+    object.length_m = sample_uniform(0.4, 1.0);
     object.width_m = sample_uniform(0.4, 1.0);
-    object.height_m =
-        shape == SONJECT_SHAPE_TORUS ? 0.4 * object.diameter_m : sample_uniform(0.4, 1.0);
+    object.height_m = sample_uniform(0.4, 1.0);
     object.top_diameter_m = sample_uniform(0.0, 1.0);
-    object.front_height_m = sample_uniform(0.0, object.height_m);
-    object.nose_end = (uint32_t)sample_uniform(0.0, 3.0);
-    object.tail_end = (uint32_t)sample_uniform(0.0, 3.0);
-    object.nose_end_depth_m = sample_uniform(0.0, 1.0) < 0.5 ? 0.0 : sample_uniform(0.05, 0.25);
+    if (row->fit)
+        row->fit(&object, 0.1);
     object.heading_rad = sample_uniform(-PI, PI);
     object.pitch_rad = sample_uniform(-PI, PI);
     object.roll_rad = sample_uniform(-PI, PI);
@@ -126,53 +46,51 @@ static sonject_object_params random_object(uint32_t shape, uint32_t cuts)
     return object;
 }
 
-static bool is_sheet(uint32_t shape)
-{
-    return shape == SONJECT_SHAPE_PLANE || shape == SONJECT_SHAPE_DISC;
-}
-
-/* A point of a box that is a little larger than the shape, of a sheet where that is one. */
-static void random_point(const struct shape_size *size, uint32_t shape, double p[3])
+/* A point of a box that is a little larger than the shape, of a sheet where that is one; whether
+ * the shape has it. */
+static bool random_point(const struct shape_size *size, const struct body *body, double p[3])
 {
     for (int k = 0; k < 3; k++)
         p[k] = sample_uniform(-1.05, 1.05) * size->bounding_radius_m;
-    if (is_sheet(shape))
+    if (body->is_thin && !body->is_round)
         p[2] = 0.0;
+    return body_holds(body, (struct point){p[0], p[1], p[2]});
 }
 
 /* No point reaches further, and some reach nearly as far: corners are rarely drawn. */
 static void test_clouds_of_points(void **state)
 {
-    for (uint32_t i = 0; i < 3 * (SONJECT_SHAPE_TORUS + 1); i++)
+    for (int i = 0; i < 3 * solid_row_count; i++)
         for (uint32_t cuts = 0; cuts <= SONJECT_CUTS_CAPACITY; cuts++) {
-            const uint32_t shape = i / 3;
-            const sonject_object_params object = random_object(shape, cuts);
+            const struct solid_row *row = &solid_rows[i / 3];
+            const sonject_object_params object = random_object(row, cuts);
             struct shape_size size;
+            struct body body;
             double directions[12][3], farthest[12], extents[12];
             shape_size_init(&size, &object);
+            body_init(&body, &object, 0.0);
             for (int k = 0; k < 12; k++) {
                 sample_direction(directions[k]);
                 farthest[k] = -INFINITY;
-                extents[k] = shape_extent(&size, shape, directions[k]);
+                extents[k] = shape_extent(&size, row->shape, directions[k]);
             }
             for (int n = 0; n < POINTS; n++) {
                 double p[3];
-                random_point(&size, shape, p);
-                if (!is_left(&object, p))
+                if (!random_point(&size, &body, p))
                     continue;
-                assert_true(dot(p, p) <= size.bounding_radius_m * size.bounding_radius_m);
+                assert_true(product(p, p) <= size.bounding_radius_m * size.bounding_radius_m);
                 assert_true(hypot(p[1], p[2]) <= size.radius_about_nose_m + 1e-9);
                 for (int k = 0; k < 12; k++)
-                    farthest[k] = fmax(farthest[k], dot(directions[k], p));
+                    farthest[k] = fmax(farthest[k], product(directions[k], p));
             }
             double gap = 0.0;
             for (int k = 0; k < 12; k++) {
                 if (farthest[k] > extents[k] + 1e-9)
-                    fail_msg("%s, %u cuts: reaches %.9g m, not %.9g m", shape_name(shape),
-                             (unsigned)cuts, farthest[k], extents[k]);
+                    fail_msg("%s, %u cuts: reaches %.9g m, not %.9g m", row->name, (unsigned)cuts,
+                             farthest[k], extents[k]);
                 gap = fmax(gap, (extents[k] - farthest[k]) / size.bounding_radius_m);
             }
-            print_message("%s, %u cuts: points come within %.3f of its size\n", shape_name(shape),
+            print_message("%s, %u cuts: points come within %.3f of its size\n", row->name,
                           (unsigned)cuts, gap);
             assert_true(gap < 0.15);
         }
@@ -274,11 +192,12 @@ static double lowest_point(const struct placement *placement, const sonject_obje
                            double *highest)
 {
     double lowest = INFINITY;
+    struct body body;
+    body_init(&body, object, 0.0);
     *highest = -INFINITY;
     for (int n = 0; n < POINTS; n++) {
         double p[3];
-        random_point(&placement->size, object->shape, p);
-        if (!is_left(object, p))
+        if (!random_point(&placement->size, &body, p))
             continue;
         const double *own = p;
         double height = placement->centre[2];
@@ -313,13 +232,13 @@ static sonject_status place(struct placement *placement, double *burial_m, struc
 static void test_objects_rest_on_the_seabed(void **state)
 {
     for (int side = 0; side < 2; side++)
-        for (uint32_t i = 0; i < 3 * (SONJECT_SHAPE_TORUS + 1); i++) {
+        for (int i = 0; i < 3 * solid_row_count; i++) {
             struct report report = {{0}, NULL, NULL};
             struct patch_view view;
             struct scene scene;
             struct placement placement;
             double highest, burial;
-            sonject_object_params object = random_object(i / 3, i % 3);
+            sonject_object_params object = random_object(&solid_rows[i / 3], (uint32_t)i % 3);
             make_view(&view, &scene, side ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT);
             EXPECT_OK(&report, place(&placement, &burial, &report, &view, NULL, &object));
             const double slack = 0.15 * placement.bounding_radius_m;

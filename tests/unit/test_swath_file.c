@@ -444,7 +444,7 @@ static void test_files_that_are_not_for_sonject(void **state)
                  {"P5 1 2 4095\nabcd", 16, "no PGM of 8 bits"},
                  {"P5 1 2 65535\nabcd", 17, "no PGM of 8 bits"},
                  {"P5 4294967296 4294967296 255\n", 29, "does not tell its size"},
-                 {"", 0, "is empty; sonject reads TIFF"},
+                 {"", 0, "is empty; sonject reads XTF"},
                  {"GIF89a", 6, "is a GIF file"},
                  {"SDPX and more of it", 19, "is a DPX file"},
                  {"P6 and more of it all", 19, "is a PPM file"},
@@ -458,8 +458,8 @@ static void test_files_that_are_not_for_sonject(void **state)
         expect_refused("a.bin", NULL, cases[i].bytes, cases[i].count, cases[i].words);
         if (i >= 4)
             expect_refused("a.bin", NULL, NULL, 0,
-                           "TIFF, PNG, JPEG, PGM (P5), BMP, XTF, NumPy (.npy), "
-                           "HDF5 and MATLAB");
+                           "reads XTF, NumPy (.npy), MATLAB (.mat), TIFF, PNG, JPEG, "
+                           "PGM (P5), BMP, HDF5: convert");
     }
     make_bmp(&draft, 0);
     draft.bytes[46] = 16; /* levels of grey */
