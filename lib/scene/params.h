@@ -223,9 +223,8 @@ typedef struct sonject_material_params {
                     54.6 * loss dB a wavelength */
 } sonject_material_params;
 
-/* Fills in a named material: "steel", "concrete", "rubber", "wood", "rock" for objects; "gravel",
- * "coarse sand", "medium sand", "fine sand", "silt", "clay" for sediments ('_' and '-' do for the
- * blank). Errors: ARGUMENT (NULL, unknown name; *material is unchanged). */
+/* Fills in a named material of schema/materials.c ('_' and '-' do for a blank). Errors: ARGUMENT
+ * (NULL, unknown name; *material is unchanged). */
 sonject_status sonject_material_named(const char *name, sonject_material_params *material);
 
 /* Name number index of all that sonject_material_named knows, NULL beyond the last. Static. */

@@ -1,4 +1,4 @@
-/* What a file format is made of: a row of the table in swath_file.c; and what formats share:
+/* What a file format is made of: a row of the table SWATH_FORMATS; and what formats share:
  * samples in a file's types and order, and the arrays that a file holds, of which one is wanted. */
 #ifndef SONJECT_SWATH_SWATH_FORMAT_H
 #define SONJECT_SWATH_SWATH_FORMAT_H

@@ -5,11 +5,6 @@
 
 #include "schema/keys.h"
 
-/* Those that materials.c has. */
-static const char *const promised[] = {"steel",     "concrete", "rubber",      "wood",
-                                       "rock",      "gravel",   "coarse sand", "medium sand",
-                                       "fine sand", "silt",     "clay"};
-
 static sonject_material_params take(const char *name)
 {
     sonject_material_params material;
@@ -77,34 +72,29 @@ static void test_unknown_names(void **state)
     assert_int_equal(sonject_material_named(NULL, NULL), SONJECT_ERROR_ARGUMENT);
 }
 
-static void test_list_of_names(void **state)
+static void test_no_name_is_listed_twice(void **state)
 {
-    for (uint32_t i = 0; i < COUNT(promised); i++) {
-        const char *name = sonject_material_name(i);
-        assert_non_null(name);
-        int times = 0;
-        for (size_t k = 0; k < COUNT(promised); k++)
-            times += strcmp(name, promised[k]) == 0;
-        if (times != 1)
-            fail_msg("%s is not in the header", name);
-        for (uint32_t k = 0; k < i; k++)
+    const char *name;
+    uint32_t count = 0;
+    for (; (name = sonject_material_name(count)); count++)
+        for (uint32_t k = 0; k < count; k++)
             assert_string_not_equal(name, sonject_material_name(k));
-    }
-    assert_null(sonject_material_name(COUNT(promised)));
-    assert_null(sonject_material_name(COUNT(promised) + 1));
+    assert_true(count >= 11);
+    assert_null(sonject_material_name(count + 1));
     assert_null(sonject_material_name(UINT32_MAX));
 }
 
 static void test_values_are_allowed(void **state)
 {
-    for (size_t i = 0; i < COUNT(promised); i++) {
+    const char *name;
+    for (uint32_t i = 0; (name = sonject_material_name(i)); i++) {
         struct report report = {{0}, NULL, NULL};
         sonject_object_params object;
         object_init(&object);
         object.diameter_m = 0.5;
-        object.material = take(promised[i]);
+        object.material = take(name);
         if (section_check(&object_section, &object, &report, NULL) != SONJECT_OK)
-            fail_msg("%s: %s", promised[i], report.message);
+            fail_msg("%s: %s", name, report.message);
         /* of a smooth and a rough part; nothing that the tables do not give */
         assert_true(object.material.roughness_m > 0.0 && object.material.lambert > 0.0);
         assert_true(object.material.lambert_exponent == 1.0);
@@ -161,5 +151,5 @@ static void test_the_sea_surfaces_rough_part(void **state)
 }
 
 TEST_PROGRAM(NULL, NULL, TEST(test_the_sea_surfaces_rough_part), TEST(test_blanks_in_names),
-             TEST(test_unknown_names), TEST(test_list_of_names), TEST(test_values_are_allowed),
-             TEST(test_order_of_values))
+             TEST(test_unknown_names), TEST(test_no_name_is_listed_twice),
+             TEST(test_values_are_allowed), TEST(test_order_of_values))
