@@ -254,7 +254,7 @@ static int is_within(const struct body *body, const struct surface *but, struct 
                 return 0;
         } else if (is_cylinder) {
             in_part |= value <= 0.0 && p.x >= surface->from && p.x <= surface->to;
-        } else if (value > 0.0) {
+        } else if (value > 1e-12) { /* rims lie on both surfaces */
             return 0;
         }
         if (surface->kind == CONE && surface->numbers[0] + surface->numbers[1] * p.z < 0.0)
