@@ -7,30 +7,43 @@
 #include "console.h"
 #include "verbs.h"
 
+/* ROW(member, option, unit, help, key of a scene whose input is the seabed): numbers. */
+#define NUMBERS(ROW)                                                                               \
+    ROW(row_spacing, "--row-spacing", "M", "along-track distance of rows",                         \
+        "input.geometry.row_spacing")                                                              \
+    ROW(column_spacing, "--column-spacing", "M", "slant range distance of columns",                \
+        "input.geometry.column_spacing")                                                           \
+    ROW(first_range, "--first-range", "M", "slant range of the first column",                      \
+        "input.geometry.first_slant_range")                                                        \
+    ROW(altitude, "--altitude", "M", "height of the sonar over the seabed", "sonar.altitude")      \
+    ROW(frequency, "--frequency", "HZ", "centre frequency", "sonar.frequency")                     \
+    ROW(bandwidth, "--bandwidth", "HZ", "bandwidth, which sets the range resolution",              \
+        "sonar.bandwidth")                                                                         \
+    ROW(texture_length, "--texture-length", "M",                                                   \
+        "correlation length of the K distribution's texture", "input.synthetic.texture_length")    \
+    ROW(ripple_wavelength, "--ripple-wavelength", "M", "distance of sand ripples",                 \
+        "input.synthetic.ripple_wavelength")                                                       \
+    ROW(ripple_contrast, "--ripple-contrast", "0...1",                                             \
+        "depth of the ripples' modulation, 0: no ripples", "input.synthetic.ripple_contrast")      \
+    ROW(ripple_heading, "--ripple-heading", "DEG",                                                 \
+        "direction across the crests, from track towards range", "input.synthetic.ripple_heading") \
+    ROW(patch_contrast, "--patch-contrast", "DB", "level step between sediments, 0: one sediment", \
+        "input.synthetic.patch_contrast")                                                          \
+    ROW(patch_length, "--patch-length", "M", "typical size of a sediment patch",                   \
+        "input.synthetic.patch_length")                                                            \
+    ROW(mean_amplitude, "--mean-amplitude", "A",                                                   \
+        "rms amplitude of the darker sediment, 1: full scale", "input.synthetic.mean_amplitude")
+
 struct seabed_options {
     const char *image;
-    struct whole_argument rows;
-    struct whole_argument columns;
-    struct whole_argument seed;
-    struct number_argument row_spacing;
-    struct number_argument column_spacing;
-    struct number_argument first_range;
-    struct number_argument altitude;
-    struct number_argument frequency;
-    struct number_argument bandwidth;
+    struct whole_argument rows, columns, seed;
+#define NUMBER_MEMBER(member, option, unit, help, key) struct number_argument member;
+    NUMBERS(NUMBER_MEMBER)
     const char *speckle_shape;
-    struct number_argument texture_length;
-    struct number_argument ripple_wavelength;
-    struct number_argument ripple_contrast;
-    struct number_argument ripple_heading;
-    struct number_argument patch_contrast;
-    struct number_argument patch_length;
-    struct number_argument mean_amplitude;
     bool is_complex;
 };
 
-#define MEMBER(name)             offsetof(struct seabed_options, name)
-#define NUMBER(name, unit, help) name, NULL, unit, help, ARGUMENT_NUMBER, false
+#define MEMBER(name) offsetof(struct seabed_options, name)
 
 static const struct argument arguments[] = {
     {"--output", "-o", "IMAGE", "file to write: .tif (float32) or .png (8 bit)", ARGUMENT_TEXT,
@@ -38,51 +51,25 @@ static const struct argument arguments[] = {
     {"--rows", NULL, "N", "number of pings", ARGUMENT_WHOLE, false, MEMBER(rows)},
     {"--columns", NULL, "N", "number of range samples", ARGUMENT_WHOLE, false, MEMBER(columns)},
     {"--seed", NULL, "N", "seed of the random numbers", ARGUMENT_WHOLE, false, MEMBER(seed)},
-    {NUMBER("--row-spacing", "M", "along-track distance of rows"), MEMBER(row_spacing)},
-    {NUMBER("--column-spacing", "M", "slant range distance of columns"), MEMBER(column_spacing)},
-    {NUMBER("--first-range", "M", "slant range of the first column"), MEMBER(first_range)},
-    {NUMBER("--altitude", "M", "height of the sonar over the seabed"), MEMBER(altitude)},
-    {NUMBER("--frequency", "HZ", "centre frequency"), MEMBER(frequency)},
-    {NUMBER("--bandwidth", "HZ", "bandwidth, which sets the range resolution"), MEMBER(bandwidth)},
     {"--speckle-shape", NULL, "NU", "shape of the K distribution, inf: Rayleigh", ARGUMENT_TEXT,
      false, MEMBER(speckle_shape)},
-    {NUMBER("--texture-length", "M", "correlation length of its texture"), MEMBER(texture_length)},
-    {NUMBER("--ripple-wavelength", "M", "distance of sand ripples"), MEMBER(ripple_wavelength)},
-    {NUMBER("--ripple-contrast", "0...1", "depth of the ripples' modulation, 0: no ripples"),
-     MEMBER(ripple_contrast)},
-    {NUMBER("--ripple-heading", "DEG", "direction across the crests, from track towards range"),
-     MEMBER(ripple_heading)},
-    {NUMBER("--patch-contrast", "DB", "level step between sediments, 0: one sediment"),
-     MEMBER(patch_contrast)},
-    {NUMBER("--patch-length", "M", "typical size of a sediment patch"), MEMBER(patch_length)},
-    {NUMBER("--mean-amplitude", "A", "rms amplitude of the darker sediment, 1: full scale"),
-     MEMBER(mean_amplitude)},
     {"--complex", NULL, NULL, "complex pixels instead of amplitudes (.tif)", ARGUMENT_FLAG, false,
      MEMBER(is_complex)},
-};
+#define NUMBER_ARGUMENT(member, option, unit, help, key)                                           \
+    {option, NULL, unit, help, ARGUMENT_NUMBER, false, MEMBER(member)},
+    NUMBERS(NUMBER_ARGUMENT)};
 
-/* Keys of a scene whose input is the seabed, and the options that set them. */
-static const struct {
-    const char *key;
-    size_t option; /* a struct number_argument */
-    double factor; /* of the key's unit */
-    const char *unit;
-} number_keys[] = {
-    {"input.geometry.row_spacing", MEMBER(row_spacing), 1.0, ""},
-    {"input.geometry.column_spacing", MEMBER(column_spacing), 1.0, ""},
-    {"input.geometry.first_slant_range", MEMBER(first_range), 1.0, ""},
-    {"sonar.altitude", MEMBER(altitude), 1.0, ""},
-    {"sonar.frequency", MEMBER(frequency), 1.0, ""},
-    {"sonar.bandwidth", MEMBER(bandwidth), 1.0, ""},
-    {"input.synthetic.texture_length", MEMBER(texture_length), 1.0, ""},
-    {"input.synthetic.ripple_wavelength", MEMBER(ripple_wavelength), 1.0, ""},
-    {"input.synthetic.ripple_contrast", MEMBER(ripple_contrast), 1.0, ""},
-    {"input.synthetic.ripple_heading", MEMBER(ripple_heading), 3.14159265358979323846 / 180,
-     " rad"},
-    {"input.synthetic.patch_contrast", MEMBER(patch_contrast), 1.0, ""},
-    {"input.synthetic.patch_length", MEMBER(patch_length), 1.0, ""},
-    {"input.synthetic.mean_amplitude", MEMBER(mean_amplitude), 1.0, ""},
-};
+/* A number of degrees is set in radians, to the last bit. */
+static sonject_status set_number(sonject_scene *scene, const char *key, const char *unit,
+                                 const struct number_argument *number)
+{
+    char text[48];
+    const bool is_angle = strcmp(unit, "DEG") == 0;
+    snprintf(text, sizeof(text), "%.17g%s",
+             number->value * (is_angle ? 3.14159265358979323846 / 180 : 1.0),
+             is_angle ? " rad" : "");
+    return number->is_given ? sonject_scene_set(scene, key, text) : SONJECT_OK;
+}
 
 static sonject_status set_whole(sonject_scene *scene, const char *key,
                                 const struct whole_argument *number)
@@ -94,7 +81,6 @@ static sonject_status set_whole(sonject_scene *scene, const char *key,
 
 static sonject_status set_keys(sonject_scene *scene, const struct seabed_options *options)
 {
-    char text[48];
     sonject_status status = set_whole(scene, "input.synthetic.rows", &options->rows);
     if (status == SONJECT_OK)
         status = set_whole(scene, "input.synthetic.columns", &options->columns);
@@ -104,16 +90,10 @@ static sonject_status set_keys(sonject_scene *scene, const struct seabed_options
         status = sonject_scene_set(scene, "input.synthetic.speckle_shape", options->speckle_shape);
     if (status == SONJECT_OK && options->is_complex)
         status = sonject_scene_set(scene, "input.synthetic.complex", "true");
-    for (size_t i = 0; status == SONJECT_OK && i < sizeof(number_keys) / sizeof(number_keys[0]);
-         i++) {
-        struct number_argument number;
-        memcpy(&number, (const char *)options + number_keys[i].option, sizeof(number));
-        if (!number.is_given)
-            continue;
-        snprintf(text, sizeof(text), "%.17g%s", number.value * number_keys[i].factor,
-                 number_keys[i].unit);
-        status = sonject_scene_set(scene, number_keys[i].key, text);
-    }
+#define SET_NUMBER(member, option, unit, help, key)                                                \
+    if (status == SONJECT_OK)                                                                      \
+        status = set_number(scene, key, unit, &options->member);
+    NUMBERS(SET_NUMBER)
     return status;
 }
 

@@ -6,6 +6,7 @@
 #include <jansson.h>
 
 #include "claims.h"
+#include "scene/point_response.h"
 #include "scene_folder.h"
 
 #define GEOMETRY "geometry: {row_spacing: 1, column_spacing: 1, first_slant_range: 40}\n"
