@@ -470,7 +470,7 @@ static sonject_status fill_campaign(struct tree *tree, const char *const *overri
     struct reader reader = {.report = tree->report, .tree = tree};
     sonject_status status = SONJECT_OK;
     for (size_t i = 0; !reading_ends(status) && i < count; i++)
-        status = tree_override(tree, overrides[i]);
+        status = tree_override(tree, overrides[i], NULL);
     if (reading_ends(status))
         return status;
     if (tree_is_null(&tree->root))

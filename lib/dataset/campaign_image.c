@@ -119,15 +119,14 @@ sonject_status campaign_read_scene(struct sonject_campaign *campaign, const stru
         for (size_t i = 0; i < plan->key_count; i++)
             overrides[i] = plan->keys[i].text;
         overrides[plan->key_count] = input_text;
-        const struct scene_text source = {.path = campaign->campaign.scene_path,
-                                          .text = campaign->scene_text,
-                                          .bytes = campaign->scene_bytes,
-                                          .overrides = overrides,
-                                          .override_count = plan->key_count + 1,
-                                          .moved_folder = campaign->campaign.folder,
-                                          .moved_overrides = plan->key_count,
-                                          .allows_user_shapes = campaign->allows_user_shapes};
-        status = scene_text_read(campaign->report, &source, scene);
+        const struct scene_source source = {.path = campaign->campaign.scene_path,
+                                            .text = campaign->scene_text,
+                                            .overrides = overrides,
+                                            .override_count = plan->key_count + 1,
+                                            .moved_folder = campaign->campaign.folder,
+                                            .moved_overrides = plan->key_count,
+                                            .allows_user_shapes = campaign->allows_user_shapes};
+        status = scene_source_read(&source, campaign->report, scene);
         if (status != SONJECT_OK)
             place_message(campaign, plan);
     }

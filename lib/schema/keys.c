@@ -81,7 +81,8 @@ static const char *unit_behind(const struct field *field)
                                            : "";
 }
 
-bool field_applies(const struct field *field, const void *structure)
+/* Whether the key is not of another kind than the structure. */
+static bool field_applies(const struct field *field, const void *structure)
 {
     return !field->has_kind || value32(structure, field->kind_offset) == field->kind_value;
 }

@@ -170,9 +170,6 @@ sonject_status section_check(const struct section *section, const void *structur
 bool field_is_sound(const struct field *field, const void *structure, bool is_written,
                     char what[300]);
 
-/* Whether the key is not of another kind than the structure. */
-bool field_applies(const struct field *field, const void *structure);
-
 /* The section that a structure's values continue in, and its structure; NULL: none. index: of the
  * entry of a list. scene: as of section_defaults. */
 const struct section *field_below(const struct field *field, const void *structure,
@@ -189,8 +186,7 @@ bool scene_key_find(const struct section *top, const char *path, const char **ne
 
 /* ---- The sections. The whole file's structure is struct scene. */
 
-extern const struct section scene_section, input_section, geometry_section, transfer_section,
-    uniform_section, synthetic_section, patch_section, sonar_section, pulse_section, motion_section,
+extern const struct section scene_section, input_section, sonar_section, pulse_section,
     seabed_section, forward_section, relief_section, relief_grid_section, surface_section,
     material_section, medium_section, layer_section, injection_section, elements_section,
     object_section, part_section, user_section, mesh_section;
@@ -220,10 +216,6 @@ struct reader {
  */
 sonject_status read_section(struct reader *reader, const struct section *section,
                             const struct tree_node *node, void *structure);
-
-/* The same, where nothing at all stands for a section without keys. */
-sonject_status read_subsection(struct reader *reader, const struct section *section,
-                               const struct tree_node *node, void *structure);
 
 /* Whether a status is one after which nothing more is read. */
 bool reading_ends(sonject_status status);

@@ -201,8 +201,9 @@ static sonject_status read_owned_text(struct reader *reader, const struct tree_n
     return *owned ? SONJECT_OK : report_out_of_memory(reader->report, "a text");
 }
 
-sonject_status read_subsection(struct reader *reader, const struct section *section,
-                               const struct tree_node *node, void *structure)
+/* A section, for whose lack of keys nothing at all may stand. */
+static sonject_status read_subsection(struct reader *reader, const struct section *section,
+                                      const struct tree_node *node, void *structure)
 {
     struct tree_node empty = {.kind = TREE_SECTION, .place = node->place};
     return read_section(reader, section, tree_is_null(node) ? &empty : node, structure);

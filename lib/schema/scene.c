@@ -33,7 +33,7 @@ static const struct field uniform_fields[] = {
     {"rows", "track positions", COUNT32(uniform_rows, 1, SIDE_MAX), .per = " pixels", REQUIRED},
     {"columns", "range cells", COUNT32(uniform_columns, 1, SIDE_MAX), .per = " pixels", REQUIRED},
 };
-const struct section uniform_section = {ROWS(uniform_fields), .relations = relate_uniform};
+static const struct section uniform_section = {ROWS(uniform_fields), .relations = relate_uniform};
 #undef STRUCTURE
 
 #define STRUCTURE sonject_synthetic_params
@@ -69,8 +69,8 @@ static const struct field synthetic_fields[] = {
     {"mean_amplitude", "rms amplitude of the darker sediment", QUANTITY(mean_amplitude, NUMBER),
      WITHIN(1e-6, 1e6), .preset = 0.1},
 };
-const struct section synthetic_section = {ROWS(synthetic_fields), .relations = relate_synthetic,
-                                          .bytes = sizeof(STRUCTURE)};
+static const struct section synthetic_section = {
+    ROWS(synthetic_fields), .relations = relate_synthetic, .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
 /* A row spacing as a sonar's speed and ping rate make it. */
@@ -116,7 +116,7 @@ static const struct field geometry_fields[] = {
     {"side", "of the track that the image shows",
      WORD(side) = {[SONJECT_SIDE_PORT] = "port", [SONJECT_SIDE_STARBOARD] = "starboard"}},
 };
-const struct section geometry_section = {ROWS(geometry_fields), .bytes = sizeof(STRUCTURE)};
+static const struct section geometry_section = {ROWS(geometry_fields), .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
 static sonject_status read_geometry(struct reader *reader, const struct tree_node *node,
@@ -175,8 +175,9 @@ static const struct field transfer_fields[] = {
     {"full_scale", "largest value that the recorder stores; by default the pixel type's",
      QUANTITY(full_scale, NUMBER), WITHIN(0.0, 1e30), NONE_IF_ZERO},
 };
-const struct section transfer_section = {ROWS(transfer_fields), .relations = relate_transfer,
-                                         .finish = finish_transfer, .bytes = sizeof(STRUCTURE)};
+static const struct section transfer_section = {ROWS(transfer_fields), .relations = relate_transfer,
+                                                .finish = finish_transfer,
+                                                .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
 static sonject_status read_channel(struct reader *reader, const struct tree_node *node,
@@ -254,8 +255,8 @@ static const struct field patch_fields[] = {
     {"rows", "track positions", COUNT64(rows, 1, SWATH_INDEX_MAX), NONE_IF_ZERO, REQUIRED},
     {"columns", "range cells", COUNT64(columns, 1, SWATH_INDEX_MAX), NONE_IF_ZERO, REQUIRED},
 };
-const struct section patch_section = {ROWS(patch_fields), .relations = relate_patch,
-                                      .bytes = sizeof(STRUCTURE)};
+static const struct section patch_section = {ROWS(patch_fields), .relations = relate_patch,
+                                             .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
 /* ---- The injection. */

@@ -52,14 +52,6 @@ static sonject_status check_bands(struct reader *reader, const struct tree_node 
     return status;
 }
 
-static struct tree_entry *find_entry(struct tree_node *node, const char *key)
-{
-    for (size_t i = 0; node->kind == TREE_SECTION && i < node->count; i++)
-        if (strcmp(node->entries[i].key, key) == 0)
-            return &node->entries[i];
-    return NULL;
-}
-
 /* Moves the upper section's values into the lower one; what they take the place of goes the other
  * way. */
 static sonject_status lay_over(struct reader *reader, struct tree *tree, struct tree_node *lower,
@@ -68,7 +60,7 @@ static sonject_status lay_over(struct reader *reader, struct tree *tree, struct 
     sonject_status status = SONJECT_OK;
     for (size_t i = 0; status == SONJECT_OK && i < upper->count; i++) {
         struct tree_entry *above = &upper->entries[i];
-        struct tree_entry *below = find_entry(lower, above->key);
+        struct tree_entry *below = tree_find(lower, above->key);
         const size_t before = key_path_add(&reader->path, above->key);
         if (below && below->value.kind == TREE_SECTION && above->value.kind == TREE_SECTION) {
             status = lay_over(reader, tree, &below->value, &above->value);
@@ -116,7 +108,7 @@ static sonject_status keep_names(struct reader *reader, const struct tree_node *
 static sonject_status choose_band(struct reader *reader, struct tree *tree)
 {
     struct word_list list = {{0}, 0};
-    struct tree_entry *bands = find_entry(&tree->root, "bands");
+    struct tree_entry *bands = tree_find(&tree->root, "bands");
     const struct tree_entry *chosen = tree_find(&tree->root, "band");
     if (!bands && !chosen)
         return SONJECT_OK;
@@ -131,7 +123,7 @@ static sonject_status choose_band(struct reader *reader, struct tree *tree)
                           list.text, bands->value.entries[0].key);
     const size_t before = key_path_add(&reader->path, "band");
     const char *name = read_text(reader, &chosen->value);
-    struct tree_entry *band = name ? find_entry(&bands->value, name) : NULL;
+    struct tree_entry *band = name ? tree_find(&bands->value, name) : NULL;
     if (!name)
         status = SONJECT_ERROR_INPUT;
     else if (!band)
@@ -155,18 +147,18 @@ static sonject_status list_bands(struct reader *reader, char **names)
 
 /* ---- The file. */
 
-static sonject_status apply_overrides(struct tree *tree, const struct scene_text *source)
+static sonject_status apply_overrides(struct tree *tree, const struct scene_source *source)
 {
     sonject_status status = SONJECT_OK;
-    tree->given_overrides = source->override_count - source->call_overrides;
+    tree->given_overrides = source->override_count - source->set_count;
     for (size_t i = 0; !reading_ends(status) && i < source->override_count; i++) {
-        const sonject_status of_one = tree_override(tree, source->overrides[i]);
+        const sonject_status of_one = tree_override(tree, source->overrides[i], NULL);
         status = of_one == SONJECT_OK ? status : of_one;
     }
     return status;
 }
 
-static sonject_status fill_scene(struct tree *tree, const struct scene_text *source,
+static sonject_status fill_scene(struct tree *tree, const struct scene_source *source,
                                  struct scene *scene)
 {
     struct reader reader = {.report = tree->report,
@@ -225,8 +217,8 @@ static sonject_status write_down(const struct tree *tree, const struct tree_node
     return SONJECT_OK;
 }
 
-sonject_status scene_text_read(struct report *report, const struct scene_text *source,
-                               struct scene *scene)
+sonject_status scene_source_read(const struct scene_source *source, struct report *report,
+                                 struct scene *scene)
 {
     struct tree tree;
     struct mistakes mistakes = {NULL, 0, 0, 0};
@@ -236,7 +228,7 @@ sonject_status scene_text_read(struct report *report, const struct scene_text *s
     tree_init(&tree, report, source->path);
     tree.mistakes = &mistakes;
     report->message[0] = 0;
-    sonject_status status = tree_parse(&tree, source->text, source->bytes);
+    sonject_status status = tree_parse(&tree, source->text, strlen(source->text));
     THEN(status, fill_scene(&tree, source, scene));
     status = mistakes_tell(&mistakes, report, status);
     struct key_path path = {"", 0};
@@ -247,20 +239,20 @@ sonject_status scene_text_read(struct report *report, const struct scene_text *s
     return status;
 }
 
-sonject_status scene_text_tree(const struct scene_text *source, struct tree *tree)
+sonject_status scene_source_tree(const struct scene_source *source, struct tree *tree)
 {
-    CHECK(tree_parse(tree, source->text, source->bytes));
+    CHECK(tree_parse(tree, source->text, strlen(source->text)));
     return apply_overrides(tree, source);
 }
 
-sonject_status scene_text_bands(struct report *report, const struct scene_text *source,
-                                char **names)
+sonject_status scene_source_bands(const struct scene_source *source, struct report *report,
+                                  char **names)
 {
     struct tree tree;
     tree_init(&tree, report, source->path);
     struct reader reader = {.report = report, .tree = &tree};
     *names = NULL;
-    sonject_status status = scene_text_tree(source, &tree);
+    sonject_status status = scene_source_tree(source, &tree);
     THEN(status, list_bands(&reader, names));
     tree_clear(&tree);
     return status;

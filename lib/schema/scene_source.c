@@ -1,10 +1,10 @@
-#include "schema/scene_source.h"
-#include "base/file.h"
+/* What calls set of a scene. */
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "schema/keys.h"
@@ -18,10 +18,10 @@ sonject_status scene_source_keep(struct scene_source *source, struct report *rep
     source->path = copy_text(path);
     source->overrides = allocate_array(count, sizeof *source->overrides);
     CHECK_MEMORY(report, text && source->path && source->overrides, "a scene");
-    for (size_t i = 0; i < count; i++) {
-        source->overrides[i] = copy_text(overrides[i]);
-        CHECK_MEMORY(report, source->overrides[i], "a scene");
-        source->override_count = source->given_count = i + 1;
+    for (; source->override_count < count; source->override_count++) {
+        char *override = copy_text(overrides[source->override_count]);
+        CHECK_MEMORY(report, override, "a scene");
+        source->overrides[source->override_count] = override;
     }
     return SONJECT_OK;
 }
@@ -36,36 +36,15 @@ static void array_clear(struct number_array *array)
 void scene_source_clear(struct scene_source *source)
 {
     for (size_t i = 0; i < source->override_count; i++)
-        free(source->overrides[i]);
+        free((char *)source->overrides[i]);
     for (size_t i = 0; i < source->array_count; i++)
         array_clear(&source->arrays[i]);
     tree_clear(&source->tree);
     free(source->overrides);
     free(source->arrays);
-    free(source->path);
-    free(source->text);
+    free((char *)source->path);
+    free((char *)source->text);
     memset(source, 0, sizeof *source);
-}
-
-static struct scene_text whole_text(const struct scene_source *source)
-{
-    return (struct scene_text){.path = source->path,
-                               .text = source->text,
-                               .bytes = strlen(source->text),
-                               .overrides = (const char *const *)source->overrides,
-                               .override_count = source->override_count,
-                               .call_overrides = source->override_count - source->given_count,
-                               .arrays = source->arrays,
-                               .array_count = source->array_count,
-                               .allows_user_shapes = source->allows_user_shapes,
-                               .takes_pixels = source->takes_pixels};
-}
-
-sonject_status scene_source_read(const struct scene_source *source, struct report *report,
-                                 struct scene *scene)
-{
-    const struct scene_text text = whole_text(source);
-    return scene_text_read(report, &text, scene);
 }
 
 static void forget_tree(struct scene_source *source)
@@ -74,43 +53,17 @@ static void forget_tree(struct scene_source *source)
     source->tree.file = NULL;
 }
 
-sonject_status scene_source_bands(const struct scene_source *source, struct report *report,
-                                  char **names)
-{
-    const struct scene_text text = whole_text(source);
-    return scene_text_bands(report, &text, names);
-}
-
 /* The tree of text and overrides, made where it is not there. */
 static sonject_status make_tree(struct scene_source *source, struct report *report)
 {
     struct tree *tree = &source->tree;
-    const struct scene_text text = whole_text(source);
     if (tree->file)
         return SONJECT_OK;
     tree_init(tree, report, source->path);
-    const sonject_status status = scene_text_tree(&text, tree);
+    const sonject_status status = scene_source_tree(source, tree);
     if (status != SONJECT_OK)
         forget_tree(source);
     return status;
-}
-
-/* What lies at a path that is there. */
-static const struct tree_node *node_at(const struct tree_node *node, const char *path)
-{
-    while (*path) {
-        char key[64] = "";
-        if (*path == '[') {
-            node = &node->entries[strtoul(path + 1, NULL, 10)].value;
-            path += strcspn(path, "]") + 1;
-            continue;
-        }
-        path += *path == '.';
-        memcpy(key, path, strcspn(path, ".["));
-        path += strlen(key);
-        node = &tree_find(node, key)->value;
-    }
-    return node;
 }
 
 /* Every key of a value, below the path that it is set at. */
@@ -141,7 +94,7 @@ static bool is_below(const char *override, const char *key, size_t length)
 /* Keeps what is set: at the place of an earlier value of the key, so that a list's entries stay in
  * order, and without what was set below it. No later override is of a section around it, whose
  * setting would have removed it. Takes the override over; there is room for one more. */
-static void keep_override(struct scene_source *source, char *override)
+static void keep_override(struct scene_source *source, const char *override)
 {
     const char *key = override;
     const size_t length = strcspn(key, "=");
@@ -149,21 +102,21 @@ static void keep_override(struct scene_source *source, char *override)
     size_t kept = 0;
     size_t given = 0;
     for (size_t i = 0; i < count; i++) {
-        char *old = source->overrides[i];
+        const char *old = source->overrides[i];
         if (is_below(old, key, length)) {
-            free(old);
+            free((char *)old);
             old = override;
             override = NULL;
         }
         if (old)
             source->overrides[kept++] = old;
-        if (i < source->given_count)
+        if (i < count - source->set_count)
             given = kept;
     }
     if (override)
         source->overrides[kept++] = override;
     source->override_count = kept;
-    source->given_count = given;
+    source->set_count = kept - given;
 }
 
 /* "key=value", for free(). */
@@ -186,8 +139,9 @@ static sonject_status check_override(struct scene_source *source, struct report 
     struct tree *tree = &source->tree;
     const struct section *section;
     const char *near;
+    const struct tree_node *node;
     CHECK(make_tree(source, report));
-    CHECK(tree_override(tree, override));
+    CHECK(tree_override(tree, override, &node));
     const char *key = tree->override_paths[tree->override_count - 1];
     const struct tree_place place = {key, 1, 1};
     if (!scene_key_find(&scene_section, key, &near, &section))
@@ -195,13 +149,14 @@ static sonject_status check_override(struct scene_source *source, struct report 
                             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
     struct key_path path = {"", 0};
     path.length = (size_t)snprintf(path.text, sizeof path.text, "%.200s", key);
-    return check_keys(tree, node_at(&tree->root, key), &path);
+    return check_keys(tree, node, &path);
 }
 
 sonject_status scene_source_set(struct scene_source *source, struct report *report, const char *key,
                                 const char *value)
 {
-    char **overrides = realloc(source->overrides, (source->override_count + 1) * sizeof *overrides);
+    const char **overrides =
+        realloc(source->overrides, (source->override_count + 1) * sizeof *overrides);
     char *override = join_override(key, value);
     if (overrides)
         source->overrides = overrides;

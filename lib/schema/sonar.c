@@ -226,8 +226,8 @@ static const struct field motion_fields[] = {
     {"yaw", "of an array of hydrophones, whose heading the processor does not know",
      SAME(yaw_section)},
 };
-const struct section motion_section = {ROWS(motion_fields), .relations = relate_motion,
-                                       .bytes = sizeof(STRUCTURE)};
+static const struct section motion_section = {ROWS(motion_fields), .relations = relate_motion,
+                                              .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
 /* ---- The sonar. */

@@ -74,7 +74,7 @@ sonject_status tree_append(struct tree *tree, struct tree_node *node, const stru
     return SONJECT_OK;
 }
 
-const struct tree_entry *tree_find(const struct tree_node *node, const char *key)
+struct tree_entry *tree_find(const struct tree_node *node, const char *key)
 {
     if (node->kind == TREE_SECTION)
         for (size_t i = 0; i < node->count; i++)
@@ -394,7 +394,7 @@ static sonject_status set_value(struct walk *walk, char *value)
     return status;
 }
 
-sonject_status tree_override(struct tree *tree, const char *override)
+sonject_status tree_override(struct tree *tree, const char *override, const struct tree_node **node)
 {
     const char *equals = strchr(override, '=');
     const struct tree_place whole = {override, 1, 1};
@@ -414,8 +414,11 @@ sonject_status tree_override(struct tree *tree, const char *override)
     else if (!text_is_printable(value) || !text_is_printable(walk.place.override))
         status = refuse(&walk, "not UTF-8 text on one line");
     THEN(status, follow(&walk, walk.place.override));
-    if (status == SONJECT_OK)
-        return set_value(&walk, value);
-    free(value);
-    return status;
+    if (status != SONJECT_OK) {
+        free(value);
+        return status;
+    }
+    if (node)
+        *node = walk.node;
+    return set_value(&walk, value);
 }

@@ -75,8 +75,10 @@ void tree_clear(struct tree *tree);
 sonject_status tree_parse(struct tree *tree, const char *text, size_t bytes);
 
 /* Replaces or adds what an override "key.path=value" says. A value that starts with one of {["' is
- * YAML, any other one is taken as it stands. Errors: INPUT, MEMORY. */
-sonject_status tree_override(struct tree *tree, const char *override);
+ * YAML, any other one is taken as it stands. *node is where it lies; NULL: not asked for. Errors:
+ * INPUT, MEMORY. */
+sonject_status tree_override(struct tree *tree, const char *override,
+                             const struct tree_node **node);
 
 /* Parses text into an empty node that lies at path. For tree_override. */
 sonject_status tree_parse_value(struct tree *tree, const char *override, const char *text,
@@ -88,7 +90,7 @@ sonject_status tree_append(struct tree *tree, struct tree_node *node, const stru
                            const char *key, struct tree_place place, struct tree_entry **entry);
 
 /* The entry of a key of a section; NULL if there is none, or node is no section. */
-const struct tree_entry *tree_find(const struct tree_node *node, const char *key);
+struct tree_entry *tree_find(const struct tree_node *node, const char *key);
 
 /* True for no value: nothing at all, ~ or null. */
 bool tree_is_null(const struct tree_node *node);

@@ -20,7 +20,7 @@
 
 #include "base/hash.h"
 #include "base/report.h"
-#include "schema/scene_source.h"
+#include "schema/scene_file.h"
 
 #define SUMS_DIGEST_CAPACITY 40
 

@@ -21,6 +21,26 @@
 #define NEIGHBOURS 8      /* of each ray, at most */
 #define GRAZING    0.05   /* cosine of incidence below which sides are not judged */
 
+/* In the shape's own frame, as the kernels ask: see sonject_user_shape_params. */
+struct probe_ray {
+    float point[3], direction[3];
+    float nearest;
+    float reserved;
+};
+
+/* As the code says it. */
+struct probe_hit {
+    float distance;
+    float normal[3]; /* 0 where the distance is not finite */
+};
+
+struct shape_probe {
+    struct report *report;
+    struct device *device;
+    device_kernel kernel;
+    device_buffer shape;
+};
+
 /* A ray that met the shape. */
 struct meeting {
     double offset[3], direction[3]; /* of the ray: its point is the offset */
@@ -46,9 +66,15 @@ struct trial {
 #define REFUSE(trial, what, ...)                                                                   \
     report_failure((trial)->report, SONJECT_ERROR_INPUT, "%s: " what, (trial)->name, __VA_ARGS__)
 
-sonject_status shape_probe_begin(struct shape_probe *probe, struct report *report,
-                                 struct device *device, const struct user_shapes *shapes,
-                                 uint32_t number)
+static void shape_probe_end(struct shape_probe *probe)
+{
+    kernel_release(&probe->kernel);
+    buffer_release(&probe->shape);
+}
+
+static sonject_status shape_probe_begin(struct shape_probe *probe, struct report *report,
+                                        struct device *device, const struct user_shapes *shapes,
+                                        uint32_t number)
 {
     const struct user_record record = user_record_of(&shapes->shapes[number]);
     memset(probe, 0, sizeof *probe);
@@ -63,14 +89,8 @@ sonject_status shape_probe_begin(struct shape_probe *probe, struct report *repor
     return status;
 }
 
-void shape_probe_end(struct shape_probe *probe)
-{
-    kernel_release(&probe->kernel);
-    buffer_release(&probe->shape);
-}
-
-sonject_status shape_probe_ask(struct shape_probe *probe, const struct probe_ray *rays,
-                               struct probe_hit *hits, size_t count)
+static sonject_status shape_probe_ask(struct shape_probe *probe, const struct probe_ray *rays,
+                                      struct probe_hit *hits, size_t count)
 {
     struct report *report = probe->report;
     struct device *device = probe->device;

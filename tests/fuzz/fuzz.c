@@ -71,14 +71,14 @@ static void expect(sonject_status status, const struct report *report, bool has_
 }
 
 /* With code of users allowed; among the targets in ../targets. */
-static void read_scene(const char *text, size_t count)
+static void read_scene(const char *text)
 {
     struct report report = {{0}, NULL, NULL};
     struct scene scene;
-    const struct scene_text source = {
-        .path = "scenes/fuzz.yaml", .text = text, .bytes = count, .allows_user_shapes = true};
+    const struct scene_source source = {
+        .path = "scenes/fuzz.yaml", .text = text, .allows_user_shapes = true};
     scene_init(&scene);
-    expect(scene_text_read(&report, &source, &scene), &report, true);
+    expect(scene_source_read(&source, &report, &scene), &report, true);
     scene_clear(&scene);
 }
 
@@ -86,7 +86,7 @@ static void fuzz_scene(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t
 {
     char *text = text_of(bytes, count);
     (void)fuzzer;
-    read_scene(text, count);
+    read_scene(text);
     free(text);
 }
 
@@ -100,7 +100,7 @@ static void fuzz_target(const struct fuzzer *fuzzer, const uint8_t *bytes, size_
         "objects: [{target: ../targets/fuzz.yaml}]\n";
     (void)fuzzer;
     put_file("targets/fuzz.yaml", bytes, count);
-    read_scene(text, strlen(text));
+    read_scene(text);
 }
 
 /* Shapes that users write: what is refused before a compiler sees it. */

@@ -10,7 +10,7 @@
 
 #include "new_file.h"
 #include "schema/scene_file.h"
-#include "schema/scene_source.h"
+#include "swath/decoder.h"
 
 /* Reads a scene file as the library's calls do. */
 static inline sonject_status read_scene_file(struct report *report, const char *path,
@@ -49,6 +49,8 @@ struct scene_folder {
     char folder[SCENE_FOLDER_CAPACITY];
     char file[SCENE_FOLDER_CAPACITY + 16]; /* folder/scene.yaml, the name of every scene here */
     struct report report;
+    struct report_host host; /* the report's, with the decoder below: one for all readings */
+    struct decoder decoder;
     struct scene scene; /* of the last reading, cleared before the next */
 };
 
@@ -66,6 +68,8 @@ static inline int make_scene_folder(void **state)
         return 1;
     }
     snprintf(folder->file, sizeof folder->file, "%s/scene.yaml", folder->folder);
+    folder->host.decoder = &folder->decoder;
+    folder->report.host = &folder->host;
     scene_init(&folder->scene);
     *state = folder;
     return 0;
@@ -75,6 +79,7 @@ static inline int remove_scene_folder(void **state)
 {
     struct scene_folder *folder = *state;
     scene_clear(&folder->scene);
+    decoder_stop(&folder->decoder);
     (void)unlink(folder->file);
     const int result = rmdir(folder->folder);
     free(folder);
@@ -108,13 +113,22 @@ static inline void write_scene(struct scene_folder *folder, const char *text, si
     write_file(folder, "scene.yaml", text, bytes);
 }
 
-/* Reads the file that is there. overrides may be NULL if count is 0. */
+/* Reads the file that is there, with users' code if that is allowed. overrides may be NULL if count
+ * is 0. */
+static inline sonject_status read_scene_with(struct scene_folder *folder,
+                                             const char *const *overrides, size_t count,
+                                             bool allows_user_shapes)
+{
+    scene_clear(&folder->scene);
+    folder->report.message[0] = 0;
+    return read_scene_file(&folder->report, folder->file, overrides, count, allows_user_shapes,
+                           &folder->scene);
+}
+
 static inline sonject_status read_scene(struct scene_folder *folder, const char *const *overrides,
                                         size_t count)
 {
-    scene_clear(&folder->scene);
-    memset(&folder->report, 0, sizeof folder->report);
-    return read_scene_file(&folder->report, folder->file, overrides, count, false, &folder->scene);
+    return read_scene_with(folder, overrides, count, false);
 }
 
 static inline void expect_scene_taken(struct scene_folder *folder, const char *text)

@@ -620,9 +620,7 @@ static inline sonject_status read_case(struct scene_folder *folder, const struct
         overrides[count++] = override;
     }
     write_scene(folder, base_of(key), strlen(base_of(key)));
-    scene_clear(&folder->scene);
-    memset(&folder->report, 0, sizeof folder->report);
-    return read_scene_file(&folder->report, folder->file, overrides, count, true, &folder->scene);
+    return read_scene_with(folder, overrides, count, true);
 }
 
 #endif

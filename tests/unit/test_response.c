@@ -95,31 +95,15 @@ static void test_hostile_keys(void **state)
         const char *key, *message;
     } cases[] = {
         {"pulse: chirp", ":9:10: sonar.pulse: must be a section of 'key: value' lines"},
-        {"pulse: {window: hann}", ":9:10: sonar.pulse.kind: missing; add it"},
         {"pulse: {kind: gaussian, window: hann}",
          ":9:35: sonar.pulse.window: only a chirp has one; set kind: chirp"},
         {"pulse: {kind: table}", ":9:10: sonar.pulse.file: missing; the table is read from it"},
         {"pulse: {kind: chirp, file: scene.yaml}",
          ":9:30: sonar.pulse.file: belongs to kind: table; remove it"},
-        {"pulse: {kind: chirp, window: {taylor: {sidelobes: 0, terms: 5}}}",
-         "sonar.pulse.window.taylor.sidelobes: must be 1...120 dB, not 0"},
-        {"motion: {sway: 3}",
-         ":9:18: sonar.motion.sway: must be a list; start each sine with '- '"},
-        {"motion: {sway: [{amplitude: 1, wavelength: 0}]}",
-         "sonar.motion.sway[0].wavelength: must be 0.1...1e+06 m, not 0"},
-        {"motion: {random: {rms: -1, correlation: 1}}",
-         "sonar.motion.random.rms: must be 0...1000 m, not -1"},
-        {"motion: {file: nothing.csv}", "there is no file"},
         {"motion: {yaw: {bias: 1 deg}}", "sonar.motion.yaw.advance: missing"},
         {"motion: {yaw: {advance: 0}}", "sonar.motion.yaw.advance: must be 0.1...1000 m, not 0"},
-        {"motion: {yaw: {advance: 1 cm}}",
-         "sonar.motion.yaw.advance: must be 0.1...1000 m, not 0.01"},
         {"motion: {yaw: {advance: 1, bias: -9 deg}}",
          "sonar.motion.yaw.bias: must be -5.72958...5.72958 deg, not -"},
-        {"motion: {yaw: {advance: 1, sines: [{amplitude: 1 rad, wavelength: 1}]}}",
-         "sonar.motion.yaw.sines[0].amplitude: must be -5.72958...5.72958 deg, not 57.2958"},
-        {"motion: {yaw: {advance: 1, random: {rms: 1 deg, correlation: 0}}}",
-         "sonar.motion.yaw.random.correlation: must be 0.1...1e+06 m, not 0"},
     };
     for (size_t i = 0; i < COUNT(cases); i++) {
         struct scene_folder *folder = *state;

@@ -44,12 +44,11 @@ static void expect_names(struct scene_folder *folder, const char *text,
                          const char *const *overrides, size_t count, const char *expected)
 {
     char *names;
-    const struct scene_text source = {.path = folder->file,
-                                      .text = text,
-                                      .bytes = strlen(text),
-                                      .overrides = overrides,
-                                      .override_count = count};
-    assert_int_equal(scene_text_bands(&folder->report, &source, &names), SONJECT_OK);
+    const struct scene_source source = {.path = folder->file,
+                                        .text = text,
+                                        .overrides = (const char **)overrides,
+                                        .override_count = count};
+    assert_int_equal(scene_source_bands(&source, &folder->report, &names), SONJECT_OK);
     assert_string_equal(names, expected);
     free(names);
 }

@@ -7,6 +7,10 @@
 #define SONAR_WITH(keys) "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10, " keys "}\n"
 #define OBJECT           BASE "objects:\n  - shape: "
 
+#define MATERIAL OBJECT "sphere\n    diameter: 1\n    material: " /* its value on line 7 */
+#define KNOWN_MATERIALS                                                                            \
+    "steel, concrete, rubber, wood, rock, gravel, coarse sand, medium sand, fine sand, silt, clay"
+
 struct wrong {
     const char *text;
     const char *message; /* behind the file name */
@@ -22,18 +26,12 @@ static void test_unknown_keys(void **state)
 {
     static const struct wrong wrong[] = {
         {BASE "medum: {}\n", ":4:1: medum: unknown key; did you mean 'medium'?"},
-        {BASE "medium:\n  sound_sped: 1500\n",
-         ":5:3: medium.sound_sped: unknown key; did you mean 'sound_speed'?"},
         {BASE "medium:\n  salinity: 35\n",
          ":5:3: medium.salinity: unknown key; known here are sound_speed, reference_sound_speed, "
          "absorption, layers, profile"},
-        {OBJECT "sphere\n    diamter: 1 m\n",
-         ":6:5: objects[0].diamter: unknown key; did you mean 'diameter'?"},
         {BASE
          "objects:\n  - {shape: sphere, diameter: 1}\n  - {shape: plane, lenght: 1, width: 1}\n",
          ":6:20: objects[1].lenght: unknown key; did you mean 'length'?"},
-        {START INPUT "sonar: {frequency: 1e5, bandwidth: 3e4, altitud: 10}\n",
-         ":3:41: sonar.altitud: unknown key; did you mean 'altitude'?"},
         {OBJECT "sphere\n    \xC3\xA9tat: 1 m\n    diameter: 1 m\n",
          ":6:5: objects[0].\xC3\xA9tat: unknown key; known here are target, name, class, shape, "
          "user, "
@@ -48,33 +46,14 @@ static void test_missing_keys(void **state)
 {
     static const struct wrong wrong[] = {
         {INPUT SONAR, ":1:1: sonject: missing; add it (version of the format, 1)"},
-        {START INPUT,
-         ":1:1: sonar: missing; add it (the sonar: frequency, bandwidth and altitude)"},
         {START, ":1:1: input: missing; add it (where the image comes from: path, uniform or "
                 "synthetic, and geometry)\n"
                 ":1:1: sonar: missing; add it (the sonar: frequency, bandwidth and altitude)"},
-        {START SONAR, ":1:1: input: missing; add it (where the image comes from: path, uniform or "
-                      "synthetic, and geometry)"},
-        {START INPUT "sonar: {bandwidth: 30e3, altitude: 10}\n",
-         ":3:8: sonar.frequency: missing; add it (centre frequency)"},
-        {START INPUT "sonar: {frequency: 100e3, altitude: 10}\n",
-         ":3:8: sonar.bandwidth: missing; add it (sets the range resolution, c / (2 bandwidth))"},
-        {START INPUT "sonar: {frequency: 100e3, bandwidth: 30e3}\n",
-         ":3:8: sonar.altitude: missing; add it (height of the track over the mean seabed, "
-         "or from_file)"},
         {START INPUT "sonar:\n", ":3:7: sonar.frequency: missing; add it (centre frequency)\n"
                                  ":3:7: sonar.bandwidth: missing; add it (sets the range "
                                  "resolution, c / (2 bandwidth))\n"
                                  ":3:7: sonar.altitude: missing; add it (height of the track over "
                                  "the mean seabed, or from_file)"},
-        {START "input: {uniform: {rows: 1, columns: 1}}\n" SONAR,
-         ":2:8: input.geometry: missing; add it (where the pixels lie: row_spacing, column_spacing "
-         "and first_slant_range, or from_file)"},
-        {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry:\n    row_spacing: 1\n" SONAR,
-         ":5:5: input.geometry.column_spacing: missing; add it (distance between range cells, in "
-         "slant range)\n"
-         ":5:5: input.geometry.first_slant_range: missing; add it (slant range of column 0 of the "
-         "whole swath)"},
         {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry: {row_spacing: {speed: 2}, "
                "column_spacing: 1, first_slant_range: 40}\n" SONAR,
          ":4:27: input.geometry.row_spacing.ping_rate: missing; add it (pings, and so rows, a "
@@ -82,20 +61,10 @@ static void test_missing_keys(void **state)
         {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry: {row_spacing: {speed: 2, "
                "ping_rate: 0}, column_spacing: 1, first_slant_range: 40}\n" SONAR,
          ":4:49: input.geometry.row_spacing.ping_rate: must be above 0 Hz, not 0"},
-        {START "input: {uniform: {rows: 1}, geometry: {row_spacing: 1, column_spacing: 1, "
-               "first_slant_range: 40}}\n" SONAR,
-         ":2:18: input.uniform.columns: missing; add it (range cells)"},
-        {BASE "patch: {row: 1, column: 1}\n",
-         ":4:8: patch.rows: missing; add it (track positions)\n"
-         ":4:8: patch.columns: missing; add it (range cells)"},
         {OBJECT "capsule\n    diameter: 1\n",
          ":5:5: objects[0].length: missing; a capsule needs it"},
-        {OBJECT "plane\n    length: 1\n", ":5:5: objects[0].width: missing; a plane needs it"},
-        {OBJECT "sphere\n", ":5:5: objects[0].diameter: missing; a sphere needs it"},
         {OBJECT "ellipsoid\n    length: 1\n    width: 1\n",
          ":5:5: objects[0].height: missing; an ellipsoid needs it"},
-        {OBJECT "truncated_cone\n    diameter: 1\n    height: 1\n",
-         ":5:5: objects[0].top_diameter: missing; a truncated_cone needs it"},
         {BASE "objects: [{}]\n",
          ":4:11: objects[0]: none of shape, parts and target is there; give one"},
     };
@@ -128,8 +97,6 @@ static void test_wrong_values(void **state)
          ":4:9: medium: must be a section of 'key: value' lines, not a list"},
         {BASE "patch: {rows: 1, columns: 2.5}\n",
          ":4:27: patch.columns: '2.5' is not a whole number from 1 to 1099511627776"},
-        {BASE "patch: {rows: 1, columns: -1}\n",
-         ":4:27: patch.columns: '-1' is not a whole number from 1 to 1099511627776"},
         {BASE "patch: {rows: 1, columns: 1099511627777}\n",
          ":4:27: patch.columns: must be 1...1099511627776, not 1099511627777"},
         {BASE "patch: {rows: 0, columns: 1}\n",
@@ -140,28 +107,18 @@ static void test_wrong_values(void **state)
         {BASE "injection: {mode: compsite}\n",
          ":4:19: injection.mode: 'compsite' is not one of composite, resynthesise; did you mean "
          "'composite'?"},
-        {BASE "injection: {mode: 0}\n",
-         ":4:19: injection.mode: '0' is not one of composite, resynthesise"},
         {BASE "injection: {noise_floor: 3 dB}\n", ":4:26: injection.noise_floor: must be below 0 "
                                                   "dB (the seabed's own level) or estimate, not "
                                                   "3"},
-        {BASE "injection: {noise_floor: guess}\n",
-         ":4:26: injection.noise_floor: 'guess' is not a number with a unit of dB"},
         {BASE "seabed: {lambert: 3 dB}\n",
          ":4:19: seabed.lambert: must be above 0 and at most 1/pi (-4.97 dB), or the seabed "
          "returns more than it receives, not 1.99526"},
-        {START INPUT SONAR_WITH("aperture: wide"),
-         ":3:68: sonar.aperture: 'wide' is not a number with a unit of deg, rad"},
         {START INPUT SONAR_WITH("aperture: -3 deg"),
          ":3:68: sonar.aperture: must be 0...90 deg, auto or none, not -3"},
-        {START INPUT SONAR_WITH("aperture: 91 deg"),
-         ":3:68: sonar.aperture: must be 0...90 deg, auto or none, not 91"},
         {START INPUT SONAR_WITH("kind: real"),
          ":3:8: sonar.array: missing; a real aperture needs its length"},
         {START INPUT SONAR_WITH("array: {length: 1 m}"),
          ":3:65: sonar.array: belongs to a real aperture; set kind: real"},
-        {START INPUT SONAR_WITH("kind: real, array: {length: 0}"),
-         ":3:86: sonar.array.length: must be 1e-06...1e+06 m, not 0"},
         {START INPUT SONAR_WITH("kind: real, aperture: none, array: {length: 1 m}"),
          ":3:80: sonar.aperture: belongs to a synthetic aperture; a real one has that of its "
          "array"},
@@ -169,8 +126,6 @@ static void test_wrong_values(void **state)
          ":1:10: sonject: must be 1, the version of the format that is read here"},
         {BASE "objects: {shape: sphere}\n",
          ":4:10: objects: must be a list; start each object with '- '"},
-        {BASE "objects: [sphere]\n",
-         ":4:11: objects[0]: must be a section of 'key: value' lines, not a single value"},
         {OBJECT "cube\n",
          ":5:12: objects[0].shape: 'cube' is not one of " SHAPE_WORDS "; did you mean 'cone'?"},
         {OBJECT "cylinder\n    diameter: 1\n    length: 2\n    nose_end: round\n",
@@ -187,11 +142,6 @@ static void test_wrong_values(void **state)
         {OBJECT "torus\n    diameter: 1\n    height: 0.5\n",
          ":6:15: objects[0].diameter: of a torus is that of its outline and must be above twice "
          "its height, 1 m, or there is no hole; it is 1 m"},
-        {OBJECT "sphere\n    diameter: 1\n    cuts: {distance: 0}\n",
-         ":7:11: objects[0].cuts: must be a list; start each cut with '- '"},
-        {OBJECT "sphere\n    diameter: 1\n    cuts: [{}]\n",
-         ":7:12: objects[0].cuts[0].distance: missing; add it (of the cut from the centre towards "
-         "that side)"},
         {OBJECT "sphere\n    diameter: 1\n    cuts: [{distance: 0}, {distance: 0}, {distance: "
                 "0}]\n",
          ":7:11: objects[0].cuts: has 3 entries; at most 2 are possible"},
@@ -199,13 +149,6 @@ static void test_wrong_values(void **state)
          ":7:11: objects[0].cuts: leave nothing of the object; move one outwards"},
         {OBJECT "sphere\n    diameter: 1\n    burial: {fraction: 0.5, proud: 0.5}\n",
          ":7:13: objects[0].burial: more than one of fraction and proud is there; give one"},
-        {OBJECT "sphere\n    diameter: 1\n    level: {over_seabed: 9, target_strength: 9}\n",
-         ":7:12: objects[0].level: more than one of target_strength and over_seabed is there; "
-         "give one"},
-        {OBJECT "sphere\n    diameter: 1\n    level: {over_seabed: 300 dB}\n",
-         ":7:26: objects[0].level.over_seabed: must be -200...200 dB, not 300"},
-        {OBJECT "sphere\n    diameter: 1\n    burial: {fraction: 30}\n",
-         ":7:24: objects[0].burial.fraction: must be 0...1, not 30"},
         {OBJECT "sphere\n    diameter: 1 m\n    material: {lambert: 0.3}\n",
          ":7:25: objects[0].material.lambert: must be 0...0.2578 (reflection^2 / pi), or the "
          "surface returns more than it receives; it is 0.3"},
@@ -215,7 +158,6 @@ static void test_wrong_values(void **state)
                 "0123456789012345678901234567890123456789012345678901234567890123\n",
          ":7:11: objects[0].name: longer than 63 bytes; shorten it"},
         {"- a\n", ":1:1: must be a section of 'key: value' lines, not a list"},
-        {"hello\n", ":1:1: must be a section of 'key: value' lines, not a single value"},
     };
     expect_all(state, wrong, COUNT(wrong));
 }
@@ -239,8 +181,6 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
         {"input: {path: a.tif, complex: yes",
          ":2:31: input.complex: 'yes' is neither true nor false"},
         {"input: {path: \"\"", ":2:15: input.path: must be a file name without control characters"},
-        {"input: {path: \"a\\nb\"",
-         ":2:15: input.path: must be a file name without control characters"},
         {"input: {path: a.tif, transfer: {kind: gamma}",
          ":2:32: input.transfer.parameter: missing; this kind of transfer needs it"},
         {"input: {path: a.tif, transfer: {kind: intensity, parameter: 1}",
@@ -256,22 +196,14 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
          ":2:70: input.transfer.offset: must be -1000...1000 dB, not 1001"},
         {"input: {uniform: {rows: 65536, columns: 32769}",
          ":2:25: input.uniform.rows: times columns must be at most 2^31 pixels, not 65536 x 32769"},
-        {"input: {synthetic: {rows: 1048577, columns: 1}",
-         ":2:27: input.synthetic.rows: must be 1...1048576 pixels, not 1048577"},
     };
     static const struct wrong wrong[] = {
         {BASE "seabed: {map: coherent}\n", ":4:15: seabed.map: coherent needs complex pixels; set "
                                            "complex: true in input if they are"},
         {OBJECT "sphere\n    diameter: 1\n    width: 1\n",
          ":7:12: objects[0].width: a sphere has none; remove it"},
-        {OBJECT "plane\n    diameter: 1\n    length: 1\n    width: 1\n",
-         ":6:15: objects[0].diameter: a plane has none; remove it"},
-        {OBJECT "box\n    length: 1\n    width: 1\n    height: 1\n    front_height: 1\n",
-         ":9:19: objects[0].front_height: a box has none; remove it"},
         {OBJECT "wedge\n    length: 1\n    width: 1\n    height: 0.5\n    front_height: 0.51\n",
          ":9:19: objects[0].front_height: must be 0...0.5 m (the height), not 0.51"},
-        {OBJECT "capsule\n    length: 1\n    diameter: 1\n    nose_end: flat\n",
-         ":8:15: objects[0].nose_end: a capsule has none; remove it"},
         {OBJECT "capsule\n    diameter: 1\n    length: 0.5\n",
          ":7:13: objects[0].length: of a capsule includes its round ends and must be at least its "
          "diameter, 1 m, not 0.5 m"},
@@ -284,9 +216,6 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
         {OBJECT "sphere\n    diameter: 1\n    position: {row: 2e12, column: 2e12}\n",
          ":7:21: objects[0].position.row: must be -1...1.09951e+12, not 2e+12\n"
          ":7:35: objects[0].position.column: must be -1...1.09951e+12, not 2e+12"},
-        {OBJECT "sphere\n    diameter: 1\n    position: {along_track: 2e6, slant_range: -1}\n",
-         ":7:29: objects[0].position.along_track: must be -1e+06...1e+06 m, not 2e+06\n"
-         ":7:47: objects[0].position.slant_range: must be 0...1e+06 m, not -1"},
         {OBJECT "sphere\n    diameter: 1\n    position: middle\n",
          ":7:15: objects[0].position: 'middle' is not one of centre, {along_track: ...}, "
          "{slant_range: ...}, {row: ...}, {column: ...}"},
@@ -296,6 +225,45 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
                      "{sidelobes: 0 dB, terms: 1}}}\n",
          ":3:87: sonar.response.taylor.sidelobes: must be 1...120 dB, not 0\n"
          ":3:100: sonar.response.taylor.terms: must be 2...16, not 1"},
+        {MATERIAL "stele\n", ":7:15: objects[0].material: 'stele' is not one of " KNOWN_MATERIALS
+                             "; did you mean 'steel'?"},
+        {MATERIAL "{reflection: 0.5, lambert: 0.05, glossy: {albedo: 0.2}}\n",
+         ":7:65: objects[0].material.glossy.albedo: must be 0...0.09292 (reflection^2 - pi "
+         "lambert), or the surface returns more than it receives; it is 0.2"},
+        {MATERIAL "{fluid: {density: 2}}\n",
+         ":7:23: objects[0].material.fluid.speed: missing; a fluid needs it (ratio to the "
+         "water's)"},
+        {MATERIAL "{reflection: 0.9, fluid: {density: 2, speed: 3}}\n",
+         ":7:28: objects[0].material.reflection: fluid tells the reflection at every angle; remove "
+         "one of the two"},
+        {BASE "seabed: {forward: medium snad}\n",
+         ":4:19: seabed.forward: 'medium snad' is not one of " KNOWN_MATERIALS
+         "; did you mean 'medium sand'?"},
+        {BASE "seabed: {forward: {lambert: 0 dB}}\n",
+         ":4:29: seabed.forward.lambert: must be 0...0.3183 (1 / pi), or the surface returns more "
+         "than it receives; it is 1"},
+        {BASE "seabed: {lambert: 0.02, forward: {reflection: 0.2}}\n",
+         ":4:34: seabed.forward.lambert: must be 0...0.01273 (reflection^2 / pi), or the surface "
+         "returns more than it receives; it is the seabed's own, 0.02"},
+        {BASE "injection: {interactions: 0}\n",
+         ":4:27: injection.interactions: must be 1...8 surfaces, not 0"},
+        {BASE "injection: {estimator: brute_force}\n",
+         ":4:24: injection.estimator: brute_force traces the whole patch and needs mode: "
+         "resynthesise"},
+        {BASE "injection: {estimator: brute_force, mode: resynthesise}\n",
+         ":4:24: injection.estimator: brute_force needs a source that rays can hit; set transducer "
+         "in sonar"},
+        {BASE "surface: {depth: 20, reflection: -0.5, lambert: 0.05, glossy: {albedo: 0.1}}\n",
+         ":4:72: surface.glossy.albedo: must be 0...0.09292 (reflection^2 - pi lambert), or the "
+         "surface returns more than it receives; it is 0.1"},
+        {BASE "elements: {first_time: 60 ms, last_time: 50 ms}\n",
+         ":4:42: elements.last_time: must not be before first_time, 0.06 s, but is 0.05 s"},
+        {BASE "elements: {sampling_rate: 20 kHz}\n",
+         ":4:27: elements.sampling_rate: must be at least 30000 Hz for the sonar's band, not 20000 "
+         "Hz"},
+        {BASE "elements: {form: passband, sampling_rate: 229 kHz}\n",
+         ":4:43: elements.sampling_rate: must be at least 230000 Hz for the sonar's band, not "
+         "229000 Hz"},
     };
     for (size_t i = 0; i < COUNT(inputs); i++) {
         char text[1000];
@@ -305,146 +273,13 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
     expect_all(state, wrong, COUNT(wrong));
 }
 
-#define MATERIAL OBJECT "sphere\n    diameter: 1\n    material: " /* its value on line 7 */
-#define KNOWN_MATERIALS                                                                            \
-    "steel, concrete, rubber, wood, rock, gravel, coarse sand, medium sand, fine sand, silt, clay"
-
-static void test_materials(void **state)
-{
-    static const struct wrong wrong[] = {
-        {MATERIAL "stele\n", ":7:15: objects[0].material: 'stele' is not one of " KNOWN_MATERIALS
-                             "; did you mean 'steel'?"},
-        {MATERIAL "{name: bronze}\n",
-         ":7:22: objects[0].material.name: 'bronze' is not one of " KNOWN_MATERIALS},
-        {MATERIAL "{name: }\n",
-         ":7:22: objects[0].material.name: has no value; write one or remove the key"},
-        {MATERIAL "[steel]\n", ":7:15: objects[0].material: must be a section of 'key: value' "
-                               "lines, not a list"},
-        {MATERIAL "{nmae: steel}\n",
-         ":7:16: objects[0].material.nmae: unknown key; did you mean 'name'?"},
-        {MATERIAL "{sediment: silt}\n",
-         ":7:16: objects[0].material.sediment: unknown key; known here are name, reflection, "
-         "roughness, lambert, exponent, glossy, fluid"},
-        {MATERIAL "{reflection: 2}\n",
-         ":7:28: objects[0].material.reflection: must be -1...1, not 2"},
-        {MATERIAL "{exponent: 0.5}\n",
-         ":7:26: objects[0].material.exponent: must be 1...64, not 0.5"},
-        {MATERIAL "{glossy: {slope: 0.2}}\n",
-         ":7:24: objects[0].material.glossy.albedo: missing; add it (fraction of the energy that "
-         "the cone returns at most)"},
-        {MATERIAL "{glossy: {albedo: 0.1, slope: 2}}\n",
-         ":7:45: objects[0].material.glossy.slope: must be 0.01...1, not 2"},
-        {MATERIAL "{reflection: 0.5, lambert: 0.05, glossy: {albedo: 0.2}}\n",
-         ":7:65: objects[0].material.glossy.albedo: must be 0...0.09292 (reflection^2 - pi "
-         "lambert), or the surface returns more than it receives; it is 0.2"},
-        {MATERIAL "{fluid: {density: 2}}\n",
-         ":7:23: objects[0].material.fluid.speed: missing; a fluid needs it (ratio to the "
-         "water's)"},
-        {MATERIAL "{fluid: {density: 2, speed: 30}}\n",
-         ":7:43: objects[0].material.fluid.speed: must be 0.01...20 times the water's, not 30"},
-        {MATERIAL "{fluid: {density: 2, speed: 3, loss: -1}}\n",
-         ":7:52: objects[0].material.fluid.loss: must be 0...1, not -1"},
-        {MATERIAL "{reflection: 0.9, fluid: {density: 2, speed: 3}}\n",
-         ":7:28: objects[0].material.reflection: fluid tells the reflection at every angle; remove "
-         "one of the two"},
-    };
-    expect_all(state, wrong, COUNT(wrong));
-}
-
-static void test_the_seabeds_forward_material(void **state)
-{
-    static const struct wrong wrong[] = {
-        {BASE "seabed: {forward: medium snad}\n",
-         ":4:19: seabed.forward: 'medium snad' is not one of " KNOWN_MATERIALS
-         "; did you mean 'medium sand'?"},
-        {BASE "seabed: {forward: {sediment: mud}}\n",
-         ":4:30: seabed.forward.sediment: 'mud' is not one of " KNOWN_MATERIALS},
-        {BASE "seabed: {forward: {name: silt}}\n",
-         ":4:20: seabed.forward.name: unknown key; known here are sediment, rule, reflection, "
-         "roughness, lambert, exponent, glossy, fluid"},
-        {BASE "seabed: {forward: {rule: mpa}}\n",
-         ":4:26: seabed.forward.rule: 'mpa' is not one of model, map; did you mean 'map'?"},
-        {BASE "seabed: {forward: {lambert: 0 dB}}\n",
-         ":4:29: seabed.forward.lambert: must be 0...0.3183 (1 / pi), or the surface returns more "
-         "than it receives; it is 1"},
-        {BASE "seabed: {lambert: 0.02, forward: {reflection: 0.2}}\n",
-         ":4:34: seabed.forward.lambert: must be 0...0.01273 (reflection^2 / pi), or the surface "
-         "returns more than it receives; it is the seabed's own, 0.02"},
-        {BASE "seabed: {forward: {sediment: clay, reflection: 0.3, fluid: {loss: 0}}}\n",
-         ":4:48: seabed.forward.reflection: fluid tells the reflection at every angle; remove one "
-         "of the two"},
-    };
-    expect_all(state, wrong, COUNT(wrong));
-}
-
-static void test_interactions(void **state)
-{
-    static const struct wrong wrong[] = {
-        {BASE "injection: {interactions: 0}\n",
-         ":4:27: injection.interactions: must be 1...8 surfaces, not 0"},
-        {BASE "injection: {interactions: 9}\n",
-         ":4:27: injection.interactions: must be 1...8 surfaces, not 9"},
-        {BASE "injection: {interactions: two}\n",
-         ":4:27: injection.interactions: 'two' is not a whole number from 1 to 8"},
-        {BASE "injection: {estimator: conect}\n",
-         ":4:24: injection.estimator: 'conect' is not one of connect, brute_force; did you mean "
-         "'connect'?"},
-        {BASE "injection: {estimator: brute_force}\n",
-         ":4:24: injection.estimator: brute_force traces the whole patch and needs mode: "
-         "resynthesise"},
-        {BASE "injection: {estimator: brute_force, mode: resynthesise}\n",
-         ":4:24: injection.estimator: brute_force needs a source that rays can hit; set transducer "
-         "in sonar"},
-        {BASE "injection: {order_energies: 2}\n",
-         ":4:29: injection.order_energies: '2' is neither true nor false"},
-    };
-    expect_all(state, wrong, COUNT(wrong));
-}
-
-static void test_elements(void **state)
-{
-    static const struct wrong wrong[] = {
-        {BASE "surface: {depth: 20, reflection: -0.5, lambert: 0.05, glossy: {albedo: 0.1}}\n",
-         ":4:72: surface.glossy.albedo: must be 0...0.09292 (reflection^2 - pi lambert), or the "
-         "surface returns more than it receives; it is 0.1"},
-        {BASE "elements: {hydrophones: {count: 0}}\n",
-         ":4:33: elements.hydrophones.count: must be 1...65536, not 0"},
-        {BASE "elements: {hydrophones: 4}\n", ":4:25: elements.hydrophones: must be a section of "
-                                              "'key: value' lines, not a single value"},
-        {BASE "elements: {pings: {spacing: -1 m}}\n",
-         ":4:29: elements.pings.spacing: must be 1e-06...1e+06 m, not -1"},
-        {BASE "elements: {form: bassband}\n",
-         ":4:18: elements.form: 'bassband' is not one of baseband, passband; did you mean "
-         "'baseband'?"},
-        {BASE "elements: {first_time: 60 ms, last_time: 50 ms}\n",
-         ":4:42: elements.last_time: must not be before first_time, 0.06 s, but is 0.05 s"},
-        {BASE "elements: {chirp: 0 ms}\n", ":4:19: elements.chirp: must be 1e-09...100 s, not 0"},
-        {BASE "elements: {source_level: 301 dB}\n",
-         ":4:26: elements.source_level: must be 0...300 dB, not 301"},
-        {BASE "elements: {aspect_limit: 91 deg}\n",
-         ":4:26: elements.aspect_limit: must be 0...90 deg, not 91"},
-        {BASE "elements: {sampling_rate: 0.1}\n",
-         ":4:27: elements.sampling_rate: must be 1...1e+10 Hz, not 0.1"},
-        {BASE "elements: {sampling_rate: 20 kHz}\n",
-         ":4:27: elements.sampling_rate: must be at least 30000 Hz for the sonar's band, not 20000 "
-         "Hz"},
-        {BASE "elements: {form: passband, sampling_rate: 229 kHz}\n",
-         ":4:43: elements.sampling_rate: must be at least 230000 Hz for the sonar's band, not "
-         "229000 Hz"},
-    };
-    expect_all(state, wrong, COUNT(wrong));
-}
-
 static void test_yaml_that_is_not_wanted(void **state)
 {
     static const struct wrong wrong[] = {
         {"", ":1:1: there is nothing in it"},
-        {"# only a comment\n", ":2:1: there is nothing in it"},
         {"---\n", ":2:1: there is nothing in it; start with 'sonject: 1'"},
         {BASE "---\nsonject: 1\n", ":4:1: a second document starts here; keep one in a file"},
         {BASE "medium: {}\nmedium: {}\n", ":5:1: medium: given twice, first on line 4; remove one"},
-        {BASE "medium:\n  sound_speed: 1\n  sound_speed: 2\n",
-         ":6:3: medium.sound_speed: given twice, first on line 5; remove one"},
         {BASE "medium: &m {sound_speed: 1500}\n",
          ":4:9: medium: anchors and tags (&name, !name) are not supported; remove it"},
         {BASE "medium: *m\n",
@@ -482,14 +317,11 @@ static void test_overrides_that_are_wrong(void **state)
     } wrong[] = {
         {"sonar.altitude", "--set sonar.altitude: has no '='; write key.path=value"},
         {"sonar.altitude=", "--set sonar.altitude: has no value; write key.path=value"},
-        {"sonar.altitude=  ", "--set sonar.altitude: has no value; write key.path=value"},
         {"=3", "--set : not a key path; write it as 'objects[0].heading'"},
         {"sonar..altitude=3", "--set sonar..altitude: not a key path; write it as "
                               "'objects[0].heading'"},
-        {"sonar.=3", "--set sonar.: not a key path; write it as 'objects[0].heading'"},
         {"objects[0]heading=3", "--set objects[0]heading: not a key path; write it as "
                                 "'objects[0].heading'"},
-        {"objects[=3", "--set objects[: not a key path; write it as 'objects[0].heading'"},
         {"objects[0=3", "--set objects[0: not a key path; ']' is missing"},
         {"objects[-1].x=3", "--set objects[-1].x: not a key path; an index must be a whole number "
                             "from 0"},
@@ -506,13 +338,10 @@ static void test_overrides_that_are_wrong(void **state)
          "scene is"},
         {"sonar.altitud=3", "--set sonar.altitud: unknown key; did you mean 'altitude'?"},
         {"sonar.altitude=3 kg", "--set sonar.altitude: unit 'kg' is not one of m, km, cm, mm"},
-        {"sonar.altitude=-1 m", "--set sonar.altitude: must be 1e-06...1e+06 m, not -1"},
         {"sonar={altitude: 3}",
          "--set sonar: sonar.frequency: missing; add it (centre frequency)\n"
          "--set sonar: sonar.bandwidth: missing; add it (sets the range resolution, c / (2 "
          "bandwidth))"},
-        {"sonar={frequency: 1e5, bandwidth: 3e4, altitude: deep}",
-         "--set sonar: sonar.altitude: 'deep' is not a number with a unit of m, km, cm, mm"},
         {"medium={sound_speed: *a}", "--set medium: medium.sound_speed: aliases (*name) are not "
                                      "supported; write the value out"},
         {"medium={sound_speed: 1500", "--set medium: not valid YAML (while "
@@ -549,7 +378,5 @@ static void test_a_missing_file_is_named(void **state)
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_unknown_keys),
              TEST(test_missing_keys), TEST(test_wrong_values),
-             TEST(test_keys_that_exclude_or_need_each_other), TEST(test_materials),
-             TEST(test_the_seabeds_forward_material), TEST(test_interactions), TEST(test_elements),
-             TEST(test_yaml_that_is_not_wanted), TEST(test_overrides_that_are_wrong),
-             TEST(test_a_missing_file_is_named))
+             TEST(test_keys_that_exclude_or_need_each_other), TEST(test_yaml_that_is_not_wanted),
+             TEST(test_overrides_that_are_wrong), TEST(test_a_missing_file_is_named))

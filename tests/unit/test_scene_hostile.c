@@ -34,14 +34,6 @@ static size_t lines_of(const char *text, size_t bytes)
     return lines;
 }
 
-/* Reads the scene that is there as a user who trusts its code would. */
-static sonject_status read_with_code(struct scene_folder *folder)
-{
-    scene_clear(&folder->scene);
-    memset(&folder->report, 0, sizeof folder->report);
-    return read_scene_file(&folder->report, folder->file, NULL, 0, true, &folder->scene);
-}
-
 /* A mutated name may be that of a folder. */
 static bool names_what_cannot_be_read(const struct scene_folder *folder, sonject_status status)
 {
@@ -75,12 +67,31 @@ static void expect_places(const char *message, const char *path, const char *tex
     }
 }
 
+/* Reads the text from memory of its own size, which is quicker than from a file, and so that
+ * reading beyond it is found; one with a zero byte, which only a file can have, from there. */
+static sonject_status read_bytes(struct scene_folder *folder, const char *text, size_t bytes)
+{
+    if (memchr(text, 0, bytes)) {
+        write_scene(folder, text, bytes);
+        return read_scene_with(folder, NULL, 0, true);
+    }
+    char *copy = malloc(bytes + 1);
+    assert_non_null(copy);
+    memcpy(copy, text, bytes);
+    copy[bytes] = 0;
+    const struct scene_source source = {
+        .path = folder->file, .text = copy, .allows_user_shapes = true};
+    scene_clear(&folder->scene);
+    const sonject_status status = scene_source_read(&source, &folder->report, &folder->scene);
+    free(copy);
+    return status;
+}
+
 /* Whatever the text, it is a scene or a message that leads to lines of it. */
 static sonject_status expect_taken_or_explained(struct scene_folder *folder, const char *text,
                                                 size_t bytes)
 {
-    write_scene(folder, text, bytes);
-    const sonject_status status = read_with_code(folder);
+    const sonject_status status = read_bytes(folder, text, bytes);
     if (status == SONJECT_OK || names_what_cannot_be_read(folder, status))
         return status;
     if (status != SONJECT_ERROR_INPUT || !folder->report.message[0])
@@ -215,14 +226,8 @@ static void test_an_example_cut_at_every_length(void **state)
     size_t bytes;
     size_t taken = 0;
     char *text = example_scene("demo", &bytes);
-    for (size_t length = 0; length <= bytes; length++) {
-        /* A copy of its own size, so that reading beyond it is found. */
-        char *cut = malloc(length + 1);
-        assert_non_null(cut);
-        memcpy(cut, text, length);
-        taken += expect_taken_or_explained(*state, cut, length) == SONJECT_OK;
-        free(cut);
-    }
+    for (size_t length = 0; length <= bytes; length++)
+        taken += expect_taken_or_explained(*state, text, length) == SONJECT_OK;
     /* Most of the file is needed, but its end holds objects that may be missing. */
     assert_true(taken > 0 && taken < bytes / 2);
     free(text);
@@ -276,6 +281,16 @@ static size_t mutate(struct dice *dice, char *text, size_t bytes)
     }
 }
 
+/* One to four changes to a copy of the text; its bytes. */
+static size_t mutate_some(struct dice *dice, char mutated[TEXT_CAPACITY], const char *text,
+                          size_t bytes)
+{
+    memcpy(mutated, text, bytes);
+    for (size_t changes = 1 + throw(dice, 4); changes > 0 && bytes > 0; changes--)
+        bytes = mutate(dice, mutated, bytes);
+    return bytes;
+}
+
 /* Puts the folder of the examples' targets in place of "../targets/". */
 static size_t lead_to_targets(char *text, size_t bytes)
 {
@@ -302,10 +317,7 @@ static void test_mutated_examples(void **state)
         bytes = lead_to_targets(text, bytes);
         for (size_t j = 0; j < wanted; j++) {
             char mutated[TEXT_CAPACITY];
-            size_t length = bytes;
-            memcpy(mutated, text, bytes);
-            for (size_t changes = 1 + throw(&dice, 4); changes > 0 && length > 0; changes--)
-                length = mutate(&dice, mutated, length);
+            const size_t length = mutate_some(&dice, mutated, text, bytes);
             refused += expect_taken_or_explained(*state, mutated, length) != SONJECT_OK;
         }
         /* Many changes fall into comments; but the mutations must hurt. */
@@ -320,7 +332,7 @@ static sonject_status expect_target_taken_or_explained(struct scene_folder *fold
                                                        const char *text, size_t bytes)
 {
     write_file(folder, "target.yaml", text, bytes);
-    const sonject_status status = read_with_code(folder);
+    const sonject_status status = read_scene_with(folder, NULL, 0, true);
     if (status == SONJECT_OK || names_what_cannot_be_read(folder, status))
         return status;
     if (status != SONJECT_ERROR_INPUT || !folder->report.message[0])
@@ -346,10 +358,7 @@ static void test_mutated_targets(void **state)
         assert_true(bytes > 100 && bytes < TEXT_CAPACITY);
         for (size_t j = 0; j < wanted; j++) {
             char mutated[TEXT_CAPACITY];
-            size_t length = bytes;
-            memcpy(mutated, text, bytes);
-            for (size_t changes = 1 + throw(&dice, 4); changes > 0 && length > 0; changes--)
-                length = mutate(&dice, mutated, length);
+            const size_t length = mutate_some(&dice, mutated, text, bytes);
             refused += expect_target_taken_or_explained(folder, mutated, length) != SONJECT_OK;
         }
         free(text);

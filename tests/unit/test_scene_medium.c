@@ -121,10 +121,9 @@ static void test_absorption(void **state)
     assert_true(*absorption == sonject_absorption(455e3, -1.0, 5.0, 200.0, 8.0));
 }
 
-#define GOOD_PROFILE "profile: {heights: [0 m, 9 m], sound_speeds: [1500, 1490]}\n"
-#define MEDIUM       HEAD "medium:\n" /* its keys begin on line 5 */
-#define LAYERS       MEDIUM "  layers:\n"
-#define PROFILE      MEDIUM "  profile: "
+#define MEDIUM  HEAD "medium:\n" /* its keys begin on line 5 */
+#define LAYERS  MEDIUM "  layers:\n"
+#define PROFILE MEDIUM "  profile: "
 
 static void test_what_is_wrong(void **state)
 {
@@ -133,31 +132,14 @@ static void test_what_is_wrong(void **state)
     } wrong[] = {
         {MEDIUM "  sound_speed: 1500\n  layers: [{bottom: 0, sound_speed: 1500}]\n",
          ":5:3: medium: more than one of sound_speed, layers and profile is there; give one"},
-        {MEDIUM "  layers: [{bottom: 0, sound_speed: 1500}]\n  " GOOD_PROFILE,
-         ":5:3: medium: more than one of sound_speed, layers and profile is there; give one"},
-        {MEDIUM "  sound_speed: 1500\n  " GOOD_PROFILE,
-         ":5:3: medium: more than one of sound_speed, layers and profile is there; give one"},
         {MEDIUM "  layers: []\n",
          ":5:11: medium.layers: must be a list, such as [{bottom: 0 m, sound_speed: 1490 m/s}, "
          "{bottom: 12 m, ...}]"},
-        {MEDIUM "  layers: 1500\n",
-         ":5:11: medium.layers: must be a list, such as [{bottom: 0 m, sound_speed: 1490 m/s}, "
-         "{bottom: 12 m, ...}]"},
-        {LAYERS "    - 1500\n", ":6:7: medium.layers[0]: must be a section of 'key: value' lines, "
-                                "not a single value"},
         {LAYERS "    - {bottom: 0}\n",
          ":6:7: medium.layers[0].sound_speed: missing; add it (of the layer)"},
-        {LAYERS "    - {bottom: 0, sound_sped: 1500}\n",
-         ":6:19: medium.layers[0].sound_sped: unknown key; did you mean 'sound_speed'?"},
-        {LAYERS "    - {bottom: 0, sound_speed: fast}\n",
-         ":6:32: medium.layers[0].sound_speed: 'fast' is not a number with a unit of m/s, km/s"},
-        {LAYERS "    - {bottom: 0, sound_speed: 1}\n",
-         ":6:32: medium.layers[0].sound_speed: must be 100...10000 m/s, not 1"},
         {LAYERS "    - {bottom: 1 m, sound_speed: 1500}\n",
          ":6:16: medium.layers[0].bottom: must be 0 m: the first layer lies on the seabed; not "
          "1 m"},
-        {LAYERS "    - {bottom: 0, sound_speed: 1500}\n    - {bottom: .inf, sound_speed: 1500}\n",
-         ":7:16: medium.layers[1].bottom: must be -1e+06...1e+06 m, not inf"},
         {LAYERS "    - {bottom: 0, sound_speed: 1500}\n    - {bottom: 0, sound_speed: 1500}\n",
          ":7:16: medium.layers[1].bottom: must lie over the one before it, 0 m, by at least 1e-06 "
          "m, not at 0 m"},
@@ -169,11 +151,7 @@ static void test_what_is_wrong(void **state)
          ":7:7: medium.layers[1].density: give it for all layers or for none"},
         {LAYERS "    - {bottom: 0, sound_speed: 1500, density: 0}\n",
          ":6:47: medium.layers[0].density: must be 1e-06...1e+06 kg/m3, not 0"},
-        {PROFILE "cast.csv\n", ":5:12: medium.profile: must be a section of 'key: value' lines, "
-                               "not a single value"},
         {PROFILE "{}\n",
-         ":5:12: medium.profile: none of file, heights and depths is there; give one"},
-        {PROFILE "{sound_speeds: [1500, 1500]}\n",
          ":5:12: medium.profile: none of file, heights and depths is there; give one"},
         {PROFILE "{heights: [1, 2], depths: [1, 2], sound_speeds: [1500, 1500]}\n",
          ":5:12: medium.profile: more than one of file, heights and depths is there; give one"},
@@ -184,16 +162,10 @@ static void test_what_is_wrong(void **state)
          ":5:44: medium.profile.sound_speeds: has 1 entries, but heights has 2"},
         {PROFILE "{depths: [1], sound_speeds: [1500]}\n",
          ":5:21: medium.profile.depths: a profile needs at least two samples, not 1"},
-        {PROFILE "{heights: 1, sound_speeds: [1500]}\n",
-         ":5:22: medium.profile.heights: must be a list, such as [0 m, 12 m, 15 m]"},
         {PROFILE "{heights: [1, 2], sound_speeds: []}\n",
          ":5:44: medium.profile.sound_speeds: must be a list, such as [1490 m/s, 1500 m/s]"},
         {PROFILE "{heights: [1, 2 kg], sound_speeds: [1500, 1500]}\n",
          ":5:26: medium.profile.heights[1]: unit 'kg' is not one of m, km, cm, mm"},
-        {PROFILE "{heights: [1, [2]], sound_speeds: [1500, 1500]}\n",
-         ":5:26: medium.profile.heights[1]: must be a single value, not a list"},
-        {PROFILE "{heights: [1, 2], sound_speeds: [1500, .nan]}\n",
-         ":5:51: medium.profile.sound_speeds[1]: '.nan' is not a number with a unit of m/s, km/s"},
         {PROFILE "{heights: [1, 2], sound_speeds: [15, 1500]}\n",
          ":5:45: medium.profile.sound_speeds[0]: must be 100...10000 m/s, not 15"},
         {PROFILE "{heights: [1, 3, 2], sound_speeds: [1500, 1500, 1500]}\n",
@@ -210,25 +182,6 @@ static void test_what_is_wrong(void **state)
          "layers"},
         {MEDIUM "  absorption: -1 dB/m\n",
          ":5:15: medium.absorption: must be 0...100 dB/m, not -1"},
-        {MEDIUM "  absorption: 3 dB\n",
-         ":5:15: medium.absorption: unit 'dB' is not one of dB/m, dB/km"},
-        {MEDIUM "  absorption: sea\n",
-         ":5:15: medium.absorption: 'sea' is not a number with a unit of dB/m, dB/km"},
-        {MEDIUM "  absorption: [1]\n", ":5:15: medium.absorption: must be a section of 'key: "
-                                       "value' lines, not a list"},
-        {MEDIUM "  absorption: {temperature: 12 C}\n",
-         ":5:15: medium.absorption.salinity: missing; add it (per mille)\n"
-         ":5:15: medium.absorption.depth: missing; add it (below the sea surface)"},
-        {MEDIUM "  absorption: {temperature: 31 C, salinity: 35, depth: 0}\n",
-         ":5:29: medium.absorption.temperature: must be -2...30 C, not 31"},
-        {MEDIUM "  absorption: {temperature: 285 K, salinity: 35, depth: 0}\n",
-         ":5:29: medium.absorption.temperature: unit 'K' is not one of C"},
-        {MEDIUM "  absorption: {temperature: 12, salinity: 41, depth: 0}\n",
-         ":5:43: medium.absorption.salinity: must be 0...40 per mille, not 41"},
-        {MEDIUM "  absorption: {temperature: 12, salinity: 35, depth: -1}\n",
-         ":5:54: medium.absorption.depth: must be 0...5000 m, not -1"},
-        {MEDIUM "  absorption: {temperature: 12, salinity: 35, depth: 1, ph: 4}\n",
-         ":5:61: medium.absorption.ph: must be 7...9, not 4"},
     };
     struct scene_folder *folder = *state;
     for (size_t i = 0; i < COUNT(wrong); i++) {

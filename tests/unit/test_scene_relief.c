@@ -2,7 +2,6 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "claims.h"
-#include "inject/scene_hash.h"
 #include "scene/placement.h"
 #include "scene_folder.h"
 
@@ -157,35 +156,6 @@ static void test_irregular_ripples(void **state)
     ground_clear(&other);
 }
 
-static void test_refusals(void **state)
-{
-    static const struct {
-        const char *text, *message;
-    } cases[] = {
-        {SEEN_FROM("port") "    {pit: 1}\n", ":6:5: seabed.relief: must be a list"},
-        {SEEN_FROM("port") "  - {}\n", "none of ripples, mound, pit, scour and heights"},
-        {SEEN_FROM("port") "  - {pit: {radius: 1, depth: 1}, mound: {radius: 1, height: 1}}\n",
-         "more than one of"},
-        {SEEN_FROM("port") "  - ripples: {height: 1 cm}\n",
-         "relief[0].ripples.wavelength: missing"},
-        {SEEN_FROM("port") "  - ripples: {wavelength: 1 m, height: 1 cm, sharpness: 2}\n",
-         "ripples.sharpness: must be 0...1"},
-        {SEEN_FROM("port") "  - pit: {radius: 0, depth: 1 cm}\n", "pit.radius: must be"},
-        {SEEN_FROM("port") "  - pit: {radius: 1, depth: -1 cm}\n", "pit.depth: must be 0...100 m"},
-        {SEEN_FROM("port") "  - mound: {radius: 1, height: 1 cm, position: {row: 1}}\n",
-         "give one pair"},
-        {SEEN_FROM("port") "  - scour: {width: 1, depth: 1 cm}\n", "scour.object: missing"},
-        {SEEN_FROM("port") "  - dune: {}\n", "dune"},
-    };
-    struct scene_folder *folder = *state;
-    for (size_t i = 0; i < COUNT(cases); i++) {
-        write_scene(folder, cases[i].text, strlen(cases[i].text));
-        assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-        if (!strstr(folder->report.message, cases[i].message))
-            fail_msg("'%s' does not say '%s'", folder->report.message, cases[i].message);
-    }
-}
-
 /* What only shows when the scene is used. */
 static void test_refusals_in_use(void **state)
 {
@@ -213,38 +183,6 @@ static void test_refusals_in_use(void **state)
     }
 }
 
-static void hash_of(struct scene_folder *folder, char text[HASH_TEXT_CAPACITY])
-{
-    assert_int_equal(scene_hash(&folder->report, &folder->scene, "image", text), SONJECT_OK);
-}
-
-/* Every value counts in the hash of a scene, and a caller's heights do. */
-static void test_hash(void **state)
-{
-    struct scene_folder *folder = *state;
-    char before[HASH_TEXT_CAPACITY], after[HASH_TEXT_CAPACITY];
-    expect_scene_taken(folder, SEEN_FROM("port") "  - mound: {radius: 1 m, height: 10 cm}\n");
-    struct relief_feature *feature = folder->scene.relief.features;
-    double *numbers[] = {&feature->height_m,      &feature->wavelength_m, &feature->heading_rad,
-                         &feature->phase_rad,     &feature->sharpness,    &feature->irregularity,
-                         &feature->radius_m,      &feature->width_m,      &feature->position_along,
-                         &feature->position_range};
-    hash_of(folder, before);
-    for (size_t i = 0; i < COUNT(numbers); i++) {
-        *numbers[i] += 0.5;
-        hash_of(folder, after);
-        assert_string_not_equal(before, after);
-        strcpy(before, after);
-    }
-    const float heights[4] = {0.0f, 0.0f, 0.0f, 0.1f};
-    const sonject_relief_params grid = {2, 2, 0.0, 0.0, 0.025, 0.025};
-    assert_int_equal(
-        relief_features_set_grid(&folder->scene.relief, &folder->report, &grid, heights),
-        SONJECT_OK);
-    hash_of(folder, after);
-    assert_string_not_equal(before, after);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -253,9 +191,7 @@ int main(void)
         IN_FOLDER(test_features_lie_where_they_are_told),
         IN_FOLDER(test_ripples),
         IN_FOLDER(test_irregular_ripples),
-        IN_FOLDER(test_refusals),
         IN_FOLDER(test_refusals_in_use),
-        IN_FOLDER(test_hash),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

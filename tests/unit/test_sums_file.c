@@ -9,7 +9,7 @@
 
 #define SUMS 18
 
-static char *overrides[] = {"injection.seed=7", ""};
+static const char *overrides[] = {"injection.seed=7", ""};
 static const struct scene_source source = {
     .path = "scene.yaml", .text = "sonject: 1\n", .overrides = overrides, .override_count = 2};
 static const int64_t sums[SUMS] = {0, 0, 5, 0,         0,         0, 0, -7, 0,
