@@ -14,29 +14,6 @@
 #define RANDOM_SWAY  0x73776179 /* streams of random numbers that no other part uses */
 #define RANDOM_YAW   0x79617721
 
-bool motion_samples_are_good(enum motion_kind kind, const double *along_track_m,
-                             const double *values, size_t count, size_t *sample, const char **what)
-{
-    const bool is_sway = kind == MOTION_SWAY;
-    *sample = count;
-    *what = "must have 2...65536 samples";
-    if (count < 2 || count > MOTION_SAMPLES_MAX)
-        return false;
-    for (*sample = 0; *sample < count; ++*sample) {
-        const size_t i = *sample;
-        *what = "its position must be within +-1000 km";
-        if (!(fabs(along_track_m[i]) <= SCALE_MAX_M))
-            return false;
-        *what = "its position must be above that of the sample before";
-        if (i > 0 && !(along_track_m[i] > along_track_m[i - 1]))
-            return false;
-        *what = is_sway ? "its sway must be within +-1000 m" : "its yaw must be within +-0.1 rad";
-        if (!(fabs(values[i]) <= (is_sway ? SWAY_MAX_M : YAW_MAX_RAD)))
-            return false;
-    }
-    return true;
-}
-
 static void motion_table_clear(struct motion_table *table)
 {
     free(table->along_track_m);

@@ -15,11 +15,6 @@
 #define SCALE_MIN_M        0.1 /* sway from one centimetre to the next is no motion of a sonar */
 #define SCALE_MAX_M        1e6
 
-enum motion_kind {
-    MOTION_SWAY, /* m */
-    MOTION_YAW   /* rad */
-};
-
 /* Linear between its samples, constant beyond. */
 struct motion_table {
     double *along_track_m, *values; /* owned */
@@ -31,11 +26,7 @@ struct aperture_motion {
     struct motion_table sway_table, yaw_table;
 };
 
-/* Samples from callers; on failure *sample is the wrong one, or count, and *what says why. */
-bool motion_samples_are_good(enum motion_kind kind, const double *along_track_m,
-                             const double *values, size_t count, size_t *sample, const char **what);
-
-/* Takes a copy of good samples in place of the table's. Errors: MEMORY. */
+/* Takes a copy of samples, whose positions rise, in place of the table's. Errors: MEMORY. */
 sonject_status motion_table_set(struct motion_table *table, struct report *report,
                                 const double *along_track_m, const double *values, size_t count);
 

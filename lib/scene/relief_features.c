@@ -16,33 +16,9 @@ bool relief_grid_fits(uint64_t rows, uint64_t columns)
            columns <= RELIEF_GRID_SIDE_MAX && rows * columns <= GRID_SIZE_MAX;
 }
 
-static sonject_status check_grid(const sonject_relief_params *grid, const float *heights_m,
-                                 struct report *report)
-{
-    struct check check = {report, NULL, SONJECT_OK};
-    if (!relief_grid_fits(grid->rows, grid->columns))
-        check_failure(&check, "relief", "must be 2...%u rows and columns, at most 2^24 points",
-                      RELIEF_GRID_SIDE_MAX);
-    check_coordinate(&check, "relief's first_along_track", grid->first_along_track_m);
-    check_coordinate(&check, "relief's first_ground_range", grid->first_ground_range_m);
-    check_positive_length(&check, "relief's row_spacing", grid->row_spacing_m);
-    check_positive_length(&check, "relief's column_spacing", grid->column_spacing_m);
-    for (size_t i = 0; check.status == SONJECT_OK && i < (size_t)grid->rows * grid->columns; i++)
-        if (!(fabs((double)heights_m[i]) <= RELIEF_HEIGHT_MAX_M))
-            check_failure(&check, "relief",
-                          "must be within %g m of the mean seabed; at row %zu, column %zu it is %g "
-                          "m",
-                          RELIEF_HEIGHT_MAX_M, i / grid->columns, i % grid->columns,
-                          (double)heights_m[i]);
-    return check.status;
-}
-
 sonject_status relief_features_append(struct relief_features *features, struct report *report,
                                       const struct relief_feature *feature)
 {
-    if (features->count >= RELIEF_FEATURES_MAX)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "relief must be at most %d features; join some", RELIEF_FEATURES_MAX);
     struct relief_feature *grown =
         realloc(features->features, (features->count + 1) * sizeof *grown);
     CHECK_MEMORY(report, grown, "relief");
@@ -51,21 +27,12 @@ sonject_status relief_features_append(struct relief_features *features, struct r
     return SONJECT_OK;
 }
 
-sonject_status relief_features_set_grid(struct relief_features *features, struct report *report,
-                                        const sonject_relief_params *grid, const float *heights_m)
+void relief_features_take_grid(struct relief_features *features, const sonject_relief_params *grid,
+                               float *heights_m)
 {
-    float *copy = NULL;
-    if (grid->rows > 0) {
-        CHECK(check_grid(grid, heights_m, report));
-        const size_t count = (size_t)grid->rows * grid->columns;
-        copy = allocate_array(count, sizeof *copy);
-        CHECK_MEMORY(report, copy, "relief");
-        memcpy(copy, heights_m, count * sizeof *copy);
-    }
     free(features->heights_m);
-    features->heights_m = copy;
+    features->heights_m = heights_m;
     features->grid = *grid;
-    return SONJECT_OK;
 }
 
 void relief_features_clear(struct relief_features *features)

@@ -46,17 +46,16 @@ struct relief_features {
     float *heights_m;           /* owned, rows x columns; NULL: none */
 };
 
-
 /* Whether heights may have so many: 2...RELIEF_GRID_SIDE_MAX of each, at most 2^24 points. */
 bool relief_grid_fits(uint64_t rows, uint64_t columns);
 
-/* Appends a copy. Errors: INPUT (too many), MEMORY. */
+/* Appends a copy; there are fewer than RELIEF_FEATURES_MAX. Errors: MEMORY. */
 sonject_status relief_features_append(struct relief_features *features, struct report *report,
                                       const struct relief_feature *feature);
 
-/* Replaces the heights by a copy; rows 0 takes them away. Errors: INPUT, MEMORY. */
-sonject_status relief_features_set_grid(struct relief_features *features, struct report *report,
-                                        const sonject_relief_params *grid, const float *heights_m);
+/* Takes heights over in place of those that are there: grid->rows x grid->columns, for free(). */
+void relief_features_take_grid(struct relief_features *features, const sonject_relief_params *grid,
+                               float *heights_m);
 
 void relief_features_clear(struct relief_features *features);
 

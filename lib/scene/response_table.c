@@ -1,55 +1,16 @@
 #include "scene/response_table.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 
-#define POSITION_MAX 1e6
-#define VALUE_MAX    1e15
-#define BISECTIONS   60
+#define BISECTIONS 60
 
 static double square_of(struct complex_number value)
 {
     return value.real_part * value.real_part + value.imaginary_part * value.imaginary_part;
-}
-
-static bool refuse(struct response_fault *fault, size_t sample, const char *what)
-{
-    fault->sample = sample;
-    snprintf(fault->what, sizeof fault->what, "%s", what);
-    return false;
-}
-
-bool response_samples_are_good(const double *positions, const double *real_part,
-                               const double *imaginary_part, size_t count,
-                               struct response_fault *fault)
-{
-    double largest = 0.0;
-    if (count < 4 || count > RESPONSE_SAMPLES_MAX) {
-        snprintf(fault->what, sizeof fault->what, "must have 4...%d samples, not %zu",
-                 RESPONSE_SAMPLES_MAX, count);
-        fault->sample = count;
-        return false;
-    }
-    for (size_t i = 0; i < count; i++) {
-        const double a = fabs(real_part[i]);
-        const double b = imaginary_part ? fabs(imaginary_part[i]) : 0.0;
-        if (!(fabs(positions[i]) <= POSITION_MAX))
-            return refuse(fault, i, "its position must be within +-1000000");
-        if (i > 0 && !(positions[i] > positions[i - 1]))
-            return refuse(fault, i, "its position must be above that of the sample before");
-        if (!(a <= VALUE_MAX && b <= VALUE_MAX))
-            return refuse(fault, i, "its value must be a number of at most 1e15");
-        largest = fmax(largest, fmax(a, b));
-    }
-    if (!(largest > 1.0 / VALUE_MAX))
-        return refuse(fault, count, "must have a sample whose value is not 0");
-    if (!(positions[0] < 0.0 && positions[count - 1] > 0.0))
-        return refuse(fault, count, "must reach from below position 0, the target's, to above it");
-    return true;
 }
 
 sonject_status response_table_set(struct response_table *table, struct report *report,

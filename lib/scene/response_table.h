@@ -9,7 +9,9 @@
 
 #include "base/report.h"
 
-#define RESPONSE_SAMPLES_MAX 65536
+#define RESPONSE_SAMPLES_MAX  65536
+#define RESPONSE_POSITION_MAX 1e6
+#define RESPONSE_VALUE_MAX    1e15
 
 struct complex_number {
     double real_part, imaginary_part;
@@ -22,19 +24,9 @@ struct response_table {
     bool is_time;                  /* positions are s, not m */
 };
 
-/* Why samples cannot be used; as they were given, for the caller to say where they stood. */
-struct response_fault {
-    size_t sample; /* count: not one of them */
-    char what[160];
-};
-
-/* Samples from callers: positions rising and within 1000 km (1000 s), from below 0, the target's
- * own place, to above it; at least four; finite, not all 0. imaginary_part: NULL where it is 0. */
-bool response_samples_are_good(const double *positions, const double *real_part,
-                               const double *imaginary_part, size_t count,
-                               struct response_fault *fault);
-
-/* Takes a copy of good samples, in place of what the table held. Errors: MEMORY. */
+/* Takes a copy of samples in place of what the table held: at least two, positions rising from
+ * below 0, the target's own place, to above it, not all 0. imaginary_part: NULL where it is 0.
+ * Errors: MEMORY. */
 sonject_status response_table_set(struct response_table *table, struct report *report,
                                   const double *positions, const double *real_part,
                                   const double *imaginary_part, size_t count, bool is_time);

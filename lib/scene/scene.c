@@ -53,11 +53,6 @@ static void *make_room(void *elements, size_t count, size_t size)
 sonject_status scene_append_object(struct scene *scene, struct report *report,
                                    const sonject_object_params *object)
 {
-    if (scene->object_count >= SCENE_OBJECTS_MAX)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "objects must be at most %d, for label images have 8 bits; split "
-                              "the scene",
-                              SCENE_OBJECTS_MAX);
     sonject_object_params *objects =
         make_room(scene->objects, scene->object_count, sizeof *objects);
     CHECK_MEMORY(report, objects, "objects");
@@ -74,9 +69,6 @@ sonject_status scene_append_object(struct scene *scene, struct report *report,
 sonject_status scene_append_part(struct scene *scene, struct report *report,
                                  const struct scene_part *part)
 {
-    if (scene->part_count >= SCENE_PARTS_MAX)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "parts must be at most %d in a scene; split it", SCENE_PARTS_MAX);
     struct scene_part *parts = make_room(scene->parts, scene->part_count, sizeof *parts);
     CHECK_MEMORY(report, parts, "parts");
     scene->parts = parts;

@@ -105,12 +105,12 @@ void object_init(sonject_object_params *object);
 /* Frees what the scene owns and makes it all zeros, for scene_init or nothing more. */
 void scene_clear(struct scene *scene);
 
-/* Appends a copy, with the name and class that it has by default where it has none. Errors: INPUT
- * (too many), MEMORY. */
+/* Appends a copy, with the name and class that it has by default where it has none; there are fewer
+ * than SCENE_OBJECTS_MAX. Errors: MEMORY. */
 sonject_status scene_append_object(struct scene *scene, struct report *report,
                                    const sonject_object_params *object);
 
-/* Appends a copy. Errors: INPUT (too many), MEMORY. */
+/* Appends a copy; there are fewer than SCENE_PARTS_MAX. Errors: MEMORY. */
 sonject_status scene_append_part(struct scene *scene, struct report *report,
                                  const struct scene_part *part);
 

@@ -202,7 +202,7 @@ struct reader {
     bool allows_user_shapes; /* code in files is wanted */
     bool takes_geometry;     /* of the input file, once all is read */
     bool takes_altitude;
-    const char *moved_folder; /* as in struct scene_text */
+    const char *moved_folder; /* as in struct scene_source */
     size_t moved_overrides;
     const struct number_array *arrays; /* in place of files */
     size_t array_count;

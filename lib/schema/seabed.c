@@ -136,7 +136,6 @@ static sonject_status take_heights(struct scene *scene, struct report *report,
                                    struct swath_file *file)
 {
     struct raster_layout layout = {.channels = 1};
-    struct report check = {{0}, NULL, NULL};
     if (array) {
         layout.rows = array->rows;
         layout.columns = array->column_count;
@@ -161,16 +160,21 @@ static sonject_status take_heights(struct scene *scene, struct report *report,
     sonject_status status =
         (array || pixels) && heights ? SONJECT_OK : report_out_of_memory(report, text->path);
     THEN(status, array ? SONJECT_OK : swath_file_read(report, file, &all, pixels));
-    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++) {
         heights[i] =
             height_of(text, array ? array->values[i] : pixel_number(layout.type, pixels, i));
-    if (status == SONJECT_OK) {
-        status = relief_features_set_grid(&scene->relief, &check, &text->grid, heights);
-        if (status != SONJECT_OK)
-            report_failure(report, status, "%s: %s", text->path, check.message);
+        if (!(fabs((double)heights[i]) <= RELIEF_HEIGHT_MAX_M))
+            status = report_failure(report, SONJECT_ERROR_INPUT,
+                                    "%s: relief must be within %g m of the mean seabed; at row "
+                                    "%zu, column %zu it is %g m",
+                                    text->path, RELIEF_HEIGHT_MAX_M, i / text->grid.columns,
+                                    i % text->grid.columns, (double)heights[i]);
     }
+    if (status == SONJECT_OK)
+        relief_features_take_grid(&scene->relief, &text->grid, heights);
+    else
+        free(heights);
     free(pixels);
-    free(heights);
     return status;
 }
 

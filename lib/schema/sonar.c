@@ -30,46 +30,54 @@ static sonject_status read_table(struct reader *reader, const struct tree_node *
     return status;
 }
 
+/* Along the track, or for time_s not NULL in range or time. */
 static sonject_status read_response_file(struct reader *reader, const struct tree_node *node,
-                                         const struct table_format *format,
+                                         const char *position_m, const char *time_s,
                                          struct response_table *response)
 {
+    const struct table_format format = {.names = {position_m, time_s, "real", "imaginary"},
+                                        .required = 1,
+                                        .samples_max = RESPONSE_SAMPLES_MAX,
+                                        .bytes_max = TABLE_BYTES_MAX,
+                                        .samples_min = 4,
+                                        .most = {RESPONSE_POSITION_MAX, RESPONSE_POSITION_MAX,
+                                                 RESPONSE_VALUE_MAX, RESPONSE_VALUE_MAX},
+                                        .rises = true};
     struct number_table table;
-    struct response_fault fault;
-    sonject_status status = SONJECT_OK;
-    CHECK(read_table(reader, node, format, &table));
+    const char *what = NULL;
+    double largest = 0.0;
+    CHECK(read_table(reader, node, &format, &table));
     const int position = table.values[TIME] ? TIME : POSITION;
     const double *positions = table.values[position];
-    if (!response_samples_are_good(positions, table.values[REAL_PART], table.values[IMAGINARY_PART],
-                                   table.count, &fault))
-        status =
-            number_table_refuse(&table, reader->report, fault.sample, (size_t)position, fault.what);
-    else
-        status = response_table_set(response, reader->report, positions, table.values[REAL_PART],
-                                    table.values[IMAGINARY_PART], table.count, position == TIME);
+    for (int part = REAL_PART; part <= IMAGINARY_PART; part++)
+        for (size_t i = 0; table.values[part] && i < table.count; i++)
+            largest = fmax(largest, fabs(table.values[part][i]));
+    if (!(largest > 1.0 / RESPONSE_VALUE_MAX))
+        what = "must have a sample whose value is not 0";
+    else if (!(positions[0] < 0.0 && positions[table.count - 1] > 0.0))
+        what = "must reach from below position 0, the target's, to above it";
+    const sonject_status status =
+        what ? number_table_refuse(&table, reader->report, table.count, (size_t)position, what)
+             : response_table_set(response, reader->report, positions, table.values[REAL_PART],
+                                  table.values[IMAGINARY_PART], table.count, position == TIME);
     number_table_clear(&table);
     return status;
 }
 
 static sonject_status read_motion_file(struct reader *reader, const struct tree_node *node,
-                                       enum motion_kind kind, struct motion_table *motion)
+                                       const char *column, double most, struct motion_table *motion)
 {
-    const struct table_format format = {
-        {"along_track_m", NULL, kind == MOTION_SWAY ? "sway_m" : "yaw_rad", NULL},
-        1,
-        MOTION_SAMPLES_MAX,
-        TABLE_BYTES_MAX};
+    const struct table_format format = {.names = {"along_track_m", NULL, column},
+                                        .required = 1,
+                                        .samples_max = MOTION_SAMPLES_MAX,
+                                        .bytes_max = TABLE_BYTES_MAX,
+                                        .samples_min = 2,
+                                        .most = {SCALE_MAX_M, 0.0, most},
+                                        .rises = true};
     struct number_table table;
-    size_t sample;
-    const char *what;
-    sonject_status status = SONJECT_OK;
     CHECK(read_table(reader, node, &format, &table));
-    if (!motion_samples_are_good(kind, table.values[0], table.values[2], table.count, &sample,
-                                 &what))
-        status = number_table_refuse(&table, reader->report, sample, 0, what);
-    else
-        status =
-            motion_table_set(motion, reader->report, table.values[0], table.values[2], table.count);
+    const sonject_status status =
+        motion_table_set(motion, reader->report, table.values[0], table.values[2], table.count);
     number_table_clear(&table);
     return status;
 }
@@ -79,11 +87,9 @@ static sonject_status read_motion_file(struct reader *reader, const struct tree_
 static sonject_status read_pulse_file(struct reader *reader, const struct tree_node *node,
                                       void *structure)
 {
-    static const struct table_format format = {
-        {"range_m", "time_s", "real", "imaginary"}, 1, RESPONSE_SAMPLES_MAX, TABLE_BYTES_MAX};
     const sonject_pulse_params *pulse = structure;
     return pulse->kind == SONJECT_PULSE_TABLE
-               ? read_response_file(reader, node, &format, &reader->scene->pulse_table)
+               ? read_response_file(reader, node, "range_m", "time_s", &reader->scene->pulse_table)
                : SONJECT_OK;
 }
 
@@ -174,14 +180,14 @@ static sonject_status read_sway_file(struct reader *reader, const struct tree_no
                                      void *structure)
 {
     (void)structure;
-    return read_motion_file(reader, node, MOTION_SWAY, &reader->scene->motion.sway_table);
+    return read_motion_file(reader, node, "sway_m", SWAY_MAX_M, &reader->scene->motion.sway_table);
 }
 
 static sonject_status read_yaw_file(struct reader *reader, const struct tree_node *node,
                                     void *structure)
 {
     (void)structure;
-    return read_motion_file(reader, node, MOTION_YAW, &reader->scene->motion.yaw_table);
+    return read_motion_file(reader, node, "yaw_rad", YAW_MAX_RAD, &reader->scene->motion.yaw_table);
 }
 
 static void relate_motion(struct check *check, const void *structure)
@@ -235,10 +241,9 @@ static const struct section motion_section = {ROWS(motion_fields), .relations = 
 static sonject_status read_cross_range(struct reader *reader, const struct tree_node *node,
                                        void *structure)
 {
-    static const struct table_format format = {
-        {"along_track_m", NULL, "real", "imaginary"}, 1, RESPONSE_SAMPLES_MAX, TABLE_BYTES_MAX};
     (void)structure;
-    return read_response_file(reader, node, &format, &reader->scene->cross_range_table);
+    return read_response_file(reader, node, "along_track_m", NULL,
+                              &reader->scene->cross_range_table);
 }
 
 static sonject_status read_altitude(struct reader *reader, const struct tree_node *node,

@@ -204,6 +204,42 @@ static sonject_status take_text(struct table_reader *reader, char *text, size_t 
     return status;
 }
 
+sonject_status number_table_refuse(const struct number_table *table, struct report *report,
+                                   size_t sample, size_t column, const char *what)
+{
+    return report_failure(report, SONJECT_ERROR_INPUT, "%s:%zu: %s: %s", table->file,
+                          sample < table->count ? table->lines[sample] : table->last_line,
+                          table->format->names[column], what);
+}
+
+static sonject_status check_samples(const struct number_table *table, struct report *report)
+{
+    const struct table_format *format = table->format;
+    const size_t first = table->values[0] ? 0 : 1;
+    const double *positions = table->values[first];
+    char what[120];
+    if (table->count < format->samples_min) {
+        snprintf(what, sizeof what, "must have %zu...%zu samples, not %zu", format->samples_min,
+                 format->samples_max, table->count);
+        return number_table_refuse(table, report, table->count, first, what);
+    }
+    for (size_t i = 0; i < table->count; i++) {
+        for (size_t k = 0; k < TABLE_COLUMNS_MAX; k++) {
+            const double value = table->values[k] ? table->values[k][i] : 0.0;
+            if (format->most[k] == 0.0 || fabs(value) <= format->most[k])
+                continue;
+            snprintf(what, sizeof what, "must be within +-%g, not %g", format->most[k], value);
+            return number_table_refuse(table, report, i, k, what);
+        }
+        if (format->rises && i > 0 && !(positions[i] > positions[i - 1])) {
+            snprintf(what, sizeof what, "must be above that of the sample before, %g, not %g",
+                     positions[i - 1], positions[i]);
+            return number_table_refuse(table, report, i, first, what);
+        }
+    }
+    return SONJECT_OK;
+}
+
 static sonject_status take_file(struct table_reader *reader, const char *path)
 {
     char *text = NULL;
@@ -250,18 +286,11 @@ sonject_status number_table_read(struct report *report, const char *path,
     text_excerpt(table->file, sizeof table->file, array ? array->name : path);
     table->lines = allocate_array(format->samples_max, sizeof *table->lines);
     CHECK_MEMORY(report, table->lines, "a table");
-    const sonject_status status = array ? take_array(&reader, array) : take_file(&reader, path);
+    sonject_status status = array ? take_array(&reader, array) : take_file(&reader, path);
+    THEN(status, check_samples(table, report));
     if (status != SONJECT_OK)
         number_table_clear(table);
     return status;
-}
-
-sonject_status number_table_refuse(const struct number_table *table, struct report *report,
-                                   size_t sample, size_t column, const char *what)
-{
-    return report_failure(report, SONJECT_ERROR_INPUT, "%s:%zu: %s: %s", table->file,
-                          sample < table->count ? table->lines[sample] : table->last_line,
-                          table->format->names[column], what);
 }
 
 void number_table_clear(struct number_table *table)
@@ -281,7 +310,10 @@ enum {
 };
 
 static const struct table_format profile_format = {
-    {"height_m", "depth_m", "sound_speed_mps", NULL}, 1, PROFILE_SAMPLES_MAX, PROFILE_BYTES_MAX};
+    .names = {"height_m", "depth_m", "sound_speed_mps"},
+    .required = 1,
+    .samples_max = PROFILE_SAMPLES_MAX,
+    .bytes_max = PROFILE_BYTES_MAX};
 
 sonject_status profile_table_read(struct report *report, const char *path,
                                   const struct number_array *array, struct profile_table *table)

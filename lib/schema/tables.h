@@ -16,6 +16,11 @@ struct table_format {
     const char *names[TABLE_COLUMNS_MAX]; /* NULL where there are fewer */
     size_t required;
     size_t samples_max, bytes_max;
+    /* What is asked of all samples alike: how many at least, the magnitude of each column's numbers
+     * at most (0: any), and whether those of the first column rise. */
+    size_t samples_min;
+    double most[TABLE_COLUMNS_MAX];
+    bool rises;
 };
 
 #define ARRAY_VALUES_MAX ((size_t)1 << 24)

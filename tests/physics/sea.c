@@ -209,8 +209,10 @@ void sea_add_scour(struct sea *sea, double width_m, double depth_m)
 
 void sea_set_heights(struct sea *sea, const sonject_relief_params *grid, const float *heights_m)
 {
-    EXPECT_OK(&sea->bench->report, relief_features_set_grid(&sea->bench->scene.relief,
-                                                            &sea->bench->report, grid, heights_m));
+    const size_t count = (size_t)grid->rows * grid->columns;
+    float *copy = claim_memory(count, sizeof *copy);
+    memcpy(copy, heights_m, count * sizeof *copy);
+    relief_features_take_grid(&sea->bench->scene.relief, grid, copy);
 }
 
 void set_mirror(sonject_material_params *material, double reflection)
