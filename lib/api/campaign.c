@@ -204,9 +204,7 @@ sonject_status sonject_campaign_run(sonject_context *context, sonject_campaign *
                                     sonject_progress_function progress, void *user,
                                     int *was_finished)
 {
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
+    CHECK(context_begin_call(context));
     context_watch(context, &progress, &user);
     if (!campaign)
         return null_argument(&context->report, "campaign");
@@ -221,9 +219,7 @@ sonject_status sonject_campaign_run(sonject_context *context, sonject_campaign *
 sonject_status sonject_campaign_merge(sonject_context *context, const char *folder,
                                       sonject_progress_function progress, void *user)
 {
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
+    CHECK(context_begin_call(context));
     context_watch(context, &progress, &user);
     if (!folder || !folder[0])
         return null_argument(&context->report, "folder");

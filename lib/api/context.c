@@ -31,10 +31,13 @@ const char *sonject_status_name(sonject_status status)
     return "unknown status";
 }
 
-void context_begin_call(struct sonject_context *context)
+sonject_status context_begin_call(struct sonject_context *context)
 {
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
     context->report.message[0] = '\0';
     context->host.progress = NULL;
+    return SONJECT_OK;
 }
 
 static int pass_on(void *user, double fraction, const char *stage)
@@ -170,9 +173,7 @@ const char *sonject_context_message(const sonject_context *context)
 sonject_status sonject_devices(sonject_context *context, sonject_device_info *devices,
                                size_t capacity, size_t *count)
 {
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
+    CHECK(context_begin_call(context));
     if (!count || (capacity > 0 && !devices))
         return null_argument(&context->report, "devices and count");
     return device_list(&context->report, devices, capacity, count);

@@ -24,9 +24,7 @@ sonject_status sonject_elements_describe(sonject_context *context, const sonject
                                          uint64_t rows, uint64_t columns,
                                          sonject_element_layout *layout)
 {
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
+    CHECK(context_begin_call(context));
     struct report *report = &context->report;
     const struct scene *scene;
     CHECK(scene_use(report, handle, &scene));
@@ -62,9 +60,7 @@ sonject_status sonject_element_series(sonject_context *context, const sonject_sc
                                       sonject_progress_function progress, void *user, float *series,
                                       size_t bytes)
 {
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
+    CHECK(context_begin_call(context));
     context_watch(context, &progress, &user);
     struct report *report = &context->report;
     const struct scene *scene;

@@ -34,8 +34,10 @@ struct sonject_result {
     struct injection_result result;
 };
 
-/* Forgets the last message: every public call that can fail begins with it. */
-void context_begin_call(struct sonject_context *context);
+/* Forgets the last message: every public call that can fail begins with it. Errors: ARGUMENT
+ * (NULL).
+ */
+sonject_status context_begin_call(struct sonject_context *context);
 
 /* Has the caller's progress function asked while the call waits for a child process, too: it and
  * its user become ones that pass on what they are told. */

@@ -30,9 +30,7 @@ static sonject_status check_quicklook(struct report *report, const sonject_quick
 
 sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklook_params *params)
 {
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
+    CHECK(context_begin_call(context));
     struct report *report = &context->report;
     sonject_quicklook_params taken;
     struct image_options options;
@@ -67,9 +65,7 @@ static sonject_status check_conversion(struct report *report, sonject_convert_pa
 
 sonject_status sonject_convert(sonject_context *context, const sonject_convert_params *params)
 {
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
+    CHECK(context_begin_call(context));
     sonject_convert_params taken;
     struct image_options options;
     CHECK(params_take(&context->report, &taken, sizeof taken, params, sizeof taken,
@@ -84,9 +80,7 @@ sonject_status sonject_seabed_write(sonject_context *context, const sonject_scen
                                     const char *path)
 {
     const struct scene *used;
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
+    CHECK(context_begin_call(context));
     if (!path)
         return null_argument(&context->report, "path");
     CHECK(scene_use(&context->report, scene, &used));

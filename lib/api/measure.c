@@ -72,9 +72,7 @@ sonject_status sonject_measure(sonject_context *context, const sonject_measure_p
     sonject_measure_params taken;
     struct image_options options;
     sonject_measurement made;
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
+    CHECK(context_begin_call(context));
     struct report *report = &context->report;
     CHECK(take_image(report, params, &taken, &options));
     CHECK(taken.pixels ? measure_pixels(report, &taken, &made)
@@ -88,9 +86,7 @@ sonject_status sonject_measure_contact(sonject_context *context, const sonject_p
 {
     sonject_contact_measures found;
     struct measured measured;
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
+    CHECK(context_begin_call(context));
     struct report *report = &context->report;
     memset(&measured, 0, sizeof measured);
     if (!pixels || !measures)

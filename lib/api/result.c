@@ -1,5 +1,6 @@
 #include "api/handles.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -111,45 +112,16 @@ sonject_status sonject_result_size(const sonject_result *result, uint64_t *rows,
     return SONJECT_OK;
 }
 
-struct layer_memory {
-    const void *data;
-    size_t pixel_bytes;
-};
-
-static struct layer_memory find_layer(const struct injection_result *result, sonject_layer layer)
+/* Copies a layer of the result's size to a buffer of as many bytes. what: is said of the layer. */
+static sonject_status copy_layer(const sonject_result *result, const char *what, const void *data,
+                                 size_t pixel_bytes, void *buffer, size_t bytes)
 {
-    struct layer_memory memory = {NULL, 1};
-    switch (layer) {
-    case SONJECT_LAYER_IMAGE:
-        memory.data = result->image;
-        memory.pixel_bytes = (result->is_complex ? 2 : 1) * sizeof(float);
-        break;
-    case SONJECT_LAYER_FIELD:
-        memory.data = result->field;
-        memory.pixel_bytes = 2 * sizeof(float);
-        break;
-    case SONJECT_LAYER_ENERGY:
-        memory.data = result->energy;
-        memory.pixel_bytes = sizeof(float);
-        break;
-    case SONJECT_LAYER_VISIBILITY:
-        memory.data = result->visibility;
-        memory.pixel_bytes = sizeof(float);
-        break;
-    case SONJECT_LAYER_HIGHLIGHT:
-        memory.data = result->highlight;
-        break;
-    case SONJECT_LAYER_SHADOW:
-        memory.data = result->shadow;
-        break;
-    case SONJECT_LAYER_LABELS:
-        memory.data = result->labels;
-        break;
-    case SONJECT_LAYER_INFLUENCE:
-        memory.data = result->influence;
-        break;
-    }
-    return memory;
+    const size_t needed = result->result.rows * result->result.columns * pixel_bytes;
+    if (bytes != needed)
+        return report_failure(result->report, SONJECT_ERROR_ARGUMENT,
+                              "%s has %zu bytes, the buffer %zu", what, needed, bytes);
+    memcpy(buffer, data, needed);
+    return SONJECT_OK;
 }
 
 sonject_status sonject_result_layer(const sonject_result *result, sonject_layer layer, void *buffer,
@@ -159,16 +131,25 @@ sonject_status sonject_result_layer(const sonject_result *result, sonject_layer 
         return SONJECT_ERROR_ARGUMENT;
     if (!buffer)
         return null_argument(result->report, "buffer");
-    const struct layer_memory memory = find_layer(&result->result, layer);
-    if (!memory.data)
-        return report_failure(result->report, SONJECT_ERROR_ARGUMENT, "layer %d does not exist",
-                              (int)layer);
-    const size_t needed = result->result.rows * result->result.columns * memory.pixel_bytes;
-    if (bytes != needed)
-        return report_failure(result->report, SONJECT_ERROR_ARGUMENT,
-                              "layer %d has %zu bytes, the buffer %zu", (int)layer, needed, bytes);
-    memcpy(buffer, memory.data, needed);
-    return SONJECT_OK;
+    const struct injection_result *made = &result->result;
+    const struct {
+        const void *data;
+        size_t pixel_bytes;
+    } layers[] = {
+        [SONJECT_LAYER_IMAGE] = {made->image, (made->is_complex ? 2 : 1) * sizeof(float)},
+        [SONJECT_LAYER_FIELD] = {made->field, 2 * sizeof(float)},
+        [SONJECT_LAYER_ENERGY] = {made->energy, sizeof(float)},
+        [SONJECT_LAYER_VISIBILITY] = {made->visibility, sizeof(float)},
+        [SONJECT_LAYER_HIGHLIGHT] = {made->highlight, 1},
+        [SONJECT_LAYER_SHADOW] = {made->shadow, 1},
+        [SONJECT_LAYER_LABELS] = {made->labels, 1},
+        [SONJECT_LAYER_INFLUENCE] = {made->influence, 1},
+    };
+    char what[32];
+    snprintf(what, sizeof what, "layer %d", (int)layer);
+    if ((size_t)layer >= sizeof layers / sizeof *layers || !layers[layer].data)
+        return report_failure(result->report, SONJECT_ERROR_ARGUMENT, "%s does not exist", what);
+    return copy_layer(result, what, layers[layer].data, layers[layer].pixel_bytes, buffer, bytes);
 }
 
 sonject_status sonject_result_order_energy(const sonject_result *result, uint32_t order,
@@ -186,13 +167,8 @@ sonject_status sonject_result_order_energy(const sonject_result *result, uint32_
         return report_failure(result->report, SONJECT_ERROR_ARGUMENT,
                               "there is no order %u, only 1 to %u", (unsigned)order,
                               (unsigned)orders);
-    const size_t needed = result->result.rows * result->result.columns * sizeof(float);
-    if (bytes != needed)
-        return report_failure(result->report, SONJECT_ERROR_ARGUMENT,
-                              "the energy of an order has %zu bytes, the buffer %zu", needed,
-                              bytes);
-    memcpy(buffer, result->result.order_energy[order - 1], needed);
-    return SONJECT_OK;
+    return copy_layer(result, "the energy of an order", result->result.order_energy[order - 1],
+                      sizeof(float), buffer, bytes);
 }
 
 sonject_status sonject_result_object(const sonject_result *result, uint32_t index,

@@ -10,16 +10,17 @@
 #include "dataset/run.h"
 
 /* A call that works on files, and what is told of it. */
-static void begin(sonject_context *context, struct run_request *request,
-                  sonject_progress_function progress, void *user, int *was_finished)
+static sonject_status begin(sonject_context *context, struct run_request *request,
+                            sonject_progress_function progress, void *user, int *was_finished)
 {
-    context_begin_call(context);
+    CHECK(context_begin_call(context));
     context_watch(context, &progress, &user);
     memset(request, 0, sizeof *request);
     request->progress = progress;
     request->user = user;
     if (was_finished)
         *was_finished = 0;
+    return SONJECT_OK;
 }
 
 /* The folder of the results, and which labels there are to be. */
@@ -64,9 +65,7 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
 {
     struct run_request request;
     sonject_run_params taken;
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    begin(context, &request, progress, user, was_finished);
+    CHECK(begin(context, &request, progress, user, was_finished));
     struct report *report = &context->report;
     if (!scene)
         return null_argument(report, "scene");
@@ -90,9 +89,7 @@ sonject_status sonject_merge(sonject_context *context, const sonject_scene *scen
 {
     struct run_request request;
     sonject_merge_params taken;
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    begin(context, &request, progress, user, was_finished);
+    CHECK(begin(context, &request, progress, user, was_finished));
     struct report *report = &context->report;
     CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "merge parameters"));
     CHECK(take_folder(report, &request, taken.folder, taken.labels));
@@ -110,9 +107,7 @@ sonject_status sonject_trace(sonject_context *context, const sonject_scene *scen
                              void *user)
 {
     struct run_request request;
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    begin(context, &request, progress, user, NULL);
+    CHECK(begin(context, &request, progress, user, NULL));
     struct report *report = &context->report;
     if (!file || !file[0])
         return null_argument(report, "file");
@@ -128,9 +123,7 @@ sonject_status sonject_form(sonject_context *context, const sonject_scene *scene
     struct run_request request;
     sonject_form_params taken;
     const struct scene *used = NULL;
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    begin(context, &request, progress, user, was_finished);
+    CHECK(begin(context, &request, progress, user, was_finished));
     struct report *report = &context->report;
     CHECK(params_take(report, &taken, sizeof taken, params,
                       offsetof(sonject_form_params, allows_user_shapes), "form parameters"));
@@ -150,9 +143,7 @@ sonject_status sonject_elements_run(sonject_context *context, const sonject_scen
 {
     struct run_request request;
     sonject_run_params taken;
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    begin(context, &request, progress, user, NULL);
+    CHECK(begin(context, &request, progress, user, NULL));
     struct report *report = &context->report;
     if (!scene)
         return null_argument(report, "scene");

@@ -47,10 +47,11 @@ static void add_rows(struct hash *hash, const struct section *section, const voi
                      const struct scene *scene)
 {
     /* 0: not by its bytes, or not at all */
-    static const uint8_t value_bytes[] = {
-        [FIELD_COUNT64] = sizeof(uint64_t), [FIELD_COUNT32] = sizeof(uint32_t),
-        [FIELD_FLAG32] = sizeof(uint32_t),  [FIELD_WORD] = sizeof(uint32_t),
-        [FIELD_SPECIAL] = sizeof(uint32_t), [FIELD_BOOL] = sizeof(bool)};
+    static const uint8_t value_bytes[] = {[FIELD_COUNT64] = sizeof(uint64_t),
+                                          [FIELD_COUNT32] = sizeof(uint32_t),
+                                          [FIELD_WORD] = sizeof(uint32_t),
+                                          [FIELD_SPECIAL] = sizeof(uint32_t),
+                                          [FIELD_BOOL] = sizeof(bool)};
     for (size_t i = 0; i < section->count; i++) {
         const struct field *field = &section->fields[i];
         const void *of = field->is_in_scene ? (const void *)scene : structure;

@@ -402,7 +402,7 @@ sonject_status write_seabed(struct report *report, const struct scene *scene, co
 {
     static const char *const complex_names[] = {"real", "imag"};
     const bool is_png = ends_with(path, ".png");
-    const bool is_complex = scene->synthetic.complex_pixels != 0;
+    const bool is_complex = scene->synthetic.complex_pixels;
     struct geometry_notes notes;
     struct injection_input input;
     if (scene->input_kind != SONJECT_INPUT_SYNTHETIC)

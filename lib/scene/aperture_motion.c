@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "base/report.h"
 #include "kernels/random.h"
-#include "scene/scene.h"
+#include "scene/response_table.h"
 
 #define PI           3.14159265358979323846
 #define RANDOM_WAVES 256        /* whose sum is as good as Gaussian */
@@ -78,22 +78,13 @@ double aperture_motion_step(const struct aperture_motion *motion)
 
 static double value_of_table(const struct motion_table *table, double x)
 {
-    size_t low = 0;
-    size_t high = table->count - 1;
-    if (x <= table->along_track_m[0])
-        return table->values[0];
-    if (x >= table->along_track_m[high])
-        return table->values[high];
-    while (high - low > 1) {
-        const size_t middle = low + (high - low) / 2;
-        if (table->along_track_m[middle] <= x)
-            low = middle;
-        else
-            high = middle;
-    }
-    const double share =
-        (x - table->along_track_m[low]) / (table->along_track_m[high] - table->along_track_m[low]);
-    return table->values[low] + share * (table->values[high] - table->values[low]);
+    const double *at = table->along_track_m;
+    const size_t last = table->count - 1;
+    if (x <= at[0] || x >= at[last])
+        return table->values[x <= at[0] ? 0 : last];
+    const size_t low = piece_at(at, table->count, x);
+    const double share = (x - at[low]) / (at[low + 1] - at[low]);
+    return table->values[low] + share * (table->values[low + 1] - table->values[low]);
 }
 
 /* Positions along-track, start + i step, and what is added up there. */

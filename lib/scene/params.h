@@ -72,7 +72,7 @@ struct image_options {
 
 /* A synthetic seabed: amplitude with K-distributed speckle on patches and ripples. */
 typedef struct sonject_synthetic_params {
-    uint32_t complex_pixels; /* 1: complex, 0: amplitude */
+    bool complex_pixels; /* else amplitudes */
     uint32_t rows;
     uint32_t columns;
     uint64_t seed;
@@ -371,8 +371,8 @@ typedef struct sonject_object_params {
 /* A shape by code, whose contract is in sonject/user_shape.h. All 0: a closed solid without code,
  * name and radius. */
 typedef struct sonject_user_shape_params {
-    uint32_t is_open;         /* 1: a surface without inside: the normal turns to the side that the
-                                 ray comes from; 0: the closed surface of a solid */
+    bool is_open;             /* a surface without inside: the normal turns to the side that the
+                                 ray comes from; else the closed surface of a solid */
     const char *name;         /* of the code, for messages ("name:line: what"): 1 to 255 bytes */
     const char *code;         /* at most 64 KiB */
     double bounding_radius_m; /* of a sphere about the origin that holds the shape, above 0 */
@@ -416,17 +416,17 @@ typedef enum sonject_match {
 } sonject_match;
 
 typedef struct sonject_injection_params {
-    uint32_t mode;           /* sonject_injection_mode */
-    uint32_t column_rule;    /* sonject_column_rule */
-    uint32_t estimate_noise; /* 1: noise floor estimated from the patch, noise_floor_db unused */
-    double noise_floor_db;   /* noise energy over local mean seabed energy */
-    double influence_db;     /* composite: a pixel is the target's when the change that it makes is
-                                above this level over the seabed */
+    uint32_t mode;         /* sonject_injection_mode */
+    uint32_t column_rule;  /* sonject_column_rule */
+    bool estimate_noise;   /* noise floor estimated from the patch, noise_floor_db unused */
+    double noise_floor_db; /* noise energy over local mean seabed energy */
+    double influence_db;   /* composite: a pixel is the target's when the change that it makes is
+                              above this level over the seabed */
     double ray_scale;
     uint64_t seed;
     uint32_t interactions;     /* surfaces that a path may meet */
     uint32_t estimator;        /* sonject_estimator */
-    uint32_t order_energies;   /* 1: keep the energy of each number of interactions (layers) */
+    bool order_energies;       /* keep the energy of each number of interactions (layers) */
     uint32_t match_response;   /* sonject_match: the point response's widths */
     double match_looks;        /* looks averaged in a magnitude pixel of the input; 0: estimated
                                   from the image around the objects */

@@ -50,14 +50,13 @@ void response_table_clear(struct response_table *table)
     memset(table, 0, sizeof *table);
 }
 
-/* The last sample at or before a position that lies within the table. */
-static size_t piece_at(const struct response_table *table, double position)
+size_t piece_at(const double *positions, size_t count, double x)
 {
     size_t low = 0;
-    size_t high = table->count - 1;
+    size_t high = count - 1;
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
-        if (table->positions[middle] <= position)
+        if (positions[middle] <= x)
             low = middle;
         else
             high = middle;
@@ -101,7 +100,7 @@ struct complex_number response_table_at(const struct response_table *table, doub
 {
     if (!(position >= table->positions[0] && position <= table->positions[table->count - 1]))
         return (struct complex_number){0.0, 0.0};
-    const size_t i = piece_at(table, position);
+    const size_t i = piece_at(table->positions, table->count, position);
     const double step = table->positions[i + 1] - table->positions[i];
     const double t = (position - table->positions[i]) / step;
     const struct complex_number a = table->values[i];

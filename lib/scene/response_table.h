@@ -33,6 +33,9 @@ sonject_status response_table_set(struct response_table *table, struct report *r
 
 void response_table_clear(struct response_table *table);
 
+/* Of rising positions the last at or before x, but not the last of all: where x's piece begins. */
+size_t piece_at(const double *positions, size_t count, double x);
+
 struct complex_number response_table_at(const struct response_table *table, double position);
 
 /* Integral of the squared magnitude over positions from `low` to `high`. */

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "schema/scene_file.h"
 
-#define WHOLE_TYPE(field) ((field)->kind == FIELD_COUNT32 ? UINT32_MAX : UINT64_MAX)
+#define KEYS_LISTED 40 /* of a section, in a message */
 
 static const struct quantity_text {
     const char *units; /* as users may write them */
@@ -120,8 +120,7 @@ static void set_preset(const struct field *field, void *structure)
         *(uint64_t *)(void *)member = (uint64_t)preset;
     else if (field->kind == FIELD_BOOL)
         *(bool *)(void *)member = preset != 0.0;
-    else if (field->kind == FIELD_COUNT32 || field->kind == FIELD_FLAG32 ||
-             field->kind == FIELD_WORD)
+    else if (field->kind == FIELD_COUNT32 || field->kind == FIELD_WORD)
         *(uint32_t *)(void *)member = (uint32_t)preset;
 }
 
@@ -233,9 +232,9 @@ bool field_is_sound(const struct field *field, const void *structure, bool is_wr
                  (unsigned long)count);
         return count <= field->maximum;
     }
-    if (field->kind != FIELD_WORD && field->kind != FIELD_FLAG32)
+    if (field->kind != FIELD_WORD)
         return true;
-    const uint32_t choices = field->kind == FIELD_WORD ? count_words(field) : 2;
+    const uint32_t choices = count_words(field);
     const uint32_t chosen = value32(structure, field->offset);
     snprintf(what, 300, "has no choice number %lu; the last is %lu", (unsigned long)chosen,
              (unsigned long)choices - 1);
@@ -282,11 +281,11 @@ sonject_status section_check(const struct section *section, const void *structur
 static const char *kind_of(const struct field *field)
 {
     static const char *const kinds[] = {
-        [FIELD_QUANTITY] = "quantity", [FIELD_COUNT32] = "count",   [FIELD_COUNT64] = "count",
-        [FIELD_BOOL] = "flag",         [FIELD_FLAG32] = "flag",     [FIELD_WORD] = "word",
-        [FIELD_LABEL] = "text",        [FIELD_TEXT] = "text",       [FIELD_PATH] = "file",
-        [FIELD_FILE] = "file",         [FIELD_SECTION] = "section", [FIELD_NAMED] = "name",
-        [FIELD_ENTRIES] = "list",      [FIELD_SPECIAL] = "special",
+        [FIELD_QUANTITY] = "quantity", [FIELD_COUNT32] = "count", [FIELD_COUNT64] = "count",
+        [FIELD_BOOL] = "flag",         [FIELD_WORD] = "word",     [FIELD_LABEL] = "text",
+        [FIELD_TEXT] = "text",         [FIELD_PATH] = "file",     [FIELD_FILE] = "file",
+        [FIELD_SECTION] = "section",   [FIELD_NAMED] = "name",    [FIELD_ENTRIES] = "list",
+        [FIELD_SPECIAL] = "special",
     };
     return field->kind == FIELD_SPECIAL && field->is_list ? "list" : kinds[field->kind];
 }
@@ -299,7 +298,6 @@ static const char *unit_of(const struct field *field)
     case FIELD_QUANTITY:
         return quantity_texts[field->quantity].units;
     case FIELD_BOOL:
-    case FIELD_FLAG32:
         return "true or false";
     case FIELD_PATH:
     case FIELD_FILE:
@@ -334,7 +332,7 @@ static void tell_preset(const struct section *section, const struct field *field
         return;
     if (field->kind == FIELD_WORD)
         snprintf(text, 64, "%s", field->words[(size_t)preset]);
-    else if (field->kind == FIELD_BOOL || field->kind == FIELD_FLAG32)
+    else if (field->kind == FIELD_BOOL)
         snprintf(text, 64, "%s", preset != 0.0 ? "true" : "false");
     else if (is_count(field))
         snprintf(text, 64, "%.15g", preset);
@@ -416,7 +414,7 @@ sonject_status scene_keys_json(struct report *report, char **text)
 
 /* ---- Whether there is a key. */
 
-static const struct field *field_of(const struct section *section, const char *key, size_t length)
+const struct field *field_of(const struct section *section, const char *key, size_t length)
 {
     for (size_t i = 0; i < section->count; i++) {
         const struct field *field = &section->fields[i];
@@ -427,18 +425,20 @@ static const struct field *field_of(const struct section *section, const char *k
     return NULL;
 }
 
-static const char *nearest_key(const struct section *section, const char *key, size_t length)
+const char *nearest_key(const struct section *section, const char *key, size_t length,
+                        struct word_list *list)
 {
-    const char *keys[40];
+    const char *keys[KEYS_LISTED];
     char typed[32] = "";
-    size_t count = 0;
+    for (size_t i = 0; i < section->count && list->count < COUNT(keys); i++)
+        if (!section->fields[i].is_hidden) {
+            keys[list->count] = section->fields[i].key;
+            list_word(list, section->fields[i].key);
+        }
     if (length >= sizeof typed)
         return NULL;
     memcpy(typed, key, length);
-    for (size_t i = 0; i < section->count && count < COUNT(keys); i++)
-        if (!section->fields[i].is_hidden)
-            keys[count++] = section->fields[i].key;
-    return nearest_word(typed, keys, count);
+    return nearest_word(typed, keys, list->count);
 }
 
 bool scene_key_find(const struct section *top, const char *path, const char **near,
@@ -450,7 +450,8 @@ bool scene_key_find(const struct section *top, const char *path, const char **ne
         const size_t length = strcspn(path, ".[");
         const struct field *field = field_of(*section, path, length);
         if (!field) {
-            *near = nearest_key(*section, path, length);
+            struct word_list list = {{0}, 0};
+            *near = nearest_key(*section, path, length, &list);
             return false;
         }
         path += length;

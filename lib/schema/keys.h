@@ -21,7 +21,6 @@ enum field_kind {
     FIELD_COUNT32,  /* uint32_t */
     FIELD_COUNT64,  /* uint64_t */
     FIELD_BOOL,     /* bool */
-    FIELD_FLAG32,   /* uint32_t, 0 or 1 */
     FIELD_WORD,     /* uint32_t, the word's index; or a section, if the row has one */
     FIELD_LABEL,    /* char[SONJECT_NAME_CAPACITY] */
     FIELD_TEXT,     /* char *, owned by the structure */
@@ -102,7 +101,7 @@ struct section {
 #define QUANTITY(its, of)       .kind = FIELD_QUANTITY, .quantity = QUANTITY_##of, MEMBER(its)
 #define COUNT32(its, low, high) .kind = FIELD_COUNT32, MEMBER(its), WITHIN(low, high)
 #define COUNT64(its, low, high) .kind = FIELD_COUNT64, MEMBER(its), WITHIN(low, high)
-#define FLAG32(its)             .kind = FIELD_FLAG32, MEMBER(its)
+#define FLAG(its)               .kind = FIELD_BOOL, MEMBER(its)
 #define WORD(its)               .kind = FIELD_WORD, MEMBER(its), .words
 #define LABEL(its)              .kind = FIELD_LABEL, MEMBER(its)
 #define TEXT(its)               .kind = FIELD_TEXT, MEMBER(its)
@@ -277,6 +276,9 @@ sonject_status read_sediment_name(struct reader *reader, const struct tree_node 
 void relate_energy(struct check *check, const char *prefix, const sonject_material_params *material,
                    double own_lambert);
 
+/* The field of a key, length bytes long, that is not hidden; NULL: there is none. */
+const struct field *field_of(const struct section *section, const char *key, size_t length);
+
 /* ---- Refusing, in mistakes.c. */
 
 /* Words in a message, "a, b, c". */
@@ -285,6 +287,10 @@ struct word_list {
     size_t count;
 };
 void list_word(struct word_list *list, const char *word);
+
+/* Lists a section's keys, and finds the one nearest to a mistyped one; NULL if none is near. */
+const char *nearest_key(const struct section *section, const char *key, size_t length,
+                        struct word_list *list);
 
 /* "'steal' is not one of a, b, c; did you mean 'b'?" Returns INPUT. near: NULL for no hint. */
 sonject_status refuse_word(const struct reader *reader, const struct tree_node *node,

@@ -8,8 +8,6 @@
 #include "base/text.h"
 #include "schema/keys.h"
 
-#define KEYS_LISTED 32 /* of a section, in a message */
-
 const char *read_text(struct reader *reader, const struct tree_node *node)
 {
     if (tree_is_null(node)) {
@@ -240,7 +238,6 @@ static sonject_status read_value(struct reader *reader, const struct field *fiel
 {
     void *destination = (char *)structure + field->offset;
     uint64_t count = 0;
-    bool flag = false;
     sonject_status status = SONJECT_OK;
     if (field->read && field->kind != FIELD_NAMED)
         return field->read(reader, node, structure);
@@ -258,10 +255,6 @@ static sonject_status read_value(struct reader *reader, const struct field *fiel
         return read_count(reader, field, node, destination);
     case FIELD_BOOL:
         return read_bool(reader, node, destination);
-    case FIELD_FLAG32:
-        status = read_bool(reader, node, &flag);
-        *(uint32_t *)destination = flag;
-        return status;
     case FIELD_WORD:
         if (field->section && node->kind == TREE_SECTION)
             return read_section(reader, field->section, node, structure);
@@ -315,16 +308,10 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
 static sonject_status refuse_unknown(struct reader *reader, const struct section *section,
                                      const struct tree_entry *entry)
 {
-    const char *keys[KEYS_LISTED];
     struct word_list list = {{0}, 0};
     if (!are_sound(reader, entry->key))
         return SONJECT_ERROR_INPUT;
-    for (size_t i = 0; i < section->count && list.count < KEYS_LISTED; i++)
-        if (!section->fields[i].is_hidden) {
-            keys[list.count] = section->fields[i].key;
-            list_word(&list, section->fields[i].key);
-        }
-    const char *near = nearest_word(entry->key, keys, list.count);
+    const char *near = nearest_key(section, entry->key, strlen(entry->key), &list);
     const size_t before = key_path_add(&reader->path, entry->key);
     if (near)
         tree_failure(reader->tree, entry->place, reader->path.text,
@@ -342,14 +329,9 @@ static sonject_status find_unknown(struct reader *reader, const struct section *
                                    const struct tree_node *node)
 {
     sonject_status status = SONJECT_OK;
-    for (size_t i = 0; i < node->count; i++) {
-        size_t j = 0;
-        while (j < section->count && (section->fields[j].is_hidden ||
-                                      strcmp(section->fields[j].key, node->entries[i].key) != 0))
-            j++;
-        if (j == section->count)
+    for (size_t i = 0; i < node->count; i++)
+        if (!field_of(section, node->entries[i].key, strlen(node->entries[i].key)))
             status = refuse_unknown(reader, section, &node->entries[i]);
-    }
     return status;
 }
 

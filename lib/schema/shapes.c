@@ -87,7 +87,7 @@ static const struct field mesh_fields[] = {
     {"nose", "axis of the file that is the object's nose", WORD(nose) = AXIS_WORDS},
     {"up", "axis of the file that is up when level", WORD(up) = AXIS_WORDS, .preset = AXIS_Z},
     {"open", "a mesh that is not watertight is taken as thin sheets; by default it is refused",
-     .kind = FIELD_BOOL, MEMBER(allows_open)},
+     FLAG(allows_open)},
     {"smooth",
      "facets that meet at less stand for one smooth surface to what scatters; by default none do",
      QUANTITY(smooth_angle_rad, ANGLE), WITHIN(0.0, PI)},
@@ -235,7 +235,7 @@ static const struct field user_fields[] = {
      NONE_IF_ZERO},
     {"half_height", "of that box; by default the radius", QUANTITY(half_height_m, LENGTH),
      FROM_ZERO, NONE_IF_ZERO},
-    {"open", "a surface without inside, which reflects on both sides", FLAG32(is_open)},
+    {"open", "a surface without inside, which reflects on both sides", FLAG(is_open)},
     {"parameters", "numbers for the functions, at most 16",
      SPECIAL(read_parameters, "list of numbers")},
 };

@@ -2,6 +2,7 @@
 #include "schema/tables.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,9 +28,15 @@ static bool is_blank(char c)
     return c == ' ' || c == '\t' || c == '\r';
 }
 
-static sonject_status refuse_line(const struct table_reader *reader, const char *column,
-                                  const char *what)
+/* "file:line: column: what"; column "": the line as a whole. */
+static sonject_status REPORT_FORMAT(3)
+    refuse_line(const struct table_reader *reader, const char *column, const char *format, ...)
 {
+    char what[240];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
     return report_failure(reader->report, SONJECT_ERROR_INPUT, "%s:%zu: %s%s%s",
                           reader->table->file, reader->table->last_line, column,
                           *column ? ": " : "", what);
@@ -78,22 +85,19 @@ static void list_names(const struct table_format *format, char *text, size_t cap
 static sonject_status check_names(const struct table_reader *reader)
 {
     const struct table_format *format = reader->table->format;
-    char names[120], what[240];
+    char names[120];
     const bool has_first = reader->place[0] != COLUMNS_MAX;
     const bool has_second = reader->place[1] != COLUMNS_MAX;
     bool is_complete = has_first || has_second;
-    if (has_first && has_second) {
-        snprintf(what, sizeof what, "both %s and %s are there; rename one", format->names[0],
-                 format->names[1]);
-        return refuse_line(reader, "", what);
-    }
+    if (has_first && has_second)
+        return refuse_line(reader, "", "both %s and %s are there; rename one", format->names[0],
+                           format->names[1]);
     for (size_t i = 2; i < 2 + format->required; i++)
         is_complete = is_complete && reader->place[i] != COLUMNS_MAX;
     if (is_complete)
         return SONJECT_OK;
     list_names(format, names, sizeof names);
-    snprintf(what, sizeof what, "this line must name the columns, among them %s", names);
-    return refuse_line(reader, "", what);
+    return refuse_line(reader, "", "this line must name the columns, among them %s", names);
 }
 
 static sonject_status make_columns(struct table_reader *reader)
@@ -134,32 +138,26 @@ static sonject_status take_names(struct table_reader *reader, char *line)
 static sonject_status take_number(struct table_reader *reader, int column,
                                   char *const fields[COLUMNS_MAX], double *number)
 {
-    char excerpt[40], what[100];
+    char excerpt[40];
     const char *text = fields[reader->place[column]];
     const char *rest;
     if (text_to_number(text, number, &rest) && *rest == '\0')
         return SONJECT_OK;
-    snprintf(what, sizeof what, "'%s' is not a number",
-             text_excerpt(excerpt, sizeof excerpt, text));
-    return refuse_line(reader, reader->table->format->names[column], what);
+    return refuse_line(reader, reader->table->format->names[column], "'%s' is not a number",
+                       text_excerpt(excerpt, sizeof excerpt, text));
 }
 
 static sonject_status take_sample(struct table_reader *reader, char *line)
 {
     struct number_table *table = reader->table;
     char *fields[COLUMNS_MAX];
-    char what[100];
     const size_t count = split(line, reader->separator, fields);
-    if (count != reader->column_count) {
-        snprintf(what, sizeof what, "has %zu column%s, but %zu have names", count,
-                 count == 1 ? "" : "s", reader->column_count);
-        return refuse_line(reader, "", what);
-    }
-    if (table->count == table->format->samples_max) {
-        snprintf(what, sizeof what, "more than %zu samples; thin them out",
-                 table->format->samples_max);
-        return refuse_line(reader, "", what);
-    }
+    if (count != reader->column_count)
+        return refuse_line(reader, "", "has %zu column%s, but %zu have names", count,
+                           count == 1 ? "" : "s", reader->column_count);
+    if (table->count == table->format->samples_max)
+        return refuse_line(reader, "", "more than %zu samples; thin them out",
+                           table->format->samples_max);
     sonject_status status = SONJECT_OK;
     for (int i = 0; status == SONJECT_OK && i < TABLE_COLUMNS_MAX; i++)
         if (table->values[i])
@@ -174,7 +172,7 @@ static sonject_status take_line(struct table_reader *reader, char *line, size_t 
     static const char not_text[] = "not UTF-8 text; is this a table?";
     reader->table->last_line++;
     if (strlen(line) != length)
-        return refuse_line(reader, "", not_text);
+        return refuse_line(reader, "", "%s", not_text);
     line[strcspn(line, "#")] = '\0';
     line = trim(line);
     if (!*line)
@@ -183,7 +181,7 @@ static sonject_status take_line(struct table_reader *reader, char *line, size_t 
         if (*c == '\t')
             *c = ' ';
     if (!text_is_printable(line))
-        return refuse_line(reader, "", not_text);
+        return refuse_line(reader, "", "%s", not_text);
     return reader->column_count == 0 ? take_names(reader, line) : take_sample(reader, line);
 }
 

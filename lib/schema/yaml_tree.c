@@ -291,12 +291,8 @@ static sonject_status enter_key(struct walk *walk, const char *name, size_t leng
     memcpy(key, name, length);
     key[length] = 0;
     CHECK(enter(walk, TREE_SECTION));
-    struct tree_entry *found = NULL;
-    for (size_t i = 0; i < walk->node->count && !found; i++)
-        if (strcmp(walk->node->entries[i].key, key) == 0)
-            found = &walk->node->entries[i];
     key_path_add(&walk->path, key);
-    return step_to(walk, found, key);
+    return step_to(walk, tree_find(walk->node, key), key);
 }
 
 static sonject_status enter_index(struct walk *walk, const char *digits, size_t length)

@@ -96,7 +96,7 @@ static const struct key_case {
     {"input.synthetic.rows", "8", S(U32, synthetic.rows), .number = 8.0},
     {"input.synthetic.columns", "9", S(U32, synthetic.columns), .number = 9.0},
     {"input.synthetic.seed", "4294967296", S(U64, synthetic.seed), .number = 4294967296.0},
-    {"input.synthetic.complex", "true", S(U32, synthetic.complex_pixels), .number = 1.0},
+    {"input.synthetic.complex", "true", S(BOOL, synthetic.complex_pixels), .number = 1.0},
     {"input.synthetic.speckle_shape", "inf", S(DOUBLE, synthetic.speckle_shape),
      .number = HUGE_VAL},
     {"input.synthetic.texture_length", "35 cm", S(DOUBLE, synthetic.texture_length_m),
@@ -305,19 +305,6 @@ static const struct key_case {
      .other = "seabed.relief=[{mound: {height: 10 cm}}]"},
     {"seabed.relief[].mound.height", "30 cm", R(DOUBLE, height_m), .number = 0.3,
      .other = "seabed.relief=[{mound: {radius: 1 m}}]"},
-    {"seabed.relief[].pit.position", "centre", R(U32, position_kind),
-     .number = SONJECT_POSITION_PATCH_CENTRE,
-     .other = "seabed.relief=[{pit: {radius: 1 m, depth: 10 cm}}]"},
-    {"seabed.relief[].pit.position.along_track", "2 m", R(DOUBLE, position_along), .number = 2.0,
-     .other = "seabed.relief=[{pit: {radius: 1 m, depth: 10 cm, position: {slant_range: 41}}}]"},
-    {"seabed.relief[].pit.position.slant_range", "42 m", R(DOUBLE, position_range), .number = 42.0,
-     .other = "seabed.relief=[{pit: {radius: 1 m, depth: 10 cm, position: {along_track: 1}}}]"},
-    {"seabed.relief[].pit.position.row", "2.5", R(DOUBLE, position_along), .number = 2.5,
-     .other = "seabed.relief=[{pit: {radius: 1 m, depth: 10 cm, position: {column: 3}}}]"},
-    {"seabed.relief[].pit.position.column", "3.5", R(DOUBLE, position_range), .number = 3.5,
-     .other = "seabed.relief=[{pit: {radius: 1 m, depth: 10 cm, position: {row: 3}}}]"},
-    {"seabed.relief[].pit.radius", "2 m", R(DOUBLE, radius_m), .number = 2.0,
-     .other = "seabed.relief=[{pit: {depth: 10 cm}}]"},
     {"seabed.relief[].pit.depth", "30 cm", R(DOUBLE, height_m), .number = 0.3,
      .other = "seabed.relief=[{pit: {radius: 1 m}}]"},
     {"seabed.relief[].scour.object", "can", R(TEXT, object), .text = "can",
@@ -376,7 +363,7 @@ static const struct key_case {
     {"injection.match.response", "nominal", S(U32, injection.match_response), .number = 0.0},
     {"injection.match.looks", "2.5", S(DOUBLE, injection.match_looks), .number = 2.5},
     {"injection.match.saturation", "full_scale", S(U32, injection.match_saturation), .number = 0.0},
-    {"injection.order_energies", "true", S(U32, injection.order_energies), .number = 1.0},
+    {"injection.order_energies", "true", S(BOOL, injection.order_energies), .number = 1.0},
     {"objects[].name", "M\xC3\xBCll 7: #1", O(TEXT, name), .text = "M\xC3\xBCll 7: #1"},
     {"objects[].class", "\"mine\"", O(TEXT, class_name), .text = "mine"},
     {"objects[].shape", "capsule", O(U32, shape), .number = SONJECT_SHAPE_CAPSULE,
@@ -592,18 +579,24 @@ static inline const char *base_of(const struct key_case *key)
     return small;
 }
 
-/* NULL for keys of parts that objects have alike: their rows are the same. */
-static inline const struct key_case *case_of(const char *path)
+/* Whether a key has a case, or a row that another key's section has alike: parts those of objects,
+ * pits those of mounds. */
+static inline bool has_case(const char *path)
 {
-    static const char part[] = "objects[].parts[].";
-    char alike[100];
+    static const char *const alike[][2] = {{"objects[].parts[].", "objects[]."},
+                                           {"seabed.relief[].pit.", "seabed.relief[].mound."}};
+    char other[140];
     for (size_t i = 0; i < COUNT(cases); i++)
         if (strcmp(cases[i].path, path) == 0)
-            return &cases[i];
-    snprintf(alike, sizeof alike, "objects[].%s", path + strlen(part));
-    if (strncmp(path, part, strlen(part)) != 0 || !case_of(alike))
-        fail_msg("%s has no case", path);
-    return NULL;
+            return true;
+    for (size_t i = 0; i < COUNT(alike); i++) {
+        const size_t length = strlen(alike[i][0]);
+        if (strncmp(path, alike[i][0], length) != 0)
+            continue;
+        snprintf(other, sizeof other, "%s%.100s", alike[i][1], path + length);
+        return has_case(other);
+    }
+    return false;
 }
 
 /* Reads the case's scene with a value of its key; NULL: without the key. */

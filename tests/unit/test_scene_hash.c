@@ -21,7 +21,6 @@ static bool is_without_effect(const char *path)
         "bands",
         "input.path", /* the swath's identity tells files apart */
         "seabed.relief[].mound.position",
-        "seabed.relief[].pit.position",
         "objects[].level",
         "objects[].position",
         "objects[].user.file", /* its text counts as code does */

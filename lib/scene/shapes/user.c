@@ -83,7 +83,7 @@ sonject_status user_shapes_append(struct user_shapes *shapes, struct report *rep
     struct user_shape *made = &shapes->shapes[shapes->count++];
     memset(made, 0, sizeof *made);
     made->snippet = snippet;
-    made->is_open = shape->is_open != 0;
+    made->is_open = shape->is_open;
     made->bounding_radius_m = shape->bounding_radius_m;
     made->half_length_m = half_size(shape->half_length_m, shape->bounding_radius_m);
     made->half_width_m = half_size(shape->half_width_m, shape->bounding_radius_m);
