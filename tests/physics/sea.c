@@ -210,7 +210,8 @@ void sea_add_scour(struct sea *sea, double width_m, double depth_m)
 void sea_set_heights(struct sea *sea, const sonject_relief_params *grid, const float *heights_m)
 {
     const size_t count = (size_t)grid->rows * grid->columns;
-    float *copy = claim_memory(count, sizeof *copy);
+    float *copy = malloc(count * sizeof *copy); /* the scene frees it */
+    assert_non_null(copy);
     memcpy(copy, heights_m, count * sizeof *copy);
     relief_features_take_grid(&sea->bench->scene.relief, grid, copy);
 }
