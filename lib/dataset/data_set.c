@@ -22,7 +22,7 @@
 #define LAST_FILE      "dataset.json"
 
 /* The documents that are the same for every folder. */
-static const char *const documents[] = {"classes.txt", "contact_sheet.png"};
+static const char *const documents[] = {"classes.txt", "contact_sheet.png", "report.html"};
 
 /* Calls on each folder of a split. */
 static sonject_status each_folder(struct report *report, const char *folder, const char *split,
@@ -463,6 +463,7 @@ sonject_status data_set_finish(struct data_set *set)
         CHECK(write_coco(set, i));
     CHECK(write_classes(set));
     CHECK(write_contact_sheet(set));
+    CHECK(write_report_page(set));
     CHECK(write_last(set));
     for (size_t i = 0; i < set->split_count; i++) {
         each_folder(&silent, set->folder, set->split_names[i], set->outputs, tidy);

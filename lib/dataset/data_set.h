@@ -56,7 +56,9 @@ sonject_status data_set_record(const struct data_set *set, size_t split, uint64_
 sonject_status data_set_has_image(const struct data_set *set, size_t split, uint64_t id,
                                   char changed[PATH_CAPACITY], bool *has);
 
-/* Writes contact_sheet.png from images that are all there. Errors: as data_set_finish. */
+/* Write contact_sheet.png and report.html from images that are all there. Errors: as
+ * data_set_finish. */
 sonject_status write_contact_sheet(const struct data_set *set);
+sonject_status write_report_page(const struct data_set *set);
 
 #endif

@@ -279,7 +279,8 @@ static void add_row(struct growing_text *csv, const struct image_labels *labels,
                              truth->overall_length_m,
                              truth->overall_width_m,
                              truth->overall_height_m,
-                             contact->object->heading_rad * DEGREES_PER_RADIAN};
+                             contact->object->heading_rad * DEGREES_PER_RADIAN,
+                             contact->has_place ? contact->place.heading_deg : NAN};
     add_field(csv, labels->file_name);
     growing_text_add(csv, ",%u,", (unsigned)contact->number);
     add_field(csv, contact->object->name);
@@ -300,11 +301,10 @@ static void add_row(struct growing_text *csv, const struct image_labels *labels,
 
 static void add_csv(struct growing_text *csv, const struct image_labels *labels)
 {
-    growing_text_add(csv,
-                     "image,id,name,class,confidence,row,column,along_track_m,slant_range_m,"
-                     "ground_range_m,longitude_deg,latitude_deg,easting_m,northing_m,length_m,"
-                     "width_m,height_m,heading_deg,box_row,box_column,box_rows,box_columns,pixels,"
-                     "truncated,occluded\n");
+    growing_text_add(csv, "image,id,name,class,confidence,row,column,along_track_m,slant_range_m,"
+                          "ground_range_m,longitude_deg,latitude_deg,easting_m,northing_m,length_m,"
+                          "width_m,height_m,heading_deg,sonar_heading_deg,box_row,box_column,"
+                          "box_rows,box_columns,pixels,truncated,occluded\n");
     for (uint32_t i = 0; i < labels->count; i++)
         add_row(csv, labels, &labels->contacts[i]);
 }

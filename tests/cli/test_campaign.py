@@ -113,7 +113,7 @@ def of_image(record, kind, extension):
 def test_every_image_has_its_files(whole):
     found = records(whole)
     assert sorted(record["id"] for record in found) == list(range(IMAGES))
-    expected = {"campaign.json", "dataset.json", "contact_sheet.png",
+    expected = {"campaign.json", "dataset.json", "report.html", "contact_sheet.png",
                 "train/coco.json", "test/coco.json", "classes.txt"}
     for record in found:
         assert record["image"] == f"images/{record['id']:08d}.png"
@@ -196,6 +196,14 @@ def test_coco_is_what_truth_and_masks_say(whole):
             assert [int(line.split()[0]) + 1 for line in lines] == [
                 entry["category_id"] for entry in mine]
     assert (whole / "classes.txt").read_text().splitlines() == [*TARGETS, "stone"]
+
+
+def test_the_report_holds_no_markup_of_classes(whole):
+    page = (whole / "report.html").read_text()
+    assert "&#60;b&#62;" in page and "<b>" not in page and "<script" not in page
+    assert page.count("<svg") > 8
+    # of one key in two units
+    assert [page.count(f">objects[].burial, {unit}<") for unit in ("cm", "mm")] == [1, 1]
 
 
 def test_a_finished_data_set_is_left_alone(command, whole):
@@ -365,7 +373,8 @@ def test_what_was_changed_is_named_by_merge_and_made_again(command, damaged, who
 
 
 def test_documents_that_were_changed_are_made_again(command, damaged, whole):
-    names = ["train/coco.json", "classes.txt", "contact_sheet.png", "dataset.json"]
+    names = ["train/coco.json", "classes.txt", "contact_sheet.png",
+             "report.html", "dataset.json"]
     for changed in (*[[name] for name in names], names):
         for name in changed:
             harm(damaged / name) if len(changed) == 1 else (damaged / name).unlink()

@@ -1,0 +1,272 @@
+/* The page of statistics: counts, and histograms of what was drawn and what came of it. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/json_document.h"
+#include "base/memory.h"
+#include "base/text.h"
+#include "dataset/data_set.h"
+
+#define BINS   24
+#define BAR    12 /* pixels of the picture, as all below */
+#define LEFT   12
+#define WIDTH  (2 * LEFT + BINS * BAR)
+#define HEIGHT 200
+#define BOTTOM 160
+#define TOP    34
+
+#define SERIES_MAX 64    /* of more names, the later ones are left out of the page */
+#define IMAGES_MAX 20000 /* whose values are kept; of more, every second, third, ... is taken */
+
+/* Values under one name, in one unit. */
+struct series {
+    char name[80], unit[16];
+    double *values; /* owned */
+    size_t count;
+};
+
+struct statistics_page {
+    const struct data_set *set;
+    struct series series[SERIES_MAX];
+    size_t series_count;
+    uint64_t *counts; /* of objects: splits x classes */
+    uint64_t empty[CAMPAIGN_SPLITS_MAX];
+    const json_t *classes;
+    uint64_t every; /* image that is taken */
+};
+
+static void add_escaped(struct growing_text *text, const char *raw)
+{
+    for (; *raw; raw++)
+        if (strchr("<>&\"'", *raw))
+            growing_text_add(text, "&#%d;", *raw);
+        else
+            growing_text_add(text, "%c", *raw);
+}
+
+static void write_histogram(struct growing_text *text, const struct series *series)
+{
+    size_t bins[BINS] = {0};
+    size_t most = 1;
+    char ends[2][40];
+    double low = series->values[0];
+    double high = series->values[0];
+    for (size_t i = 1; i < series->count; i++) {
+        low = fmin(low, series->values[i]);
+        high = fmax(high, series->values[i]);
+    }
+    for (size_t i = 0; i < series->count; i++) {
+        const double place = high > low ? (series->values[i] - low) / (high - low) * BINS : 0.0;
+        const size_t bin = place < BINS ? (size_t)place : BINS - 1;
+        most = ++bins[bin] > most ? bins[bin] : most;
+    }
+    growing_text_add(text,
+                     "<svg width=\"%d\" height=\"%d\" font-size=\"12\"><text x=\"%d\" y=\"16\">",
+                     WIDTH, HEIGHT, LEFT);
+    add_escaped(text, series->name);
+    growing_text_add(text, "%s", *series->unit ? ", " : "");
+    add_escaped(text, series->unit);
+    growing_text_add(text, "</text>");
+    for (int i = 0; i < BINS; i++) {
+        const int height = (int)lround((double)(BOTTOM - TOP) * (double)bins[i] / (double)most);
+        growing_text_add(text,
+                         "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"#4878a8\"/>",
+                         LEFT + i * BAR, BOTTOM - height, BAR - 1, height);
+    }
+    growing_text_add(text,
+                     "<path d=\"M%d %dH%d\" stroke=\"#000\"/><text x=\"%d\" y=\"%d\">%s</text>"
+                     "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">%s</text>"
+                     "<text x=\"%d\" y=\"%d\">%lu values, at most %lu in a bin</text></svg>\n",
+                     LEFT, BOTTOM, WIDTH - LEFT, LEFT, BOTTOM + 16,
+                     text_of_number(ends[0], sizeof ends[0], low, 4), WIDTH - LEFT, BOTTOM + 16,
+                     text_of_number(ends[1], sizeof ends[1], high, 4), LEFT, BOTTOM + 34,
+                     (unsigned long)series->count, (unsigned long)most);
+}
+
+static sonject_status add_value(struct statistics_page *page, const char *name, const char *unit,
+                                double value)
+{
+    struct series *series = page->series;
+    struct series *end = series + page->series_count;
+    while (series < end && (strcmp(series->name, name) != 0 || strcmp(series->unit, unit) != 0))
+        series++;
+    if (series == end) {
+        if (page->series_count == SERIES_MAX || strlen(name) >= sizeof series->name ||
+            strlen(unit) >= sizeof series->unit)
+            return SONJECT_OK;
+        strcpy(series->name, name);
+        strcpy(series->unit, unit);
+        page->series_count++;
+    }
+    if ((series->count & (series->count - 1)) == 0) { /* room for as many again */
+        double *grown = realloc(series->values, 2 * (series->count + 1) * sizeof *grown);
+        CHECK_MEMORY(page->set->report, grown, "the report");
+        series->values = grown;
+    }
+    series->values[series->count++] = value;
+    return SONJECT_OK;
+}
+
+/* A value that was set, if it is a number with a unit: "objects[0].heading=35 deg". Those of all
+ * objects count together; where a chip lies and its seed say nothing of what it shows. */
+static sonject_status add_set_value(struct statistics_page *page, const char *text)
+{
+    char key[80];
+    double value;
+    const char *rest;
+    const size_t length = strcspn(text, "=");
+    if (length >= sizeof key || !text[length])
+        return SONJECT_OK;
+    memcpy(key, text, length);
+    key[length] = 0;
+    char *bracket = strncmp(key, "objects[", 8) == 0 ? strchr(key, ']') : NULL;
+    if (bracket)
+        memmove(key + 8, bracket, strlen(bracket) + 1);
+    if (strncmp(key, "patch", 5) == 0 || strcmp(key, "injection.seed") == 0 ||
+        !text_to_number(text + length + 1, &value, &rest))
+        return SONJECT_OK;
+    return add_value(page, key, rest + strspn(rest, " "), value);
+}
+
+static sonject_status add_object(struct statistics_page *page, size_t split, const json_t *object,
+                                 bool is_taken)
+{
+    static const struct {
+        const char *name, *unit, *key;
+    } values[] = {{"slant range of objects", "m", "slant_range_m"},
+                  {"grazing angle of objects", "deg", "grazing_deg"},
+                  {"burial of objects", "m", "burial_m"},
+                  {"target strength of objects", "dB", "target_strength_db"},
+                  {"contrast of highlights", "dB", "highlight_contrast_db"},
+                  {"contrast of shadows", "dB", "shadow_contrast_db"},
+                  {"pixels of highlights", "", "highlight_pixels"},
+                  {"pixels of shadows", "", "shadow_pixels"}};
+    size_t i;
+    const json_t *name;
+    json_array_foreach(page->classes, i, name)
+    {
+        if (strcmp(json_string_value(name), member_text(object, "class")) == 0)
+            page->counts[split * json_array_size(page->classes) + i]++;
+    }
+    for (i = 0; is_taken && i < sizeof values / sizeof *values; i++) {
+        const json_t *value = json_object_get(object, values[i].key);
+        if (json_is_number(value))
+            CHECK(add_value(page, values[i].name, values[i].unit, json_number_value(value)));
+    }
+    return SONJECT_OK;
+}
+
+static sonject_status add_image(struct statistics_page *page, size_t split, uint64_t id)
+{
+    const struct data_set *set = page->set;
+    char path[PATH_CAPACITY];
+    json_t *record = NULL;
+    json_t *truth = NULL;
+    const bool is_taken = id % page->every == 0;
+    size_t i;
+    const json_t *entry;
+    CHECK(path_in(set->report, path, set->folder, "%s/%s/%08llu%s", set->split_names[split],
+                  output_kinds[OUTPUT_TRUTH].folder, (unsigned long long)id,
+                  output_kinds[OUTPUT_TRUTH].extension));
+    sonject_status status = data_set_record(set, split, id, &record);
+    THEN(status, json_document_read(set->report, path, &truth));
+    json_array_foreach(json_object_get(record, "set"), i, entry)
+    {
+        if (is_taken && json_is_string(entry))
+            THEN(status, add_set_value(page, json_string_value(entry)));
+    }
+    const json_t *objects = json_object_get(truth, "objects");
+    page->empty[split] += json_array_size(objects) == 0;
+    json_array_foreach(objects, i, entry)
+    {
+        THEN(status, add_object(page, split, entry, is_taken));
+    }
+    json_decref(record);
+    json_decref(truth);
+    return status;
+}
+
+static void write_counts(const struct statistics_page *page, struct growing_text *text)
+{
+    const struct data_set *set = page->set;
+    const size_t class_count = json_array_size(page->classes);
+    growing_text_add(text, "<table><tr><th>split</th><th>images</th><th>without objects</th>");
+    for (size_t j = 0; j < class_count; j++) {
+        growing_text_add(text, "<th>");
+        add_escaped(text, json_string_value(json_array_get(page->classes, j)));
+        growing_text_add(text, "</th>");
+    }
+    growing_text_add(text, "</tr>\n");
+    for (size_t i = 0; i < set->split_count; i++) {
+        growing_text_add(text, "<tr><td>%s</td><td>%llu</td><td>%llu</td>", set->split_names[i],
+                         (unsigned long long)set->split_images[i],
+                         (unsigned long long)page->empty[i]);
+        for (size_t j = 0; j < class_count; j++)
+            growing_text_add(text, "<td>%llu</td>",
+                             (unsigned long long)page->counts[i * class_count + j]);
+        growing_text_add(text, "</tr>\n");
+    }
+    growing_text_add(text, "</table>\n");
+}
+
+static void write_page(const struct statistics_page *page, struct growing_text *text)
+{
+    const struct data_set *set = page->set;
+    size_t i;
+    const json_t *swath;
+    growing_text_add(text,
+                     "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+                     "<title>Data set</title><style>body{font-family:sans-serif;margin:2em}"
+                     "table{border-collapse:collapse;margin:1em 0}svg{margin:.5em}"
+                     "td,th{border:1px solid #999;padding:.2em .6em;text-align:right}"
+                     "</style></head><body>\n<h1>Data set of %llu images</h1>\n<p>campaign ",
+                     (unsigned long long)set->images);
+    add_escaped(text, member_text(set->head, "hash"));
+    growing_text_add(text, ", sonject ");
+    add_escaped(text, member_text(set->head, "sonject"));
+    growing_text_add(text, "</p>\n<h2>Objects by class</h2>\n");
+    write_counts(page, text);
+    growing_text_add(text, "<h2>Swaths</h2>\n<table><tr><th>swath</th><th>split</th></tr>\n");
+    json_array_foreach(json_object_get(set->head, "swaths"), i, swath)
+    {
+        growing_text_add(text, "<tr><td>");
+        add_escaped(text, member_text(swath, "path"));
+        growing_text_add(text, "</td><td>");
+        add_escaped(text, member_text(swath, "split"));
+        growing_text_add(text, "</td></tr>\n");
+    }
+    growing_text_add(text, "</table>\n<h2>Distributions</h2>\n<div>\n");
+    for (i = 0; i < page->series_count; i++)
+        write_histogram(text, &page->series[i]);
+    growing_text_add(text, "</div>\n<h2>Images</h2>\n<p><img src=\"contact_sheet.png\" "
+                           "alt=\"images from all over the data set\"></p>\n</body></html>\n");
+}
+
+sonject_status write_report_page(const struct data_set *set)
+{
+    struct growing_text text = {NULL, 0, 0, false};
+    char path[PATH_CAPACITY];
+    struct statistics_page *page = allocate_array(1, sizeof *page);
+    CHECK_MEMORY(set->report, page, "the report");
+    page->set = set;
+    page->every = (set->images + IMAGES_MAX - 1) / IMAGES_MAX;
+    page->classes = json_object_get(set->head, "classes");
+    page->counts =
+        allocate_array(set->split_count, json_array_size(page->classes) * sizeof *page->counts);
+    sonject_status status =
+        page->counts ? SONJECT_OK : report_out_of_memory(set->report, "the report");
+    for (size_t i = 0; status == SONJECT_OK && i < set->split_count; i++)
+        for (uint64_t k = 0; status == SONJECT_OK && k < set->split_images[i]; k++)
+            status = add_image(page, i, set->split_first[i] + k);
+    THEN(status, path_in(set->report, path, set->folder, "report.html"));
+    if (status == SONJECT_OK) {
+        write_page(page, &text);
+        status = growing_text_write(set->report, &text, path);
+    }
+    for (size_t i = 0; i < page->series_count; i++)
+        free(page->series[i].values);
+    free(page->counts);
+    free(page);
+    return status;
+}
