@@ -69,17 +69,17 @@ FUNCTION vfloat facet_density(vfloat cosine, float slope)
     return SELECT(is_above, density, SPLAT(0.0f));
 }
 
-/* The facet that mirrors one direction into another. */
-struct mirror_facet {
+/* The facet that reflects one direction into another. */
+struct microfacet {
     struct vector3 normal;
     vfloat half_angle; /* cosine between its normal and either direction */
 };
 
 /* The sum of the directions is twice that cosine long: near grazing their product with the normal
  * would cancel. */
-FUNCTION struct mirror_facet facet_between(struct vector3 one, struct vector3 other)
+FUNCTION struct microfacet facet_between(struct vector3 one, struct vector3 other)
 {
-    struct mirror_facet facet;
+    struct microfacet facet;
     facet.normal.x = one.x + other.x;
     facet.normal.y = one.y + other.y;
     facet.normal.z = one.z + other.z;
@@ -92,13 +92,13 @@ FUNCTION struct mirror_facet facet_between(struct vector3 one, struct vector3 ot
     return facet;
 }
 
-/* Scattering of the cone over cos cos, both directions above the surface: facets mirror, and shade
+/* Scattering of the cone over cos cos, both directions above the surface: facets reflect, and shade
  * each other as in V-shaped grooves, min(1, 2 nh no/oh, 2 nh ni/oh) (K. E. Torrance, E. M. Sparrow,
  * J. Opt. Soc. Am. 57, 1967). It returns no more than comes, since grooves do not either. */
 FUNCTION vfloat cone_scattering(struct vector3 normal, struct vector3 one, struct vector3 other,
                                 float slope)
 {
-    const struct mirror_facet facet = facet_between(one, other);
+    const struct microfacet facet = facet_between(one, other);
     const vfloat cosine_one = dot3(normal, one);
     const vfloat cosine_other = dot3(normal, other);
     const vfloat tilt = dot3(normal, facet.normal);
@@ -114,13 +114,13 @@ FUNCTION vfloat cone_scattering(struct vector3 normal, struct vector3 one, struc
 FUNCTION vfloat cone_density(struct vector3 normal, struct vector3 back, struct vector3 direction,
                              float slope)
 {
-    const struct mirror_facet facet = facet_between(back, direction);
+    const struct microfacet facet = facet_between(back, direction);
     const vfloat tilt = dot3(normal, facet.normal);
     return facet_density(tilt, slope) * tilt / (4.0f * facet.half_angle);
 }
 
-/* The direction into which a random facet mirrors sound that came along -back; it may lie below the
- * surface. */
+/* The direction into which a random facet reflects sound that came along -back; it may lie below
+ * the surface. */
 FUNCTION struct vector3 sample_cone(struct vector3 normal, struct vector3 back, float slope,
                                     vfloat u, vfloat v)
 {
@@ -129,11 +129,11 @@ FUNCTION struct vector3 sample_cone(struct vector3 normal, struct vector3 back, 
     const struct vector3 facet =
         direction_about(normal, cosine, SQUARE_ROOT(square_slope) * cosine, v);
     const vfloat twice = 2.0f * dot3(back, facet);
-    struct vector3 mirrored;
-    mirrored.x = twice * facet.x - back.x;
-    mirrored.y = twice * facet.y - back.y;
-    mirrored.z = twice * facet.z - back.z;
-    return mirrored;
+    struct vector3 reflected;
+    reflected.x = twice * facet.x - back.x;
+    reflected.y = twice * facet.y - back.y;
+    reflected.z = twice * facet.z - back.z;
+    return reflected;
 }
 
 #endif

@@ -8,7 +8,7 @@
 #include "tally.h"
 
 /* Where the source is as seen from a hit. */
-struct source_way {
+struct source_path {
     struct vector3 direction;
     vfloat path;      /* to the source, or to where it seems to be if layers bend the ray */
     vfloat spreading; /* of the energy on the way, 1/m^2 */
@@ -35,9 +35,9 @@ FUNCTION vfloat first_leg(const struct chain *chain, vfloat receiver_x)
 }
 
 /* A straight way; its range is left to be set. */
-FUNCTION struct source_way straight_way(struct vector3 to)
+FUNCTION struct source_path straight_way(struct vector3 to)
 {
-    struct source_way way;
+    struct source_path way;
     way.path = SQUARE_ROOT(dot3(to, to));
     way.spreading = 1.0f / (way.path * way.path);
     const vfloat inverse = 1.0f / way.path;
@@ -52,15 +52,15 @@ FUNCTION struct source_way straight_way(struct vector3 to)
  * upward direction about the receiver at receiver_x. Its length less the reference range R is
  * formed without subtracting ranges: |s - p|^2 - R^2 = |p|^2 - 2 s.p + up^2 (+ x^2), s the source,
  * up across s. */
-FUNCTION struct source_way way_to_source(const struct fan_record *fan, const struct chain *chain,
-                                         vfloat receiver_x, vfloat aside, vfloat up)
+FUNCTION struct source_path path_to_source(const struct fan_record *fan, const struct chain *chain,
+                                           vfloat receiver_x, vfloat aside, vfloat up)
 {
     const struct vector3 point = chain->hit.point;
     const float r = fan->reference_range;
     struct vector3 to = to_receiver(fan, point, receiver_x + aside);
     to.y += up * fan->sine_depression;
     to.z += up * fan->cosine_depression;
-    struct source_way way = straight_way(to);
+    struct source_path way = straight_way(to);
     const vfloat height_along =
         point.y * fan->cosine_depression - point.z * fan->sine_depression; /* of p towards R */
     const vfloat height_across = point.y * fan->sine_depression + point.z * fan->cosine_depression;
@@ -73,10 +73,10 @@ FUNCTION struct source_way way_to_source(const struct fan_record *fan, const str
 
 /* The same through layers: in the upright plane of point and source the ray is looked up, then
  * turned to where that plane stands. */
-FUNCTION struct source_way way_through_layers(const struct fan_record *fan,
-                                              GLOBAL const struct ray_piece_record *pieces,
-                                              const struct chain *chain, vfloat receiver_x,
-                                              vfloat aside, vfloat up)
+FUNCTION struct source_path path_through_layers(const struct fan_record *fan,
+                                                GLOBAL const struct ray_piece_record *pieces,
+                                                const struct chain *chain, vfloat receiver_x,
+                                                vfloat aside, vfloat up)
 {
     const struct vector3 point = chain->hit.point;
     const vfloat off = receiver_x + aside - point.x;
@@ -89,7 +89,7 @@ FUNCTION struct source_way way_through_layers(const struct fan_record *fan,
     const vfloat path = SQUARE_ROOT(ray.wavefront * ray.wavefront + up * up);
     const vfloat level =
         (ray.wavefront * ray.directions.away_y + up * ray.directions.away_z) / path;
-    struct source_way way;
+    struct source_path way;
     way.path = path;
     way.direction.x = level * off / ground;
     way.direction.y = -level * broadside / ground;
@@ -149,8 +149,8 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
     outcome->impulses += (RECORD_WORD)count;
 }
 
-/* A path that was found one way may also stand for its reverse. What began with a mirror bounce
- * does, because nothing finds the reverse: its last hit would be the mirror. In focused columns,
+/* A path that was found one way may also stand for its reverse. What began with a specular bounce
+ * does, because nothing finds the reverse: its last hit would be the boundary. In focused columns,
  * where both are seen from the same place, so do the chains that began on the seabed and end on a
  * target: they are led there on purpose, and those found from the target are left out for them. */
 struct ways_counted {
@@ -199,7 +199,8 @@ FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains
     }
     if (has_sea_surface(chains))
         count_ways_by_sea_surface(chains, order, chain, &ways);
-    /* one object seen by way of the seabed's mirror is a pair of sources' (trace_rough_mirrored.h)
+    /* one object seen by way of the seabed's specular part is a pair of sources'
+     * (trace_rough_images.h)
      */
     if (order == 2 && chains->estimator == CHAINS_CONNECT)
         ways.is_counted = ways.is_counted & ~(chain->began_smooth & began_on_seabed);
@@ -261,11 +262,11 @@ FUNCTION void connect_chain(const struct fan_record *fan,
         source_aside = (along - 0.5f) * fan->source_side;
         source_up = (across - 0.5f) * fan->source_side;
     }
-    struct source_way way;
+    struct source_path way;
     if (fan->table.pieces > 0)
-        way = way_through_layers(fan, pieces, chain, receiver_x, source_aside, source_up);
+        way = path_through_layers(fan, pieces, chain, receiver_x, source_aside, source_up);
     else
-        way = way_to_source(fan, chain, receiver_x, source_aside, source_up);
+        way = path_to_source(fan, chain, receiver_x, source_aside, source_up);
     const vfloat scattering = scattering_at(fan, chains, objects, hit, way.direction) *
                               map_factor(fan, pieces, chains, map, hit);
     const vfloat cosine = dot3(hit->normal, way.direction);

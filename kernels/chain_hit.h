@@ -163,13 +163,13 @@ struct chain {
     vfloat range;       /* from the receiver to the first hit less the reference range */
     vfloat length;      /* from the first hit to this one */
     vfloat first_x;     /* along-track, of the first hit */
-    vfloat first_reach; /* ground range of the first hit that is no level mirror over the cosine of
-                         the grazing angle: without layers the range, by way of the mirrors */
+    vfloat first_reach; /* ground range of the first hit that is no level boundary over the cosine
+                         of the grazing angle: without layers the range, by way of the boundaries */
     vint first_surface;
-    vint surface_before;     /* that the sound came from to this hit */
-    mask began_smooth;       /* the first hit was a mirror bounce: nothing finds the reverse path */
-    mask only_mirrors;       /* every hit before this one was a mirror bounce */
-    mask only_level_mirrors; /* all of those on seabed or sea surface */
+    vint surface_before;  /* that the sound came from to this hit */
+    mask began_smooth;    /* the first hit was a specular bounce: nothing finds the reverse path */
+    mask only_specular;   /* every hit before this one was a specular bounce */
+    mask only_boundaries; /* all of those on seabed or sea surface */
     mask met_object;
     mask is_alive;
     const struct target_choice *choice; /* of targets, where they are many; 0: each ray's own */

@@ -45,12 +45,12 @@ FUNCTION void leave_out_unheard(const struct fan_record *fan,
 }
 
 /* The way to the image of the source's point (aside, up) in the sea surface, formed as in
- * way_to_source: |s - p|^2 - R^2 = |p|^2 - 2 s.p + up^2 + 4 H (H - h) (+ x^2), h the height of that
- * point and H that of the surface. */
-FUNCTION struct source_way way_to_image(const struct fan_record *fan,
-                                        GLOBAL const struct chain_record *chains,
-                                        const struct chain *chain, vfloat receiver_x, vfloat aside,
-                                        vfloat up)
+ * path_to_source: |s - p|^2 - R^2 = |p|^2 - 2 s.p + up^2 + 4 H (H - h) (+ x^2), h the height of
+ * that point and H that of the surface. */
+FUNCTION struct source_path way_to_image(const struct fan_record *fan,
+                                         GLOBAL const struct chain_record *chains,
+                                         const struct chain *chain, vfloat receiver_x, vfloat aside,
+                                         vfloat up)
 {
     const struct vector3 point = chain->hit.point;
     const float r = fan->reference_range;
@@ -62,7 +62,7 @@ FUNCTION struct source_way way_to_image(const struct fan_record *fan,
     to.x = receiver_x + aside - point.x;
     to.y = source_y - point.y;
     to.z = image_z - point.z;
-    struct source_way way = straight_way(to);
+    struct source_path way = straight_way(to);
     const vfloat excess = (to.x * to.x + point.y * point.y + point.z * point.z -
                            2.0f * (source_y * point.y + image_z * point.z) + up * up +
                            4.0f * surface * (surface - source_z)) /
@@ -75,7 +75,7 @@ FUNCTION struct source_way way_to_image(const struct fan_record *fan,
 FUNCTION mask is_open_to_image(const struct fan_record *fan,
                                GLOBAL const struct chain_record *chains,
                                GLOBAL const struct object_record *objects,
-                               const struct chain_hit *hit, const struct source_way *way,
+                               const struct chain_hit *hit, const struct source_path *way,
                                mask is_way)
 {
     const vfloat upward = larger(way->direction.z, SPLAT(1.0e-6f));
@@ -92,12 +92,12 @@ FUNCTION mask is_open_to_image(const struct fan_record *fan,
 }
 
 /* What the hit returns in lanes that want it, to a receiver broadside of receiver_x: straight, or
- * by way of the sea surface's mirror. */
+ * by way of the sea surface's specular part. */
 FUNCTION vfloat energy_returned(const struct fan_record *fan,
                                 GLOBAL const struct ray_piece_record *pieces,
                                 GLOBAL const struct chain_record *chains,
                                 GLOBAL const struct object_record *objects, GLOBAL const float *map,
-                                const struct chain *chain, vfloat receiver_x, int by_mirror,
+                                const struct chain *chain, vfloat receiver_x, int by_image,
                                 RECORD_WORD draw, mask is_wanted, vfloat *range,
                                 struct outcome_record *outcome)
 {
@@ -109,18 +109,18 @@ FUNCTION vfloat energy_returned(const struct fan_record *fan,
         aside = (aside - 0.5f) * fan->source_side;
         up = (up - 0.5f) * fan->source_side;
     }
-    const struct source_way way = by_mirror
-                                      ? way_to_image(fan, chains, chain, receiver_x, aside, up)
-                                      : way_to_source(fan, chain, receiver_x, aside, up);
+    const struct source_path way = by_image
+                                       ? way_to_image(fan, chains, chain, receiver_x, aside, up)
+                                       : path_to_source(fan, chain, receiver_x, aside, up);
     vfloat scattering = scattering_at(fan, chains, objects, hit, way.direction) *
                         map_factor(fan, pieces, chains, map, hit);
-    if (by_mirror)
-        scattering = scattering * mirror_energy(&chains->sea_surface, magnitude(way.direction.z));
+    if (by_image)
+        scattering = scattering * specular_energy(&chains->sea_surface, magnitude(way.direction.z));
     mask is_open = is_wanted & MASK_OF(scattering > 0.0f);
-    outcome->queries += count_lanes(is_open) * (by_mirror ? 2u : 1u);
+    outcome->queries += count_lanes(is_open) * (by_image ? 2u : 1u);
     if (ANY(is_open))
-        is_open = by_mirror ? is_open_to_image(fan, chains, objects, hit, &way, is_open)
-                            : is_open_way(fan, objects, hit, way.direction, way.path, is_open);
+        is_open = by_image ? is_open_to_image(fan, chains, objects, hit, &way, is_open)
+                           : is_open_way(fan, objects, hit, way.direction, way.path, is_open);
     *range = way.range;
     const vfloat half_path = fan->reference_range + way.range;
     const vfloat square = half_path * half_path;
@@ -129,9 +129,9 @@ FUNCTION vfloat energy_returned(const struct fan_record *fan,
                   SPLAT(0.0f));
 }
 
-/* Where a path may end on the sea surface's mirror: a single target between mirrors belongs to the
- * pairs of sources (trace_rough_mirrored.h). */
-FUNCTION mask may_end_on_mirror(int order, const struct chain *chain)
+/* Where a path may end on the sea surface's specular part: a single target between boundaries
+ * belongs to the pairs of sources (trace_rough_images.h). */
+FUNCTION mask may_end_on_boundary(int order, const struct chain *chain)
 {
     mask may_end = chain->is_alive & chain->met_object & MASK_OF(chain->hit.surface != SEA_SURFACE);
     if (order == 2)
@@ -139,17 +139,17 @@ FUNCTION mask may_end_on_mirror(int order, const struct chain *chain)
     return may_end;
 }
 
-/* The echo of paths whose last mirror is the sea surface, which the hit is connected through.
+/* The echo of paths whose last boundary is the sea surface, which the hit is connected through.
  * Nothing finds their reverse. */
-FUNCTION void connect_by_mirror(const struct fan_record *fan,
-                                GLOBAL const struct ray_piece_record *pieces,
-                                GLOBAL const struct chain_record *chains,
-                                GLOBAL const struct object_record *objects, GLOBAL const float *map,
-                                int order, const struct chain *chain, RECORD_WORD draw,
-                                struct chain_echo *echo, struct outcome_record *outcome)
+FUNCTION void connect_to_image(const struct fan_record *fan,
+                               GLOBAL const struct ray_piece_record *pieces,
+                               GLOBAL const struct chain_record *chains,
+                               GLOBAL const struct object_record *objects, GLOBAL const float *map,
+                               int order, const struct chain *chain, RECORD_WORD draw,
+                               struct chain_echo *echo, struct outcome_record *outcome)
 {
     struct ways_counted ways;
-    ways.is_counted = may_end_on_mirror(order, chain);
+    ways.is_counted = may_end_on_boundary(order, chain);
     ways.counts_reverse = chains->is_focused ? ways.is_counted : ways.is_counted & 0;
     const vfloat receiver_x =
         chains->is_focused ? 0.5f * (chain->first_x + chain->hit.point.x) : chain->first_x;
@@ -166,20 +166,20 @@ FUNCTION void connect_reverse(const struct fan_record *fan,
                               GLOBAL const struct ray_piece_record *pieces,
                               GLOBAL const struct chain_record *chains,
                               GLOBAL const struct object_record *objects, GLOBAL const float *map,
-                              int order, const struct chain *chain, int by_mirror, RECORD_WORD draw,
+                              int order, const struct chain *chain, int by_image, RECORD_WORD draw,
                               struct chain_echo *echo, struct outcome_record *outcome)
 {
     struct ways_counted ways;
-    ways.is_counted = by_mirror ? may_end_on_mirror(order, chain)
-                                : chain->is_alive & chain->met_object & is_found_one_way(chain);
+    ways.is_counted = by_image ? may_end_on_boundary(order, chain)
+                               : chain->is_alive & chain->met_object & is_found_one_way(chain);
     ways.counts_reverse = ways.is_counted;
     const vfloat shift = chain->first_x - chain->hit.point.x;
     const vfloat square = chain->first_reach * chain->first_reach;
     vfloat range;
     const vfloat energy =
-        energy_returned(fan, pieces, chains, objects, map, chain, chain->hit.point.x, by_mirror,
+        energy_returned(fan, pieces, chains, objects, map, chain, chain->hit.point.x, by_image,
                         draw, ways.is_counted, &range, outcome);
-    const float finer = by_mirror ? chains->finer[order - 1] : 1.0f;
+    const float finer = by_image ? chains->finer[order - 1] : 1.0f;
     keep_echo(fan, chains, ways, chain, energy, range, finer * square / (square + shift * shift),
               echo);
     for (int lane = 0; lane < WIDTH; lane++)
@@ -205,7 +205,7 @@ FUNCTION void connect_by_sea_surface(const struct fan_record *fan,
     }
     if (!may_end)
         return;
-    connect_by_mirror(fan, pieces, chains, objects, map, order, chain, draw, &echo, outcome);
+    connect_to_image(fan, pieces, chains, objects, map, order, chain, draw, &echo, outcome);
     tally_chain_echo(fan, chains, tallies, order + 1, &echo, outcome);
     if (!chains->is_focused) {
         connect_reverse(fan, pieces, chains, objects, map, order, chain, 1, draw, &echo, outcome);

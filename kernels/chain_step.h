@@ -1,5 +1,5 @@
-/* How a chain of sound goes on from a hit: by the surface's BRDF, by its mirror, or from seabed
- * and sea surface towards the targets (kernels/MATH.md, "Chains"). */
+/* How a chain of sound goes on from a hit: by the surface's BRDF, by its specular part, or from
+ * seabed and sea surface towards the targets (kernels/MATH.md, "Chains"). */
 #ifndef SONJECT_KERNELS_CHAIN_STEP_H
 #define SONJECT_KERNELS_CHAIN_STEP_H
 
@@ -11,8 +11,8 @@
 /* How a chain goes on from a hit. */
 struct chain_step {
     struct vector3 direction;
-    vfloat weight; /* f cos / density, or the mirror's energy over its probability */
-    mask is_mirror;
+    vfloat weight; /* f cos / density, or the boundary's energy over its probability */
+    mask is_specular;
 };
 
 /* A step by a rough part: what the surface scatters that way over the density it was drawn with. */
@@ -27,7 +27,7 @@ FUNCTION struct chain_step step_in_direction(GLOBAL const struct surface_record 
     step.direction = direction;
     step.weight = SELECT(
         is_possible, scattering * cosine / SELECT(is_possible, density, SPLAT(1.0f)), SPLAT(0.0f));
-    step.is_mirror = is_possible & 0;
+    step.is_specular = is_possible & 0;
     return step;
 }
 
@@ -78,8 +78,8 @@ NOINLINE struct chain_step step_among_many(GLOBAL const struct chain_record *cha
     const mask goes_elsewhere = MASK_OF(choice < elsewhere_share);
     const vfloat cone_choice = larger((choice - elsewhere_share) / cone_share, SPLAT(0.0f));
     struct target_choice own[WIDTH];
-    const struct chosen_spheres chosen =
-        choose_spheres(chains, spheres, targets, own, hit->point, cone_choice, is_here);
+    const struct sampled_spheres chosen =
+        sample_spheres(chains, spheres, targets, own, hit->point, cone_choice, is_here);
     struct vector3 way;
     way.x = chosen.centre.x - hit->point.x;
     way.y = chosen.centre.y - hit->point.y;
@@ -130,7 +130,7 @@ FUNCTION struct chain_step step_from_object(GLOBAL const struct surface_record *
     return step_in_direction(surface, hit, direction, density);
 }
 
-/* Rough or smooth part of one surface: a mirror bounce is taken with a probability near its share
+/* Rough or smooth part of one surface: a specular bounce is taken with a probability near its share
  * of the energy. From the seabed in view of the sonar sound is sought that goes to a target; beyond
  * that it may also go to the sea surface, and come from there. */
 FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *chains,
@@ -149,13 +149,13 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
                                                  hit, choice, u, v)
                                : step_from_object(surface, hit, choice, u, v);
     const vfloat cosine = dot3(hit->normal, hit->back);
-    const vfloat energy = mirror_energy(surface, cosine);
+    const vfloat energy = specular_energy(surface, cosine);
     vfloat probability = SPLAT(1.0f);
     if (has_rough_part(surface)) {
         const float rough = rough_albedo(surface);
         probability = smaller(larger(energy / (energy + rough), SPLAT(0.1f)), SPLAT(0.9f));
     }
-    const mask is_mirror = MASK_OF(choice < probability);
+    const mask is_specular = MASK_OF(choice < probability);
     const vfloat left = larger(1.0f - probability, SPLAT(1.0e-6f));
     const vfloat rest = smaller((choice - probability) / left, SPLAT(0.9999999f));
     if (has_rough_part(surface)) {
@@ -167,13 +167,13 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
         step.direction = hit->back;
         step.weight = SPLAT(0.0f);
     }
-    struct vector3 mirrored;
-    mirrored.x = 2.0f * cosine * hit->normal.x - hit->back.x;
-    mirrored.y = 2.0f * cosine * hit->normal.y - hit->back.y;
-    mirrored.z = 2.0f * cosine * hit->normal.z - hit->back.z;
-    step.direction = choose3(is_mirror, mirrored, step.direction);
-    step.weight = SELECT(is_mirror, energy / probability, step.weight / left);
-    step.is_mirror = is_mirror;
+    struct vector3 reflected;
+    reflected.x = 2.0f * cosine * hit->normal.x - hit->back.x;
+    reflected.y = 2.0f * cosine * hit->normal.y - hit->back.y;
+    reflected.z = 2.0f * cosine * hit->normal.z - hit->back.z;
+    step.direction = choose3(is_specular, reflected, step.direction);
+    step.weight = SELECT(is_specular, energy / probability, step.weight / left);
+    step.is_specular = is_specular;
     return step;
 }
 
@@ -191,7 +191,7 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
     struct chain_step step;
     step.direction = hit->back;
     step.weight = SPLAT(0.0f);
-    step.is_mirror = MASK_OF(choice < -1.0f);
+    step.is_specular = MASK_OF(choice < -1.0f);
     const int before = first_surface_number(chains) - 1;
     for (int i = surface_after(before, fan->objects, hit->surface, chain->is_alive);
          i < fan->objects; i = surface_after(i, fan->objects, hit->surface, chain->is_alive)) {
@@ -203,10 +203,10 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
                               order, hit, choice, u, v);
         step.direction = choose3(here, from.direction, step.direction);
         step.weight = SELECT(here, from.weight, step.weight);
-        step.is_mirror = SELECT(here, from.is_mirror, step.is_mirror);
+        step.is_specular = SELECT(here, from.is_specular, step.is_specular);
     }
     const vfloat factor = map_factor(fan, pieces, chains, map, hit);
-    step.weight = SELECT(step.is_mirror, step.weight, step.weight * factor);
+    step.weight = SELECT(step.is_specular, step.weight, step.weight * factor);
     return step;
 }
 

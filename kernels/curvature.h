@@ -1,5 +1,5 @@
 /* How a surface's normal turns from one of its points to the next: by differences of the shapes'
- * own normals, so that every shape has it (kernels/MATH.md, "Corners"). */
+ * own normals, so that every shape has it (kernels/MATH.md, "Multi-bounce specular paths"). */
 #ifndef SONJECT_KERNELS_CURVATURE_H
 #define SONJECT_KERNELS_CURVATURE_H
 

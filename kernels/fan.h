@@ -16,7 +16,7 @@ struct fan_ray {
     vfloat range_at_closest;  /* range there less the reference range */
     vfloat wavefront;         /* m; the wavefront's width per rad of elevation there; it grows by
                                1 m per m, and without layers it is the range */
-    vfloat spreading;         /* of layers: struct water_ray; else of no meaning */
+    vfloat spreading;         /* of layers: struct arrival; else of no meaning */
 };
 
 /* x: track position; elevation: rad over the direction from the track to the origin.

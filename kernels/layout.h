@@ -26,9 +26,9 @@ enum random_stream {
     STREAM_OBJECT_SPECKLE = 256, /* + object */
     STREAM_SMOOTH_RAYS = 1024,   /* + part */
     STREAM_CHAIN_RAYS = 2050,    /* + first surface: part, -1 the seabed, -2 any */
-    STREAM_MIRRORED_RAYS = 4096, /* + STREAMS_OF_PAIR * number of the pair of sources + part */
-    STREAM_MIRRORED_ROUGH_RAYS = 1048576, /* likewise */
-    STREAM_CORNER_RAYS = 2097152,         /* likewise; the sonar alone is pair 0 */
+    STREAM_IMAGE_RAYS = 4096,    /* + STREAMS_OF_PAIR * number of the pair of sources + part */
+    STREAM_IMAGE_ROUGH_RAYS = 1048576, /* likewise */
+    STREAM_MULTIBOUNCE_RAYS = 2097152, /* likewise; the sonar alone is pair 0 */
     STREAMS_OF_PAIR = 1024
 };
 
@@ -58,8 +58,8 @@ struct surface_record {
     float glossy_albedo;
     float glossy_slope; /* rms */
     RECORD_INT
-    rough_is_apart; /* the rough part is not what roughness takes from the mirror (sediment
-                       returns sound from its volume too); the mirror gives way to it */
+    rough_is_apart; /* the rough part is not what roughness takes from the specular part (sediment
+                       returns sound from its volume too); the specular part gives way to it */
 };
 
 /* An end of a cylinder, counted outwards from the object's centre along its axis. */
@@ -252,26 +252,26 @@ struct chain_record {
     struct surface_record sea_surface;
 };
 
-/* The plane mirrors that sound may meet on its way; both are level. */
-enum mirror_kind {
-    MIRROR_SEABED = 0,
-    MIRROR_SURFACE = 1,
-    MIRROR_KINDS = 2
+/* The plane boundaries that sound may meet on its way; both are level. */
+enum boundary {
+    BOUNDARY_SEABED = 0,
+    BOUNDARY_SURFACE = 1,
+    BOUNDARIES = 2
 };
 
-struct mirror_record {
+struct boundary_record {
     float height;      /* z of the plane in the frame, m */
-    float speed_ratio; /* of the water at the mirror over that around the object */
+    float speed_ratio; /* of the water at the boundary over that around the object */
     struct surface_record surface;
 };
 
-/* The sonar or one of its images in the mirrors: it moves along
+/* The sonar or one of its images in the boundaries: it moves along
  * y = z = -range * (0, cos, -sin)(depression) of the frame. */
 struct source_record {
     float range;                              /* m, from its track to the frame's origin */
     float cosine_depression, sine_depression; /* sine < 0: the source is below the origin */
-    RECORD_INT bounces;     /* mirrors that fold the straight line from the source to an object */
-    RECORD_INT last_mirror; /* enum mirror_kind: the one next to the object; they alternate */
+    RECORD_INT bounces; /* boundaries that fold the straight line from the source to an object */
+    RECORD_INT last_boundary; /* enum boundary: the one next to the object; they alternate */
     struct ray_table_record table;
 };
 
@@ -279,19 +279,19 @@ struct source_record {
  * bin_at_reference and first_cycles belong to half the path by way of the frame's origin. */
 struct image_pair_record {
     struct source_record outgoing, returning;
-    struct mirror_record mirrors[MIRROR_KINDS];
+    struct boundary_record boundaries[BOUNDARIES];
     float echoes; /* 2 where the reverse path is an echo of its own, else 1 */
 };
 
 /* How paths over several smooth faces are followed. */
-struct corner_record {
+struct multibounce_record {
     RECORD_INT interactions; /* most surfaces that a path may meet between its sources */
     RECORD_INT is_focused;   /* echoes go to the mean of first and last hit, else to the first */
-    struct surface_record seabed; /* a mirror between two hits; else without a smooth part */
+    struct surface_record seabed; /* a boundary between two hits; else without a smooth part */
 };
 
 /* One echo of such a path. */
-struct corner_echo_record {
+struct multibounce_echo_record {
     RECORD_INT strip; /* of the whole track */
     RECORD_INT bin;
     float real_part, imaginary_part; /* quanta */

@@ -83,13 +83,13 @@ FUNCTION void begin_choice(GLOBAL const struct chain_record *chains,
 }
 
 /* The spheres that lanes choose, and what is left of each lane's uniform number. */
-struct chosen_spheres {
+struct sampled_spheres {
     struct vector3 centre;
     vfloat radius, rest;
 };
 
 /* The sphere of one lane: the last whose predecessors' weights sum to no more than `wanted`. */
-FUNCTION void choose_sphere(const struct target_choice *choice,
+FUNCTION void sample_sphere(const struct target_choice *choice,
                             GLOBAL const struct sphere_group *groups, int count, float wanted,
                             int *group, int *slot, float *rest)
 {
@@ -118,11 +118,11 @@ FUNCTION void choose_sphere(const struct target_choice *choice,
 }
 
 /* By a choice that all lanes share, or, if that is 0, by their own, which are left in own[lane]. */
-FUNCTION struct chosen_spheres choose_spheres(GLOBAL const struct chain_record *chains,
-                                              GLOBAL const struct sphere_record *spheres,
-                                              const struct target_choice *shared,
-                                              struct target_choice *own, struct vector3 point,
-                                              vfloat uniform, mask is_wanted)
+FUNCTION struct sampled_spheres sample_spheres(GLOBAL const struct chain_record *chains,
+                                               GLOBAL const struct sphere_record *spheres,
+                                               const struct target_choice *shared,
+                                               struct target_choice *own, struct vector3 point,
+                                               vfloat uniform, mask is_wanted)
 {
     GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
     float from[3][WIDTH], uniforms[WIDTH];
@@ -145,14 +145,14 @@ FUNCTION struct chosen_spheres choose_spheres(GLOBAL const struct chain_record *
             begin_choice(chains, spheres, &own[lane]);
             choice = &own[lane];
         }
-        choose_sphere(choice, groups, chains->groups,
+        sample_sphere(choice, groups, chains->groups,
                       uniforms[lane] * choice->before[chains->groups], &group, &slot, &rest[lane]);
         x[lane] = groups[group].centre_x[slot];
         y[lane] = groups[group].centre_y[slot];
         z[lane] = groups[group].centre_z[slot];
         radius[lane] = groups[group].radius[slot];
     }
-    struct chosen_spheres chosen;
+    struct sampled_spheres chosen;
     chosen.centre.x = LOAD_VFLOAT(x);
     chosen.centre.y = LOAD_VFLOAT(y);
     chosen.centre.z = LOAD_VFLOAT(z);

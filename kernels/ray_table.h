@@ -12,7 +12,7 @@ struct table_ray {
     vfloat offset;    /* of its closest point from the frame's origin, along `upward` */
     vfloat range;     /* at that point less the reference range */
     vfloat wavefront; /* width per rad of elevation there; grows by 1 m per m */
-    vfloat spreading; /* struct water_ray */
+    vfloat spreading; /* struct arrival */
 };
 
 /* The offset a(e) is a cubic in each piece; the range is its integral, -da, because wavefronts

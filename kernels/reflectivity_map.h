@@ -28,7 +28,7 @@ FUNCTION vfloat broadside_range(const struct fan_record *fan,
         return find_ray_to(fan->table, pieces, fan->cosine_depression, fan->sine_depression,
                            point.y, point.z)
             .range;
-    /* formed as in way_to_source */
+    /* formed as in path_to_source */
     const float r = fan->reference_range;
     const vfloat square =
         point.y * point.y + point.z * point.z +

@@ -58,7 +58,7 @@ FUNCTION void plane_reflection(GLOBAL const struct surface_record *surface, vflo
     *imaginary_part = SPLAT(0.0f);
 }
 
-/* Amplitude of the mirror-like part, R exp(-P^2 / 2), P = 2 k eta cos(angle). */
+/* Amplitude of the specular part, R exp(-P^2 / 2), P = 2 k eta cos(angle). */
 FUNCTION void smooth_reflection(GLOBAL const struct surface_record *surface, vfloat cosine,
                                 vfloat *real_part, vfloat *imaginary_part)
 {
@@ -75,8 +75,8 @@ FUNCTION float rough_albedo(GLOBAL const struct surface_record *surface)
     return 3.14159265359f * surface->lambert + surface->glossy_albedo;
 }
 
-/* Energy of the mirror-like part, |R|^2 exp(-P^2). */
-FUNCTION vfloat mirror_energy(GLOBAL const struct surface_record *surface, vfloat cosine)
+/* Energy of the specular part, |R|^2 exp(-P^2). */
+FUNCTION vfloat specular_energy(GLOBAL const struct surface_record *surface, vfloat cosine)
 {
     vfloat real_part, imaginary_part;
     smooth_reflection(surface, cosine, &real_part, &imaginary_part);
@@ -86,7 +86,7 @@ FUNCTION vfloat mirror_energy(GLOBAL const struct surface_record *surface, vfloa
     return energy;
 }
 
-/* What roughness takes out of the mirror direction of a smooth surface, 1 - exp(-P^2); of a
+/* What roughness takes out of the specular direction of a smooth surface, 1 - exp(-P^2); of a
  * fluid's, whose reflection depends on the angle, |R|^2 of it. */
 FUNCTION vfloat scattered_fraction(GLOBAL const struct surface_record *surface, vfloat cosine)
 {

@@ -26,8 +26,8 @@ FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct ch
     const vfloat off_up = (step->direction.y * path - to.y) * fan->sine_depression +
                           (step->direction.z * path - to.z) * fan->cosine_depression;
     const float half_side = 0.5f * fan->source_side;
-    /* what mirrors alone bring is the coherent part's */
-    const mask met_rough = ~(chain->only_mirrors & step->is_mirror);
+    /* what specular bounces alone bring is the coherent part's */
+    const mask met_rough = ~(chain->only_specular & step->is_specular);
     const mask arrives = is_towards & met_rough & MASK_OF(path > 0.0f) &
                          MASK_OF(path < to_next_hit) & MASK_OF(magnitude(off_x) < half_side) &
                          MASK_OF(magnitude(off_up) < half_side);
@@ -74,20 +74,20 @@ FUNCTION mask may_meet_target(const struct fan_record *fan,
     return may_meet;
 }
 
-/* The same of rays that the seabed mirrors at a point. */
-FUNCTION mask may_be_mirrored_to_target(const struct fan_record *fan,
-                                        GLOBAL const struct chain_record *chains,
-                                        GLOBAL const struct sphere_record *spheres,
-                                        const struct fan_ray *middle, struct vector3 point)
+/* The same of rays that the seabed reflects at a point. */
+FUNCTION mask may_be_reflected_to_target(const struct fan_record *fan,
+                                         GLOBAL const struct chain_record *chains,
+                                         GLOBAL const struct sphere_record *spheres,
+                                         const struct fan_ray *middle, struct vector3 point)
 {
-    struct fan_ray mirrored = *middle;
-    mirrored.closest = point;
-    mirrored.direction.z = -middle->direction.z;
-    return may_meet_target(fan, chains, spheres, &mirrored);
+    struct fan_ray reflected = *middle;
+    reflected.closest = point;
+    reflected.direction.z = -middle->direction.z;
+    return may_meet_target(fan, chains, spheres, &reflected);
 }
 
 /* The throughput of a ray of each of WIDTH blocks, 0: not followed. Seabed far from the targets
- * exchanges little sound with them unless it mirrors, so of its rays only some blocks are followed
+ * exchanges little sound with them unless it reflects, so of its rays only some blocks are followed
  * and stand for the others. Of an object's own rays those blocks are left out that cannot meet it.
  */
 FUNCTION vfloat russian_roulette(const struct fan_record *fan,
@@ -115,8 +115,8 @@ FUNCTION vfloat russian_roulette(const struct fan_record *fan,
     vfloat share = SELECT(is_inside | ~is_seabed, SPLAT(1.0f),
                           smaller(chains->seabed_share * sum, SPLAT(1.0f)));
     if (has_smooth_part(&chains->seabed))
-        share = SELECT(may_be_mirrored_to_target(fan, chains, spheres, &middle, point), SPLAT(1.0f),
-                       share);
+        share = SELECT(may_be_reflected_to_target(fan, chains, spheres, &middle, point),
+                       SPLAT(1.0f), share);
     vfloat chosen, unused;
     two_uniforms(key, block, 1, &chosen, &unused);
     const mask is_followed = MASK_OF(chosen < share);
@@ -152,8 +152,8 @@ FUNCTION void begin_chain(const struct fan_record *fan,
     if (fan->only_object >= -1)
         chain->is_alive = chain->is_alive & MASK_OF(chain->hit.surface == fan->only_object);
     chain->began_smooth = chain->is_alive & 0;
-    chain->only_mirrors = chain->is_alive;
-    chain->only_level_mirrors = chain->is_alive;
+    chain->only_specular = chain->is_alive;
+    chain->only_boundaries = chain->is_alive;
     /* the strip of wavefront w r de over r^2; through layers r de widens and 1/r^2 is s/(ground r)
      */
     const vfloat ground =
@@ -166,18 +166,17 @@ FUNCTION void begin_chain(const struct fan_record *fan,
                     SELECT(chain->is_alive, spreading, SPLAT(1.0f));
 }
 
-/* Behind level mirrors sound spreads from the sonar's image: the ray's strip of the wavefront grows
- * with the whole way, and its energy falls. Before the chain goes `distance` further. */
+/* Behind level boundaries sound spreads from the sonar's image: the ray's strip of the wavefront
+ * grows with the whole way, and its energy falls. Before the chain goes `distance` further. */
 FUNCTION void spread_from_image(struct chain *chain, const struct chain_step *step, vfloat distance)
 {
-    chain->only_level_mirrors =
-        chain->only_level_mirrors & step->is_mirror & MASK_OF(chain->hit.surface < 0);
-    if (!ANY(chain->only_level_mirrors))
+    chain->only_boundaries =
+        chain->only_boundaries & step->is_specular & MASK_OF(chain->hit.surface < 0);
+    if (!ANY(chain->only_boundaries))
         return;
-    const vfloat reach =
-        chain->first_reach + SELECT(chain->only_level_mirrors, distance, SPLAT(0.0f));
+    const vfloat reach = chain->first_reach + SELECT(chain->only_boundaries, distance, SPLAT(0.0f));
     chain->energy =
-        chain->energy * SELECT(chain->only_level_mirrors, chain->first_reach / reach, SPLAT(1.0f));
+        chain->energy * SELECT(chain->only_boundaries, chain->first_reach / reach, SPLAT(1.0f));
     chain->first_reach = reach;
 }
 
@@ -228,8 +227,8 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
             has_relief(fan) ? MASK_OF(chain.hit.surface == -1) & MASK_OF(next.surface == -1)
                             : chain.is_alive & 0;
         if (order == 1)
-            chain.began_smooth = step.is_mirror;
-        chain.only_mirrors = chain.only_mirrors & step.is_mirror;
+            chain.began_smooth = step.is_specular;
+        chain.only_specular = chain.only_specular & step.is_specular;
         chain.choice = 0;
         chain.energy = chain.energy * (step.weight * chains->finer[order - 1]);
         spread_from_image(&chain, &step, next.distance);

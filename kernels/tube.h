@@ -1,5 +1,6 @@
 /* A thin tube of rays about one ray: how far, and at what angle, the rays beside it run that left
- * the wavefront at its first hit a unit away along-track or across (kernels/MATH.md, "Corners"). */
+ * the wavefront at its first hit a unit away along-track or across (kernels/MATH.md, "Multi-bounce
+ * specular paths"). */
 #ifndef SONJECT_KERNELS_TUBE_H
 #define SONJECT_KERNELS_TUBE_H
 
@@ -41,18 +42,18 @@ FUNCTION void transfer_tube(struct tube *tube, vfloat distance)
     transfer_side(&tube->across, distance);
 }
 
-FUNCTION struct vector3 mirrored3(struct vector3 v, struct vector3 normal)
+FUNCTION struct vector3 reflected3(struct vector3 v, struct vector3 normal)
 {
     return along3(v, normal, -2.0f * dot3(v, normal));
 }
 
 /* d' = d - 2 (d.n) n, varied in d and n. direction: of the ray that comes; cosine: -(d.n);
  * normal_change: of the surface where the ray beside meets it. */
-FUNCTION void mirror_side(struct tube_side *side, struct vector3 direction, struct vector3 normal,
-                          vfloat cosine, struct vector3 normal_change)
+FUNCTION void reflect_side(struct tube_side *side, struct vector3 direction, struct vector3 normal,
+                           vfloat cosine, struct vector3 normal_change)
 {
-    const struct vector3 turned = mirrored3(side->turn, normal);
-    side->offset = mirrored3(side->offset, normal);
+    const struct vector3 turned = reflected3(side->turn, normal);
+    side->offset = reflected3(side->offset, normal);
     side->turn = along3(along3(turned, normal_change, 2.0f * cosine), normal,
                         -2.0f * dot3(direction, normal_change));
 }

@@ -16,7 +16,7 @@
 SONJECT_BEGIN_DECLARATIONS
 
 /* What is heard is every impulse that image formation draws, as a point at its track position x'
- * and apparent range r' from the track: from all targets, and in resynthesise mode from the seabed
+ * and processor range r' from the track: from all targets, and in resynthesise mode from the seabed
  * (in composite mode the seabed is the measured image, which has no element data: targets alone).
  * With R_t, R_r its distances from transmitter and hydrophone, tau = (R_t + R_r) / c arrives
  *

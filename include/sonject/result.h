@@ -71,7 +71,7 @@ SONJECT_API sonject_status sonject_result_layer(const sonject_result *result, so
 
 /* Copies the expected cross-section in m^2, as SONJECT_LAYER_ENERGY counts it, of the paths that
  * meet exactly `order` surfaces, 1...interactions: float, rows x columns, packed, into buffer of
- * exactly that many bytes. Echoes of an object by way of mirrors (sea surface, smooth seabed) and
+ * exactly that many bytes. Echoes of an object by image sources (sea surface, smooth seabed) and
  * over several smooth faces are in order 1, with which they interfere; what two objects return
  * together counts for each of them as the half that meets it first. Kept where the scene's
  * injection asked for order_energies; all orders add up to that layer. Errors: ARGUMENT (not asked

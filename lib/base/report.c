@@ -49,7 +49,7 @@ bool report_is_cancelled(const struct report *report)
            host->progress(host->progress_user, host->fraction, host->stage) != 0;
 }
 
-void report_news(struct report *report, const char *format, ...)
+void report_log(struct report *report, const char *format, ...)
 {
     if (!report->log)
         return;

@@ -90,7 +90,7 @@ sonject_status report_gather(struct report *report, char lines[REPORT_CAPACITY],
 bool report_is_cancelled(const struct report *report);
 
 /* Sends a line to the log, if there is one. */
-void report_news(struct report *report, const char *format, ...) REPORT_FORMAT(2);
+void report_log(struct report *report, const char *format, ...) REPORT_FORMAT(2);
 
 /* Of lengths that a sonar can meet. */
 #define LENGTH_MIN_M 1e-6

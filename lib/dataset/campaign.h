@@ -87,7 +87,7 @@ const char *distribution_step(const struct distribution *distribution, uint32_t 
                               char text[DISTRIBUTION_TEXT_CAPACITY]);
 
 /* Where in a swath chips may lie: inside, and touching no box that is to be avoided. */
-struct chip_room {
+struct crop_places {
     struct region chips;  /* the first pixels that a chip may have if nothing is to be avoided */
     struct region *boxes; /* those that it may not have, which may reach beyond, sorted by their
                              first column; owned */
@@ -95,12 +95,12 @@ struct chip_room {
     uint64_t places; /* 0: there is no room */
 };
 
-void chip_room_clear(struct chip_room *room);
+void crop_places_clear(struct crop_places *room);
 
 /* The place that two deviates of [0, 1) choose: rows by the number of places that they have, and
  * all places of a row alike. The room must have places. */
-void chip_room_choose(const struct chip_room *room, double along_track, double range, uint64_t *row,
-                      uint64_t *column);
+void crop_sample(const struct crop_places *room, double along_track, double range, uint64_t *row,
+                 uint64_t *column);
 
 struct draws {
     struct distribution *list; /* owned */
@@ -127,7 +127,7 @@ struct swath_plan {
     size_t avoid_count;
     struct tree_place place;
     struct raster_layout layout; /* once it is opened */
-    struct chip_room room;       /* once it is measured */
+    struct crop_places room;     /* once it is measured */
     uint32_t split_number;
 };
 

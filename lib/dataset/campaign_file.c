@@ -538,7 +538,7 @@ static void clear_swath(struct swath_plan *swath)
     free(swath->path);
     free(swath->split);
     free(swath->avoid);
-    chip_room_clear(&swath->room);
+    crop_places_clear(&swath->room);
 }
 
 void campaign_clear(struct campaign *campaign)

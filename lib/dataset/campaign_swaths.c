@@ -168,7 +168,7 @@ static uint64_t clip(uint64_t value, uint64_t low, uint64_t high)
 
 /* How many first columns a chip may have in a row; *column becomes the wanted-th of them, if there
  * is one. */
-static uint64_t free_columns(const struct chip_room *room, uint64_t row, uint64_t wanted,
+static uint64_t free_columns(const struct crop_places *room, uint64_t row, uint64_t wanted,
                              uint64_t *column)
 {
     const uint64_t end = room->chips.first_column + room->chips.columns;
@@ -189,7 +189,7 @@ static uint64_t free_columns(const struct chip_room *room, uint64_t row, uint64_
 }
 
 /* The first row behind `row` in which other boxes lie, or that no chip has. */
-static uint64_t band_end(const struct chip_room *room, uint64_t row)
+static uint64_t band_end(const struct crop_places *room, uint64_t row)
 {
     uint64_t end = room->chips.first_row + room->chips.rows;
     for (size_t i = 0; i < room->box_count; i++) {
@@ -201,7 +201,7 @@ static uint64_t band_end(const struct chip_room *room, uint64_t row)
     return end;
 }
 
-void chip_room_clear(struct chip_room *room)
+void crop_places_clear(struct crop_places *room)
 {
     free(room->boxes);
     memset(room, 0, sizeof *room);
@@ -213,8 +213,8 @@ static uint64_t part_of(uint64_t count, double u)
     return part < count ? part : count - 1;
 }
 
-void chip_room_choose(const struct chip_room *room, double along_track, double range, uint64_t *row,
-                      uint64_t *column)
+void crop_sample(const struct crop_places *room, double along_track, double range, uint64_t *row,
+                 uint64_t *column)
 {
     uint64_t place = part_of(room->places, along_track);
     uint64_t columns;
@@ -287,8 +287,8 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
                             "begins beyond the sonar's altitude, up to %g m",
                             plan->written, campaign->nearest_range_m, campaign->farthest_range_m,
                             altitude_m);
-    struct chip_room *room = &plan->room;
-    chip_room_clear(room);
+    struct crop_places *room = &plan->room;
+    crop_places_clear(room);
     room->chips = chips;
     room->box_count = plan->avoid_count;
     room->boxes = allocate_array(room->box_count + 1, sizeof *room->boxes);

@@ -118,8 +118,8 @@ sonject_status earlier_check(struct report *report, const struct earlier_request
         status = file_list_check(json_object_get(document, "files"), report, request->folder,
                                  request->hashes_all, &changed);
     if (status == SONJECT_OK && changed)
-        report_news(report, "%s: %s is not as it was written: the result is made again",
-                    request->folder, changed);
+        report_log(report, "%s: %s is not as it was written: the result is made again",
+                   request->folder, changed);
     *is_finished = status == SONJECT_OK && is_same && !changed &&
                    (request->label_formats & ~labels_of_document(document)) == 0;
     json_decref(document);

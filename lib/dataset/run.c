@@ -40,20 +40,20 @@ void tell_noise_floor(struct report *report, const struct scene *scene,
                       const sonject_statistics *statistics)
 {
     if (scene->injection.estimate_noise)
-        report_news(report, "noise floor estimated from the patch: %.1f dB over the mean seabed",
-                    statistics->noise_floor_db);
+        report_log(report, "noise floor estimated from the patch: %.1f dB over the mean seabed",
+                   statistics->noise_floor_db);
 }
 
 static void tell_clipped(struct report *report, const sonject_statistics *statistics)
 {
     if (statistics->input_clipped > 0)
-        report_news(report,
-                    "%llu pixels of the patch are at the image's full scale, so their true "
-                    "amplitude may be larger",
-                    (unsigned long long)statistics->input_clipped);
+        report_log(report,
+                   "%llu pixels of the patch are at the image's full scale, so their true "
+                   "amplitude may be larger",
+                   (unsigned long long)statistics->input_clipped);
     if (statistics->output_clipped > 0)
-        report_news(report, "%llu changed pixels are cut at the image's full scale",
-                    (unsigned long long)statistics->output_clipped);
+        report_log(report, "%llu changed pixels are cut at the image's full scale",
+                   (unsigned long long)statistics->output_clipped);
 }
 
 static sonject_status write_documents(struct report *report, struct run_facts *facts,
@@ -89,9 +89,9 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
                              &result->statistics.output_clipped));
     if (status == SONJECT_OK && facts->scene->input_kind == SONJECT_INPUT_FILE &&
         facts->swath->new_extension)
-        report_news(report,
-                    "note: %s is written anew: of the input's metadata it keeps the description",
-                    facts->image_name);
+        report_log(report,
+                   "note: %s is written anew: of the input's metadata it keeps the description",
+                   facts->image_name);
     THEN(status, file_list_add(&facts->files, report, folder, facts->image_name, true));
     THEN(status, write_documents(report, facts, folder, run_start, start));
     earlier_tidy(folder, earlier, facts->files);

@@ -51,7 +51,7 @@ sonject_status run_elements(struct report *report, struct device_slot *slot,
                             const struct scene *scene, const sonject_run_params *params,
                             sonject_progress_function progress, void *user);
 
-/* The scene's geometry as a text with a drawing, for free(): sonject_check. */
+/* The scene's geometry as a text with a sample, for free(): sonject_check. */
 sonject_status describe_scene(struct report *report, struct device_slot *slot,
                               const struct scene *scene, char **text);
 

@@ -21,7 +21,7 @@ static double grazing_degrees(const struct patch_view *view, double processor_ra
     return view_grazing(view, processor_range) * DEGREES_PER_RADIAN;
 }
 
-static void describe_water(struct growing_text *text, const struct water_way *way)
+static void describe_water(struct growing_text *text, const struct ray_path *way)
 {
     const struct water *water = way->water;
     growing_text_add(text, "water      %.1f m/s around seabed and objects",
@@ -66,7 +66,7 @@ static void describe_patch(struct growing_text *text, const struct scene *scene,
 /* Length on the ground of the shadow of something high up at a ground range. */
 static double shadow_length(const struct patch_view *view, double ground_range, double top)
 {
-    return top > 0.0 ? top / tan(water_way_grazing(&view->water, ground_range, top)) : 0.0;
+    return top > 0.0 ? top / tan(ray_path_grazing(&view->water, ground_range, top)) : 0.0;
 }
 
 static void describe_objects(struct growing_text *text, const struct scene *scene,
@@ -75,9 +75,8 @@ static void describe_objects(struct growing_text *text, const struct scene *scen
     for (uint32_t i = 0; i < scene->object_count; i++) {
         const struct placed_object *object = &placements->objects[i];
         const double *origin = object->origin;
-        const double range =
-            water_way_range(&view->water, origin[1], origin[2]) * view->range_ratio;
-        const double grazing = water_way_grazing(&view->water, origin[1], origin[2]);
+        const double range = ray_path_range(&view->water, origin[1], origin[2]) * view->range_ratio;
+        const double grazing = ray_path_grazing(&view->water, origin[1], origin[2]);
         growing_text_add(
             text,
             "object %-3u %s (%s): row %.1f, slant range %.2f m, grazing angle %.1f deg, top "

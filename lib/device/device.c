@@ -378,8 +378,8 @@ sonject_status device_open(struct report *report, const sonject_context_params *
         device_close(&device);
         return status;
     }
-    report_news(report, "device '%s' of %s, %u lanes", device->name, device->platform,
-                (unsigned)device->width);
+    report_log(report, "device '%s' of %s, %u lanes", device->name, device->platform,
+               (unsigned)device->width);
     *out = device;
     return SONJECT_OK;
 }

@@ -209,7 +209,7 @@ sonject_status kernel_create_with_code(struct report *report, struct device *dev
     }
     driver_leave();
     if (building.seconds > 0.0)
-        report_news(report, "%s built in %.1f s", building.source->name, building.seconds);
+        report_log(report, "%s built in %.1f s", building.source->name, building.seconds);
     if (building.failed) {
         const sonject_status status = tell_failure(report, &building);
         clReleaseProgram(building.failed);

@@ -113,7 +113,7 @@ static sonject_status check_folder(struct tracing *tracing, struct sums_folder *
         if (what && (request->shards > 0 || request->merges))
             return refuse_foreign_sums(report, file->path, what);
         if (what) {
-            report_news(report, "%s was traced by %s and is dropped", tracing->folder, what);
+            report_log(report, "%s was traced by %s and is dropped", tracing->folder, what);
             sums_folder_clear(folder);
             sums_folder_remove(tracing->folder);
         }
@@ -341,7 +341,7 @@ static sonject_status run_shard(struct tracing *tracing, struct injection_result
     free(chain.files);
     sums_folder_clear(&folder);
     if (status == SONJECT_OK && chain.count > 0)
-        report_news(tracing->report, "goes on with what is in %s", tracing->folder);
+        report_log(tracing->report, "goes on with what is in %s", tracing->folder);
     THEN(status, is_whole && chain.count == 0 ? trace_and_form(tracing, result, is_formed)
                                               : trace_rest(tracing, chain.next, chain.is_complete));
     if (status != SONJECT_OK || !is_whole || *is_formed)

@@ -109,7 +109,7 @@ static struct window find_region(const struct tracer *tracer)
     struct window region;
     for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *part = &tracer->placements[i];
-        const double range = water_way_range(&view->water, part->centre[1], part->centre[2]);
+        const double range = ray_path_range(&view->water, part->centre[1], part->centre[2]);
         const double at[2] = {view_row_of_x(view, part->centre[0]),
                               view_column_of_range(view, range * view->range_ratio)};
         for (int axis = 0; axis < 2; axis++) {

@@ -253,8 +253,8 @@ sonject_status set_target_levels(const struct tracer *tracer, struct echoes *ech
                 ? echo->peak_energy / seabed_cell_energy(&tracer->view, &tracer->response,
                                                          scene->seabed.lambert, echo->peak_range_m)
                 : 0.0;
-        const double grazing = water_way_grazing(&tracer->view.water, tracer->objects[i].origin[1],
-                                                 tracer->objects[i].origin[2]);
+        const double grazing = ray_path_grazing(&tracer->view.water, tracer->objects[i].origin[1],
+                                                tracer->objects[i].origin[2]);
         sonject_object_truth *truth = &result->objects[i];
         gains[i] = gain_of(&scene->objects[i], echo->peak_energy, over_seabed);
         mean += gains[i] / echoes->object_count;

@@ -273,7 +273,7 @@ sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *
     CHECK(rough_trace_begin(&tracing.rough, tracer, seabed_map(tracer, request)));
     sonject_status status = allocate_chunks(&tracing);
     THEN(status, trace_seabed(&tracing, IMPULSES_SEABED, "tracing the seabed"));
-    THEN(status, rough_trace_mirrored(&tracing.rough, tracer));
+    THEN(status, rough_trace_images(&tracing.rough, tracer));
     THEN(status, rough_trace_tiles(&tracing.rough, tracer, tracing.tiles));
     THEN(status, trace_objects(&tracing));
     if (status == SONJECT_OK && has_beam_shadows(tracer))

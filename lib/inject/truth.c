@@ -124,7 +124,7 @@ static void find_visible_shadow(const struct patch_level *level, const struct ec
 
 static double transmission_loss(const struct tracer *tracer, const double origin[3], double grazing)
 {
-    const struct water_ray ray = water_way_ray(&tracer->view.water, grazing, origin[2]);
+    const struct arrival ray = ray_path_arrival(&tracer->view.water, grazing, origin[2]);
     return 10.0 * log10(ray.ground_range_m * ray.wavefront_m / ray.spreading) +
            tracer->scene->medium.absorption_db_per_m * ray.length_m;
 }
@@ -162,10 +162,10 @@ static void locate(const struct tracer *tracer, uint32_t number, sonject_object_
     truth->ground_range_m = origin[1];
     truth->height_m = origin[2];
     truth->burial_m = -(object->bottom_m - object->seabed_m);
-    truth->slant_range_m = water_way_range(&view->water, origin[1], origin[2]) * view->range_ratio;
+    truth->slant_range_m = ray_path_range(&view->water, origin[1], origin[2]) * view->range_ratio;
     truth->row = view_row_of_x(view, origin[0]);
     truth->column = view_column_of_range(view, truth->slant_range_m);
-    truth->grazing_rad = water_way_grazing(&view->water, origin[1], origin[2]);
+    truth->grazing_rad = ray_path_grazing(&view->water, origin[1], origin[2]);
     truth->transmission_loss_db = transmission_loss(tracer, origin, truth->grazing_rad);
 }
 

@@ -8,7 +8,7 @@
 #define SPREAD_RATIO    0.71 /* each so many times the last; the first is all of it */
 #define REACH           6 /* deviations of the point response beyond which nothing of it is left */
 #define WIDTH_RATIO     1.6 /* of penumbras' widths; the first is the point response's */
-#define SKIRT_RATIO     2.0
+#define LOBE_BIAS_RATIO 2.0
 #define FAINTEST        1e-9 /* of a dark level: there are means of 0 */
 
 /* share: of the places that this one stands for, in pixels. */
@@ -55,8 +55,8 @@ static double mean_at(const struct profile *profile, const struct end_levels *le
 
 static double cost_of_lit(const struct profile *profile, const struct end_levels *levels, size_t k)
 {
-    return cost_within(mean_at(profile, levels, k), levels->lit + SKIRT_RATIO * profile->skirt[k],
-                       INFINITY);
+    return cost_within(mean_at(profile, levels, k),
+                       levels->lit + LOBE_BIAS_RATIO * profile->lobe_bias[k], INFINITY);
 }
 
 /* spread_there: of what is lit. */
@@ -64,7 +64,7 @@ static double cost_of_dark(const struct profile *profile, const struct end_level
                            double spread_there)
 {
     return cost_within(mean_at(profile, levels, k), spread_there,
-                       spread_there + levels->dark + profile->skirt[k]);
+                       spread_there + levels->dark + profile->lobe_bias[k]);
 }
 
 /* Pixels whose centres lie before a place >= -0.5. */
@@ -142,7 +142,7 @@ static void weigh_steps(struct edge_belief *belief, const struct profile *profil
     }
 }
 
-void weigh_profile_step(struct step_belief *belief, const struct profile *profile, double before,
+void weigh_profile_step(struct edge_posterior *belief, const struct profile *profile, double before,
                         double behind)
 {
     double width = profile->deviation;
@@ -150,7 +150,7 @@ void weigh_profile_step(struct step_belief *belief, const struct profile *profil
         weigh_steps(&belief->widths[i], profile, before, behind, width);
 }
 
-struct profile_edge mean_step_believed(const struct step_belief *parts, size_t count)
+struct profile_edge mean_step_believed(const struct edge_posterior *parts, size_t count)
 {
     struct edge_belief all = {0.0, 0.0, 0.0, 0.0};
     double variance = 0.0; /* within the widths, weighted as those are */
@@ -185,10 +185,10 @@ struct profile_edge find_profile_change(const struct profile *profile, double *g
     double all = 0.0;
     double first = 0.0;
     for (size_t k = 0; k < profile->count; k++)
-        all += profile->means[k] / (1.0 + profile->skirt[k]);
+        all += profile->means[k] / (1.0 + profile->lobe_bias[k]);
     const double plain = count * log(fmax(all, FAINTEST) / count);
     for (size_t k = 1; k < profile->count; k++) {
-        first += profile->means[k - 1] / (1.0 + profile->skirt[k - 1]);
+        first += profile->means[k - 1] / (1.0 + profile->lobe_bias[k - 1]);
         const double before = fmax(first, FAINTEST * all) / (double)k;
         const double behind = fmax(all - first, FAINTEST * all) / (count - (double)k);
         if (before > behind)

@@ -10,7 +10,7 @@
 /* Mean intensities of pixels one after the other. */
 struct profile {
     const double *means;
-    const double *skirt; /* what side lobes of what is bright may add, at most */
+    const double *lobe_bias; /* what side lobes of what is bright may add, at most */
     size_t count;
     double samples;   /* independent ones, a pixel */
     double deviation; /* of the point response's energy, taken for Gaussian; pixels, > 0 */
@@ -23,9 +23,9 @@ struct profile_edge {
 
 /* What is expected on either side of an end; both > 0. */
 struct end_levels {
-    double lit;  /* at least that before it, and SKIRT_RATIO times the skirt */
-    double dark; /* at most that and the skirt behind it, beside what the point response spreads
-                    there */
+    double lit;  /* at least that before it, and LOBE_BIAS_RATIO times the side-lobe bias */
+    double dark; /* at most that and the side-lobe bias behind it, beside what the point response
+                    spreads there */
 };
 
 /* Where a profile that is lit at its first pixels becomes dark, and stays so: what is lit may have
@@ -41,23 +41,23 @@ struct edge_belief {
 
 #define STEP_WIDTHS 7 /* of penumbras that are tried */
 
-struct step_belief {
+struct edge_posterior {
     struct edge_belief widths[STEP_WIDTHS];
 };
 
 /* Weighs where a profile steps from one level to another, both > 0: half way up a penumbra of any
  * width. Several profiles through an edge, such as ones along different slants, may be weighed one
  * after the other, the belief all zeros at first. */
-void weigh_profile_step(struct step_belief *belief, const struct profile *profile, double before,
+void weigh_profile_step(struct edge_posterior *belief, const struct profile *profile, double before,
                         double behind);
 
 /* The mean place of parts of one edge, whose penumbra is equally wide in all of them: how wide, and
  * with that how far out they lie, is believed for all together. */
-struct profile_edge mean_step_believed(const struct step_belief *parts, size_t count);
+struct profile_edge mean_step_believed(const struct edge_posterior *parts, size_t count);
 
-/* Where the first part of a profile, brighter than its rest, ends; each has one level. The skirt is
- * what side lobes may add of that level. *gain: how much more likely that is than one level for
- * all, the logarithm; 0: no first part is brighter. */
+/* Where the first part of a profile, brighter than its rest, ends; each has one level. The
+ * side-lobe bias is what side lobes may add of that level. *gain: how much more likely that is than
+ * one level for all, the logarithm; 0: no first part is brighter. */
 struct profile_edge find_profile_change(const struct profile *profile, double *gain);
 
 #endif

@@ -21,7 +21,7 @@
 #include "measure/contact_edges.h"
 #include "measure/contacts.h"
 
-#define SKIRT_REACH     32   /* rows */
+#define LOBE_BIAS_REACH 32   /* rows */
 #define DEVIATION_LEAST 0.15 /* pixels, of a point response that is finer than they are */
 #define ROOT_OF_PI      1.7724538509055159
 #define PI              3.14159265358979323846
@@ -46,7 +46,7 @@ struct contact_lines {
     double seabed; /* mean intensity */
     double slant, middle_row;
     double tilt, tilt_row;
-    double *means, *skirt; /* room for one profile */
+    double *means, *lobe_bias; /* room for one profile */
 };
 
 /* Rows of a box, or columns, one after the other from `start`, backwards where step is -1. */
@@ -78,10 +78,10 @@ static double highlight_at(const struct contact_image *image, size_t row, size_t
 
 /* What side lobes of the highlight bring to a pixel: sinc^2 falls as 1/(pi x)^2, and is half of
  * that on average. */
-static double skirt_at(const struct contact_image *image, size_t row, size_t column)
+static double lobe_bias_at(const struct contact_image *image, size_t row, size_t column)
 {
     double sum = 0.0;
-    for (size_t away = 1; away <= SKIRT_REACH; away++) {
+    for (size_t away = 1; away <= LOBE_BIAS_REACH; away++) {
         const double share = 0.5 / (PI * PI * (double)away * (double)away);
         if (away <= row)
             sum += share * highlight_at(image, row - away, column);
@@ -158,7 +158,7 @@ static struct profile profile_along(const struct contact_lines *lines,
     const size_t size = path->is_along_track ? lines->image->rows : lines->image->columns;
     const size_t room = path->step > 0 ? size - path->start : path->start + 1;
     const double looks = speckle->blocks > 0 ? speckle->looks : 1.0;
-    struct profile profile = {lines->means, lines->skirt, 0, 0.0, 0.0};
+    struct profile profile = {lines->means, lines->lobe_bias, 0, 0.0, 0.0};
     profile.count = room < path->most ? room : path->most;
     profile.samples = looks * fmax(1.0, (double)pixels / pixels_a_sample(across->length_pixels)) /
                       pixels_a_sample(along->length_pixels);
@@ -166,20 +166,20 @@ static struct profile profile_along(const struct contact_lines *lines,
     for (size_t k = 0; k < profile.count; k++) {
         const struct window_box line = line_of(path, k);
         lines->means[k] = mean_along_lines(lines, &line);
-        lines->skirt[k] = 0.0;
+        lines->lobe_bias[k] = 0.0;
     }
     return profile;
 }
 
-/* The same with the skirt of the pixels that are marked as highlight: side lobes along the track,
- * as of an aperture without a window. */
-static struct profile profile_with_skirt(const struct contact_lines *lines,
-                                         const struct profile_path *path)
+/* The same with the side-lobe bias of the pixels that are marked as highlight: side lobes along the
+ * track, as of an aperture without a window. */
+static struct profile profile_with_lobe_bias(const struct contact_lines *lines,
+                                             const struct profile_path *path)
 {
     const struct profile profile = profile_along(lines, path);
     for (size_t k = 0; k < profile.count; k++) {
         const struct window_box line = line_of(path, k);
-        lines->skirt[k] = mean_of(lines, &line, skirt_at, 0.0);
+        lines->lobe_bias[k] = mean_of(lines, &line, lobe_bias_at, 0.0);
     }
     return profile;
 }
@@ -278,7 +278,7 @@ static struct profile_edge end_along_track(const struct contact_lines *lines,
         columns_marked(lines, highlight, step > 0 ? last + 1 - rows : last, rows);
     const struct profile_path path = {box, true, step > 0 ? last - inner : last + inner, step,
                                       inner + 1 + EDGE_REACH};
-    const struct profile profile = profile_with_skirt(lines, &path);
+    const struct profile profile = profile_with_lobe_bias(lines, &path);
     struct profile_edge end = find_profile_end(&profile, &levels);
     end.place = (double)path.start + (double)step * end.place;
     return end;
@@ -291,10 +291,10 @@ static struct contact_length width_of_highlight(const struct contact_lines *line
     const struct end_levels levels = levels_of_highlight(lines);
     struct profile_path path = {*rows, false, rows->first_column + rows->columns / 2, 1,
                                 rows->columns / 2 + EDGE_REACH + 1};
-    struct profile profile = profile_with_skirt(lines, &path);
+    struct profile profile = profile_with_lobe_bias(lines, &path);
     const struct profile_edge far = find_profile_end(&profile, &levels);
     path.step = -1;
-    profile = profile_with_skirt(lines, &path);
+    profile = profile_with_lobe_bias(lines, &path);
     const struct profile_edge near = find_profile_end(&profile, &levels);
     return length_between(&near, &far);
 }
@@ -334,10 +334,10 @@ static struct window_box darkest_columns(const struct contact_lines *lines,
 }
 
 /* From `start`, in a shadow, to where the seabed begins, on an edge that may be tilted. */
-static struct step_belief weigh_edge_in_seabed(const struct contact_lines *lines,
-                                               const struct profile_path *path, double dark)
+static struct edge_posterior weigh_edge_in_seabed(const struct contact_lines *lines,
+                                                  const struct profile_path *path, double dark)
 {
-    struct step_belief belief;
+    struct edge_posterior belief;
     struct contact_lines tilted = *lines;
     const int tilts = path->box.rows > 1 && !path->is_along_track ? TILTS : 0;
     memset(&belief, 0, sizeof belief);
@@ -353,7 +353,7 @@ static struct step_belief weigh_edge_in_seabed(const struct contact_lines *lines
 static struct profile_edge edge_in_seabed(const struct contact_lines *lines,
                                           const struct profile_path *path, double dark)
 {
-    const struct step_belief belief = weigh_edge_in_seabed(lines, path, dark);
+    const struct edge_posterior belief = weigh_edge_in_seabed(lines, path, dark);
     return mean_step_believed(&belief, 1);
 }
 
@@ -370,9 +370,9 @@ struct shadow_edges {
     struct profile_edge bright, near;
 };
 
-static struct step_belief weigh_far_edge(const struct contact_lines *lines,
-                                         const struct shadow_view *shadow,
-                                         const struct window_box *rows)
+static struct edge_posterior weigh_far_edge(const struct contact_lines *lines,
+                                            const struct shadow_view *shadow,
+                                            const struct window_box *rows)
 {
     struct profile_path path = {*rows, false, shadow->core, 1, 0};
     path.most = shadow->part.first_column + shadow->part.columns - shadow->core + EDGE_REACH;
@@ -391,7 +391,7 @@ static struct shadow_edges find_near_edges(const struct contact_lines *lines,
                                        SHADOW_CEILING * shadow->dark};
         path.start = shadow->highlight;
         path.most = shadow->core - shadow->highlight;
-        const struct profile profile = profile_with_skirt(lines, &path);
+        const struct profile profile = profile_with_lobe_bias(lines, &path);
         edges.bright = find_profile_end(&profile, &bright);
         edges.near = find_profile_end(&profile, &lit);
         edges.bright.place -= (double)path.most;
@@ -418,11 +418,11 @@ static void measure_dim_part(const struct contact_lines *lines, const struct sha
     if (!(first >= 0.0 && first < (double)lines->image->columns && columns >= 2.0))
         return;
     const struct profile_path path = {*middle, false, (size_t)first, 1, (size_t)columns};
-    const struct profile profile = profile_with_skirt(lines, &path);
+    const struct profile profile = profile_with_lobe_bias(lines, &path);
     const double level = sizes->shadow.energy / (double)sizes->shadow.pixels;
     double gain;
     for (size_t k = 0; k < profile.count; k++)
-        lines->skirt[k] /= level;
+        lines->lobe_bias[k] /= level;
     const struct profile_edge change = find_profile_change(&profile, &gain);
     if (gain < DIM_GAIN)
         return;
@@ -435,7 +435,7 @@ static void measure_in_range(const struct contact_lines *lines, const struct sha
                              const struct window_box *middle, struct contact_sizes *sizes)
 {
     const size_t bands = smaller(BANDS, middle->rows);
-    struct step_belief far_edges[BANDS];
+    struct edge_posterior far_edges[BANDS];
     double gap = 0.0;
     double near = 0.0;
     double near_variance = 0.0;
@@ -507,7 +507,7 @@ sonject_status measure_contact_sizes(struct contact_image *image, struct report 
     lines.seabed = sizes->seabed;
     lines.means = allocate_array(most, 2 * sizeof *lines.means);
     CHECK_MEMORY(report, lines.means, "a contact's measures");
-    lines.skirt = lines.means + most;
+    lines.lobe_bias = lines.means + most;
     if (sizes->highlight.pixels > 0)
         bright_column = measure_highlight(&lines, sizes);
     if (sizes->shadow.pixels > 0)

@@ -1,7 +1,7 @@
 /* Water in level layers, what it absorbs, and how sound crosses it. Sound that the tracer follows
  * stays in the straight water: the lowest layer, which reaches from the seabed over all targets and
- * has one sound speed. A way leads from the sonar, or from its image in level mirrors, to there.
- * Pure functions; x along-track plays no part, since layers are level. */
+ * has one sound speed. A path leads from the sonar, or from its image in level boundaries, to
+ * there. Pure functions; x along-track plays no part, since layers are level. */
 #ifndef SONJECT_MEDIUM_WATER_H
 #define SONJECT_MEDIUM_WATER_H
 
@@ -67,9 +67,9 @@ void water_clear(struct water *water);
 /* The layer at a height over the seabed. */
 const struct water_layer *water_layer_at(const struct water *water, double height_m);
 
-/* A way from the sonar to the straight water, by way of `bounces` mirrors in turn: the seabed and
- * the sea surface, depth_m over it. */
-struct water_way {
+/* A path from the sonar to the straight water, by way of `bounces` boundaries in turn: the seabed
+ * and the sea surface, depth_m over it. */
+struct ray_path {
     const struct water *water; /* borrowed */
     double sonar_height_m;
     double image_height_m; /* of the sonar, or of its image, over the seabed in unfolded space */
@@ -79,16 +79,16 @@ struct water_way {
     bool is_straight;       /* no other layer is crossed */
 };
 
-/* The way of sound that has met no mirror. */
-struct water_way water_way_direct(const struct water *water, double sonar_height_m);
+/* The path of sound that has met no boundary. */
+struct ray_path ray_path_direct(const struct water *water, double sonar_height_m);
 
-/* The way by `bounces` >= 1 mirrors in turn, the last of which is the seabed or the surface. */
-struct water_way water_way_mirrored(const struct water *water, double sonar_height_m,
-                                    double depth_m, uint32_t bounces, bool comes_from_seabed);
+/* The path by `bounces` >= 1 boundaries in turn, the last of which is the seabed or the surface. */
+struct ray_path ray_path_image(const struct water *water, double sonar_height_m, double depth_m,
+                               uint32_t bounces, bool comes_from_seabed);
 
 /* Sound at a point of the straight water. Grazing angles are those of its direction there, in rad,
  * positive downwards. */
-struct water_ray {
+struct arrival {
     double ground_range_m;   /* from the sonar, horizontal */
     double straight_range_m; /* travel time times the straight water's speed */
     double length_m;         /* of the path */
@@ -98,20 +98,20 @@ struct water_ray {
                                 transmit is in it. In isovelocity water s = cos of the angle */
 };
 
-/* The ray that comes to a height with a grazing angle: positive, or negative for a way that comes
+/* The ray that comes to a height with a grazing angle: positive, or negative for a path that comes
  * from the seabed, where height_m is above it. INFINITY all over for an angle that no sound from
- * the source has (total reflection on the way). */
-struct water_ray water_way_ray(const struct water_way *way, double grazing_rad, double height_m);
+ * the source has (total reflection on the path). */
+struct arrival ray_path_arrival(const struct ray_path *path, double grazing_rad, double height_m);
 
 /* Grazing angle at which sound from the source meets a point of the straight water: a guarded
  * Newton iteration. ground_range_m > 0. */
-double water_way_grazing(const struct water_way *way, double ground_range_m, double height_m);
+double ray_path_grazing(const struct ray_path *path, double ground_range_m, double height_m);
 
 /* Ground range at which sound meets the seabed after a travel time of straight_range_m over the
  * straight speed; 0 before it gets there at all. */
-double water_way_ground_range(const struct water_way *way, double straight_range_m);
+double ray_path_ground_range(const struct ray_path *path, double straight_range_m);
 
 /* Straight range of a point. */
-double water_way_range(const struct water_way *way, double ground_range_m, double height_m);
+double ray_path_range(const struct ray_path *path, double ground_range_m, double height_m);
 
 #endif

@@ -118,7 +118,7 @@ typedef struct sonject_sonar_params {
                             response's own, wavelength/(2 resolution). Smooth highlights always
                             have the response's own */
     /* Real: the array, a uniform rectangle that sends and receives. Its long side lies along the
-     * track and its beam looks abreast; then it is turned. */
+     * track and its beam looks broadside; then it is turned. */
     double array_length_m;       /* two-way energy sinc(length u / wavelength)^4 with sinc z =
                                     sin(pi z)/(pi z) and u the cosine between the long side and the
                                     way to the echo */

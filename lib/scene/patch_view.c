@@ -52,7 +52,7 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
     view->column_spacing_m = geometry->column_spacing_m;
     view->range_ratio = reference / water->straight_speed_mps;
     view->altitude_m = scene->sonar.altitude_m;
-    view->water = water_way_direct(water, view->altitude_m);
+    view->water = ray_path_direct(water, view->altitude_m);
     view->wavelength_m = water->straight_speed_mps / scene->sonar.centre_frequency_hz;
     view->is_mirrored = geometry->side == SONJECT_SIDE_STARBOARD;
     const double along = geometry->first_along_track_m + first_row * geometry->row_spacing_m;
@@ -89,7 +89,7 @@ void view_find_pixel(const struct patch_view *view, double first_row, double fir
 
 double view_bottom_range(const struct patch_view *view)
 {
-    return water_way_range(&view->water, 0.0, 0.0) * view->range_ratio;
+    return ray_path_range(&view->water, 0.0, 0.0) * view->range_ratio;
 }
 
 size_t view_water_columns(const struct patch_view *view)
@@ -120,21 +120,21 @@ double view_column_of_range(const struct patch_view *view, double processor_rang
 
 double view_ground_range(const struct patch_view *view, double processor_range_m)
 {
-    return water_way_ground_range(&view->water, processor_range_m / view->range_ratio);
+    return ray_path_ground_range(&view->water, processor_range_m / view->range_ratio);
 }
 
 double view_grazing(const struct patch_view *view, double processor_range_m)
 {
     const double ground = view_ground_range(view, processor_range_m);
-    return ground > 0.0 ? water_way_grazing(&view->water, ground, 0.0) : 0.5 * PI;
+    return ground > 0.0 ? ray_path_grazing(&view->water, ground, 0.0) : 0.5 * PI;
 }
 
 double view_refraction_gain(const struct patch_view *view, double processor_range_m)
 {
     if (view->water.is_straight)
         return 1.0;
-    const struct water_ray ray =
-        water_way_ray(&view->water, view_grazing(view, processor_range_m), 0.0);
+    const struct arrival ray =
+        ray_path_arrival(&view->water, view_grazing(view, processor_range_m), 0.0);
     const double gain = ray.spreading * ray.straight_range_m * ray.straight_range_m /
                         (ray.ground_range_m * ray.wavefront_m);
     return gain * gain;

@@ -23,7 +23,7 @@ struct patch_view {
     double altitude_m;
     double wavelength_m; /* in the straight water, around seabed and targets */
     bool is_mirrored;
-    struct water_way water; /* of sound straight from the sonar */
+    struct ray_path water; /* of sound straight from the sonar */
 };
 
 /* The scene's water, straight up to the highest object. Errors: as water_init. */

@@ -59,12 +59,12 @@ double placement_half_extent(const struct placement *placement, const double dir
 
 double placement_range(const struct placement *placement, const struct patch_view *view)
 {
-    return water_way_range(&view->water, placement->centre[1], placement->centre[2]);
+    return ray_path_range(&view->water, placement->centre[1], placement->centre[2]);
 }
 
 double placement_grazing(const struct placement *placement, const struct patch_view *view)
 {
-    return water_way_grazing(&view->water, placement->centre[1], placement->centre[2]);
+    return ray_path_grazing(&view->water, placement->centre[1], placement->centre[2]);
 }
 
 double placement_shadow_end(const struct placement *placement, const struct patch_view *view,
@@ -72,7 +72,7 @@ double placement_shadow_end(const struct placement *placement, const struct patc
 {
     const double top = placement->centre[2] + placement_extent(placement, upward);
     const double end = placement->centre[1] + placement_extent(placement, outward);
-    return top > ground_m ? end + (top - ground_m) / tan(water_way_grazing(&view->water, end, top))
+    return top > ground_m ? end + (top - ground_m) / tan(ray_path_grazing(&view->water, end, top))
                           : end;
 }
 

@@ -263,7 +263,7 @@ static sonject_status write_new(struct report *report, const sonject_convert_par
     const sonject_status status = raster_format_write(report, params->output, &conversion->layout,
                                                       attributes, count, conversion->pixels);
     if (status == SONJECT_OK && count > 0 && !raster_format_keeps_attributes(params->output))
-        report_news(report, "%s keeps no geometry: .tif, .png and .h5 do", params->output);
+        report_log(report, "%s keeps no geometry: .tif, .png and .h5 do", params->output);
     return status;
 }
 

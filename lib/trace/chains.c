@@ -14,8 +14,8 @@
 
 typedef char orders_have_room[CHAIN_ORDERS_MAX == SCENE_INTERACTIONS_MAX ? 1 : -1];
 
-/* A mirror alone lengthens chains of two interactions to three; what it adds to a single one is the
- * pairs of sources'. */
+/* A boundary alone lengthens chains of two interactions to three; what it adds to a single one is
+ * the pairs of sources'. */
 static bool adds_to_chains(const struct scene *scene)
 {
     const sonject_material_params material = surface_material(&scene->surface);
@@ -54,9 +54,9 @@ bool sea_surface_is_in_chains(const struct tracer *tracer, const struct line_gri
 /* In sizes of the part, or in its heights if that is more. */
 #define REACH_AROUND 16.0
 
-/* In ways from below the part to the seabed's mirror point, which lies nearer to the sonar the
+/* In ways from below the part to the seabed's specular point, which lies nearer to the sonar the
  * flatter sound comes: what goes by there comes first. */
-#define REACH_TO_MIRROR 6.5
+#define REACH_TO_SPECULAR_POINT 6.5
 
 /* Half the sum of the heights of the top and of the lowest point that is not buried. */
 static double mean_height(const struct tracer *tracer, const struct placement *placement)
@@ -86,15 +86,15 @@ struct chain_reach chain_reach_of(const struct tracer *tracer, const struct plac
     reach.around_m = radius + fmax(REACH_AROUND * radius,
                                    fmin(REACH_AROUND * height, heard_reach(tracer, placement)));
     /* seabed that sees the sonar steeper than 45 degrees fills many rays, and matters little */
-    const double wanted = radius + REACH_TO_MIRROR * height * ground / altitude;
+    const double wanted = radius + REACH_TO_SPECULAR_POINT * height * ground / altitude;
     reach.towards_sonar_m = fmax(reach.around_m, fmin(wanted, ground - altitude));
     return reach;
 }
 
 #define PATCH_RAYS_PER_BIN  1.0 /* brute force */
 #define SEABED_RAYS_PER_BIN 4.0 /* near the objects; fewer with distance, by Russian roulette */
-/* An object is small, and what it mirrors, or sends to the sea surface, spreads far; else its rough
- * part matters between objects. */
+/* An object is small, and what it reflects specularly, or sends to the sea surface, spreads far;
+ * else its rough part matters between objects. */
 #define OBJECT_RAYS_PER_BIN 16.0
 #define ROUGH_RAYS_PER_BIN  2.0 /* where the seabed's rays stand for its own */
 
@@ -127,9 +127,9 @@ static sonject_status init_seabed_fan(struct chain_fan *fan, struct tracer *trac
     /* an echo never comes before that of its first hit, so seabed beyond the patch has none in it
      */
     const double patch_end = view_ground_range(view, line_grid_far_end(grid, view));
-    const double far = water_way_grazing(&view->water, fmin(around.far_ground, patch_end), 0.0);
+    const double far = ray_path_grazing(&view->water, fmin(around.far_ground, patch_end), 0.0);
     const double near = around.near_ground > 0.0
-                            ? water_way_grazing(&view->water, around.near_ground, 0.0)
+                            ? ray_path_grazing(&view->water, around.near_ground, 0.0)
                             : 0.5 * PI;
     struct grazing_angles edges = {near, far};
     if (tracer->relief)
@@ -149,12 +149,12 @@ static sonject_status init_object_fan(struct chain_fan *fan, struct tracer *trac
     const struct elevations edges = elevations_of_object(tracer, object, &tracer->view.water);
     const double half_length = placement_half_extent(placement, along);
     const double middle = central - grazing;
-    const bool is_mirror = material_is_smooth(placement->material);
+    const bool is_specular = material_is_smooth(placement->material);
     const bool has_reverse = tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED &&
                              tracer->scene->sonar.transducer_side_m == 0.0;
     const bool finds_surface = sea_surface_is_in_chains(tracer, grid);
     const double rays_per_bin =
-        is_mirror || !has_reverse || finds_surface ? OBJECT_RAYS_PER_BIN : ROUGH_RAYS_PER_BIN;
+        is_specular || !has_reverse || finds_surface ? OBJECT_RAYS_PER_BIN : ROUGH_RAYS_PER_BIN;
     fan->strips = strips_between(tracer, grid, placement->centre[0] - half_length,
                                  placement->centre[0] + half_length);
     fan->record.only_object = (int32_t)object;
@@ -175,7 +175,7 @@ sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,
     const struct patch_view *view = &tracer->view;
     double origin[3];
     patch_fan_origin(origin, view);
-    const double central = water_way_grazing(&view->water, origin[1], 0.0);
+    const double central = ray_path_grazing(&view->water, origin[1], 0.0);
     sonject_status status = patch_fan_init(&fan->record, tracer, grid, has_map, PATCH_RAYS_PER_BIN);
     fan->strips = grid->strips;
     fan->record.only_object = -2;
@@ -237,10 +237,10 @@ static void join_surface(struct most_sent *most, const sonject_material_params *
                          bool is_led, double rough)
 {
     const bool is_fluid = material->reflection_kind == SONJECT_REFLECTION_FLUID;
-    const double mirror = is_fluid ? 1.0 : material->reflection * material->reflection;
+    const double specular = is_fluid ? 1.0 : material->reflection * material->reflection;
     const double scattering = rough * material_brightness(material);
     const double albedo = rough * (PI * material->lambert + material->glossy_albedo);
-    most->onward = fmax(most->onward, mirror + (is_led ? 2.0 * PI * scattering : albedo));
+    most->onward = fmax(most->onward, specular + (is_led ? 2.0 * PI * scattering : albedo));
     most->returned = fmax(most->returned, scattering);
 }
 

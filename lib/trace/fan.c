@@ -27,33 +27,33 @@ void ray_table_clear(struct ray_table *table)
 }
 
 /* The height where the last stretch of straight water begins. */
-static double edge_height(const struct water_way *way)
+static double edge_height(const struct ray_path *path)
 {
-    return way->comes_from_seabed ? 0.0 : way->water->layers[1].bottom_m;
+    return path->comes_from_seabed ? 0.0 : path->water->layers[1].bottom_m;
 }
 
 /* The elevations at which sound comes to points (ground range, height), over the direction in which
  * it comes to the origin. Points beyond the straight water count as its edge. */
-static struct elevations elevations_of_points(const struct water_way *way,
+static struct elevations elevations_of_points(const struct ray_path *path,
                                               double origin_grazing_rad, const double (*points)[2],
                                               size_t count)
 {
     struct elevations elevations = {INFINITY, -INFINITY};
     for (size_t i = 0; i < count; i++) {
         double height = points[i][1];
-        if (!way->is_straight)
-            height = way->comes_from_seabed ? fmax(height, 0.0) : fmin(height, edge_height(way));
+        if (!path->is_straight)
+            height = path->comes_from_seabed ? fmax(height, 0.0) : fmin(height, edge_height(path));
         const double elevation =
-            origin_grazing_rad - water_way_grazing(way, fmax(points[i][0], NEAREST_M), height);
+            origin_grazing_rad - ray_path_grazing(path, fmax(points[i][0], NEAREST_M), height);
         elevations.lowest = fmin(elevations.lowest, elevation);
         elevations.highest = fmax(elevations.highest, elevation);
     }
     return elevations;
 }
 
-/* A frame's origin as seen on a way. */
+/* A frame's origin as seen on a path. */
 struct aim {
-    const struct water_way *way;
+    const struct ray_path *path;
     double ground_range, height, grazing, range;
 };
 
@@ -65,8 +65,8 @@ struct passing_ray {
 static struct passing_ray pass(const struct aim *aim, double elevation)
 {
     const double grazing = aim->grazing - elevation;
-    const double edge = edge_height(aim->way);
-    const struct water_ray ray = water_way_ray(aim->way, grazing, edge);
+    const double edge = edge_height(aim->path);
+    const struct arrival ray = ray_path_arrival(aim->path, grazing, edge);
     const double beyond = ray.ground_range_m - aim->ground_range;
     const double above = edge - aim->height;
     const double along = beyond * cos(grazing) - above * sin(grazing);
@@ -124,21 +124,21 @@ static double fill_pieces(const struct aim *aim, const struct ray_table_record *
     return worst;
 }
 
-/* Appends the rays of a way in a frame whose origin has the ground range and height given, over the
- * elevations that a launch needs, and describes them in the record. A straight way needs no pieces.
- * Errors: INPUT (rays so near to total reflection that no cubic follows them), MEMORY. */
+/* Appends the rays of a path in a frame whose origin has the ground range and height given, over
+ * the elevations that a launch needs, and describes them in the record. A straight path needs no
+ * pieces. Errors: INPUT (rays so near to total reflection that no cubic follows them), MEMORY. */
 static sonject_status ray_table_add(struct ray_table *table, struct report *report,
-                                    const struct water_way *way, double ground_range_m,
+                                    const struct ray_path *path, double ground_range_m,
                                     double height_m, struct elevations elevations,
                                     struct ray_table_record *record)
 {
     memset(record, 0, sizeof *record);
     record->ground_range = (float)ground_range_m;
-    if (way->is_straight)
+    if (path->is_straight)
         return SONJECT_OK;
-    const struct aim aim = {way, ground_range_m, height_m,
-                            water_way_grazing(way, ground_range_m, height_m),
-                            water_way_range(way, ground_range_m, height_m)};
+    const struct aim aim = {path, ground_range_m, height_m,
+                            ray_path_grazing(path, ground_range_m, height_m),
+                            ray_path_range(path, ground_range_m, height_m)};
     record->first_piece = (int32_t)table->count;
     record->first_elevation = (float)elevations.lowest;
     double error = INFINITY;
@@ -215,7 +215,7 @@ static struct region region_of_patch(const struct tracer *tracer, const struct l
 sonject_status patch_rays_init(struct ray_table *rays, struct ray_table_record *record,
                                const struct tracer *tracer, const struct line_grid *grid)
 {
-    const struct water_way *way = &tracer->view.water;
+    const struct ray_path *path = &tracer->view.water;
     const struct region region = region_of_patch(tracer, grid);
     /* a little farther: what is sought beside the region; much farther there may be no ray */
     const double points[4][2] = {{region.near, region.bottom},
@@ -226,8 +226,9 @@ sonject_status patch_rays_init(struct ray_table *rays, struct ray_table_record *
     patch_fan_origin(origin, &tracer->view);
     memset(rays, 0, sizeof *rays);
     return ray_table_add(
-        rays, tracer->report, way, origin[1], origin[2],
-        elevations_of_points(way, water_way_grazing(way, origin[1], origin[2]), points, 4), record);
+        rays, tracer->report, path, origin[1], origin[2],
+        elevations_of_points(path, ray_path_grazing(path, origin[1], origin[2]), points, 4),
+        record);
 }
 
 struct span strips_between(const struct tracer *tracer, const struct line_grid *grid,
@@ -256,7 +257,7 @@ double fan_elevation_step(const struct tracer *tracer, const struct line_grid *g
 {
     const struct patch_view *view = &tracer->view;
     const double bin = view->column_spacing_m / grid->bins_per_pixel / view->range_ratio;
-    const double radius = water_way_ray(&view->water, grazing_rad, 0.0).wavefront_m;
+    const double radius = ray_path_arrival(&view->water, grazing_rad, 0.0).wavefront_m;
     return fmin(tan(grazing_rad), 1.0) * bin / radius /
            (rays_per_bin * tracer->scene->injection.ray_scale);
 }
@@ -270,7 +271,7 @@ static double step_to_objects(const struct tracer *tracer, double strip_m)
         const double size = tracer->objects[placement->object].size_m;
         const double grazing = placement_grazing(placement, &tracer->view);
         const double radius =
-            water_way_ray(&tracer->view.water, grazing, placement->centre[2]).wavefront_m;
+            ray_path_arrival(&tracer->view.water, grazing, placement->centre[2]).wavefront_m;
         if (material_is_rough(placement->material))
             step = fmin(step, 0.25 * PI * size * size / (OBJECT_RAYS * strip_m * radius));
     }
@@ -294,11 +295,11 @@ sonject_status fan_set_rays(struct fan_record *fan, struct report *report, doubl
 struct grazing_angles grazing_over_relief(const struct tracer *tracer, struct grazing_angles plane)
 {
     const struct relief *relief = tracer->relief;
-    const struct water_way *way = &tracer->view.water;
+    const struct ray_path *path = &tracer->view.water;
     const double end = relief->first_y_m + (relief->columns - 1) * relief->column_step_m;
     const struct grazing_angles angles = {
-        fmax(plane.near, water_way_grazing(way, relief->first_y_m, relief->lowest_m)),
-        fmin(plane.far, water_way_grazing(way, end, relief->highest_m))};
+        fmax(plane.near, ray_path_grazing(path, relief->first_y_m, relief->lowest_m)),
+        fmin(plane.far, ray_path_grazing(path, end, relief->highest_m))};
     return angles;
 }
 
@@ -311,7 +312,7 @@ sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
     fan_record_init(fan, tracer, origin, grid);
     fan->map_rows = has_map ? (int32_t)view->rows : 0;
     fan->map_columns = has_map ? (int32_t)view->columns : 0;
-    const double central = water_way_grazing(&view->water, origin[1], 0.0);
+    const double central = ray_path_grazing(&view->water, origin[1], 0.0);
     const double near = view_grazing(view, line_grid_near_end(grid, view));
     const double far = view_grazing(view, line_grid_far_end(grid, view));
     struct grazing_angles edges = {near, far};
@@ -324,11 +325,11 @@ sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
 }
 
 struct elevations elevations_of_object(const struct tracer *tracer, uint32_t object,
-                                       const struct water_way *way)
+                                       const struct ray_path *path)
 {
     const struct placement *placement = &tracer->placements[object];
     const double *centre = placement->centre;
-    const double grazing = water_way_grazing(way, centre[1], centre[2]);
+    const double grazing = ray_path_grazing(path, centre[1], centre[2]);
     const double upward[3] = {0.0, sin(grazing), cos(grazing)};
     const double across = MARGIN * placement_half_extent(placement, upward);
     const double along = placement->bounding_radius_m;
@@ -339,15 +340,15 @@ struct elevations elevations_of_object(const struct tracer *tracer, uint32_t obj
         corners[i][0] = centre[1] + up * sin(grazing) + away * cos(grazing);
         corners[i][1] = centre[2] + up * cos(grazing) - away * sin(grazing);
     }
-    return elevations_of_points(way, grazing, (const double(*)[2])corners, 4);
+    return elevations_of_points(path, grazing, (const double(*)[2])corners, 4);
 }
 
 sonject_status object_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t object,
-                               const struct water_way *way, struct ray_table_record *record)
+                               const struct ray_path *path, struct ray_table_record *record)
 {
     const double *centre = tracer->placements[object].centre;
-    return ray_table_add(rays, tracer->report, way, centre[1], centre[2],
-                         elevations_of_object(tracer, object, way), record);
+    return ray_table_add(rays, tracer->report, path, centre[1], centre[2],
+                         elevations_of_object(tracer, object, path), record);
 }
 
 double aspects_sine(const struct tracer *tracer)
@@ -441,7 +442,7 @@ sonject_status beam_record_init(struct fan_record *fan, const struct tracer *tra
     const double near = line_grid_near_end(grid, view) * sqrt(1.0 - sine * sine);
     double origin[3];
     patch_fan_origin(origin, view);
-    const double central = water_way_grazing(&view->water, origin[1], 0.0);
+    const double central = ray_path_grazing(&view->water, origin[1], 0.0);
     const double highest = fan->first_elevation + (double)fan->rays * fan->elevation_step;
     return fan_set_rays(fan, tracer->report,
                         fmin(central - view_grazing(view, near), fan->first_elevation), highest,

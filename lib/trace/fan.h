@@ -57,14 +57,14 @@ double fan_elevation_step(const struct tracer *tracer, const struct line_grid *g
 sonject_status fan_set_rays(struct fan_record *fan, struct report *report, double lowest,
                             double highest, double step);
 
-/* Elevations that an object fills as seen on a way, from the direction of its centre; a little more
- * than that. */
+/* Elevations that an object fills as seen on a path, from the direction of its centre; a little
+ * more than that. */
 struct elevations elevations_of_object(const struct tracer *tracer, uint32_t object,
-                                       const struct water_way *way);
+                                       const struct ray_path *path);
 
-/* Appends the rays of a way to an object in the object's frame. Errors: as patch_rays_init. */
+/* Appends the rays of a path to an object in the object's frame. Errors: as patch_rays_init. */
 sonject_status object_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t object,
-                               const struct water_way *way, struct ray_table_record *record);
+                               const struct ray_path *path, struct ray_table_record *record);
 
 /* Sine of the largest angle off broadside; 0: broadside alone. The response's own, wavelength /
  * (4 resolution), is taken to at most 45 degrees. */

@@ -10,7 +10,7 @@
 
 #define STRIP_WAVELENGTHS  0.25 /* widest sub-strip: wider ones alias glints (physics.md 2) */
 #define BINS_PER_DEVIATION 16.0 /* linear sharing between bins then errs by 5e-4 */
-#define MIRRORED_STRIPS    64   /* of a launch: there may be dozens of pairs at a time */
+#define IMAGE_STRIPS       64   /* of a launch: there may be dozens of pairs at a time */
 
 double glint_shortest_deviation(const struct line_grid *grid, double column_spacing_m)
 {
@@ -32,16 +32,16 @@ void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint
 }
 
 void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t number,
-                    const struct water_way *way, double finer)
+                    const struct ray_path *path, double finer)
 {
     const struct placement *placement = &tracer->placements[number];
     const double radius =
-        water_way_ray(way, water_way_grazing(way, placement->centre[1], placement->centre[2]),
-                      placement->centre[2])
+        ray_path_arrival(path, ray_path_grazing(path, placement->centre[1], placement->centre[2]),
+                         placement->centre[2])
             .wavefront_m;
     const double cell = GLINT_CELL_WAVELENGTHS * tracer->view.wavelength_m /
                         sqrt(tracer->scene->injection.ray_scale) / finer;
-    const struct elevations edges = elevations_of_object(tracer, number, way);
+    const struct elevations edges = elevations_of_object(tracer, number, path);
     const double rays = ceil((edges.highest - edges.lowest) * radius / cell) + 1.0;
     fan->rays = (uint32_t)rays;
     fan->first_elevation = (float)edges.lowest;
@@ -66,14 +66,14 @@ static void choose_quanta(struct smooth_trace *trace, const struct tracer *trace
 static sonject_status begin_launch(struct smooth_trace *trace, struct tracer *tracer,
                                    uint32_t number, const struct image_pair_record *sources)
 {
-    const int32_t most = sources ? MIRRORED_STRIPS : INT32_MAX;
+    const int32_t most = sources ? IMAGE_STRIPS : INT32_MAX;
     const int32_t strips = trace->grid.strips.count < most ? trace->grid.strips.count : most;
     struct launch *launch = &trace->launch;
     struct part_list parts;
     sonject_status status = parts_in_way(&parts, tracer, number, &trace->grid, !sources);
-    THEN(status, launch_begin(launch, tracer,
-                              sources ? PROGRAM_TRACE_SMOOTH_MIRRORED : PROGRAM_TRACE_SMOOTH,
-                              sources ? "trace_smooth_mirrored" : "trace_smooth"));
+    THEN(status,
+         launch_begin(launch, tracer, sources ? PROGRAM_TRACE_SMOOTH_IMAGES : PROGRAM_TRACE_SMOOTH,
+                      sources ? "trace_smooth_images" : "trace_smooth"));
     THEN(status,
          launch_add_objects(launch, tracer, &parts, tracer->placements[number].centre, NULL));
     THEN(status, launch_add_tallies(launch, tracer, strips, 2 * (size_t)trace->grid.bins.count,
@@ -88,7 +88,7 @@ static sonject_status begin_launch(struct smooth_trace *trace, struct tracer *tr
 sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer,
                                   uint32_t number, const struct image_pair *pair)
 {
-    const struct sound_source sonar = {tracer->view.water, 0, MIRROR_SEABED};
+    const struct sound_source sonar = {tracer->view.water, 0, BOUNDARY_SEABED};
     const struct image_pair straight = {&sonar, &sonar, 0};
     struct fan_record *fan = &trace->launch.fan;
     struct image_pair_record sources;
@@ -104,14 +104,14 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
     if (pair) {
         status =
             image_pair_aim(fan, &sources, &trace->launch.rays, tracer, number, pair, &trace->grid);
-        fan->stream = STREAM_MIRRORED_RAYS + STREAMS_OF_PAIR * pair->number + number;
+        fan->stream = STREAM_IMAGE_RAYS + STREAMS_OF_PAIR * pair->number + number;
     } else {
         /* the frame is centred on the object: phases then keep their digits */
         fan_record_init(fan, tracer, tracer->placements[number].centre, &trace->grid);
         fan->stream = STREAM_SMOOTH_RAYS + number;
-        status = object_rays_add(&trace->launch.rays, tracer, number, &sonar.way, &fan->table);
+        status = object_rays_add(&trace->launch.rays, tracer, number, &sonar.path, &fan->table);
     }
-    glint_fan_init(fan, tracer, number, pair ? &pair->outgoing->way : &sonar.way, 1.0);
+    glint_fan_init(fan, tracer, number, pair ? &pair->outgoing->path : &sonar.path, 1.0);
     choose_quanta(trace, tracer);
     THEN(status, begin_launch(trace, tracer, number, pair ? &sources : NULL));
     if (status != SONJECT_OK)
@@ -137,7 +137,7 @@ sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tr
                         (float *const[]){real_part, imaginary_part});
 }
 
-static sonject_status begin_mirrored(struct glints *glints, struct tracer *tracer, uint32_t object)
+static sonject_status begin_images(struct glints *glints, struct tracer *tracer, uint32_t object)
 {
     struct image_pairs pairs;
     struct image_pair pair;
@@ -162,9 +162,9 @@ sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32
         glints->count = 1;
         glints->grid = glints->traces[0].grid;
         if (glints->grid.strips.count > 0)
-            status = begin_mirrored(glints, tracer, object);
+            status = begin_images(glints, tracer, object);
     }
-    THEN(status, corners_begin(&glints->corners, tracer, object));
+    THEN(status, multibounce_begin(&glints->corners, tracer, object));
     if (status == SONJECT_OK) {
         glints->grid.strips = span_join(glints->grid.strips, glints->corners.grid.strips);
         glints->grid.bins = span_join(glints->grid.bins, glints->corners.grid.bins);
@@ -187,7 +187,7 @@ void glints_end(struct glints *glints)
 {
     for (size_t i = 0; i < glints->count; i++)
         smooth_trace_end(&glints->traces[i]);
-    corners_end(&glints->corners);
+    multibounce_end(&glints->corners);
     free(glints->traces);
     free(glints->real_part);
     free(glints->imaginary_part);
@@ -226,6 +226,6 @@ sonject_status glints_trace(struct glints *glints, struct tracer *tracer, struct
         add_bins(glints, &glints->traces[i], some.count, (size_t)(some.first - strips.first),
                  real_part, imaginary_part);
     }
-    corners_add(&glints->corners, strips, &glints->grid, real_part, imaginary_part);
+    multibounce_add(&glints->corners, strips, &glints->grid, real_part, imaginary_part);
     return SONJECT_OK;
 }

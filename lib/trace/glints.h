@@ -13,7 +13,7 @@
 enum smooth_buffer {
     SMOOTH_OBJECTS,
     SMOOTH_TALLIES,
-    SMOOTH_SOURCES /* image_pair_record; by way of mirrors alone */
+    SMOOTH_SOURCES /* image_pair_record; by image sources alone */
 };
 
 struct smooth_trace {
@@ -32,10 +32,10 @@ void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint
 /* Rays of a fan, whose strips are known, from a source to a part; `finer` than glints need them by
  * that factor each way, >= 1. */
 void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
-                    const struct water_way *way, double finer);
+                    const struct ray_path *path, double finer);
 
 /* Prepares a trace of one object's glints, straight there and back (pair NULL) or by way of
- * mirrors; as rough_trace_begin. An object without a smooth part has grid.strips.count 0 and
+ * boundaries; as rough_trace_begin. An object without a smooth part has grid.strips.count 0 and
  * nothing to trace; grid.bins.count is 0, and there is nothing to trace, where no echo of a pair
  * can reach the patch. */
 sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer,
@@ -54,7 +54,7 @@ sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tr
 #define TILE_BINS   256
 #define TILE_SUMS   ((size_t)2 * TILE_STRIPS * TILE_BINS)
 
-struct corner_sums {
+struct multibounce_sums {
     struct line_grid grid;
     size_t rows, columns; /* of tiles */
     int64_t **tiles;      /* owned; NULL: nothing there; else TILE_STRIPS x TILE_BINS x (real,
@@ -62,69 +62,70 @@ struct corner_sums {
     double amplitude_of_quantum; /* m */
 };
 
-/* False, and nothing held, where memory lacks; else to be given to corner_sums_clear. */
-bool corner_sums_init(struct corner_sums *sums, const struct line_grid *grid);
-void corner_sums_clear(struct corner_sums *sums);
+/* False, and nothing held, where memory lacks; else to be given to multibounce_sums_clear. */
+bool multibounce_sums_init(struct multibounce_sums *sums, const struct line_grid *grid);
+void multibounce_sums_clear(struct multibounce_sums *sums);
 
 /* Adds echoes, each shared by the two bins about it as glints' are; bins count from the grid's
  * first. False where memory lacks. */
-bool corner_sums_add(struct corner_sums *sums, const struct corner_echo_record *echoes,
-                     size_t count);
+bool multibounce_sums_add(struct multibounce_sums *sums,
+                          const struct multibounce_echo_record *echoes, size_t count);
 
 struct corners {
-    struct line_grid grid;    /* that holds all echoes; as glints' are; no strips: no echoes */
-    struct span first_hits;   /* sub-strips that the part covers */
-    struct corner_sums *sums; /* of each pair of sources; owned */
+    struct line_grid grid;         /* that holds all echoes; as glints' are; no strips: no echoes */
+    struct span first_hits;        /* sub-strips that the part covers */
+    struct multibounce_sums *sums; /* of each pair of sources; owned */
     size_t count;
 };
 
 /* Whether sound from the part may meet a smooth face after it: the scene has two smooth parts, or
  * this one is smooth and not convex, and paths may have two interactions. */
-bool corners_may_echo(const struct tracer *tracer, uint32_t part);
+bool multibounce_may_echo(const struct tracer *tracer, uint32_t part);
 
 /* Bins of the patch where such echoes may lie, of the given size; count 0 if there are none. */
-struct span corner_bins(const struct tracer *tracer, uint32_t part, const struct line_grid *grid);
+struct span multibounce_bins(const struct tracer *tracer, uint32_t part,
+                             const struct line_grid *grid);
 
-/* Traces all echoes that a part is the first to meet. On success to be given to corners_end; on
+/* Traces all echoes that a part is the first to meet. On success to be given to multibounce_end; on
  * failure nothing is held. Errors: DEVICE, MEMORY. */
-sonject_status corners_begin(struct corners *corners, struct tracer *tracer, uint32_t part);
-void corners_end(struct corners *corners);
+sonject_status multibounce_begin(struct corners *corners, struct tracer *tracer, uint32_t part);
+void multibounce_end(struct corners *corners);
 
 /* Adds the echoes of strips, complex amplitudes in m, to planes of strips.count x grid->bins.count.
  */
-void corners_add(const struct corners *corners, struct span strips, const struct line_grid *grid,
-                 float *real_part, float *imaginary_part);
+void multibounce_add(const struct corners *corners, struct span strips,
+                     const struct line_grid *grid, float *real_part, float *imaginary_part);
 
 /* The launch's buffers. */
-enum corner_buffer {
-    CORNER_OBJECTS,
-    CORNER_SOURCES,
-    CORNER_RECORD,
-    CORNER_ECHOES,
-    CORNER_LISTED
+enum multibounce_buffer {
+    MULTIBOUNCE_OBJECTS,
+    MULTIBOUNCE_SOURCES,
+    MULTIBOUNCE_RECORD,
+    MULTIBOUNCE_ECHOES,
+    MULTIBOUNCE_LISTED
 };
 
 /* The echoes of one pair of sources. */
-struct corner_launch {
+struct multibounce_launch {
     struct launch launch;
-    struct corner_record record;
+    struct multibounce_record record;
     struct image_pair_record sources;
     size_t capacity; /* of echoes */
     int32_t chunk;   /* sub-strips whose echoes fit that */
 };
 
-/* The steps of corners_begin: the grid of one pair's echoes and its launch, whose echoes are listed
- * chunk by chunk of first hits. The grid's bins.count is 0, and nothing is held, where there can be
- * none; else to be given to corner_launch_end. */
-void corners_init(struct corners *corners, const struct tracer *tracer, uint32_t part);
-sonject_status corner_launch_begin(struct corner_launch *corner, struct line_grid *grid,
-                                   const struct corners *corners, struct tracer *tracer,
-                                   uint32_t part, const struct image_pair *pair);
-void corner_launch_end(struct corner_launch *corner);
+/* The steps of multibounce_begin: the grid of one pair's echoes and its launch, whose echoes are
+ * listed chunk by chunk of first hits. The grid's bins.count is 0, and nothing is held, where there
+ * can be none; else to be given to multibounce_launch_end. */
+void multibounce_init(struct corners *corners, const struct tracer *tracer, uint32_t part);
+sonject_status multibounce_launch_begin(struct multibounce_launch *corner, struct line_grid *grid,
+                                        const struct corners *corners, struct tracer *tracer,
+                                        uint32_t part, const struct image_pair *pair);
+void multibounce_launch_end(struct multibounce_launch *corner);
 
 /* Adds the echoes of first hits in strips.count <= chunk sub-strips to the sums. */
-sonject_status corner_launch_strips(struct corner_launch *corner, struct tracer *tracer,
-                                    struct span strips, struct corner_sums *sums);
+sonject_status multibounce_launch_strips(struct multibounce_launch *corner, struct tracer *tracer,
+                                         struct span strips, struct multibounce_sums *sums);
 
 struct glints {
     struct line_grid grid;       /* that holds every trace's strips and bins */

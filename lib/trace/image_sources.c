@@ -8,12 +8,12 @@
 #define MORE_BOUNCES_MAX  ((SOURCES_MAX - 1) / 2)
 #define PI                3.14159265358979323846
 #define BINS_MAX          1.0e9 /* beyond any patch, within a 32-bit number */
-#define LOSS_EXPONENT_MAX 30.0  /* mirrors that keep less than exp(-30) return nothing */
+#define LOSS_EXPONENT_MAX 30.0  /* boundaries that keep less than exp(-30) return nothing */
 
-bool scene_mirror(const struct scene *scene, enum mirror_kind kind, double *height_m,
-                  const sonject_material_params **material)
+bool scene_boundary(const struct scene *scene, enum boundary kind, double *height_m,
+                    const sonject_material_params **material)
 {
-    if (kind == MIRROR_SEABED) {
+    if (kind == BOUNDARY_SEABED) {
         *height_m = 0.0;
         *material = &scene->seabed.forward;
         return material_is_smooth(*material);
@@ -23,24 +23,24 @@ bool scene_mirror(const struct scene *scene, enum mirror_kind kind, double *heig
     return *height_m > 0.0 && material_is_smooth(*material);
 }
 
-static enum mirror_kind opposite(enum mirror_kind kind)
+static enum boundary opposite(enum boundary kind)
 {
-    return kind == MIRROR_SEABED ? MIRROR_SURFACE : MIRROR_SEABED;
+    return kind == BOUNDARY_SEABED ? BOUNDARY_SURFACE : BOUNDARY_SEABED;
 }
 
-/* The image of a source in the next mirror; false if the scene has no such mirror. */
+/* The image of a source in the next boundary; false if the scene has no such boundary. */
 static bool image_of(const struct scene *scene, const struct water *water,
-                     const struct sound_source *source, enum mirror_kind kind,
+                     const struct sound_source *source, enum boundary kind,
                      struct sound_source *image)
 {
-    double mirror_height;
+    double boundary_height;
     const sonject_material_params *material;
-    if (!scene_mirror(scene, kind, &mirror_height, &material))
+    if (!scene_boundary(scene, kind, &boundary_height, &material))
         return false;
     image->bounces = source->bounces + 1;
-    image->last_mirror = kind;
-    image->way = water_way_mirrored(water, scene->sonar.altitude_m, scene->surface.water_depth_m,
-                                    image->bounces, kind == MIRROR_SEABED);
+    image->last_boundary = kind;
+    image->path = ray_path_image(water, scene->sonar.altitude_m, scene->surface.water_depth_m,
+                                 image->bounces, kind == BOUNDARY_SEABED);
     return true;
 }
 
@@ -49,30 +49,30 @@ size_t sources_list(const struct scene *scene, const struct water *water, uint32
 {
     const uint32_t limit = bounces < MORE_BOUNCES_MAX ? bounces : MORE_BOUNCES_MAX;
     size_t count = 1;
-    sources[0].way = water_way_direct(water, scene->sonar.altitude_m);
+    sources[0].path = ray_path_direct(water, scene->sonar.altitude_m);
     sources[0].bounces = 0;
-    sources[0].last_mirror = MIRROR_SEABED;
+    sources[0].last_boundary = BOUNDARY_SEABED;
     if (limit == 0)
         return count;
-    count += image_of(scene, water, &sources[0], MIRROR_SEABED, &sources[count]);
-    count += image_of(scene, water, &sources[0], MIRROR_SURFACE, &sources[count]);
-    /* a level line cannot meet the same mirror twice in turn */
+    count += image_of(scene, water, &sources[0], BOUNDARY_SEABED, &sources[count]);
+    count += image_of(scene, water, &sources[0], BOUNDARY_SURFACE, &sources[count]);
+    /* a level line cannot meet the same boundary twice in turn */
     for (size_t i = 1; i < count && sources[i].bounces < limit; i++)
-        count +=
-            image_of(scene, water, &sources[i], opposite(sources[i].last_mirror), &sources[count]);
+        count += image_of(scene, water, &sources[i], opposite(sources[i].last_boundary),
+                          &sources[count]);
     return count;
 }
 
 /* Range from a source's track to the object's centre. */
 static double source_range(const struct sound_source *source, const struct placement *placement)
 {
-    return water_way_range(&source->way, placement->centre[1], placement->centre[2]);
+    return ray_path_range(&source->path, placement->centre[1], placement->centre[2]);
 }
 
 /* Grazing angle of the sound that comes from a source to the object's centre. */
 static double source_grazing(const struct sound_source *source, const struct placement *placement)
 {
-    return water_way_grazing(&source->way, placement->centre[1], placement->centre[2]);
+    return ray_path_grazing(&source->path, placement->centre[1], placement->centre[2]);
 }
 
 /* Half the path by way of the object's centre. */
@@ -87,7 +87,8 @@ static double half_path(const struct image_pair *pair, const struct placement *p
 static double reach_from(const struct sound_source *source, const struct placement *placement)
 {
     const double grazing = source_grazing(source, placement);
-    const double radius = water_way_ray(&source->way, grazing, placement->centre[2]).wavefront_m;
+    const double radius =
+        ray_path_arrival(&source->path, grazing, placement->centre[2]).wavefront_m;
     const double sight[3] = {0.0, cos(grazing), -sin(grazing)};
     const double bound = placement->bounding_radius_m;
     return 1.01 * placement_half_extent(placement, sight) + bound * bound / (radius - bound);
@@ -135,27 +136,27 @@ struct span bins_in_patch(const struct tracer *tracer, const struct line_grid *g
     return bins;
 }
 
-/* Sound speed at a mirror over that around the object. */
-static double mirror_speed_ratio(const struct tracer *tracer, double height)
+/* Sound speed at a boundary over that around the object. */
+static double boundary_speed_ratio(const struct tracer *tracer, double height)
 {
     const struct water *water = tracer->view.water.water;
     return water_layer_at(water, height)->speed_mps / water->straight_speed_mps;
 }
 
-/* Exponent of what the mirrors' roughness takes off the amplitude on the way from a source: P^2/2
- * at every bounce. */
+/* Exponent of what the boundaries' roughness takes off the amplitude on the way from a source:
+ * P^2/2 at every bounce. */
 static double roughness_exponent(const struct tracer *tracer, const struct sound_source *source,
                                  const struct placement *placement)
 {
     const double cosine = cos(source_grazing(source, placement));
     double exponent = 0.0;
-    int kind = (int)source->last_mirror;
+    int kind = (int)source->last_boundary;
     for (uint32_t bounce = 0; bounce < source->bounces; bounce++, kind = 1 - kind) {
         double height;
         const sonject_material_params *material;
-        if (!scene_mirror(tracer->scene, (enum mirror_kind)kind, &height, &material))
+        if (!scene_boundary(tracer->scene, (enum boundary)kind, &height, &material))
             continue;
-        const double ratio = mirror_speed_ratio(tracer, height);
+        const double ratio = boundary_speed_ratio(tracer, height);
         const double sine = sqrt(fmax(0.0, 1.0 - pow(cosine * ratio, 2.0)));
         const double phase =
             4.0 * PI * material->roughness_m * sine / (tracer->view.wavelength_m * ratio);
@@ -221,8 +222,8 @@ struct span span_overlap(struct span one, struct span other)
     return both;
 }
 
-struct span mirrored_bins(const struct tracer *tracer, uint32_t object,
-                          const struct line_grid *grid)
+struct span image_source_bins(const struct tracer *tracer, uint32_t object,
+                              const struct line_grid *grid)
 {
     struct image_pairs pairs;
     struct image_pair pair;
@@ -243,7 +244,7 @@ static struct source_record source_record_of(const struct sound_source *source,
     record.cosine_depression = (float)cos(grazing);
     record.sine_depression = (float)sin(grazing);
     record.bounces = (int32_t)source->bounces;
-    record.last_mirror = (int32_t)source->last_mirror;
+    record.last_boundary = (int32_t)source->last_boundary;
     return record;
 }
 
@@ -254,15 +255,15 @@ static void image_pair_record_init(struct image_pair_record *record, const struc
     record->outgoing = source_record_of(pair->outgoing, placement);
     record->returning = source_record_of(pair->returning, placement);
     record->echoes = pair->outgoing == pair->returning ? 1.0f : 2.0f;
-    for (int kind = 0; kind < MIRROR_KINDS; kind++) {
+    for (int kind = 0; kind < BOUNDARIES; kind++) {
         double height;
         const sonject_material_params *material;
-        if (!scene_mirror(tracer->scene, (enum mirror_kind)kind, &height, &material))
+        if (!scene_boundary(tracer->scene, (enum boundary)kind, &height, &material))
             continue;
-        const double ratio = mirror_speed_ratio(tracer, height);
-        record->mirrors[kind].height = (float)(height - placement->centre[2]);
-        record->mirrors[kind].speed_ratio = (float)ratio;
-        surface_record_init(&record->mirrors[kind].surface, material,
+        const double ratio = boundary_speed_ratio(tracer, height);
+        record->boundaries[kind].height = (float)(height - placement->centre[2]);
+        record->boundaries[kind].speed_ratio = (float)ratio;
+        surface_record_init(&record->boundaries[kind].surface, material,
                             tracer->view.wavelength_m * ratio);
     }
 }
@@ -285,9 +286,9 @@ sonject_status image_pair_aim(struct fan_record *fan, struct image_pair_record *
                                         grid->bins_per_pixel / view->column_spacing_m -
                                     grid->bins.first);
     sonject_status status =
-        object_rays_add(rays, tracer, object, &pair->outgoing->way, &record->outgoing.table);
+        object_rays_add(rays, tracer, object, &pair->outgoing->path, &record->outgoing.table);
     THEN(status,
-         object_rays_add(rays, tracer, object, &pair->returning->way, &record->returning.table));
+         object_rays_add(rays, tracer, object, &pair->returning->path, &record->returning.table));
     fan->table = record->outgoing.table;
     return status;
 }

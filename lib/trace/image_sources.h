@@ -1,5 +1,5 @@
-/* The sonar and its images in the plane mirrors over and under the scene, and the pairs of them
- * between which an object carries sound: by way of mirrors before, after or both. */
+/* The sonar and its images in the plane boundaries over and under the scene, and the pairs of them
+ * between which an object carries sound: by image sources before, after or both. */
 #ifndef SONJECT_TRACE_IMAGE_SOURCES_H
 #define SONJECT_TRACE_IMAGE_SOURCES_H
 
@@ -7,17 +7,17 @@
 
 #define SOURCES_MAX 15 /* the sonar, and two images for each of 1...7 bounces */
 
-/* A source seen from an object: sound comes from it by `bounces` mirrors in turn, the last of which
- * is last_mirror. */
+/* A source seen from an object: sound comes from it by `bounces` boundaries in turn, the last of
+ * which is last_boundary. */
 struct sound_source {
-    struct water_way way;
+    struct ray_path path;
     uint32_t bounces;
-    enum mirror_kind last_mirror; /* of no meaning without bounces */
+    enum boundary last_boundary; /* of no meaning without bounces */
 };
 
-/* Whether the scene has the mirror, and its height over the mean seabed and its material. */
-bool scene_mirror(const struct scene *scene, enum mirror_kind kind, double *height_m,
-                  const sonject_material_params **material);
+/* Whether the scene has the boundary, and its height over the mean seabed and its material. */
+bool scene_boundary(const struct scene *scene, enum boundary kind, double *height_m,
+                    const sonject_material_params **material);
 
 /* Lists the sonar (first) and all of its images of up to `bounces` bounces, by bounces; returns
  * their number. water is borrowed by them. */
@@ -40,12 +40,12 @@ struct image_pairs {
     size_t outgoing, returning; /* the pair to look at next */
 };
 
-/* All pairs by way of mirrors, or (has_straight) the straight one before them. The tracer is
+/* All pairs by image sources, or (has_straight) the straight one before them. The tracer is
  * borrowed. */
 void image_pairs_begin(struct image_pairs *pairs, const struct tracer *tracer, uint32_t object,
                        bool has_straight, uint32_t object_hits);
 
-/* Finds the next pair (which points into *pairs) within the limit of interactions whose mirrors
+/* Finds the next pair (which points into *pairs) within the limit of interactions whose boundaries
  * return anything; false when there is none. */
 bool image_pairs_next(struct image_pairs *pairs, struct image_pair *pair);
 
@@ -68,8 +68,8 @@ struct span bins_in_patch(const struct tracer *tracer, const struct line_grid *g
 
 /* The bins in the patch of all the object's pairs but the straight one; count 0 if there is none.
  */
-struct span mirrored_bins(const struct tracer *tracer, uint32_t object,
-                          const struct line_grid *grid);
+struct span image_source_bins(const struct tracer *tracer, uint32_t object,
+                              const struct line_grid *grid);
 
 /* The smallest span that holds both; a span of count 0 holds nothing. */
 struct span span_join(struct span one, struct span other);

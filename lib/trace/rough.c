@@ -39,7 +39,7 @@ static struct part_ranges ranges_of_part(const struct tracer *tracer,
     const double first_range =
         placement_range(placement, &tracer->view) - placement->bounding_radius_m;
     const double last_range =
-        fmax(water_way_range(&tracer->view.water, shadow_end, lowest),
+        fmax(ray_path_range(&tracer->view.water, shadow_end, lowest),
              placement_range(placement, &tracer->view) + placement->bounding_radius_m);
     const double slack =
         0.01 * placement->bounding_radius_m + tracer->scene->sonar.transducer_side_m;
@@ -47,24 +47,24 @@ static struct part_ranges ranges_of_part(const struct tracer *tracer,
     return ranges;
 }
 
-/* Bins where a part's echoes and shadow can lie, those by way of mirrors too. */
+/* Bins where a part's echoes and shadow can lie, those by image sources too. */
 static struct span part_bins(const struct rough_trace *trace, const struct tracer *tracer,
                              uint32_t number)
 {
     const struct part_ranges ranges = ranges_of_part(tracer, &tracer->placements[number]);
     const double ratio = tracer->view.range_ratio;
     const double first = floor(bin_of_processor_range(trace, tracer, ranges.first * ratio)) - 2.0;
-    const struct span mirrored = mirrored_bins(tracer, number, &trace->grid);
+    const struct span images = image_source_bins(tracer, number, &trace->grid);
     /* a beam sees what is off broadside farther away */
     const double sine = has_beam(trace) ? beam_largest_sine(tracer) : 0.0;
     const double farthest = ranges.last / sqrt(1.0 - sine * sine);
     const double last = fmax(ceil(bin_of_processor_range(trace, tracer, farthest * ratio)) + 2.0,
-                             mirrored.first + mirrored.count);
+                             images.first + images.count);
     const double limit = trace->grid.bins.first + trace->grid.bins.count;
     struct span bins;
     bins.first = (int32_t)fmin(fmax(first, trace->grid.bins.first), limit);
     bins.count = (int32_t)fmax(0.0, fmin(last + 1.0, limit) - bins.first);
-    return span_overlap(span_join(bins, corner_bins(tracer, number, &trace->grid)),
+    return span_overlap(span_join(bins, multibounce_bins(tracer, number, &trace->grid)),
                         trace->grid.bins);
 }
 
@@ -206,13 +206,13 @@ static sonject_status init_fan(struct rough_trace *trace, struct tracer *tracer,
 
 /* As dense as the fan that goes straight to the objects. */
 static void aim_at_part(struct fan_record *fan, const struct rough_trace *trace,
-                        const struct tracer *tracer, uint32_t part, const struct water_way *way)
+                        const struct tracer *tracer, uint32_t part, const struct ray_path *path)
 {
     const struct placement *placement = &tracer->placements[part];
-    const struct elevations edges = elevations_of_object(tracer, part, way);
+    const struct elevations edges = elevations_of_object(tracer, part, path);
     const double radius =
-        water_way_ray(way, water_way_grazing(way, placement->centre[1], placement->centre[2]),
-                      placement->centre[2])
+        ray_path_arrival(path, ray_path_grazing(path, placement->centre[1], placement->centre[2]),
+                         placement->centre[2])
             .wavefront_m;
     const double bin =
         tracer->view.column_spacing_m / trace->grid.bins_per_pixel / tracer->view.range_ratio;
@@ -315,10 +315,10 @@ sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *trace
 }
 
 /* The launch's buffers; the tiles are the trace's. */
-enum mirrored_buffer {
-    MIRRORED_OBJECTS,
-    MIRRORED_TILES,
-    MIRRORED_SOURCES
+enum images_buffer {
+    IMAGES_OBJECTS,
+    IMAGES_TILES,
+    IMAGES_SOURCES
 };
 
 static sonject_status trace_pair(struct rough_trace *trace, struct tracer *tracer,
@@ -331,18 +331,18 @@ static sonject_status trace_pair(struct rough_trace *trace, struct tracer *trace
     struct image_pair_record record;
     sonject_status status =
         image_pair_aim(fan, &record, &launch->rays, tracer, part, pair, &trace->grid);
-    aim_at_part(fan, trace, tracer, part, &pair->outgoing->way);
+    aim_at_part(fan, trace, tracer, part, &pair->outgoing->path);
     fan_set_parts(fan, tracer, parts);
-    fan->stream = STREAM_MIRRORED_ROUGH_RAYS + STREAMS_OF_PAIR * pair->number + part;
+    fan->stream = STREAM_IMAGE_ROUGH_RAYS + STREAMS_OF_PAIR * pair->number + part;
     fan->quanta = trace->launch.fan.quanta;
     fan->first_strip = tile->grid.strips.first;
     fan->strips = tile->grid.strips.count;
-    launch->buffers[MIRRORED_TILES] = trace->launch.buffers[ROUGH_TILES];
-    launch->buffer_count = MIRRORED_SOURCES;
+    launch->buffers[IMAGES_TILES] = trace->launch.buffers[ROUGH_TILES];
+    launch->buffer_count = IMAGES_SOURCES;
     THEN(status, launch_add(launch, tracer, sizeof record, &record));
     THEN(status, launch_run(launch, tracer));
-    launch->buffers[MIRRORED_TILES] = NULL;
-    buffer_release(&launch->buffers[MIRRORED_SOURCES]);
+    launch->buffers[IMAGES_TILES] = NULL;
+    buffer_release(&launch->buffers[IMAGES_SOURCES]);
     ray_table_clear(&launch->rays);
     return status;
 }
@@ -356,8 +356,7 @@ static sonject_status trace_part(struct rough_trace *trace, struct tracer *trace
     struct image_pair pair;
     memset(&launch, 0, sizeof launch);
     sonject_status status = parts_in_way(&parts, tracer, part, &trace->tiles[object].grid, false);
-    THEN(status,
-         launch_begin(&launch, tracer, PROGRAM_TRACE_ROUGH_MIRRORED, "trace_rough_mirrored"));
+    THEN(status, launch_begin(&launch, tracer, PROGRAM_TRACE_ROUGH_IMAGES, "trace_rough_images"));
     THEN(status,
          launch_add_objects(&launch, tracer, &parts, tracer->placements[part].centre, trace));
     image_pairs_begin(&pairs, tracer, part, false, 1);
@@ -369,13 +368,13 @@ static sonject_status trace_part(struct rough_trace *trace, struct tracer *trace
     return status;
 }
 
-sonject_status rough_trace_mirrored(struct rough_trace *trace, struct tracer *tracer)
+sonject_status rough_trace_images(struct rough_trace *trace, struct tracer *tracer)
 {
     sonject_status status = SONJECT_OK;
     for (uint32_t i = 0; status == SONJECT_OK && i < tracer->part_count; i++)
         if (material_is_rough(tracer->placements[i].material) &&
             line_grid_cells(&trace->tiles[tracer->placements[i].object].grid) > 0 &&
-            mirrored_bins(tracer, i, &trace->grid).count > 0)
+            image_source_bins(tracer, i, &trace->grid).count > 0)
             status = trace_part(trace, tracer, i);
     return status;
 }

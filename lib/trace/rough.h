@@ -63,8 +63,8 @@ void rough_tile_describe(const struct rough_trace *trace, uint32_t object,
  * tile_elements floats. Plane p of a tile starts at offset + p * line_grid_cells(&tile.grid). */
 sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *tracer, float *tiles);
 
-/* Adds to the objects' tiles (TILE_ENERGY) what mirrors carry to and from their rough surfaces.
- * Errors: DEVICE, MEMORY. */
-sonject_status rough_trace_mirrored(struct rough_trace *trace, struct tracer *tracer);
+/* Adds to the objects' tiles (TILE_ENERGY) what image sources carry to and from their rough
+ * surfaces. Errors: DEVICE, MEMORY. */
+sonject_status rough_trace_images(struct rough_trace *trace, struct tracer *tracer);
 
 #endif

@@ -62,7 +62,7 @@ static sonject_status open_one(struct sums_folder *folder, struct report *report
     const sonject_status status = sums_file_open(file, report, name->path);
     if (status == SONJECT_ERROR_INPUT && drops_damaged) {
         file_discard(name->path);
-        report_news(report, "%s was damaged: it is traced again", name->path);
+        report_log(report, "%s was damaged: it is traced again", name->path);
         report->message[0] = '\0';
         return SONJECT_OK;
     }

@@ -21,8 +21,9 @@ typedef char chain_record_is_packed[sizeof(struct chain_record) == 43 * 4 ? 1 : 
 typedef char sphere_group_is_packed[sizeof(struct sphere_group) == 64 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
 typedef char image_pair_record_is_packed[sizeof(struct image_pair_record) == 49 * 4 ? 1 : -1];
-typedef char corner_record_is_packed[sizeof(struct corner_record) == 13 * 4 ? 1 : -1];
-typedef char corner_echo_record_is_packed[sizeof(struct corner_echo_record) == 6 * 4 ? 1 : -1];
+typedef char multibounce_record_is_packed[sizeof(struct multibounce_record) == 13 * 4 ? 1 : -1];
+typedef char
+    multibounce_echo_record_is_packed[sizeof(struct multibounce_echo_record) == 6 * 4 ? 1 : -1];
 typedef char ray_piece_record_is_packed[sizeof(struct ray_piece_record) == 7 * 4 ? 1 : -1];
 typedef char outcome_record_is_packed[sizeof(struct outcome_record) == 4 * 4 ? 1 : -1];
 
@@ -37,8 +38,8 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
                      const struct line_grid *grid)
 {
     const struct patch_view *view = &tracer->view;
-    const double range = water_way_range(&view->water, origin[1], origin[2]);
-    const double grazing = water_way_grazing(&view->water, origin[1], origin[2]);
+    const double range = ray_path_range(&view->water, origin[1], origin[2]);
+    const double grazing = ray_path_grazing(&view->water, origin[1], origin[2]);
     const double row_of_strip0 = 0.5 / grid->strips_per_row - 0.5;
     const double bins_per_processor_metre = grid->bins_per_pixel / view->column_spacing_m;
     const double cycles = 2.0 * range / view->wavelength_m;

@@ -47,12 +47,12 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
 void surface_record_init(struct surface_record *record, const sonject_material_params *material,
                          double wavelength_m);
 
-/* Whether the material has a mirror-like part, and one that scatters: of what mirrors, that is what
+/* Whether the material has a specular part, and one that scatters: of what reflects, that is what
  * roughness takes from it. */
 bool material_is_smooth(const sonject_material_params *material);
 bool material_is_rough(const sonject_material_params *material);
 
-/* The most that a rough part scatters: f at normal incidence and mirror direction. */
+/* The most that a rough part scatters: f at normal incidence and specular direction. */
 double material_brightness(const sonject_material_params *material);
 
 /* The largest power of two not above value; value > 0. */

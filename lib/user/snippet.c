@@ -269,7 +269,7 @@ sonject_status explain_build_log(struct report *report, const struct user_snippe
     for (const char *at = log; *at != '\0'; at = next_line(at)) {
         copy_line(text, at);
         if (text[0] != '\0')
-            report_news(report, "%s", text);
+            report_log(report, "%s", text);
     }
     if (!find_line(log, "error:", text) && !find_line(log, "fatal", text))
         text_excerpt(text, EXCERPT_CAPACITY, log);

@@ -2,8 +2,8 @@
  * the same kernel functions give as plain C, one lane at a time. */
 #include "claims.h"
 #include "trace_chains.h"
-#include "trace_rough_mirrored.h"
-#include "trace_smooth_mirrored.h"
+#include "trace_rough_images.h"
+#include "trace_smooth_images.h"
 
 #include "device/opencl.h"
 #include "physics/bench.h"
@@ -450,8 +450,8 @@ static struct outcome_record strip_as_c(const struct trace *trace, const struct 
                                   buffers[CHAIN_SPHERES], subject->map, tallies->sums, strip, 0);
     if (!subject->pair)
         return trace_smooth_strip(fan, rays, buffers[SMOOTH_OBJECTS], tallies->sums, strip, 0);
-    return trace_smooth_mirrored_strip(fan, rays, buffers[SMOOTH_SOURCES], buffers[SMOOTH_OBJECTS],
-                                       tallies->sums, strip, 0);
+    return trace_smooth_images_strip(fan, rays, buffers[SMOOTH_SOURCES], buffers[SMOOTH_OBJECTS],
+                                     tallies->sums, strip, 0);
 }
 
 static struct tallies trace_as_c(struct bench *bench, const struct subject *subject)
@@ -642,7 +642,7 @@ static int64_t *all_tiles(struct bench *bench, size_t *elements)
     assert_non_null(energy);
     EXPECT_OK(&bench->report,
               rough_trace_strips(&trace, &bench->tracer, trace.grid.strips, energy));
-    EXPECT_OK(&bench->report, rough_trace_mirrored(&trace, &bench->tracer));
+    EXPECT_OK(&bench->report, rough_trace_images(&trace, &bench->tracer));
     free(energy);
     *elements = trace.tile_elements;
     int64_t *tiles = bench_copy_buffer(bench, trace.launch.buffers[ROUGH_TILES]);

@@ -130,7 +130,7 @@ static double energy_sent_on(const struct chain_record *chains, const struct cha
                    down * 2.0 * PI / steps / steps;
         }
     if (has_smooth_part(&chains->sea_surface))
-        sum += (double)mirror_energy(&chains->sea_surface, (float)cosine);
+        sum += (double)specular_energy(&chains->sea_surface, (float)cosine);
     return sum;
 }
 

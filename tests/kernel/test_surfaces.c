@@ -595,7 +595,7 @@ static void test_mirror_part(void **state)
             worst = fmax(worst, cabs(found - exact) / error);
             double scattered;
             const double energy = exact_mirror(&surface, (double)cosine, &scattered);
-            const double energy_found = (double)mirror_energy(&surface, cosine);
+            const double energy_found = (double)specular_energy(&surface, cosine);
             worst = fmax(worst, fabs(energy_found - energy) / (2.0 * error));
             const double part = (double)scattered_fraction(&surface, cosine);
             const double available = surface.reflection_kind == REFLECTION_FLUID ? 1.0 : 0.81;
@@ -621,7 +621,7 @@ static void test_rough_part_apart(void **state)
             double scattered;
             const double mirror = exact_mirror(&surface, cosine, &scattered);
             const double left = mirror * (1.0 - PI * 0.05);
-            const double found = (double)mirror_energy(&surface, (float)cosine);
+            const double found = (double)specular_energy(&surface, (float)cosine);
             const double returned = albedo(&surface, angle);
             /* the errors of R near the critical angle, and those of the quadrature */
             assert_true(fabs(found - left) < 2.0 * reflection_error(&surface, cosine) + 2e-6);

@@ -35,7 +35,7 @@ void bench_close(struct bench *bench);
 /* Gives the bench's device another number of lanes, and none of the programs of before. */
 void bench_set_width(struct bench *bench, uint32_t width);
 
-/* Puts the middle column somewhere else (apparent range), after spacing or size changed. */
+/* Puts the middle column somewhere else (processor range), after spacing or size changed. */
 void bench_move(struct bench *bench, double middle_range_m);
 
 /* Layers of water, copied; before bench_ready. */

@@ -268,22 +268,22 @@ static void connect(struct run *run, const struct ray *ray, struct reference_vec
                                             -sin(scene->source_grazing)};
     if (!is_found_from_seabed(run, ray))
         return;
-    for (int by_mirror = 0; by_mirror < 2; by_mirror++) {
-        if (by_mirror && (met == MET_SURFACE || scene->reflection == 0.0))
+    for (int by_image = 0; by_image < 2; by_image++) {
+        if (by_image && (met == MET_SURFACE || scene->reflection == 0.0))
             continue;
         const struct reference_vector source = source_point(run, ray);
         struct reference_vector goal = source;
-        if (by_mirror)
+        if (by_image)
             goal.z = 2.0 * scene->depth - goal.z;
         const struct reference_vector to = reference_sum(goal, -1.0, ray->origin);
         const double square = reference_dot(to, to);
         const double cosine = reference_dot(to, normal) / sqrt(square);
-        struct reference_vector home = {-to.x, -to.y, by_mirror ? to.z : -to.z};
+        struct reference_vector home = {-to.x, -to.y, by_image ? to.z : -to.z};
         if (cosine <= 0.0 || (scene->source_side > 0.0 && reference_dot(home, facing) <= 0.0))
             continue;
         double energy = ray->weight * lambert_of(scene, met, cosine_in, cosine) * cosine / square;
         struct reference_vector from = ray->origin;
-        if (by_mirror) {
+        if (by_image) {
             const double share = (scene->depth - from.z) / to.z;
             const struct reference_vector bounce = reference_sum(from, share, to);
             energy *= mirrored(scene, to.z / sqrt(square));
@@ -292,7 +292,7 @@ static void connect(struct run *run, const struct ray *ray, struct reference_vec
             from = bounce;
         }
         if (energy > 0.0 && !reference_blocked(scene, from, source))
-            deposit(run, ray, by_mirror ? 5 * ray->path + MET_MIRROR : ray->path, sqrt(square),
+            deposit(run, ray, by_image ? 5 * ray->path + MET_MIRROR : ray->path, sqrt(square),
                     energy);
     }
 }

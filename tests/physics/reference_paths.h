@@ -89,7 +89,7 @@ struct reference_request {
      */
     double near_ground, far_ground, reach_x;
     struct ranges ranges; /* of half the path length; at most REFERENCE_BINS */
-    bool is_focused; /* columns in the middle between first and last hit, receiver abreast of it:
+    bool is_focused; /* columns in the middle between first and last hit, receiver broadside of it:
                         that lengthens the first leg, whose angles stay those of its own column */
     uint64_t rays, seed;
 };

@@ -51,8 +51,8 @@ struct sea {
 };
 
 /* Lays a patch with default parameters: 100 kHz, 30 kHz, 10 m altitude, 2.5 cm, but with broadside
- * rays alone. Its middle column is at an apparent range. There is one sea at a time: an earlier one
- * is closed. */
+ * rays alone. Its middle column is at an processor range. There is one sea at a time: an earlier
+ * one is closed. */
 struct sea *sea_open(size_t rows, size_t columns, double middle_range_m);
 
 /* Puts the middle column somewhere else, after spacing or size changed. */
@@ -170,7 +170,7 @@ void face_sonar(struct sea *sea, double forward);
 
 /* ---- glints, of one object, mirrors and all ---- */
 
-/* Without any cross-range response: the sum of all sub-strips, bin by bin along apparent range. */
+/* Without any cross-range response: the sum of all sub-strips, bin by bin along processor range. */
 struct line {
     size_t bins;
     double first_range_m, spacing_m;
@@ -179,7 +179,7 @@ struct line {
 
 struct line sea_line(struct sea *sea, uint32_t object);
 
-/* Through the pulse, at an apparent range; the largest amplitude after it, and its range. */
+/* Through the pulse, at an processor range; the largest amplitude after it, and its range. */
 double complex line_at(const struct sea *sea, const struct line *line, double range_m);
 double line_peak(const struct sea *sea, const struct line *line, double *range_m);
 double line_energy(const struct line *line);
@@ -274,7 +274,7 @@ enum noise {
 };
 double complex *sea_noise(struct sea *sea, enum noise kind);
 
-/* Of the seabed, energy or realisation, over what is expected of a pixel at an apparent range
+/* Of the seabed, energy or realisation, over what is expected of a pixel at an processor range
  * (sea_seabed_level or a closed form), without so many rows and columns at either side: the mean of
  * the columns' means and its error, of which three lie within a pulse at most. */
 typedef double expected_level(const struct sea *sea, double processor_range_m);

@@ -198,7 +198,7 @@ CLAIM(the_seabeds_level_over_aspects)
 }
 
 /* A rough sphere of 1 cm keeps to its own strip at every height, and has the energy that it has
- * from abreast: only rays that meet it count, wherever they come from, beyond the patch's ends
+ * from broadside: only rays that meet it count, wherever they come from, beyond the patch's ends
  * too. */
 CLAIM(a_highlight_stays_where_it_is)
 {
@@ -223,7 +223,7 @@ CLAIM(a_highlight_stays_where_it_is)
         print_message("%.1f m over the seabed: ", heights[i]);
         /* some 160 strata of elevation, whose rays meet the sphere at chance along the track, with
          * 0.6 on the mean: 0.065 each, four standard errors of their ratio */
-        expect_close("energy over that from abreast", sums[1].energy / sums[0].energy, 1.0, 0.37);
+        expect_close("energy over that from broadside", sums[1].energy / sums[0].energy, 1.0, 0.37);
     }
 }
 

@@ -262,8 +262,8 @@ struct lit {
 static const struct lit lit = {0.5, 1.5, 0.02, {3, 0.25, 0.25}, 1000};
 
 /* One bundle of rays: wavefront dx by r dphi at the sphere; its energy over the square of the range
- * goes by the mirror to the seabed, which sends mu cos(angle) / r^2 of it to the sonar: abreast of
- * the sphere's hit, or (focused columns) of the middle between both hits. */
+ * goes by the mirror to the seabed, which sends mu cos(angle) / r^2 of it to the sonar: broadside
+ * of the sphere's hit, or (focused columns) of the middle between both hits. */
 static void add_bundle(const struct sea *sea, const struct reference_scene *scene, double x,
                        double elevation, double width, struct estimate *energies)
 {
@@ -356,18 +356,18 @@ static struct sea *open_over_seabed(uint32_t interactions)
     return sea;
 }
 
-/* Sonar, seabed at `bottom`, a piece of the sphere, sonar: first abreast of the seabed, then of the
- * middle between both. Together with the reverse it is in the image four times. */
+/* Sonar, seabed at `bottom`, a piece of the sphere, sonar: first broadside of the seabed, then of
+ * the middle between both. Together with the reverse it is in the image four times. */
 static void add_pieces(const struct sea *sea, struct reference_vector centre,
                        struct reference_vector bottom, double area, struct estimate *expected)
 {
     const double altitude = sea->sonar->altitude_m;
     const double first = hypot(bottom.y, altitude);
     const double lit_by = sea->seabed->lambert * area * altitude / pow(first, 3.0);
-    const struct reference_vector abreast = {bottom.x, 0.0, altitude}, up = {0.0, 0.0, 1.0};
+    const struct reference_vector broadside = {bottom.x, 0.0, altitude}, up = {0.0, 0.0, 1.0};
     const struct reference_scene scene = {
         .body = {.shape = REFERENCE_SPHERE, .centre = centre, .radius = RADIUS_M}};
-    if (reference_blocked(&scene, abreast, reference_sum(bottom, 1e-9, up)))
+    if (reference_blocked(&scene, broadside, reference_sum(bottom, 1e-9, up)))
         return;
     for (int i = 0; i < PARALLEL; i++)
         for (int k = 0; k < MERIDIAN; k++) {

@@ -24,7 +24,7 @@ static const struct {
     const char *name;
     const struct water_layer *layers;
     size_t count;
-    double middle; /* of the patch, apparent range, m */
+    double middle; /* of the patch, processor range, m */
     double height; /* of what hangs in it, m */
 } seas[] = {
     {"thermocline", thermocline, 2, 40.0, 1.2},
@@ -120,9 +120,9 @@ CLAIM(a_sphere_echoes_its_ray_tube)
 
 /* ---- where things are ---- */
 
-/* A place given by its apparent range is where the seabed is heard at that time; the map's pixels
+/* A place given by its processor range is where the seabed is heard at that time; the map's pixels
  * lie there too, and the image shows them there. */
-CLAIM(apparent_range_is_travel_time)
+CLAIM(processor_range_is_travel_time)
 {
     for (size_t number = 0; number < WEAK_SEAS; number++) {
         struct sea *sea = open_sea(number, 120, 200);

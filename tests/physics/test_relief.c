@@ -112,7 +112,7 @@ CLAIM(slopes_towards_and_away)
     }
 }
 
-/* Ground that rises along the track: seen from abreast the range does not change along a row, and
+/* Ground that rises along the track: seen from broadside the range does not change along a row, and
  * Lambert's law loses 1/sqrt(1 + slope^2). */
 CLAIM(a_slope_along_the_track)
 {

@@ -55,7 +55,7 @@ static void add_piece(const struct sea *sea, double x, double y, double area, do
     const double up = DEPTH_M - centre[2];
     const double between = sqrt(x * x + pow(y - centre[1], 2.0) + up * up);
     const bool is_focused = sea->injection->column_rule == SONJECT_COLUMNS_FOCUSED;
-    /* paper columns: the sonar abreast of the disc, then of the surface; else in the middle */
+    /* paper columns: the sonar broadside of the disc, then of the surface; else in the middle */
     for (int way = 0; way < (is_focused ? 1 : 2); way++) {
         const double sonar = is_focused ? 0.5 * x : way == 0 ? 0.0 : x;
         const double one =

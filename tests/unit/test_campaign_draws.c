@@ -171,7 +171,7 @@ static void test_images_lie_wherever_edges_contacts_and_ranges_let_them(void **s
     for (int i = 0; i < 200; i++)
         for (int j = 0; j < 200; j++) {
             uint64_t row, column;
-            chip_room_choose(&swath.room, (i + 0.5) / 200, (j + 0.5) / 200, &row, &column);
+            crop_sample(&swath.room, (i + 0.5) / 200, (j + 0.5) / 200, &row, &column);
             assert_true(row < 60 && column < 90);
             hits[row][column]++;
         }
@@ -184,7 +184,7 @@ static void test_images_lie_wherever_edges_contacts_and_ranges_let_them(void **s
             places += is_free;
         }
     assert_int_equal(swath.room.places, places);
-    chip_room_clear(&swath.room);
+    crop_places_clear(&swath.room);
 }
 
 TEST_PROGRAM(NULL, NULL, TEST(test_moments_are_those_of_the_distributions),

@@ -65,7 +65,7 @@ static void test_ends_in_speckle(void **state)
 {
     const double deviation = 0.42;
     double means[PIXELS];
-    const double skirt[PIXELS] = {0.0};
+    const double lobe_bias[PIXELS] = {0.0};
     const struct end_levels levels = {0.2, 0.06};
     struct pulls pulls = {0.0, 0.0, 0.0, 0};
     random_state = 1;
@@ -75,7 +75,7 @@ static void test_ends_in_speckle(void **state)
             const double lit = 1.0 - share_behind(k - truth, deviation);
             means[k] = (0.03 + (k < 6 ? 8.0 : 30.0) * lit) * speckle(6);
         }
-        const struct profile profile = {means, skirt, PIXELS, 6.0, deviation};
+        const struct profile profile = {means, lobe_bias, PIXELS, 6.0, deviation};
         const struct profile_edge edge = find_profile_end(&profile, &levels);
         add_pull(&pulls, &edge, truth);
     }
@@ -86,7 +86,7 @@ static void test_ends_in_speckle(void **state)
 static void test_steps_in_speckle(void **state)
 {
     double means[PIXELS];
-    const double skirt[PIXELS] = {0.0};
+    const double lobe_bias[PIXELS] = {0.0};
     const double widths[2] = {0.42, 2.5};
     random_state = 2;
     for (int i = 0; i < 2; i++) {
@@ -95,8 +95,8 @@ static void test_steps_in_speckle(void **state)
             const double truth = 25.0 + 5.0 * draw();
             for (int k = 0; k < PIXELS; k++)
                 means[k] = (0.03 + 0.97 * share_behind(k - truth, widths[i])) * speckle(6);
-            const struct profile profile = {means, skirt, PIXELS, 6.0, 0.42};
-            struct step_belief belief;
+            const struct profile profile = {means, lobe_bias, PIXELS, 6.0, 0.42};
+            struct edge_posterior belief;
             memset(&belief, 0, sizeof belief);
             weigh_profile_step(&belief, &profile, 0.03, 1.0);
             const struct profile_edge edge = mean_step_believed(&belief, 1);
@@ -111,8 +111,8 @@ static void test_steps_in_speckle(void **state)
 static void test_changes_in_shadows(void **state)
 {
     double means[PIXELS];
-    const double skirt[PIXELS] = {0.0};
-    const struct profile profile = {means, skirt, PIXELS, 6.0, 0.42};
+    const double lobe_bias[PIXELS] = {0.0};
+    const struct profile profile = {means, lobe_bias, PIXELS, 6.0, 0.42};
     struct pulls pulls = {0.0, 0.0, 0.0, 0};
     int told = 0;
     double gain;
@@ -135,10 +135,10 @@ static void test_changes_in_shadows(void **state)
 static void test_profiles_without_an_edge(void **state)
 {
     double means[PIXELS] = {0.0};
-    const double skirt[PIXELS] = {0.0};
+    const double lobe_bias[PIXELS] = {0.0};
     const struct end_levels levels = {4.0, 1.0};
-    const struct profile profile = {means, skirt, PIXELS, 20.0, 0.5};
-    const struct profile single = {means, skirt, 1, 1.0, 0.5};
+    const struct profile profile = {means, lobe_bias, PIXELS, 20.0, 0.5};
+    const struct profile single = {means, lobe_bias, 1, 1.0, 0.5};
     struct profile_edge edge = find_profile_end(&profile, &levels);
     assert_true(fabs(edge.place + 0.5) < 0.5);
     edge = find_profile_end(&single, &levels);

@@ -25,11 +25,11 @@ static void lay(struct water *water, const struct water_layer *layers, size_t co
     EXPECT_OK(&report, water_init(water, &report, layers, count, 1500.0, highest_m));
 }
 
-static struct water_way way_of(const struct water *water, const struct reference_way *folded)
+static struct ray_path way_of(const struct water *water, const struct reference_way *folded)
 {
-    return folded->bounces == 0 ? water_way_direct(water, folded->sonar_height)
-                                : water_way_mirrored(water, folded->sonar_height, folded->depth,
-                                                     folded->bounces, folded->comes_from_seabed);
+    return folded->bounces == 0 ? ray_path_direct(water, folded->sonar_height)
+                                : ray_path_image(water, folded->sonar_height, folded->depth,
+                                                 folded->bounces, folded->comes_from_seabed);
 }
 
 /* ---- waters to try ---- */
@@ -108,14 +108,14 @@ static void note_error(double measured, long double expected)
 static void compare_ray(const struct water *water, const struct reference_way *folded,
                         double height)
 {
-    const struct water_way way = way_of(water, folded);
+    const struct ray_path path = way_of(water, folded);
     const double c = water->straight_speed_mps;
     const double c0 = reference_speed_at(folded, folded->sonar_height);
     double angles[ANGLES];
     find_angles(folded, height, angles);
     for (size_t i = 2; i < ANGLES; i++) { /* closer to total reflection the angle itself rounds */
         const double angle = signed_angle(folded, angles[i]);
-        const struct water_ray ray = water_way_ray(&way, angle, height);
+        const struct arrival ray = ray_path_arrival(&path, angle, height);
         const long double p = cosl((long double)angle) / c;
         const struct reference_ray sum = reference_sum(folded, height, p);
         const long double sine = sinl((long double)angles[i]);
@@ -153,10 +153,10 @@ static void compare_two_points(const struct water *water, const struct reference
                                double height)
 {
     static const double ranges[] = {1e-3, 0.5, 4.0, 12.0, 40.0, 120.0, 700.0, 5000.0};
-    const struct water_way way = way_of(water, folded);
+    const struct ray_path path = way_of(water, folded);
     const double c = water->straight_speed_mps;
     for (size_t i = 0; i < COUNT(ranges); i++) {
-        const double angle = water_way_grazing(&way, ranges[i], height);
+        const double angle = ray_path_grazing(&path, ranges[i], height);
         assert_true(isfinite(angle));
         assert_true(folded->bounces > 0 && folded->comes_from_seabed ? angle < 0.0 : angle > 0.0);
         const double fastest_speed = reference_fastest(folded, height);
@@ -169,7 +169,7 @@ static void compare_two_points(const struct water *water, const struct reference
             expect_within("range of the ray found", (double)sum.range, ranges[i],
                           1e-10 * ranges[i] + digit);
         /* the time errs by p times that, which the point's own range leaves out */
-        const double measured = water_way_range(&way, ranges[i], height);
+        const double measured = ray_path_range(&path, ranges[i], height);
         const long double expected = sum.time * c + p * c * (ranges[i] - sum.range);
         if (digit < 1e-3 * ranges[i]) {
             note_error(measured, expected);
@@ -192,7 +192,7 @@ static void test_fermat(void **state)
     static const double ranges[] = {1.0, 10.0, 35.0, 120.0, 1000.0};
     struct water water;
     lay(&water, two_layers, 2, 2.0);
-    const struct water_way way = water_way_direct(&water, 20.0);
+    const struct ray_path path = ray_path_direct(&water, 20.0);
     for (size_t i = 0; i < COUNT(ranges); i++) {
         const long double height = 0.7L;
         long double low = 0.0L, high = ranges[i];
@@ -210,7 +210,7 @@ static void test_fermat(void **state)
                 low += (high - low) / 3.0L;
             time = fminl(times[0], times[1]);
         }
-        expect_relative("quickest way", water_way_range(&way, ranges[i], (double)height),
+        expect_relative("quickest way", ray_path_range(&path, ranges[i], (double)height),
                         (double)(time * 1490.0L), 1e-13);
     }
     water_clear(&water);
@@ -246,9 +246,9 @@ static void test_linear_profiles_bend_rays_to_arcs(void **state)
         EXPECT_OK(&report, layers_of_profile(heights, speeds, 2, &report, &layers, &count));
         lay(&water, layers, count, cases[k].highest_target);
         assert_true(cases[k].highest_target > 0.0 ? water.count < count : water.count == count);
-        const struct water_way way = water_way_direct(&water, 20.0);
+        const struct ray_path path = ray_path_direct(&water, 20.0);
         for (double range = 10.0; range < 150.0; range += 10.0) {
-            const double time = water_way_range(&way, range, 0.0) / water.straight_speed_mps;
+            const double time = ray_path_range(&path, range, 0.0) / water.straight_speed_mps;
             expect_relative("time", time, arc_time(bottom, growth, range, 20.0, 0.0), 1e-6);
         }
         water_clear(&water);
@@ -268,21 +268,21 @@ static void test_straight_water(void **state)
     lay(&water, equal, 3, 2.0);
     assert_int_equal(water.count, 1);
     assert_true(water.straight_speed_mps == 1490.0);
-    assert_true(water_way_direct(&water, 20.0).is_straight);
+    assert_true(ray_path_direct(&water, 20.0).is_straight);
     water_clear(&water);
     lay(&water, above, 2, 2.0);
-    assert_true(water_way_direct(&water, 20.0).is_straight);
-    assert_true(water_way_mirrored(&water, 20.0, 40.0, 1, true).is_straight);
-    assert_false(water_way_mirrored(&water, 20.0, 40.0, 1, false).is_straight);
-    assert_false(water_way_direct(&water, 31.0).is_straight);
+    assert_true(ray_path_direct(&water, 20.0).is_straight);
+    assert_true(ray_path_image(&water, 20.0, 40.0, 1, true).is_straight);
+    assert_false(ray_path_image(&water, 20.0, 40.0, 1, false).is_straight);
+    assert_false(ray_path_direct(&water, 31.0).is_straight);
     water_clear(&water);
     lay(&water, NULL, 0, 2.0);
     assert_true(water.straight_speed_mps == 1500.0);
-    const struct water_way way = water_way_direct(&water, 20.0);
-    assert_true(way.is_straight);
+    const struct ray_path path = ray_path_direct(&water, 20.0);
+    assert_true(path.is_straight);
     for (double range = 1.0; range < 1000.0; range *= 2.0) {
-        const double angle = water_way_grazing(&way, range, 0.5);
-        const struct water_ray ray = water_way_ray(&way, angle, 0.5);
+        const double angle = ray_path_grazing(&path, range, 0.5);
+        const struct arrival ray = ray_path_arrival(&path, angle, 0.5);
         expect_relative("angle", angle, atan2(19.5, range), 1e-14);
         expect_relative("straight range", ray.straight_range_m, hypot(19.5, range), 1e-13);
         expect_relative("wavefront", ray.wavefront_m, hypot(19.5, range), 1e-12);
@@ -298,7 +298,7 @@ static void test_straight_water(void **state)
 static void compare_tube(const struct water *water, const struct reference_way *folded,
                          double height)
 {
-    const struct water_way way = way_of(water, folded);
+    const struct ray_path path = way_of(water, folded);
     const double c = water->straight_speed_mps;
     const double c0 = reference_speed_at(folded, folded->sonar_height);
     const double step = 1e-5;
@@ -310,9 +310,9 @@ static void compare_tube(const struct water *water, const struct reference_way *
             landing[side] = angles[i] + (side - 0.5) * step;
             launch[side] = acos(cos(landing[side]) * c0 / c);
             range[side] =
-                water_way_ray(&way, signed_angle(folded, landing[side]), height).ground_range_m;
+                ray_path_arrival(&path, signed_angle(folded, landing[side]), height).ground_range_m;
         }
-        const struct water_ray ray = water_way_ray(&way, signed_angle(folded, angles[i]), height);
+        const struct arrival ray = ray_path_arrival(&path, signed_angle(folded, angles[i]), height);
         const double apart = fabs(range[1] - range[0]);
         expect_relative("wavefront", ray.wavefront_m, apart * sin(angles[i]) / step, 1e-5);
         /* per rad of azimuth; solid angle is the difference of sines */
@@ -327,8 +327,8 @@ static void compare_tube(const struct water *water, const struct reference_way *
         expect_relative("intensity there and back", amplitude * amplitude, there * back, 2e-5);
         /* wavefronts run on: 1 m per m */
         if (height >= 0.3) {
-            const struct water_ray lower =
-                water_way_ray(&way, signed_angle(folded, angles[i]), height - 0.2);
+            const struct arrival lower =
+                ray_path_arrival(&path, signed_angle(folded, angles[i]), height - 0.2);
             const double sign = folded->bounces > 0 && folded->comes_from_seabed ? -1.0 : 1.0;
             expect_within("growth of the wavefront", lower.wavefront_m - ray.wavefront_m,
                           sign * 0.2 / sin(angles[i]), 1e-9 * ray.wavefront_m);
@@ -377,11 +377,11 @@ static void test_transmission(void **state)
                                        {1, 1}, {3, 2}, {3, 3}, {3, 3}};
     for (size_t i = 0; i < COUNT(ways); i++)
         for (double angle = 0.2; angle < 1.5; angle += 0.1) {
-            const struct water_way way = way_of(&water, &ways[i]);
-            const struct water_way other = way_of(&plain, &ways[i]);
+            const struct ray_path path = way_of(&water, &ways[i]);
+            const struct ray_path other = way_of(&plain, &ways[i]);
             const double signed_one = signed_angle(&ways[i], angle);
-            const double measured = water_way_ray(&way, signed_one, 0.4).spreading /
-                                    water_way_ray(&other, signed_one, 0.4).spreading;
+            const double measured = ray_path_arrival(&path, signed_one, 0.4).spreading /
+                                    ray_path_arrival(&other, signed_one, 0.4).spreading;
             const double p = cos(angle) / 1490.0;
             expect_relative("what planes transmit", measured,
                             pow(plane_passes(&light[1], &light[2], p), crossings[i][0]) *
@@ -408,10 +408,10 @@ static void test_slight_contrasts(void **state)
         struct water water;
         lay(&water, cases[i].layers, 2, 2.0);
         assert_int_equal(water.count, 2);
-        const struct water_way way = water_way_direct(&water, 20.0);
-        assert_false(way.is_straight);
+        const struct ray_path path = ray_path_direct(&water, 20.0);
+        assert_false(path.is_straight);
         for (double angle = 0.1; angle < 1.5; angle += 0.1) {
-            const struct water_ray ray = water_way_ray(&way, angle, 0.0);
+            const struct arrival ray = ray_path_arrival(&path, angle, 0.0);
             const double range = 20.0 / sin(angle);
             expect_relative("range", ray.straight_range_m, range, cases[i].tolerance);
             expect_relative("wavefront", ray.wavefront_m, range, cases[i].tolerance);
@@ -424,7 +424,7 @@ static void test_slight_contrasts(void **state)
 
 /* ---- total reflection ---- */
 
-static bool is_infinite(const struct water_ray *ray)
+static bool is_infinite(const struct arrival *ray)
 {
     return isinf(ray->ground_range_m) && isinf(ray->straight_range_m) && isinf(ray->length_m) &&
            isinf(ray->wavefront_m) && isinf(ray->spreading);
@@ -436,23 +436,23 @@ static void test_total_reflection(void **state)
         {0.0, 1490.0, 1.0}, {10.0, 1540.0, 1.0}, {15.0, 1490.0, 1.0}};
     struct water water;
     lay(&water, layers, 3, 2.0);
-    const struct water_way way = water_way_direct(&water, 20.0);
+    const struct ray_path path = ray_path_direct(&water, 20.0);
     const double least = acos(1490.0 / 1540.0);
     for (double share = 0.0; share < 0.9999; share += 0.1) {
-        const struct water_ray ray = water_way_ray(&way, share * least, 0.0);
+        const struct arrival ray = ray_path_arrival(&path, share * least, 0.0);
         assert_true(is_infinite(&ray));
     }
-    const struct water_ray last = water_way_ray(&way, least * (1.0 - 1e-12), 0.0);
+    const struct arrival last = ray_path_arrival(&path, least * (1.0 - 1e-12), 0.0);
     assert_true(is_infinite(&last));
-    const struct water_ray first = water_way_ray(&way, least * (1.0 + 1e-12), 0.0);
+    const struct arrival first = ray_path_arrival(&path, least * (1.0 + 1e-12), 0.0);
     assert_true(first.ground_range_m > 1e4 && isfinite(first.ground_range_m));
     /* far ranges run level through the fast layer: all of the growth of time is at its speed */
     double before = 0.0;
     for (double range = 200.0; range < 3e5; range *= 1.5) {
-        const double angle = water_way_grazing(&way, range, 0.2);
+        const double angle = ray_path_grazing(&path, range, 0.2);
         assert_true(angle >= least && angle < 0.5 * PI);
-        const double time = water_way_range(&way, range, 0.2);
-        const struct water_ray ray = water_way_ray(&way, angle * (1.0 + 1e-15), 0.2);
+        const double time = ray_path_range(&path, range, 0.2);
+        const struct arrival ray = ray_path_arrival(&path, angle * (1.0 + 1e-15), 0.2);
         assert_false(isnan(ray.spreading) || isnan(ray.wavefront_m) || isnan(ray.ground_range_m));
         if (before > 0.0) {
             const double slope = (time - before) / (range - range / 1.5);
@@ -464,8 +464,8 @@ static void test_total_reflection(void **state)
         const double steep = 14.8 * sin(least);
         assert_true(time > level + steep && time < level + steep + 5.0 * 1490.0 / 1540.0);
     }
-    const double angle = water_way_grazing(&way, 2000.0, 0.0);
-    const struct water_ray ray = water_way_ray(&way, angle, 0.0);
+    const double angle = ray_path_grazing(&path, 2000.0, 0.0);
+    const struct arrival ray = ray_path_arrival(&path, angle, 0.0);
     print_message("2000 m over 5 m: %.3g rad above total reflection, ray's range %.6f m\n",
                   angle - least, ray.ground_range_m);
     expect_relative("range", ray.ground_range_m, 2000.0, 1e-8);
@@ -482,24 +482,24 @@ static void test_ground_range(void **state)
             lay(&water, waters[w].layers, waters[w].count, 2.0);
             const struct reference_way folded = {water.layers, water.count, waters[w].sonar_height,
                                                  DEPTH,        bounces,     false};
-            const struct water_way way = way_of(&water, &folded);
+            const struct ray_path path = way_of(&water, &folded);
             const long double down =
                 reference_sum(&folded, 0.0, 0.0L).time * water.straight_speed_mps;
-            assert_true(water_way_ground_range(&way, 0.0) == 0.0);
-            assert_true(water_way_ground_range(&way, (double)down * (1.0 - 1e-9)) == 0.0);
+            assert_true(ray_path_ground_range(&path, 0.0) == 0.0);
+            assert_true(ray_path_ground_range(&path, (double)down * (1.0 - 1e-9)) == 0.0);
             for (double range = 0.01; range < 3000.0; range *= 1.7) {
-                const double straight = water_way_range(&way, range, 0.0);
+                const double straight = ray_path_range(&path, range, 0.0);
                 /* dt/dr = cos/c: near the foot the ground range is a square root of the time */
-                const double cosine = cos(water_way_grazing(&way, range, 0.0));
-                expect_within("ground range", water_way_ground_range(&way, straight), range,
+                const double cosine = cos(ray_path_grazing(&path, range, 0.0));
+                expect_within("ground range", ray_path_ground_range(&path, straight), range,
                               1e-12 * straight / cosine + 1e-12 * range);
             }
             /* straight down */
-            expect_relative("depth", water_way_range(&way, 1e-6, 0.0), (double)down, 1e-13);
-            const double steep = water_way_grazing(&way, 1e-6, 0.0);
+            expect_relative("depth", ray_path_range(&path, 1e-6, 0.0), (double)down, 1e-13);
+            const double steep = ray_path_grazing(&path, 1e-6, 0.0);
             assert_true(steep > 1.57 && steep <= 0.5 * PI);
             /* straight down the spreading is that of heights weighted by their speed */
-            const struct water_ray ray = water_way_ray(&way, 0.5 * PI - 1e-6, 0.0);
+            const struct arrival ray = ray_path_arrival(&path, 0.5 * PI - 1e-6, 0.0);
             long double weighted = 0.0L;
             for (size_t i = 0; i < water.count; i++)
                 weighted += reference_crossed(&folded, i, 0.0) * water.layers[i].speed_mps /

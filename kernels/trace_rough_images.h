@@ -1,25 +1,25 @@
-/* The incoherent part by way of mirrors: the fan goes out from one source, every hit of the rough
- * object connects to the other (kernels/MATH.md, "Mirrors"). Both sources are points. */
-#ifndef SONJECT_KERNELS_TRACE_ROUGH_MIRRORED_H
-#define SONJECT_KERNELS_TRACE_ROUGH_MIRRORED_H
+/* The incoherent part by image sources: the fan goes out from one source, every hit of the rough
+ * object connects to the other (kernels/MATH.md, "Image sources"). Both sources are points. */
+#ifndef SONJECT_KERNELS_TRACE_ROUGH_IMAGES_H
+#define SONJECT_KERNELS_TRACE_ROUGH_IMAGES_H
 
-#include "mirrors.h"
+#include "image_sources.h"
 #include "trace_rough.h"
 
 /* Energies of one group of rays, lane by lane, ready to be tallied. */
-struct mirrored_echo {
+struct image_echo {
     float energy[WIDTH]; /* quanta; 0: none */
     float chance[WIDTH]; /* of rounding up */
     int bin[WIDTH];      /* the first of two */
     float later[WIDTH];  /* share of the second */
 };
 
-FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
-                                         GLOBAL const struct ray_piece_record *pieces,
-                                         GLOBAL const struct image_pair_record *pair,
-                                         GLOBAL const struct object_record *objects, int strip,
-                                         struct random_key key, RECORD_WORD first_ray,
-                                         struct mirrored_echo *echo, struct outcome_record *outcome)
+FUNCTION void trace_rough_images_group(const struct fan_record *fan,
+                                       GLOBAL const struct ray_piece_record *pieces,
+                                       GLOBAL const struct image_pair_record *pair,
+                                       GLOBAL const struct object_record *objects, int strip,
+                                       struct random_key key, RECORD_WORD first_ray,
+                                       struct image_echo *echo, struct outcome_record *outcome)
 {
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     GLOBAL const struct object_record *object = &objects[fan->only_object];
@@ -28,16 +28,16 @@ FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
     const struct fan_ray ray =
         fan_ray_at(fan, pieces, strip_position(fan, strip) + (along - 0.5f) * fan->strip_width,
                    fan->first_elevation + (VFLOAT_OF(number) + across) * fan->elevation_step);
-    const struct mirrored_hit hit = find_mirrored_hit(fan, pair, objects, FACE_OF_SCATTERING, &ray,
-                                                      MASK_OF(number < fan->rays));
-    const struct mirrored_path path = follow_path(fan, pieces, pair, objects, &ray, &hit, outcome);
+    const struct image_hit hit =
+        find_image_hit(fan, pair, objects, FACE_OF_SCATTERING, &ray, MASK_OF(number < fan->rays));
+    const struct image_path path = follow_path(fan, pieces, pair, objects, &ray, &hit, outcome);
     const vfloat wavefront = fan->strip_width * fan->elevation_step * path.wavefront_out;
-    const vfloat mirrors = path.reflection_real * path.reflection_real +
-                           path.reflection_imaginary * path.reflection_imaginary;
+    const vfloat boundaries = path.reflection_real * path.reflection_real +
+                              path.reflection_imaginary * path.reflection_imaginary;
     const vfloat energy = rough_scattering(&object->surface, hit.normal, reversed3(ray.direction),
                                            reversed3(path.back.direction)) *
                           path.cosine_back * wavefront * (path.spreading * path.spreading) *
-                          mirrors * (pair->echoes * pair->echoes * fan->quanta);
+                          boundaries * (pair->echoes * pair->echoes * fan->quanta);
     const vfloat kept = SELECT(path.is_open, energy, SPLAT(0.0f));
     const struct bin_pair bins =
         bins_about(path.range * fan->bins_per_metre + fan->bin_at_reference);
@@ -48,7 +48,7 @@ FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
 }
 
 /* Traces the share `segment` of a strip's fan into the object's tile. */
-FUNCTION struct outcome_record trace_rough_mirrored_strip(
+FUNCTION struct outcome_record trace_rough_images_strip(
     const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
     GLOBAL const struct image_pair_record *pair, GLOBAL const struct object_record *objects,
     GLOBAL TALLY *tiles, int strip, int segment)
@@ -62,11 +62,11 @@ FUNCTION struct outcome_record trace_rough_mirrored_strip(
     const RECORD_WORD groups = (fan->rays + WIDTH - 1u) / WIDTH;
     for (RECORD_WORD group = (RECORD_WORD)segment; group < groups;
          group += (RECORD_WORD)fan->segments) {
-        struct mirrored_echo echo;
+        struct image_echo echo;
         const RECORD_WORD left = fan->rays - group * WIDTH;
         outcome.rays += left < WIDTH ? left : WIDTH;
-        trace_rough_mirrored_group(fan, pieces, pair, objects, strip, key, group * WIDTH, &echo,
-                                   &outcome);
+        trace_rough_images_group(fan, pieces, pair, objects, strip, key, group * WIDTH, &echo,
+                                 &outcome);
         for (int lane = 0; lane < WIDTH; lane++) {
             const int bin = echo.bin[lane] - object->tile_first_bin;
             if (!line || bin < -1 || bin >= object->tile_bins || echo.energy[lane] == 0.0f)

@@ -1,8 +1,8 @@
 /* Sound over two smooth rigid faces, in double precision: physical optics' integral over the last
  * face in points, that over the first by stationary phase, which is geometrical optics; with none
  * of the kernels' rays, tubes and caustics. */
-#ifndef SONJECT_TESTS_CORNER_REFERENCE_H
-#define SONJECT_TESTS_CORNER_REFERENCE_H
+#ifndef SONJECT_TESTS_MULTIBOUNCE_REFERENCE_H
+#define SONJECT_TESTS_MULTIBOUNCE_REFERENCE_H
 
 #include "sea.h"
 
@@ -25,22 +25,23 @@ struct face face_of_plane(const struct sea *sea, uint32_t part);
 
 /* Which way sound goes: from one height out, to another home (the sonar's or its images'), and
  * between the faces straight or by way of the seabed, a rigid mirror. */
-struct corner_way {
+struct multibounce_way {
     double height_out, height_home; /* m over the seabed */
     bool is_folded;
 };
 
 /* Out from the sonar and home to it, straight between the faces. */
-struct corner_way straight_way(const struct sea *sea);
+struct multibounce_way straight_way(const struct sea *sea);
 
-/* The echo first -> last at an apparent range through the pulse, all strips together, of sources
- * abreast of the mean of both points; normalised by the square of half the path. spacing: of the
+/* The echo first -> last at an processor range through the pulse, all strips together, of sources
+ * broadside of the mean of both points; normalised by the square of half the path. spacing: of the
  * last face's points, m. Of the first face's points one at most is stationary for each. */
-double complex corner_echo(const struct sea *sea, const struct corner_way *way,
-                           const struct face *first, const struct face *last, double spacing,
-                           double range);
+double complex multibounce_echo(const struct sea *sea, const struct multibounce_way *way,
+                                const struct face *first, const struct face *last, double spacing,
+                                double range);
 
 /* Half the shortest path over the two places. */
-double corner_range(const struct corner_way *way, const double one[3], const double other[3]);
+double multibounce_range(const struct multibounce_way *way, const double one[3],
+                         const double other[3]);
 
 #endif

@@ -19,7 +19,7 @@ static bool is_smooth(const struct tracer *tracer, uint32_t part)
     return material_is_smooth(tracer->placements[part].material);
 }
 
-bool corners_may_echo(const struct tracer *tracer, uint32_t part)
+bool multibounce_may_echo(const struct tracer *tracer, uint32_t part)
 {
     const struct placement *placement = &tracer->placements[part];
     uint32_t smooth_parts = 0;
@@ -47,7 +47,7 @@ static double longest_step(const struct tracer *tracer)
     }
     const double level = hypot(high[0] - low[0], high[1] - low[1]);
     const double straight = hypot(level, high[2] - low[2]);
-    if (!scene_mirror(tracer->scene, MIRROR_SEABED, &height, &seabed))
+    if (!scene_boundary(tracer->scene, BOUNDARY_SEABED, &height, &seabed))
         return straight;
     return fmax(straight, 0.5 * hypot(level, 2.0 * fmax(fabs(low[2]), fabs(high[2]))));
 }
@@ -58,7 +58,7 @@ struct ranges {
 
 static struct ranges ranges_of(const struct sound_source *source, const struct placement *placement)
 {
-    const double range = water_way_range(&source->way, placement->centre[1], placement->centre[2]);
+    const double range = ray_path_range(&source->path, placement->centre[1], placement->centre[2]);
     const double reach = 1.01 * placement->bounding_radius_m;
     struct ranges ranges = {range - reach, range + reach};
     return ranges;
@@ -95,23 +95,25 @@ static struct ranges half_paths(const struct tracer *tracer, uint32_t part,
 
 /* Bins of the patch where a pair's echoes may lie; count 0 if there are none. Of the grid only the
  * size of its bins is used. */
-static struct span corner_pair_bins(const struct tracer *tracer, uint32_t part,
-                                    const struct image_pair *pair, const struct line_grid *grid)
+static struct span multibounce_pair_bins(const struct tracer *tracer, uint32_t part,
+                                         const struct image_pair *pair,
+                                         const struct line_grid *grid)
 {
     const struct ranges half = half_paths(tracer, part, pair);
     return bins_in_patch(tracer, grid, bins_of_ranges(tracer, grid, half.nearest, half.farthest));
 }
 
-struct span corner_bins(const struct tracer *tracer, uint32_t part, const struct line_grid *grid)
+struct span multibounce_bins(const struct tracer *tracer, uint32_t part,
+                             const struct line_grid *grid)
 {
     struct image_pairs pairs;
     struct image_pair pair;
     struct span bins = {0, 0};
-    if (!corners_may_echo(tracer, part))
+    if (!multibounce_may_echo(tracer, part))
         return bins;
     image_pairs_begin(&pairs, tracer, part, true, 2);
     while (image_pairs_next(&pairs, &pair))
-        bins = span_join(bins, corner_pair_bins(tracer, part, &pair, grid));
+        bins = span_join(bins, multibounce_pair_bins(tracer, part, &pair, grid));
     return bins;
 }
 
@@ -119,20 +121,20 @@ struct span corner_bins(const struct tracer *tracer, uint32_t part, const struct
 static double farthest_middle(const struct tracer *tracer, uint32_t part)
 {
     const struct placement *one = &tracer->placements[part];
-    double way = one->bounding_radius_m;
+    double longest = one->bounding_radius_m;
     for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *other = &tracer->placements[i];
         if (is_smooth(tracer, i))
-            way = fmax(way, hypot(hypot(one->centre[0] - other->centre[0],
-                                        one->centre[1] - other->centre[1]),
-                                  one->centre[2] - other->centre[2]));
+            longest = fmax(longest, hypot(hypot(one->centre[0] - other->centre[0],
+                                                one->centre[1] - other->centre[1]),
+                                          one->centre[2] - other->centre[2]));
     }
-    return way;
+    return longest;
 }
 
 /* A face of radius a spreads a cell of the wavefront by 1 + 2 D/a until it meets the next, D away.
  * Cells there are all or nothing at edges, so they must not be wide. */
-static double corner_rays_finer(const struct tracer *tracer, uint32_t part)
+static double multibounce_rays_finer(const struct tracer *tracer, uint32_t part)
 {
     const double radius = tracer->placements[part].size.least_curvature_m;
     const double spread = 1.0 + 2.0 * farthest_middle(tracer, part) / radius;
@@ -149,7 +151,7 @@ static struct span mean_strips(struct span one, struct span other)
     return mean;
 }
 
-void corners_init(struct corners *corners, const struct tracer *tracer, uint32_t part)
+void multibounce_init(struct corners *corners, const struct tracer *tracer, uint32_t part)
 {
     struct line_grid other;
     glint_strips_init(&corners->grid, tracer, part);
@@ -166,7 +168,7 @@ void corners_init(struct corners *corners, const struct tracer *tracer, uint32_t
 }
 
 /* Paths may gather much of a wide tube in one cell, so quanta leave seven powers of ten over what a
- * plane mirror's cell brings. */
+ * plane boundary's cell brings. */
 static void choose_quanta(struct fan_record *fan)
 {
     const double cell =
@@ -174,8 +176,8 @@ static void choose_quanta(struct fan_record *fan)
     fan->quanta = power_of_two_below(ldexp(1.0, 28) / (cell * fan->inverse_wavelength));
 }
 
-static void corner_record_init(struct corner_record *record, const struct tracer *tracer,
-                               const struct image_pair *pair)
+static void multibounce_record_init(struct multibounce_record *record, const struct tracer *tracer,
+                                    const struct image_pair *pair)
 {
     const sonject_injection_params *injection = &tracer->scene->injection;
     double height;
@@ -184,27 +186,28 @@ static void corner_record_init(struct corner_record *record, const struct tracer
     record->interactions =
         (int32_t)(injection->interactions - pair->outgoing->bounces - pair->returning->bounces);
     record->is_focused = injection->column_rule == SONJECT_COLUMNS_FOCUSED;
-    if (scene_mirror(tracer->scene, MIRROR_SEABED, &height, &seabed))
+    if (scene_boundary(tracer->scene, BOUNDARY_SEABED, &height, &seabed))
         surface_record_init(&record->seabed, seabed, tracer->view.wavelength_m);
 }
 
-static sonject_status begin_launch(struct corner_launch *corner, struct tracer *tracer,
+static sonject_status begin_launch(struct multibounce_launch *corner, struct tracer *tracer,
                                    uint32_t part)
 {
     const struct part_list parts = all_parts(tracer);
     struct launch *launch = &corner->launch;
-    sonject_status status = launch_begin(launch, tracer, PROGRAM_TRACE_CORNERS, "trace_corners");
+    sonject_status status =
+        launch_begin(launch, tracer, PROGRAM_TRACE_MULTIBOUNCE, "trace_multibounce");
     THEN(status, launch_add_objects(launch, tracer, &parts, tracer->placements[part].centre, NULL));
     THEN(status, launch_add(launch, tracer, sizeof corner->sources, &corner->sources));
     THEN(status, launch_add(launch, tracer, sizeof corner->record, &corner->record));
-    THEN(status,
-         launch_add(launch, tracer, corner->capacity * sizeof(struct corner_echo_record), NULL));
+    THEN(status, launch_add(launch, tracer,
+                            corner->capacity * sizeof(struct multibounce_echo_record), NULL));
     THEN(status, launch_add(launch, tracer, sizeof(uint32_t), NULL));
     return status;
 }
 
 /* So many sub-strips that all their rays may echo at every hit. */
-static void choose_chunk(struct corner_launch *corner, const struct corners *corners)
+static void choose_chunk(struct multibounce_launch *corner, const struct corners *corners)
 {
     const struct fan_record *fan = &corner->launch.fan;
     const size_t a_strip =
@@ -215,36 +218,36 @@ static void choose_chunk(struct corner_launch *corner, const struct corners *cor
     corner->capacity = (size_t)corner->chunk * a_strip;
 }
 
-sonject_status corner_launch_begin(struct corner_launch *corner, struct line_grid *grid,
-                                   const struct corners *corners, struct tracer *tracer,
-                                   uint32_t part, const struct image_pair *pair)
+sonject_status multibounce_launch_begin(struct multibounce_launch *corner, struct line_grid *grid,
+                                        const struct corners *corners, struct tracer *tracer,
+                                        uint32_t part, const struct image_pair *pair)
 {
     struct fan_record *fan = &corner->launch.fan;
     memset(corner, 0, sizeof *corner);
     *grid = corners->grid;
-    grid->bins = corner_pair_bins(tracer, part, pair, grid);
+    grid->bins = multibounce_pair_bins(tracer, part, pair, grid);
     if (grid->bins.count == 0)
         return SONJECT_OK;
-    corner_record_init(&corner->record, tracer, pair);
+    multibounce_record_init(&corner->record, tracer, pair);
     sonject_status status =
         image_pair_aim(fan, &corner->sources, &corner->launch.rays, tracer, part, pair, grid);
-    fan->stream = STREAM_CORNER_RAYS + STREAMS_OF_PAIR * pair->number + part;
-    glint_fan_init(fan, tracer, part, &pair->outgoing->way, corner_rays_finer(tracer, part));
+    fan->stream = STREAM_MULTIBOUNCE_RAYS + STREAMS_OF_PAIR * pair->number + part;
+    glint_fan_init(fan, tracer, part, &pair->outgoing->path, multibounce_rays_finer(tracer, part));
     choose_quanta(fan);
     choose_chunk(corner, corners);
     THEN(status, begin_launch(corner, tracer, part));
     if (status != SONJECT_OK)
-        corner_launch_end(corner);
+        multibounce_launch_end(corner);
     return status;
 }
 
-void corner_launch_end(struct corner_launch *corner)
+void multibounce_launch_end(struct multibounce_launch *corner)
 {
     launch_end(&corner->launch);
 }
 
-sonject_status corner_launch_strips(struct corner_launch *corner, struct tracer *tracer,
-                                    struct span strips, struct corner_sums *sums)
+sonject_status multibounce_launch_strips(struct multibounce_launch *corner, struct tracer *tracer,
+                                         struct span strips, struct multibounce_sums *sums)
 {
     struct report *report = tracer->report;
     struct device *device = tracer->device;
@@ -253,20 +256,20 @@ sonject_status corner_launch_strips(struct corner_launch *corner, struct tracer 
     const void *mapped;
     corner->launch.fan.first_strip = strips.first;
     corner->launch.fan.strips = strips.count;
-    CHECK(buffer_clear(report, device, buffers[CORNER_LISTED], sizeof listed));
+    CHECK(buffer_clear(report, device, buffers[MULTIBOUNCE_LISTED], sizeof listed));
     CHECK(launch_run(&corner->launch, tracer));
-    CHECK(buffer_read(report, device, buffers[CORNER_LISTED], 0, sizeof listed, &listed));
+    CHECK(buffer_read(report, device, buffers[MULTIBOUNCE_LISTED], 0, sizeof listed, &listed));
     if (listed == 0)
         return SONJECT_OK;
-    CHECK(buffer_map(report, device, buffers[CORNER_ECHOES],
-                     listed * sizeof(struct corner_echo_record), &mapped));
-    const bool is_added = corner_sums_add(sums, mapped, listed);
-    buffer_unmap(device, buffers[CORNER_ECHOES], mapped);
+    CHECK(buffer_map(report, device, buffers[MULTIBOUNCE_ECHOES],
+                     listed * sizeof(struct multibounce_echo_record), &mapped));
+    const bool is_added = multibounce_sums_add(sums, mapped, listed);
+    buffer_unmap(device, buffers[MULTIBOUNCE_ECHOES], mapped);
     CHECK_MEMORY(report, is_added, "echoes of corners");
     return SONJECT_OK;
 }
 
-bool corner_sums_init(struct corner_sums *sums, const struct line_grid *grid)
+bool multibounce_sums_init(struct multibounce_sums *sums, const struct line_grid *grid)
 {
     sums->grid = *grid;
     sums->rows = ((size_t)grid->strips.count + TILE_STRIPS - 1) / TILE_STRIPS;
@@ -275,7 +278,7 @@ bool corner_sums_init(struct corner_sums *sums, const struct line_grid *grid)
     return sums->tiles != NULL;
 }
 
-void corner_sums_clear(struct corner_sums *sums)
+void multibounce_sums_clear(struct multibounce_sums *sums)
 {
     for (size_t i = 0; sums->tiles && i < sums->rows * sums->columns; i++)
         free(sums->tiles[i]);
@@ -284,7 +287,7 @@ void corner_sums_clear(struct corner_sums *sums)
 }
 
 /* Both parts of a cell, whose tile is made if need be; NULL where memory lacks. */
-static int64_t *cell_at(struct corner_sums *sums, size_t strip, size_t bin)
+static int64_t *cell_at(struct multibounce_sums *sums, size_t strip, size_t bin)
 {
     int64_t **tile = &sums->tiles[strip / TILE_STRIPS * sums->columns + bin / TILE_BINS];
     if (!*tile)
@@ -292,11 +295,11 @@ static int64_t *cell_at(struct corner_sums *sums, size_t strip, size_t bin)
     return *tile ? *tile + 2 * (strip % TILE_STRIPS * TILE_BINS + bin % TILE_BINS) : NULL;
 }
 
-bool corner_sums_add(struct corner_sums *sums, const struct corner_echo_record *echoes,
-                     size_t count)
+bool multibounce_sums_add(struct multibounce_sums *sums,
+                          const struct multibounce_echo_record *echoes, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        const struct corner_echo_record *echo = &echoes[i];
+        const struct multibounce_echo_record *echo = &echoes[i];
         const int32_t strip = echo->strip - sums->grid.strips.first;
         if (strip < 0 || strip >= sums->grid.strips.count || echo->bin < 0 ||
             echo->bin + 1 >= sums->grid.bins.count)
@@ -317,7 +320,7 @@ bool corner_sums_add(struct corner_sums *sums, const struct corner_echo_record *
 
 static bool add_tile(void *user, uint64_t first, const int64_t *values, size_t count)
 {
-    struct corner_sums *sums = user;
+    struct multibounce_sums *sums = user;
     if (first % TILE_SUMS != 0 || count != TILE_SUMS)
         return false;
     int64_t **tile = &sums->tiles[first / TILE_SUMS];
@@ -330,7 +333,7 @@ static bool add_tile(void *user, uint64_t first, const int64_t *values, size_t c
 }
 
 /* Sums of a checkpoint: keeps the tiles that were traced, or adds up those of all checkpoints. */
-static sonject_status share_sums(struct corner_sums *sums, struct checkpoint *checkpoint)
+static sonject_status share_sums(struct multibounce_sums *sums, struct checkpoint *checkpoint)
 {
     const size_t tiles = sums->rows * sums->columns;
     if (!checkpoint)
@@ -355,7 +358,7 @@ static struct span span_of_tile(size_t number, int32_t size, struct span all)
 }
 
 /* The strips and bins of the tiles that there are; counts 0 where there is none. */
-static void find_extent(const struct corner_sums *sums, struct span *strips, struct span *bins)
+static void find_extent(const struct multibounce_sums *sums, struct span *strips, struct span *bins)
 {
     strips->first = strips->count = bins->first = bins->count = 0;
     for (size_t i = 0; i < sums->rows * sums->columns; i++)
@@ -382,18 +385,18 @@ static void add_tile_to_planes(const int64_t *tile, struct span rows, struct spa
     }
 }
 
-static sonject_status trace_pair(struct corner_sums *sums, struct corner_launch *corner,
+static sonject_status trace_pair(struct multibounce_sums *sums, struct multibounce_launch *corner,
                                  const struct corners *corners, struct tracer *tracer,
                                  const struct line_grid *grid)
 {
     const double ratio = tracer->view.range_ratio;
     const struct span all = corners->first_hits;
-    CHECK_MEMORY(tracer->report, corner_sums_init(sums, grid), "echoes of corners");
+    CHECK_MEMORY(tracer->report, multibounce_sums_init(sums, grid), "echoes of corners");
     sums->amplitude_of_quantum = ratio * ratio / corner->launch.fan.quanta;
     for (int32_t done = 0; done < all.count; done += corner->chunk) {
         const int32_t left = all.count - done;
         const struct span strips = {all.first + done, left < corner->chunk ? left : corner->chunk};
-        CHECK(corner_launch_strips(corner, tracer, strips, sums));
+        CHECK(multibounce_launch_strips(corner, tracer, strips, sums));
     }
     return share_sums(sums, tracer->checkpoint);
 }
@@ -402,32 +405,32 @@ static sonject_status trace_pairs(struct corners *corners, struct tracer *tracer
 {
     struct image_pairs pairs;
     struct image_pair pair;
-    struct corner_launch corner;
+    struct multibounce_launch corner;
     struct line_grid grid;
     image_pairs_begin(&pairs, tracer, part, true, 2);
     while (image_pairs_next(&pairs, &pair)) {
-        CHECK(corner_launch_begin(&corner, &grid, corners, tracer, part, &pair));
+        CHECK(multibounce_launch_begin(&corner, &grid, corners, tracer, part, &pair));
         if (grid.bins.count == 0)
             continue;
         const sonject_status status =
             trace_pair(&corners->sums[corners->count++], &corner, corners, tracer, &grid);
-        corner_launch_end(&corner);
+        multibounce_launch_end(&corner);
         CHECK(status);
     }
     return SONJECT_OK;
 }
 
-sonject_status corners_begin(struct corners *corners, struct tracer *tracer, uint32_t part)
+sonject_status multibounce_begin(struct corners *corners, struct tracer *tracer, uint32_t part)
 {
     memset(corners, 0, sizeof *corners);
-    if (!corners_may_echo(tracer, part))
+    if (!multibounce_may_echo(tracer, part))
         return SONJECT_OK;
     corners->sums = allocate_array(PAIRS_MAX, sizeof *corners->sums);
     CHECK_MEMORY(tracer->report, corners->sums, "echoes of corners");
-    corners_init(corners, tracer, part);
+    multibounce_init(corners, tracer, part);
     const sonject_status status = trace_pairs(corners, tracer, part);
     if (status != SONJECT_OK) {
-        corners_end(corners);
+        multibounce_end(corners);
         return status;
     }
     corners->grid.strips.count = 0;
@@ -440,19 +443,19 @@ sonject_status corners_begin(struct corners *corners, struct tracer *tracer, uin
     return SONJECT_OK;
 }
 
-void corners_end(struct corners *corners)
+void multibounce_end(struct corners *corners)
 {
     for (size_t i = 0; i < corners->count; i++)
-        corner_sums_clear(&corners->sums[i]);
+        multibounce_sums_clear(&corners->sums[i]);
     free(corners->sums);
     memset(corners, 0, sizeof *corners);
 }
 
-void corners_add(const struct corners *corners, struct span strips, const struct line_grid *grid,
-                 float *real_part, float *imaginary_part)
+void multibounce_add(const struct corners *corners, struct span strips,
+                     const struct line_grid *grid, float *real_part, float *imaginary_part)
 {
     for (size_t k = 0; k < corners->count; k++) {
-        const struct corner_sums *sums = &corners->sums[k];
+        const struct multibounce_sums *sums = &corners->sums[k];
         for (size_t i = 0; i < sums->rows * sums->columns; i++) {
             const struct span tile_strips =
                 span_of_tile(i / sums->columns, TILE_STRIPS, sums->grid.strips);

@@ -1,4 +1,4 @@
-#include "corner_reference.h"
+#include "multibounce_reference.h"
 
 struct face_point {
     double place[3], normal[3]; /* the normal is on the side that sound meets */
@@ -52,14 +52,14 @@ static struct face_point point_at(const struct sea *sea, const struct face *face
     return point;
 }
 
-/* A path source - one - other - source, the sources abreast of the mean of both. */
+/* A path source - one - other - source, the sources broadside of the mean of both. */
 struct path {
     double legs[3], ways[3][3]; /* lengths, unit vectors where they begin */
     double last_way[3];         /* where the second leg ends */
     double length;
 };
 
-static struct path path_over(const struct corner_way *way, const double one[3],
+static struct path path_over(const struct multibounce_way *way, const double one[3],
                              const double other[3])
 {
     const double x = 0.5 * (one[0] + other[0]);
@@ -85,14 +85,15 @@ static struct path path_over(const struct corner_way *way, const double one[3],
     return path;
 }
 
-struct corner_way straight_way(const struct sea *sea)
+struct multibounce_way straight_way(const struct sea *sea)
 {
     const double height = sea->sonar->altitude_m;
-    const struct corner_way way = {height, height, false};
+    const struct multibounce_way way = {height, height, false};
     return way;
 }
 
-double corner_range(const struct corner_way *way, const double one[3], const double other[3])
+double multibounce_range(const struct multibounce_way *way, const double one[3],
+                         const double other[3])
 {
     return 0.5 * path_over(way, one, other).length;
 }
@@ -100,7 +101,7 @@ double corner_range(const struct corner_way *way, const double one[3], const dou
 /* What the search for a stationary point needs. */
 struct search {
     const struct sea *sea;
-    const struct corner_way *way;
+    const struct multibounce_way *way;
     const struct face *first;
 };
 
@@ -214,9 +215,9 @@ static double complex echo_of_point(const struct search *search, const double at
            cexp(2.0 * I * sea_wavenumber(sea) * half);
 }
 
-double complex corner_echo(const struct sea *sea, const struct corner_way *way,
-                           const struct face *first, const struct face *last, double spacing,
-                           double range)
+double complex multibounce_echo(const struct sea *sea, const struct multibounce_way *way,
+                                const struct face *first, const struct face *last, double spacing,
+                                double range)
 {
     const struct search search = {sea, way, first};
     double complex sum = 0.0;

@@ -1,7 +1,7 @@
 /* The same bits everywhere for echoes of several smooth faces: what a device tallies, at any width
  * and chunking, is what the same kernel functions give as plain C, one lane at a time. */
 #include "claims.h"
-#include "trace_corners.h"
+#include "trace_multibounce.h"
 
 #include "physics/bench.h"
 
@@ -73,8 +73,8 @@ static void make_scene(struct bench *bench, const struct variant *variant)
 }
 
 static uint64_t add_on_device(struct bench *bench, const struct corners *corners,
-                              struct corner_launch *corner, int32_t wanted_chunk,
-                              struct corner_sums *sums)
+                              struct multibounce_launch *corner, int32_t wanted_chunk,
+                              struct multibounce_sums *sums)
 {
     const struct span all = corners->first_hits;
     const int32_t chunk = wanted_chunk < corner->chunk ? wanted_chunk : corner->chunk;
@@ -82,17 +82,17 @@ static uint64_t add_on_device(struct bench *bench, const struct corners *corners
     for (int32_t done = 0; done < all.count; done += chunk) {
         const int32_t left = all.count - done;
         const struct span strips = {all.first + done, left < chunk ? left : chunk};
-        EXPECT_OK(&bench->report, corner_launch_strips(corner, &bench->tracer, strips, sums));
+        EXPECT_OK(&bench->report, multibounce_launch_strips(corner, &bench->tracer, strips, sums));
     }
     return bench->tracer.counts.impulses;
 }
 
 static uint64_t add_as_c(struct bench *bench, const struct corners *corners,
-                         struct corner_launch *corner, struct corner_sums *sums)
+                         struct multibounce_launch *corner, struct multibounce_sums *sums)
 {
     struct object_record *objects =
-        bench_copy_buffer(bench, corner->launch.buffers[CORNER_OBJECTS]);
-    struct corner_echo_record *echoes = calloc(corner->capacity, sizeof *echoes);
+        bench_copy_buffer(bench, corner->launch.buffers[MULTIBOUNCE_OBJECTS]);
+    struct multibounce_echo_record *echoes = calloc(corner->capacity, sizeof *echoes);
     uint64_t impulses = 0;
     assert_non_null(echoes);
     corner->launch.fan.strips = 1;
@@ -100,20 +100,20 @@ static uint64_t add_as_c(struct bench *bench, const struct corners *corners,
     for (int32_t strip = 0; strip < corners->first_hits.count; strip++) {
         uint32_t listed = 0;
         corner->launch.fan.first_strip = corners->first_hits.first + strip;
-        const struct outcome_record outcome =
-            trace_corners_strip(&corner->launch.fan, corner->launch.rays.pieces, &corner->sources,
-                                &corner->record, objects, echoes, &listed, 0, 0);
+        const struct outcome_record outcome = trace_multibounce_strip(
+            &corner->launch.fan, corner->launch.rays.pieces, &corner->sources, &corner->record,
+            objects, echoes, &listed, 0, 0);
         assert_int_equal(outcome.faults, 0);
         assert_int_equal(outcome.impulses, listed);
         impulses += listed;
-        assert_true(corner_sums_add(sums, echoes, listed));
+        assert_true(multibounce_sums_add(sums, echoes, listed));
     }
     free(echoes);
     free(objects);
     return impulses;
 }
 
-static void expect_same(const struct corner_sums *a, const struct corner_sums *b)
+static void expect_same(const struct multibounce_sums *a, const struct multibounce_sums *b)
 {
     for (size_t i = 0; i < a->rows * a->columns; i++) {
         assert_int_equal(a->tiles[i] != NULL, b->tiles[i] != NULL);
@@ -128,23 +128,23 @@ static uint64_t compare_pair(struct bench *bench, const struct corners *corners,
                              const struct image_pair *pair)
 {
     static const int32_t chunks[] = {1 << 20, 37};
-    struct corner_launch corner;
+    struct multibounce_launch corner;
     struct line_grid grid;
-    struct corner_sums expected, measured;
+    struct multibounce_sums expected, measured;
     EXPECT_OK(&bench->report,
-              corner_launch_begin(&corner, &grid, corners, &bench->tracer, part, pair));
+              multibounce_launch_begin(&corner, &grid, corners, &bench->tracer, part, pair));
     if (grid.bins.count == 0)
         return 0;
-    assert_true(corner_sums_init(&expected, &grid));
+    assert_true(multibounce_sums_init(&expected, &grid));
     const uint64_t impulses = add_as_c(bench, corners, &corner, &expected);
     for (size_t i = 0; i < COUNT(chunks); i++) {
-        assert_true(corner_sums_init(&measured, &grid));
+        assert_true(multibounce_sums_init(&measured, &grid));
         assert_int_equal(add_on_device(bench, corners, &corner, chunks[i], &measured), impulses);
         expect_same(&measured, &expected);
-        corner_sums_clear(&measured);
+        multibounce_sums_clear(&measured);
     }
-    corner_sums_clear(&expected);
-    corner_launch_end(&corner);
+    multibounce_sums_clear(&expected);
+    multibounce_launch_end(&corner);
     return impulses;
 }
 
@@ -157,8 +157,8 @@ static void compare_variant(struct bench *bench, const struct variant *variant)
         struct corners corners;
         struct image_pairs all;
         struct image_pair pair;
-        assert_true(corners_may_echo(&bench->tracer, part));
-        corners_init(&corners, &bench->tracer, part);
+        assert_true(multibounce_may_echo(&bench->tracer, part));
+        multibounce_init(&corners, &bench->tracer, part);
         image_pairs_begin(&all, &bench->tracer, part, true, 2);
         for (; image_pairs_next(&all, &pair); pairs++)
             impulses += compare_pair(bench, &corners, part, &pair);

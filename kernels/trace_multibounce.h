@@ -1,17 +1,17 @@
-/* The coherent part of several smooth faces one after the other: mirror bounces, and physical
- * optics at the last hit (kernels/MATH.md, "Corners"). The fan goes out from one source of a pair,
- * the echo returns to the other; both may be the sonar itself. */
-#ifndef SONJECT_KERNELS_TRACE_CORNERS_H
-#define SONJECT_KERNELS_TRACE_CORNERS_H
+/* The coherent part of several smooth faces one after the other: specular bounces, and physical
+ * optics at the last hit (kernels/MATH.md, "Multi-bounce specular paths"). The fan goes out from
+ * one source of a pair, the echo returns to the other; both may be the sonar itself. */
+#ifndef SONJECT_KERNELS_TRACE_MULTIBOUNCE_H
+#define SONJECT_KERNELS_TRACE_MULTIBOUNCE_H
 
 #include "chain_echo.h"
 #include "curvature.h"
-#include "mirrors.h"
+#include "image_sources.h"
 #include "trace_smooth.h"
 #include "tube.h"
 
 /* The return path from the last hit, to a source that stands beside it along-track
- * (kernels/MATH.md, "Corners"). */
+ * (kernels/MATH.md, "Multi-bounce specular paths"). */
 struct return_path {
     struct vector3 direction; /* unit, from the hit to the source in unfolded space */
     vfloat length;            /* m */
@@ -19,7 +19,7 @@ struct return_path {
     vfloat spreading;         /* of the amplitude, 1/m */
 };
 
-/* off: from the hit to the source along-track. As way_through_layers in chain_echo.h. */
+/* off: from the hit to the source along-track. As path_through_layers in chain_echo.h. */
 FUNCTION struct return_path return_through_layers(GLOBAL const struct source_record *source,
                                                   GLOBAL const struct ray_piece_record *pieces,
                                                   struct vector3 hit, vfloat off)
@@ -59,7 +59,7 @@ FUNCTION struct return_path return_path(GLOBAL const struct source_record *sourc
 }
 
 /* One group of paths under way. */
-struct corner_path {
+struct multibounce_path {
     struct chain_hit hit;
     struct tube tube;
     vfloat range;           /* from the outgoing source to the first hit less the source's range */
@@ -68,26 +68,26 @@ struct corner_path {
     vfloat first_reach;     /* as struct chain has it */
     vfloat first_wavefront; /* width per rad of elevation at the first hit */
     vfloat first_spreading; /* of the amplitude on the way there, 1/m */
-    vfloat reflection_real, reflection_imaginary; /* of all bounces and mirrors so far */
+    vfloat reflection_real, reflection_imaginary; /* of all bounces and boundaries so far */
     mask is_alive;
 };
 
 /* Echoes of one group and the strips of the whole track that they belong to. */
-struct corner_echo {
+struct multibounce_echo {
     struct smooth_echo echo;
     int strip[WIDTH];
 };
 
-FUNCTION void begin_corner(const struct fan_record *fan,
-                           GLOBAL const struct image_pair_record *pair,
-                           GLOBAL const struct object_record *objects,
-                           const struct wavefront_cell *cell, struct corner_path *path,
-                           struct outcome_record *outcome)
+FUNCTION void begin_multibounce(const struct fan_record *fan,
+                                GLOBAL const struct image_pair_record *pair,
+                                GLOBAL const struct object_record *objects,
+                                const struct wavefront_cell *cell, struct multibounce_path *path,
+                                struct outcome_record *outcome)
 {
     GLOBAL const struct object_record *object = &objects[fan->only_object];
     const struct fan_ray *ray = &cell->ray;
-    const struct mirrored_hit first =
-        find_mirrored_hit(fan, pair, objects, FACE_OF_OPTICS, ray, cell->is_ray);
+    const struct image_hit first =
+        find_image_hit(fan, pair, objects, FACE_OF_OPTICS, ray, cell->is_ray);
     path->first_wavefront = ray->wavefront + (first.range - ray->range_at_closest);
     path->hit.point = first.point;
     path->hit.normal = first.normal;
@@ -124,7 +124,7 @@ FUNCTION void begin_corner(const struct fan_record *fan,
 /* Coherent reflection of the surfaces that the paths are at; paths whose surface has no smooth part
  * end there. */
 FUNCTION void reflection_of_hit(const struct fan_record *fan,
-                                GLOBAL const struct corner_record *corners,
+                                GLOBAL const struct multibounce_record *multibounce,
                                 GLOBAL const struct object_record *objects,
                                 const struct chain_hit *hit, vfloat cosine, mask *is_alive,
                                 vfloat *real_part, vfloat *imaginary_part)
@@ -135,7 +135,7 @@ FUNCTION void reflection_of_hit(const struct fan_record *fan,
     for (int i = surface_after(SEABED - 1, fan->objects, hit->surface, *is_alive); i < fan->objects;
          i = surface_after(i, fan->objects, hit->surface, *is_alive)) {
         GLOBAL const struct surface_record *surface =
-            i < 0 ? &corners->seabed : &objects[i].surface;
+            i < 0 ? &multibounce->seabed : &objects[i].surface;
         const mask here = *is_alive & MASK_OF(hit->surface == i);
         if (!has_smooth_part(surface) || !ANY(here))
             continue;
@@ -148,16 +148,17 @@ FUNCTION void reflection_of_hit(const struct fan_record *fan,
     *is_alive = is_smooth;
 }
 
-/* The mirror bounce at a hit, and the way to the next one. */
-FUNCTION void bounce_on(const struct fan_record *fan, GLOBAL const struct corner_record *corners,
-                        GLOBAL const struct object_record *objects, struct corner_path *path,
+/* The specular bounce at a hit, and the way to the next one. */
+FUNCTION void bounce_on(const struct fan_record *fan,
+                        GLOBAL const struct multibounce_record *multibounce,
+                        GLOBAL const struct object_record *objects, struct multibounce_path *path,
                         struct outcome_record *outcome)
 {
     const struct chain_hit *hit = &path->hit;
     const vfloat cosine = larger(dot3(hit->normal, hit->back), SPLAT(1.0e-4f));
     const struct vector3 came = reversed3(hit->back);
     vfloat one_real, one_imaginary;
-    reflection_of_hit(fan, corners, objects, hit, cosine, &path->is_alive, &one_real,
+    reflection_of_hit(fan, multibounce, objects, hit, cosine, &path->is_alive, &one_real,
                       &one_imaginary);
     if (!ANY(path->is_alive))
         return;
@@ -171,10 +172,10 @@ FUNCTION void bounce_on(const struct fan_record *fan, GLOBAL const struct corner
     sides[1] = &path->tube.across;
     for (int i = 0; i < 2; i++) {
         const struct vector3 shift = offset_on_surface(sides[i], came, hit->normal, cosine);
-        mirror_side(sides[i], came, hit->normal, cosine,
-                    normal_change_at(objects, fan->objects, hit, shift));
+        reflect_side(sides[i], came, hit->normal, cosine,
+                     normal_change_at(objects, fan->objects, hit, shift));
     }
-    const struct vector3 direction = mirrored3(came, hit->normal);
+    const struct vector3 direction = reflected3(came, hit->normal);
     outcome->queries += count_lanes(path->is_alive);
     const struct chain_hit next = find_chain_hit(fan, objects, FACE_OF_OPTICS, start_from(hit),
                                                  direction, 0.0f, hit->left_behind, path->is_alive);
@@ -194,10 +195,10 @@ FUNCTION void bounce_on(const struct fan_record *fan, GLOBAL const struct corner
 
 /* The whole path's gradient along one side of the tube at the last hit, the return path being the
  * way to the source at receiver_x. The source moves along: dx/2 with each of both hits in focused
- * columns, else with the first (kernels/MATH.md, "Corners"). first_step: how far the first hit
- * moves along-track.
+ * columns, else with the first (kernels/MATH.md, "Multi-bounce specular paths"). first_step: how
+ * far the first hit moves along-track.
  */
-FUNCTION vfloat path_gradient(const struct corner_path *path, const struct tube_side *side,
+FUNCTION vfloat path_gradient(const struct multibounce_path *path, const struct tube_side *side,
                               struct vector3 returned, vfloat cosine, float first_step,
                               vfloat receiver_x, int is_focused)
 {
@@ -212,24 +213,26 @@ FUNCTION vfloat path_gradient(const struct corner_path *path, const struct tube_
 }
 
 /* The echo that the last hit returns by physical optics. */
-FUNCTION void keep_corner_echo(const struct fan_record *fan,
-                               GLOBAL const struct ray_piece_record *pieces,
-                               GLOBAL const struct image_pair_record *pair,
-                               GLOBAL const struct corner_record *corners,
-                               GLOBAL const struct object_record *objects,
-                               const struct wavefront_cell *cell, const struct corner_path *path,
-                               struct corner_echo *kept, struct outcome_record *outcome)
+FUNCTION void keep_multibounce_echo(const struct fan_record *fan,
+                                    GLOBAL const struct ray_piece_record *pieces,
+                                    GLOBAL const struct image_pair_record *pair,
+                                    GLOBAL const struct multibounce_record *multibounce,
+                                    GLOBAL const struct object_record *objects,
+                                    const struct wavefront_cell *cell,
+                                    const struct multibounce_path *path,
+                                    struct multibounce_echo *kept, struct outcome_record *outcome)
 {
     const struct chain_hit *hit = &path->hit;
     const vfloat last_x = SELECT(path->is_alive, hit->point.x, path->first_x);
-    const vfloat receiver_x = corners->is_focused ? 0.5f * (path->first_x + last_x) : path->first_x;
+    const vfloat receiver_x =
+        multibounce->is_focused ? 0.5f * (path->first_x + last_x) : path->first_x;
     const struct return_path returned =
         return_path(&pair->returning, pieces, hit->point, receiver_x - last_x);
     const vfloat cosine = larger(dot3(hit->normal, hit->back), SPLAT(1.0e-4f));
     const vfloat cosine_return = dot3(hit->normal, returned.direction);
     mask is_lit = path->is_alive & MASK_OF(hit->surface >= 0) & MASK_OF(cosine_return > 0.0f);
     vfloat one_real, one_imaginary;
-    reflection_of_hit(fan, corners, objects, hit, 0.5f * (cosine + magnitude(cosine_return)),
+    reflection_of_hit(fan, multibounce, objects, hit, 0.5f * (cosine + magnitude(cosine_return)),
                       &is_lit, &one_real, &one_imaginary);
     const struct leg leg = follow_leg(fan, pair, &pair->returning, objects, start_from(hit),
                                       returned.direction, returned.length, is_lit);
@@ -242,9 +245,9 @@ FUNCTION void keep_corner_echo(const struct fan_record *fan,
     struct cell_phase phase =
         integrate_cell(fan, cell,
                        path_gradient(path, &path->tube.along, returned.direction, cosine, 1.0f,
-                                     receiver_x, corners->is_focused),
+                                     receiver_x, multibounce->is_focused),
                        path_gradient(path, &path->tube.across, returned.direction, cosine, 0.0f,
-                                     receiver_x, corners->is_focused),
+                                     receiver_x, multibounce->is_focused),
                        range, path->first_wavefront);
     const vfloat section =
         magnitude(tube_section(&path->tube, reversed3(hit->back))); /* of the wavefront's */
@@ -277,11 +280,12 @@ FUNCTION RECORD_WORD next_in_list(GLOBAL RECORD_WORD *listed)
 
 /* Lists what is heard: echoes lie in few places of a large grid, so it is the host that adds them
  * up. As tally_add, it reports what cannot be counted. */
-FUNCTION void list_corner_echo(GLOBAL struct corner_echo_record *echoes, GLOBAL RECORD_WORD *listed,
-                               const struct corner_echo *kept, struct outcome_record *outcome)
+FUNCTION void list_multibounce_echo(GLOBAL struct multibounce_echo_record *echoes,
+                                    GLOBAL RECORD_WORD *listed, const struct multibounce_echo *kept,
+                                    struct outcome_record *outcome)
 {
     for (int lane = 0; lane < WIDTH; lane++) {
-        struct corner_echo_record record;
+        struct multibounce_echo_record record;
         record.strip = kept->strip[lane];
         record.bin = kept->echo.bin[lane];
         record.real_part = kept->echo.real_part[lane];
@@ -302,34 +306,36 @@ FUNCTION void list_corner_echo(GLOBAL struct corner_echo_record *echoes, GLOBAL 
     }
 }
 
-FUNCTION void trace_corner_group(
+FUNCTION void trace_multibounce_group(
     const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-    GLOBAL const struct image_pair_record *pair, GLOBAL const struct corner_record *corners,
-    GLOBAL const struct object_record *objects, GLOBAL struct corner_echo_record *echoes,
-    GLOBAL RECORD_WORD *listed, int strip, int stratum, struct random_key key,
-    RECORD_WORD first_ray, struct outcome_record *outcome)
+    GLOBAL const struct image_pair_record *pair,
+    GLOBAL const struct multibounce_record *multibounce, GLOBAL const struct object_record *objects,
+    GLOBAL struct multibounce_echo_record *echoes, GLOBAL RECORD_WORD *listed, int strip,
+    int stratum, struct random_key key, RECORD_WORD first_ray, struct outcome_record *outcome)
 {
     const struct wavefront_cell cell =
         wavefront_cell_at(fan, pieces, strip, stratum, key, first_ray);
-    struct corner_path path;
-    begin_corner(fan, pair, objects, &cell, &path, outcome);
-    for (int order = 2; order <= corners->interactions && ANY(path.is_alive); order++) {
-        bounce_on(fan, corners, objects, &path, outcome);
+    struct multibounce_path path;
+    begin_multibounce(fan, pair, objects, &cell, &path, outcome);
+    for (int order = 2; order <= multibounce->interactions && ANY(path.is_alive); order++) {
+        bounce_on(fan, multibounce, objects, &path, outcome);
         if (!ANY(path.is_alive & MASK_OF(path.hit.surface >= 0)))
             continue;
-        struct corner_echo kept;
-        keep_corner_echo(fan, pieces, pair, corners, objects, &cell, &path, &kept, outcome);
-        list_corner_echo(echoes, listed, &kept, outcome);
+        struct multibounce_echo kept;
+        keep_multibounce_echo(fan, pieces, pair, multibounce, objects, &cell, &path, &kept,
+                              outcome);
+        list_multibounce_echo(echoes, listed, &kept, outcome);
     }
 }
 
 /* Traces the share `segment` of a sub-strip's fan. echoes: room for rays x strata x (interactions -
  * 1) of each sub-strip; listed: how many there are. */
-FUNCTION struct outcome_record trace_corners_strip(
+FUNCTION struct outcome_record trace_multibounce_strip(
     const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-    GLOBAL const struct image_pair_record *pair, GLOBAL const struct corner_record *corners,
-    GLOBAL const struct object_record *objects, GLOBAL struct corner_echo_record *echoes,
-    GLOBAL RECORD_WORD *listed, int strip, int segment)
+    GLOBAL const struct image_pair_record *pair,
+    GLOBAL const struct multibounce_record *multibounce, GLOBAL const struct object_record *objects,
+    GLOBAL struct multibounce_echo_record *echoes, GLOBAL RECORD_WORD *listed, int strip,
+    int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};
     const struct random_key key = random_key_of(fan->seed_low, fan->seed_high, fan->stream,
@@ -340,8 +346,8 @@ FUNCTION struct outcome_record trace_corners_strip(
              group += (RECORD_WORD)fan->segments) {
             const RECORD_WORD left = fan->rays - group * WIDTH;
             outcome.rays += left < WIDTH ? left : WIDTH;
-            trace_corner_group(fan, pieces, pair, corners, objects, echoes, listed, strip, stratum,
-                               key, group * WIDTH, &outcome);
+            trace_multibounce_group(fan, pieces, pair, multibounce, objects, echoes, listed, strip,
+                                    stratum, key, group * WIDTH, &outcome);
         }
     outcome.queries += outcome.rays;
     return outcome;

@@ -1,6 +1,6 @@
 /* Echoes of several smooth faces one after the other, against closed forms and the double integral
- * of physical optics (corner_reference.h). Levels are systematic: 0.2 dB. */
-#include "corner_reference.h"
+ * of physical optics (multibounce_reference.h). Levels are systematic: 0.2 dB. */
+#include "multibounce_reference.h"
 
 #define ROWS       101
 #define COLUMNS    201
@@ -123,11 +123,13 @@ CLAIM(a_dihedral)
         const struct sight sight =
             lay_dihedral(sea, cases[i].wide, cases[i].length, cases[i].is_upright, cases[i].off);
         const struct face one = face_of_plane(sea, 0), other = face_of_plane(sea, 1);
-        const struct corner_way way = straight_way(sea);
+        const struct multibounce_way way = straight_way(sea);
         print_message("edge %s the track, %.1f rad off the bisector\n",
                       cases[i].is_upright ? "across" : "along", cases[i].off);
-        const double complex first = corner_echo(sea, &way, &one, &other, SPACING, sight.range);
-        const double complex second = corner_echo(sea, &way, &other, &one, SPACING, sight.range);
+        const double complex first =
+            multibounce_echo(sea, &way, &one, &other, SPACING, sight.range);
+        const double complex second =
+            multibounce_echo(sea, &way, &other, &one, SPACING, sight.range);
         const double complex both = further_echo(sea, 0, 1, sight.range);
         expect_echo(both, first + second);
         if (cases[i].off != 0.0)
@@ -193,15 +195,15 @@ CLAIM(a_sphere_and_a_plate)
         mix(-aside, sight.up, sqrt(1.0 - aside * aside), sight.along, own_y);
         mix(1.0, sight.middle, -radius, normal, centre); /* its specular point is at the middle */
         sea_put(sea, 0, centre, normal, own_y);
-        const struct corner_way way = straight_way(sea);
+        const struct multibounce_way way = straight_way(sea);
         const struct face sphere = {0, FACE_SPHERE, radius, {-1.4, -1.4}, {1.4, 1.4}};
         const struct face plate = face_of_plane(sea, 1);
-        const double range = corner_range(&way, sight.middle, sea_centre(sea, 1));
+        const double range = multibounce_range(&way, sight.middle, sea_centre(sea, 1));
         print_message("%.1f m away, %.1f along the track\n", distances[i], aside);
         expect_echo(further_echo(sea, 0, 0, range),
-                    corner_echo(sea, &way, &sphere, &plate, SPACING, range));
+                    multibounce_echo(sea, &way, &sphere, &plate, SPACING, range));
         expect_echo(further_echo(sea, 1, 1, range),
-                    corner_echo(sea, &way, &plate, &sphere, SPACING, range));
+                    multibounce_echo(sea, &way, &plate, &sphere, SPACING, range));
     }
 }
 
@@ -229,14 +231,14 @@ CLAIM(a_caustic)
         mix(-1.0, normal, 0.0, normal, own_y);
         mix(1.0, sight.middle, radius, normal, centre);
         sea_put(sea, 0, centre, is_aside ? sight.up : sight.along, own_y);
-        const struct corner_way way = straight_way(sea);
+        const struct multibounce_way way = straight_way(sea);
         const struct face inside = {
             0, FACE_INSIDE_TUBE, radius, {-0.075, -half_angle}, {0.075, half_angle}};
         const struct face plate = face_of_plane(sea, 1);
-        const double range = corner_range(&way, sight.middle, sea_centre(sea, 1));
+        const double range = multibounce_range(&way, sight.middle, sea_centre(sea, 1));
         print_message("%.2f m away, %s\n", distances[i / 2], is_aside ? "along" : "across");
         expect_echo(further_echo(sea, 0, 0, range),
-                    corner_echo(sea, &way, &inside, &plate, SPACING, range));
+                    multibounce_echo(sea, &way, &inside, &plate, SPACING, range));
     }
 }
 
@@ -272,14 +274,14 @@ CLAIM(the_seabed_between_two_faces)
     mix(1.0, other, 0.3125, up, other);
     put_mirror(sea, 0, sight.middle, from_sonar, down);
     put_mirror(sea, 1, other, up, sight.to_sonar);
-    struct corner_way way = straight_way(sea);
+    struct multibounce_way way = straight_way(sea);
     way.is_folded = true;
     const struct face one = face_of_plane(sea, 0), two = face_of_plane(sea, 1);
-    const double range = corner_range(&way, sight.middle, other);
+    const double range = multibounce_range(&way, sight.middle, other);
     expect_echo(further_echo(sea, 0, 0, range),
-                -0.7 * corner_echo(sea, &way, &one, &two, SPACING, range));
+                -0.7 * multibounce_echo(sea, &way, &one, &two, SPACING, range));
     expect_echo(further_echo(sea, 1, 1, range),
-                -0.7 * corner_echo(sea, &way, &two, &one, SPACING, range));
+                -0.7 * multibounce_echo(sea, &way, &two, &one, SPACING, range));
 }
 
 /* By way of the seabed to two plates and straight home, and the reverse, which is what is traced.
@@ -293,7 +295,7 @@ CLAIM(the_seabed_before_two_faces)
         add_plate(sea, 0.2, 0.2);
         sea_ready(sea);
         const struct sight sight = sight_of(sea, 3.0);
-        struct corner_way way = straight_way(sea);
+        struct multibounce_way way = straight_way(sea);
         way.height_home = -way.height_out;
         const double drop = way.height_home - sight.middle[2];
         const double reach = hypot(sight.middle[1], drop);
@@ -303,9 +305,9 @@ CLAIM(the_seabed_before_two_faces)
         put_mirror(sea, 0, sight.middle, from_image, sight.along);
         put_mirror(sea, 1, other, sight.along, sight.to_sonar);
         const struct face one = face_of_plane(sea, 0), two = face_of_plane(sea, 1);
-        const double range = corner_range(&way, other, sight.middle);
+        const double range = multibounce_range(&way, other, sight.middle);
         const double complex expected =
-            2.0 * -0.7 * corner_echo(sea, &way, &two, &one, SPACING, range);
+            2.0 * -0.7 * multibounce_echo(sea, &way, &two, &one, SPACING, range);
         const double complex measured = further_echo(sea, 1, 1, range);
         if (interactions == 3)
             expect_echo(measured, expected);

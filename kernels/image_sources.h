@@ -1,8 +1,8 @@
-/* Ways between an object and two sources, each the sonar or an image of it in level mirrors. A line
- * between source and object is straight in unfolded space; what stands in its way is looked for
- * along the folded line (kernels/MATH.md, "Mirrors"). */
-#ifndef SONJECT_KERNELS_MIRRORS_H
-#define SONJECT_KERNELS_MIRRORS_H
+/* Ways between an object and two sources, each the sonar or an image of it in level boundaries. A
+ * line between source and object is straight in unfolded space; what stands in its way is looked
+ * for along the folded line (kernels/MATH.md, "Image sources"). */
+#ifndef SONJECT_KERNELS_IMAGE_SOURCES_H
+#define SONJECT_KERNELS_IMAGE_SOURCES_H
 
 #include "fan.h"
 #include "intersection.h"
@@ -12,15 +12,16 @@
 /* The way from a hit to a source. */
 struct leg {
     mask is_open;
-    vfloat reflection_real, reflection_imaginary; /* product of the mirrors' coherent amplitudes */
+    vfloat reflection_real,
+        reflection_imaginary; /* product of the boundaries' coherent amplitudes */
 };
 
-/* Cosine of incidence on a mirror of sound that comes to the object with another: Snell's law. */
-FUNCTION vfloat cosine_at_mirror(GLOBAL const struct mirror_record *mirror, vfloat cosine)
+/* Cosine of incidence on a boundary of sound that comes to the object with another: Snell's law. */
+FUNCTION vfloat cosine_at_boundary(GLOBAL const struct boundary_record *boundary, vfloat cosine)
 {
-    if (mirror->speed_ratio == 1.0f)
+    if (boundary->speed_ratio == 1.0f)
         return cosine;
-    const float square = mirror->speed_ratio * mirror->speed_ratio;
+    const float square = boundary->speed_ratio * boundary->speed_ratio;
     return SQUARE_ROOT(larger(1.0f - (1.0f - cosine * cosine) * square, SPLAT(0.0f)));
 }
 
@@ -36,26 +37,28 @@ FUNCTION struct leg follow_leg(const struct fan_record *fan,
     leg.is_open = is_wanted;
     leg.reflection_real = SPLAT(1.0f);
     leg.reflection_imaginary = SPLAT(0.0f);
-    const vfloat cosine = magnitude(direction.z); /* the same at every bounce: mirrors are level */
+    const vfloat cosine =
+        magnitude(direction.z); /* the same at every bounce: boundaries are level */
     const int is_bent = source->table.pieces > 0;
     int is_seen = 1; /* through layers, only what is in the water around the object */
-    int kind = source->last_mirror;
+    int kind = source->last_boundary;
     for (int bounce = 0; bounce < source->bounces && ANY(leg.is_open); bounce++) {
-        GLOBAL const struct mirror_record *mirror = &pair->mirrors[kind];
+        GLOBAL const struct boundary_record *boundary = &pair->boundaries[kind];
         const mask is_level = MASK_OF(cosine < 1.0e-6f);
-        const vfloat step = (mirror->height - point.z) / SELECT(is_level, SPLAT(1.0f), direction.z);
+        const vfloat step =
+            (boundary->height - point.z) / SELECT(is_level, SPLAT(1.0f), direction.z);
         if (is_seen) {
             leg.is_open = leg.is_open & MASK_OF(find_obstacle(objects, fan->objects, point,
                                                               direction, step) > step);
             leg.is_open = is_clear_of_relief(fan, objects, point, direction, step, leg.is_open);
         }
         leg.is_open = leg.is_open & ~is_level;
-        is_seen = is_seen && !(is_bent && kind == MIRROR_SURFACE);
+        is_seen = is_seen && !(is_bent && kind == BOUNDARY_SURFACE);
         point = along3(point, direction, step);
         direction.z = -direction.z;
         length = length - step;
         vfloat one_real, one_imaginary;
-        smooth_reflection(&mirror->surface, cosine_at_mirror(mirror, cosine), &one_real,
+        smooth_reflection(&boundary->surface, cosine_at_boundary(boundary, cosine), &one_real,
                           &one_imaginary);
         const vfloat product_real =
             leg.reflection_real * one_real - leg.reflection_imaginary * one_imaginary;
@@ -77,7 +80,7 @@ struct line_from_source {
     struct vector3 direction; /* unit, towards the hit */
     vfloat wavefront;         /* width per rad of elevation at the hit: without layers its length */
     vfloat excess;            /* range less the source's range, formed without subtracting */
-    vfloat spreading;         /* of layers: struct water_ray */
+    vfloat spreading;         /* of layers: struct arrival */
 };
 
 FUNCTION struct line_from_source line_through_layers(GLOBAL const struct source_record *source,
@@ -115,23 +118,24 @@ FUNCTION struct line_from_source line_from_source(GLOBAL const struct source_rec
     return line;
 }
 
-/* Distance along a fan's rays from which on they are past their last mirror. */
-FUNCTION vfloat distance_past_mirrors(const struct fan_record *fan,
-                                      GLOBAL const struct image_pair_record *pair,
-                                      const struct fan_ray *ray)
+/* Distance along a fan's rays from which on they are past their last boundary. */
+FUNCTION vfloat distance_past_boundaries(const struct fan_record *fan,
+                                         GLOBAL const struct image_pair_record *pair,
+                                         const struct fan_ray *ray)
 {
     if (pair->outgoing.bounces == 0)
         return SPLAT(-fan->reference_range);
     const vfloat slope = ray->direction.z;
-    const mask is_away = pair->outgoing.last_mirror == MIRROR_SEABED ? MASK_OF(slope > 1.0e-6f)
-                                                                     : MASK_OF(slope < -1.0e-6f);
-    const float height = pair->mirrors[pair->outgoing.last_mirror].height;
+    const mask is_away = pair->outgoing.last_boundary == BOUNDARY_SEABED
+                             ? MASK_OF(slope > 1.0e-6f)
+                             : MASK_OF(slope < -1.0e-6f);
+    const float height = pair->boundaries[pair->outgoing.last_boundary].height;
     return SELECT(is_away, (height - ray->closest.z) / SELECT(is_away, slope, SPLAT(1.0f)),
                   SPLAT(FAR_AWAY));
 }
 
-/* Where a fan's rays meet the object, past their mirrors and above the seabed. */
-struct mirrored_hit {
+/* Where a fan's rays meet the object, past their boundaries and above the seabed. */
+struct image_hit {
     mask is_hit;
     struct vector3 point, normal;
     struct vector3
@@ -140,20 +144,20 @@ struct mirrored_hit {
     vfloat cosine; /* of the angle of incidence */
 };
 
-FUNCTION struct mirrored_hit find_mirrored_hit(const struct fan_record *fan,
-                                               GLOBAL const struct image_pair_record *pair,
-                                               GLOBAL const struct object_record *objects,
-                                               enum wanted_face wanted, const struct fan_ray *ray,
-                                               mask is_ray)
+FUNCTION struct image_hit find_image_hit(const struct fan_record *fan,
+                                         GLOBAL const struct image_pair_record *pair,
+                                         GLOBAL const struct object_record *objects,
+                                         enum wanted_face wanted, const struct fan_ray *ray,
+                                         mask is_ray)
 {
     GLOBAL const struct object_record *object = &objects[fan->only_object];
-    const vfloat past_mirrors = distance_past_mirrors(fan, pair, ray);
-    const vfloat distance = object_distance(object, ray->closest, ray->direction, past_mirrors);
+    const vfloat past_boundaries = distance_past_boundaries(fan, pair, ray);
+    const vfloat distance = object_distance(object, ray->closest, ray->direction, past_boundaries);
     const mask on_object = is_ray & MASK_OF(distance < 0.5f * FAR_AWAY);
-    struct mirrored_hit hit;
+    struct image_hit hit;
     hit.is_hit =
         on_object & MASK_OF(distance < seabed_distance(fan, objects, ray->closest, ray->direction,
-                                                       past_mirrors, on_object));
+                                                       past_boundaries, on_object));
     const vfloat safe = SELECT(hit.is_hit, distance, SPLAT(0.0f));
     hit.point = along3(ray->closest, ray->direction, safe);
     const struct surface_face face =
@@ -162,28 +166,28 @@ FUNCTION struct mirrored_hit find_mirrored_hit(const struct fan_record *fan,
     hit.start = lifted_point(hit.point, &face);
     hit.range = ray->range_at_closest + safe;
     hit.cosine = -dot3(hit.normal, ray->direction);
-    /* from inside: the mirror's point is buried in the object */
+    /* from inside: the boundary's point is buried in the object */
     hit.is_hit = hit.is_hit & MASK_OF(hit.cosine > 0.0f);
     return hit;
 }
 
 /* The path from the outgoing source by way of a hit back to the other. */
-struct mirrored_path {
+struct image_path {
     mask is_open;
     struct line_from_source back; /* from the returning source to the hit */
     vfloat wavefront_out;         /* width per rad of the fan's elevation at the hit */
     vfloat range;                 /* half the path less that by way of the frame's origin */
     vfloat spreading;             /* square of half the path over the product of both legs */
     vfloat cosine_back;           /* between the normal and the return path */
-    vfloat reflection_real, reflection_imaginary; /* of all mirrors */
+    vfloat reflection_real, reflection_imaginary; /* of all boundaries */
 };
 
 /* Square root of both legs' intensities, normalised by the square of half the path. A leg that no
  * layer bends has the spreading cos(grazing angle). */
 FUNCTION vfloat spreading_through_layers(const struct fan_record *fan,
                                          GLOBAL const struct image_pair_record *pair,
-                                         const struct fan_ray *ray, const struct mirrored_hit *hit,
-                                         const struct mirrored_path *path, vfloat half_path)
+                                         const struct fan_ray *ray, const struct image_hit *hit,
+                                         const struct image_path *path, vfloat half_path)
 {
     const vfloat out = fan->table.pieces > 0 ? ray->spreading : ray->direction.y;
     const vfloat back =
@@ -193,14 +197,14 @@ FUNCTION vfloat spreading_through_layers(const struct fan_record *fan,
            half_path / ground;
 }
 
-FUNCTION struct mirrored_path follow_path(const struct fan_record *fan,
-                                          GLOBAL const struct ray_piece_record *pieces,
-                                          GLOBAL const struct image_pair_record *pair,
-                                          GLOBAL const struct object_record *objects,
-                                          const struct fan_ray *ray, const struct mirrored_hit *hit,
-                                          struct outcome_record *outcome)
+FUNCTION struct image_path follow_path(const struct fan_record *fan,
+                                       GLOBAL const struct ray_piece_record *pieces,
+                                       GLOBAL const struct image_pair_record *pair,
+                                       GLOBAL const struct object_record *objects,
+                                       const struct fan_ray *ray, const struct image_hit *hit,
+                                       struct outcome_record *outcome)
 {
-    struct mirrored_path path;
+    struct image_path path;
     path.back = line_from_source(&pair->returning, pieces, hit->point);
     path.wavefront_out = ray->wavefront + (hit->range - ray->range_at_closest);
     path.range = 0.5f * (hit->range + path.back.excess);

@@ -1,24 +1,24 @@
-/* The coherent part by way of mirrors: the fan goes out from one source, physical optics takes the
- * sound from a smooth object to the other (kernels/MATH.md, "Mirrors"). */
-#ifndef SONJECT_KERNELS_TRACE_SMOOTH_MIRRORED_H
-#define SONJECT_KERNELS_TRACE_SMOOTH_MIRRORED_H
+/* The coherent part by image sources: the fan goes out from one source, physical optics takes the
+ * sound from a smooth object to the other (kernels/MATH.md, "Image sources"). */
+#ifndef SONJECT_KERNELS_TRACE_SMOOTH_IMAGES_H
+#define SONJECT_KERNELS_TRACE_SMOOTH_IMAGES_H
 
-#include "mirrors.h"
+#include "image_sources.h"
 #include "trace_smooth.h"
 
-FUNCTION void trace_smooth_mirrored_group(const struct fan_record *fan,
-                                          GLOBAL const struct ray_piece_record *pieces,
-                                          GLOBAL const struct image_pair_record *pair,
-                                          GLOBAL const struct object_record *objects, int strip,
-                                          int stratum, struct random_key key, RECORD_WORD first_ray,
-                                          struct smooth_echo *echo, struct outcome_record *outcome)
+FUNCTION void trace_smooth_images_group(const struct fan_record *fan,
+                                        GLOBAL const struct ray_piece_record *pieces,
+                                        GLOBAL const struct image_pair_record *pair,
+                                        GLOBAL const struct object_record *objects, int strip,
+                                        int stratum, struct random_key key, RECORD_WORD first_ray,
+                                        struct smooth_echo *echo, struct outcome_record *outcome)
 {
     const struct wavefront_cell cell =
         wavefront_cell_at(fan, pieces, strip, stratum, key, first_ray);
     GLOBAL const struct object_record *object = &objects[fan->only_object];
-    const struct mirrored_hit hit =
-        find_mirrored_hit(fan, pair, objects, FACE_OF_OPTICS, &cell.ray, cell.is_ray);
-    const struct mirrored_path path =
+    const struct image_hit hit =
+        find_image_hit(fan, pair, objects, FACE_OF_OPTICS, &cell.ray, cell.is_ray);
+    const struct image_path path =
         follow_path(fan, pieces, pair, objects, &cell.ray, &hit, outcome);
     const vfloat cosine_out = larger(hit.cosine, SPLAT(1.0e-4f));
     const vfloat bend = 1.0f + dot3(path.back.direction, cell.ray.direction);
@@ -39,7 +39,7 @@ FUNCTION void trace_smooth_mirrored_group(const struct fan_record *fan,
 }
 
 /* As trace_smooth_strip. */
-FUNCTION struct outcome_record trace_smooth_mirrored_strip(
+FUNCTION struct outcome_record trace_smooth_images_strip(
     const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
     GLOBAL const struct image_pair_record *pair, GLOBAL const struct object_record *objects,
     GLOBAL TALLY *tally, int strip, int segment)
@@ -55,8 +55,8 @@ FUNCTION struct outcome_record trace_smooth_mirrored_strip(
             struct smooth_echo echo;
             const RECORD_WORD left = fan->rays - group * WIDTH;
             outcome.rays += left < WIDTH ? left : WIDTH;
-            trace_smooth_mirrored_group(fan, pieces, pair, objects, strip, stratum, key,
-                                        group * WIDTH, &echo, &outcome);
+            trace_smooth_images_group(fan, pieces, pair, objects, strip, stratum, key,
+                                      group * WIDTH, &echo, &outcome);
             for (int lane = 0; lane < WIDTH; lane++)
                 tally_smooth_echo(line, &echo, lane, &outcome);
         }

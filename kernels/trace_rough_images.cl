@@ -1,0 +1,16 @@
+/* Entry point beside trace_rough.cl's, in a program of its own, since compiling it takes long and
+ * few scenes have boundaries. */
+#include "trace_rough_images.h"
+
+__kernel void trace_rough_images(__global const struct fan_record *fan_buffer,
+                                 __global const struct ray_piece_record *pieces,
+                                 __global const struct object_record *objects, __global long *tiles,
+                                 __global const struct image_pair_record *pair,
+                                 __global struct outcome_record *outcomes)
+{
+    const struct fan_record fan = *fan_buffer;
+    const int strip = strip_of_item(&fan, (int)get_global_id(0));
+    const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
+    outcomes[get_global_id(0)] =
+        trace_rough_images_strip(&fan, pieces, pair, objects, tiles, strip, segment);
+}

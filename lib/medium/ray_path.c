@@ -1,0 +1,286 @@
+/* Snell's law through level layers (kernels/MATH.md, "Layers"). A ray is known by its ray parameter
+ * p = cos(grazing angle) / c. Where sound is fastest, at c_max, that angle's cotangent x runs from
+ * 0 to infinity; in x nothing cancels near total reflection and ranges grow about linearly: p c =
+ * rho x / sqrt(1 + x^2),  sin = sqrt((1 + x^2 (1 - rho^2)) / (1 + x^2)),  rho = c / c_max
+ */
+#include "medium/water.h"
+
+#include <math.h>
+
+#define PI           3.14159265358979323846
+#define NEWTON_STEPS 200
+#define TOLERANCE    1e-15 /* relative, on ranges */
+
+struct ray_path ray_path_direct(const struct water *water, double sonar_height_m)
+{
+    struct ray_path path = {water, sonar_height_m, sonar_height_m, 0.0, 0, false, false};
+    path.is_straight = water->count < 2 || water->layers[1].bottom_m >= sonar_height_m;
+    return path;
+}
+
+struct ray_path ray_path_image(const struct water *water, double sonar_height_m, double depth_m,
+                               uint32_t bounces, bool comes_from_seabed)
+{
+    struct ray_path path = ray_path_direct(water, sonar_height_m);
+    path.depth_m = depth_m;
+    path.bounces = bounces;
+    path.comes_from_seabed = comes_from_seabed;
+    const bool meets_surface = bounces > 1 || !comes_from_seabed;
+    path.is_straight =
+        meets_surface ? water->count < 2 || water->layers[1].bottom_m >= depth_m : path.is_straight;
+    /* each image is that of the one before it: from the far boundary to the one next to the target
+     */
+    bool by_seabed = (bounces % 2 == 1) == comes_from_seabed;
+    for (uint32_t i = 0; i < bounces; i++, by_seabed = !by_seabed)
+        path.image_height_m = (by_seabed ? 0.0 : 2.0 * depth_m) - path.image_height_m;
+    return path;
+}
+
+/* The boundary that the sound meets first. */
+static bool goes_down_first(const struct ray_path *path)
+{
+    return path->bounces == 0 || (path->bounces % 2 == 1) == path->comes_from_seabed;
+}
+
+/* Heights between the sonar and the first boundary, and after the last boundary; in between the
+ * whole depth is crossed bounces - 1 times. */
+struct legs {
+    double first_low, first_high, last_low, last_high;
+    uint32_t whole;
+};
+
+static struct legs legs_of(const struct ray_path *path)
+{
+    struct legs legs = {0.0, path->sonar_height_m, 0.0, 0.0, 0};
+    if (path->bounces == 0)
+        return legs;
+    legs.whole = path->bounces - 1;
+    if (!goes_down_first(path)) {
+        legs.first_low = path->sonar_height_m;
+        legs.first_high = path->depth_m;
+    }
+    if (!path->comes_from_seabed)
+        legs.last_high = path->depth_m;
+    return legs;
+}
+
+static double between(double low, double high, double bottom, double top)
+{
+    return fmax(0.0, fmin(high, top) - fmax(low, bottom));
+}
+
+/* Height of layer i that the path crosses before the sound's last stretch through the straight
+ * water, which begins at that water's upper edge, or at the seabed. */
+static double crossed_height(const struct ray_path *path, const struct legs *legs, size_t i)
+{
+    const struct water *water = path->water;
+    const double bottom = water->layers[i].bottom_m;
+    const double top = i + 1 < water->count ? water->layers[i + 1].bottom_m : INFINITY;
+    double height = between(legs->first_low, legs->first_high, bottom, top) +
+                    between(legs->last_low, legs->last_high, bottom, top);
+    if (legs->whole > 0)
+        height += legs->whole * between(0.0, path->depth_m, bottom, top);
+    if (i == 0 && !path->comes_from_seabed)
+        height -= top;
+    return height;
+}
+
+/* How often the path crosses the plane at a height. */
+static uint32_t crossings(const struct legs *legs, double height)
+{
+    return legs->whole + (height > legs->first_low && height < legs->first_high) +
+           (height > legs->last_low && height < legs->last_high);
+}
+
+/* The last stretch: through the straight water up or down to a height. */
+static double last_height(const struct ray_path *path, double height)
+{
+    return path->comes_from_seabed ? height : path->water->layers[1].bottom_m - height;
+}
+
+/* The fastest water on the path. */
+static double fastest(const struct ray_path *path, const struct legs *legs, double last)
+{
+    double speed = last > 0.0 ? path->water->straight_speed_mps : 0.0;
+    for (size_t i = 0; i < path->water->count; i++)
+        if (crossed_height(path, legs, i) > 0.0)
+            speed = fmax(speed, path->water->layers[i].speed_mps);
+    return speed;
+}
+
+/* What a ray sums up on its path. */
+struct sums {
+    double range;  /* horizontal, m */
+    double time;   /* s */
+    double length; /* m */
+    double growth; /* dr/dp = sum of h c / sin^3, m^2/s */
+};
+
+static void add_layer(struct sums *sums, double height, double speed, double fastest_speed,
+                      double x)
+{
+    const double rho = speed / fastest_speed;
+    const double square = 1.0 + x * x;
+    const double sine = sqrt((1.0 + x * x * (1.0 - rho) * (1.0 + rho)) / square);
+    sums->range += height * rho * x / (sqrt(square) * sine);
+    sums->time += height / (speed * sine);
+    sums->length += height / sine;
+    sums->growth += height * speed / (sine * sine * sine);
+}
+
+static struct sums sum_way(const struct ray_path *path, const struct legs *legs, double last,
+                           double fastest_speed, double x)
+{
+    struct sums sums = {0.0, 0.0, 0.0, 0.0};
+    for (size_t i = 0; i < path->water->count; i++) {
+        const double height = crossed_height(path, legs, i);
+        if (height > 0.0)
+            add_layer(&sums, height, path->water->layers[i].speed_mps, fastest_speed, x);
+    }
+    if (last > 0.0)
+        add_layer(&sums, last, path->water->straight_speed_mps, fastest_speed, x);
+    return sums;
+}
+
+/* Share of the energy that a plane between two layers passes on: 1 - R^2, R Rayleigh's. */
+static double plane_transmission(const struct water_layer *one, const struct water_layer *other,
+                                 double ray_parameter)
+{
+    const double sine_one = sqrt(1.0 - pow(ray_parameter * one->speed_mps, 2.0));
+    const double sine_other = sqrt(1.0 - pow(ray_parameter * other->speed_mps, 2.0));
+    const double first = one->density * one->speed_mps * sine_other;
+    const double second = other->density * other->speed_mps * sine_one;
+    const double reflection = (first - second) / (first + second);
+    return 1.0 - reflection * reflection;
+}
+
+/* Planes between equal densities are those of a profile, which changes gently: they pass all. */
+static double transmission(const struct ray_path *path, const struct legs *legs,
+                           double ray_parameter)
+{
+    double share = 1.0;
+    for (size_t i = 0; i + 1 < path->water->count; i++) {
+        const struct water_layer *below = &path->water->layers[i];
+        const struct water_layer *above = &path->water->layers[i + 1];
+        if (below->density != above->density)
+            share *= pow(plane_transmission(below, above, ray_parameter),
+                         crossings(legs, above->bottom_m));
+    }
+    return share;
+}
+
+static struct arrival straight_ray(const struct ray_path *path, double grazing, double height)
+{
+    const double drop = path->image_height_m - height;
+    struct arrival ray;
+    ray.straight_range_m = drop / sin(grazing);
+    ray.ground_range_m = ray.straight_range_m * cos(grazing);
+    ray.length_m = ray.straight_range_m;
+    ray.wavefront_m = ray.straight_range_m;
+    ray.spreading = cos(grazing);
+    return ray;
+}
+
+struct arrival ray_path_arrival(const struct ray_path *path, double grazing_rad, double height_m)
+{
+    static const struct arrival none = {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
+    if (path->is_straight)
+        return straight_ray(path, grazing_rad, height_m);
+    const struct legs legs = legs_of(path);
+    const double last = last_height(path, height_m);
+    const double speed = path->water->straight_speed_mps;
+    const double fastest_speed = fastest(path, &legs, last);
+    const double cosine = cos(grazing_rad);
+    const double sine = fabs(sin(grazing_rad));
+    const double fast_cosine = cosine * fastest_speed / speed;
+    if (!(fast_cosine < 1.0))
+        return none;
+    const struct sums sums = sum_way(path, &legs, last, fastest_speed,
+                                     fast_cosine / sqrt((1.0 - fast_cosine) * (1.0 + fast_cosine)));
+    const double at_sonar = water_layer_at(path->water, path->sonar_height_m)->speed_mps / speed;
+    struct arrival ray;
+    ray.ground_range_m = sums.range;
+    ray.straight_range_m = sums.time * speed;
+    ray.length_m = sums.length;
+    ray.wavefront_m = sums.growth * sine * sine / speed;
+    ray.spreading = at_sonar * cosine * sine * transmission(path, &legs, cosine / speed) /
+                    sqrt(1.0 - pow(cosine * at_sonar, 2.0));
+    return ray;
+}
+
+/* x of the ray whose range (or, for a time, whose travel time) is the wanted one. Both grow with x:
+ * dr/dx = dr/dp dp/dx and dt/dp = p dr/dp. */
+static double find_ray(const struct ray_path *path, const struct legs *legs, double last,
+                       double fastest_speed, double wanted, bool is_time)
+{
+    double low = 0.0, high = INFINITY;
+    double x = 1.0;
+    for (int i = 0; i < NEWTON_STEPS; i++) {
+        const struct sums sums = sum_way(path, legs, last, fastest_speed, x);
+        const double found = is_time ? sums.time : sums.range;
+        const double square = 1.0 + x * x;
+        const double per_x = 1.0 / (fastest_speed * square * sqrt(square));
+        const double parameter = x / (fastest_speed * sqrt(square));
+        const double slope = sums.growth * per_x * (is_time ? parameter : 1.0);
+        if (fabs(found - wanted) <= TOLERANCE * wanted)
+            break;
+        *(found < wanted ? &low : &high) = x;
+        const double newton = x - (found - wanted) / slope;
+        const double middle = isinf(high) ? 2.0 * x : 0.5 * (low + high);
+        const double next = newton > low && newton < high ? newton : middle;
+        if (next == x)
+            break;
+        x = next;
+    }
+    return x;
+}
+
+/* The ray to a height of which the range, or the travel time, is known. */
+struct found_ray {
+    struct legs legs;
+    double last, fastest_speed, x;
+};
+
+static struct found_ray ray_to(const struct ray_path *path, double height, double wanted,
+                               bool is_time)
+{
+    struct found_ray ray = {legs_of(path), last_height(path, height), 0.0, 0.0};
+    ray.fastest_speed = fastest(path, &ray.legs, ray.last);
+    ray.x = find_ray(path, &ray.legs, ray.last, ray.fastest_speed, wanted, is_time);
+    return ray;
+}
+
+double ray_path_grazing(const struct ray_path *path, double ground_range_m, double height_m)
+{
+    if (path->is_straight)
+        return atan2(path->image_height_m - height_m, ground_range_m);
+    const struct found_ray ray = ray_to(path, height_m, ground_range_m, false);
+    const double grazing = acos(path->water->straight_speed_mps / ray.fastest_speed * ray.x /
+                                sqrt(1.0 + ray.x * ray.x));
+    return path->comes_from_seabed ? -grazing : grazing;
+}
+
+double ray_path_range(const struct ray_path *path, double ground_range_m, double height_m)
+{
+    if (path->is_straight)
+        return hypot(ground_range_m, path->image_height_m - height_m);
+    const struct found_ray ray = ray_to(path, height_m, ground_range_m, false);
+    return sum_way(path, &ray.legs, ray.last, ray.fastest_speed, ray.x).time *
+           path->water->straight_speed_mps;
+}
+
+double ray_path_ground_range(const struct ray_path *path, double straight_range_m)
+{
+    if (path->is_straight) {
+        const double drop = path->image_height_m;
+        const double square = straight_range_m * straight_range_m - drop * drop;
+        return square > 0.0 ? sqrt(square) : 0.0;
+    }
+    const struct legs legs = legs_of(path);
+    const double last = last_height(path, 0.0);
+    const double time = straight_range_m / path->water->straight_speed_mps;
+    if (time <= sum_way(path, &legs, last, fastest(path, &legs, last), 0.0).time)
+        return 0.0;
+    const struct found_ray ray = ray_to(path, 0.0, time, true);
+    return sum_way(path, &ray.legs, ray.last, ray.fastest_speed, ray.x).range;
+}
