@@ -392,6 +392,7 @@ sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
     forming.tracer = tracer;
     forming.request = request;
     sonject_status status = allocate_planes(echoes, tracer, request);
+    /* rays are traced here, unless a checkpoint has what they would find */
     THEN(status, source ? source->deliver(source->giver, tracer, request, &sink)
                         : trace_impulses(tracer, request, &sink));
     THEN(status, finish(&forming));

@@ -298,7 +298,9 @@ static const struct field injection_fields[] = {
     {"mode", "keep the measured pixels around the target, or trace the patch anew",
      WORD(mode) =
          {[SONJECT_MODE_COMPOSITE] = "composite", [SONJECT_MODE_RESYNTHESISE] = "resynthesise"}},
-    {"columns", "that an echo of several interactions goes to",
+    {"columns",
+     "rule of the track position that an echo of several interactions goes to, a column of the "
+     "paper's: the mean of first and last hit's, or the first hit's",
      WORD(
          column_rule) = {[SONJECT_COLUMNS_FOCUSED] = "focused", [SONJECT_COLUMNS_PAPER] = "paper"}},
     {"noise_floor", "estimated or not", HIDDEN, FLAG(estimate_noise), .preset = 1},

@@ -263,7 +263,7 @@ static const struct field seabed_fields[] = {
      QUANTITY(lambert, LEVEL), WITHIN(0.0, (1.0 + 1e-12) / PI), .bounds = ABOVE_LEAST,
      .preset = 1.995262314968879e-3,
      .range = "above 0 and at most 1/pi (-4.97 dB), or the seabed returns more than it receives"},
-    {"map", "reflectivity that resynthesise takes from the image",
+    {"map", "reflectivity that resynthesise takes from the image; composites weight shadows by it",
      WORD(map) = {[SONJECT_MAP_INTENSITY] = "intensity",
                   [SONJECT_MAP_DESPECKLED] = "despeckled",
                   [SONJECT_MAP_COHERENT] = "coherent"},

@@ -131,6 +131,17 @@ def test_check_prints_to_stdout(sonject, scene):
     assert not answer.stderr and "ball" in answer.stdout
 
 
+@pytest.mark.parametrize("side", ["port", "starboard"])
+def test_the_plan_of_check_lies_as_the_image(sonject, scene, side):
+    """An object of row 12 of 96 is in the plan's first eighths, its shadow beyond it."""
+    told = sonject.done("check", scene, "--set", f"input.geometry.side={side}", "--set",
+                        "objects[0].position={row: 12, column: 20}").stdout
+    plan = [line for line in told.splitlines() if line.startswith("  |")]
+    marked = [row for row, line in enumerate(plan) if "#" in line]
+    assert marked and marked[-1] < len(plan) // 3
+    assert all("#:" in plan[row] for row in marked)
+
+
 def test_a_full_standard_output_is_noticed(sonject, scene):
     with open("/dev/full", "w") as full:
         for arguments in (["--help"], ["--version"], ["check", scene], ["devices"]):

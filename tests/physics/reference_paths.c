@@ -349,7 +349,7 @@ static void follow(struct run *run, struct ray *ray, int aim)
     const double limit = ranges->first_m + ranges->count * ranges->width_m;
     while (ray->hits < REFERENCE_ORDERS && ray->weight > 0.0) {
         struct reference_hit hit;
-        int met = reference_nearest(run->scene, ray->origin, ray->way, &hit);
+        int met = (int)reference_nearest(run->scene, ray->origin, ray->way, &hit);
         if (met == MET_SURFACE && run->scene->reflection != 0.0) {
             ray->weight *= 2.0;
             met = next_uniform(&run->state) < 0.5 ? MET_MIRROR : MET_SURFACE;
