@@ -89,15 +89,16 @@ struct cut_record {
 struct object_record {
     RECORD_INT shape;                   /* enum shape_kind (shapes/shapes.h) */
     float centre_x, centre_y, centre_z; /* m, in the frame */
-    float axes[9];         /* rows: the object's own x (nose), y and z axis in frame coordinates */
-    float half_length;     /* m, along x: plane, cylinder, box, wedge, ellipsoid; capsule: of its
-                              straight part */
-    float half_width;      /* m, along y: plane, box, wedge, ellipsoid */
-    float half_height;     /* m, along z: box, wedge, ellipsoid, cone */
-    float radius;          /* m: sphere, cylinder, capsule, disc; cone: the larger of its ends;
-                              torus: of the ring's middle line */
-    float ring_radius;     /* m: torus, of the ring's section */
-    float slant_across;    /* wedge: x, cone: radial component of the slanted face's unit normal */
+    float axes[9]; /* rows: the object's own x (nose), y and z axis in frame coordinates */
+    /* Sizes. Which of them a shape has, and which of its radii are meant, its file in shapes/
+     * says. */
+    float half_length; /* m, along x */
+    float half_width;  /* m, along y */
+    float half_height; /* m, along z */
+    float radius;      /* m */
+    float ring_radius; /* m */
+    /* of a slanted face's unit normal: */
+    float slant_across;    /* its component along x or away from the z axis */
     float slant_up;        /* its z component */
     float slant_offset;    /* m: of that face from the centre */
     float bounding_radius; /* m, about the centre */

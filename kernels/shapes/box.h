@@ -1,4 +1,5 @@
-/* Box about the origin of its own frame, and the wedge, a box whose top slants down to the nose. */
+/* Box about the origin of its own frame (half_length, half_width, half_height), and the wedge, a
+ * box whose top slants down to the nose (slant_across: along x). */
 #ifndef SONJECT_KERNELS_SHAPES_BOX_H
 #define SONJECT_KERNELS_SHAPES_BOX_H
 

@@ -5,7 +5,7 @@
 #include "shapes/cylinder.h"
 #include "shapes/sphere.h"
 
-/* Its half_length is that of the straight part. */
+/* Its half_length is that of the straight part; radius: of the cylinder and both ends. */
 FUNCTION struct interval capsule_interval(GLOBAL const struct object_record *object,
                                           struct vector3 point, struct vector3 direction)
 {

@@ -1,4 +1,5 @@
-/* Cone or truncated cone about the z axis of its own frame, flat ends. */
+/* Cone or truncated cone about the z axis of its own frame, flat ends: half_height, radius (of its
+ * larger end) and the slant. */
 #ifndef SONJECT_KERNELS_SHAPES_CONE_H
 #define SONJECT_KERNELS_SHAPES_CONE_H
 

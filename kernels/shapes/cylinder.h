@@ -1,4 +1,4 @@
-/* Cylinder along the x axis of its own frame, flat ends. */
+/* Cylinder along the x axis of its own frame, flat ends: half_length, radius. */
 #ifndef SONJECT_KERNELS_SHAPES_CYLINDER_H
 #define SONJECT_KERNELS_SHAPES_CYLINDER_H
 

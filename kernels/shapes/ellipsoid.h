@@ -1,4 +1,5 @@
-/* Ellipsoid about the origin of its own frame, its semi-axes along x, y and z. */
+/* Ellipsoid about the origin of its own frame, its semi-axes along x, y and z: half_length,
+ * half_width, half_height. */
 #ifndef SONJECT_KERNELS_SHAPES_ELLIPSOID_H
 #define SONJECT_KERNELS_SHAPES_ELLIPSOID_H
 

@@ -1,5 +1,6 @@
 /* Cylinder along the x axis of its own frame whose ends are each flat, open, or a part of a sphere.
- * With an open end it is a thin wall, seen from both sides; else it is solid. */
+ * With an open end it is a thin wall, seen from both sides; else it is solid. Its sizes: radius and
+ * ends. */
 #ifndef SONJECT_KERNELS_SHAPES_ENDED_CYLINDER_H
 #define SONJECT_KERNELS_SHAPES_ENDED_CYLINDER_H
 

@@ -1,4 +1,4 @@
-/* Rectangle in the x-y plane of its own frame; both sides reflect. */
+/* Rectangle in the x-y plane of its own frame (half_length, half_width); both sides reflect. */
 #ifndef SONJECT_KERNELS_SHAPES_PLANE_H
 #define SONJECT_KERNELS_SHAPES_PLANE_H
 

@@ -1,4 +1,4 @@
-/* Sphere about the origin of its own frame. */
+/* Sphere about the origin of its own frame, of that radius. */
 #ifndef SONJECT_KERNELS_SHAPES_SPHERE_H
 #define SONJECT_KERNELS_SHAPES_SPHERE_H
 

@@ -136,7 +136,7 @@ static double farthest_middle(const struct tracer *tracer, uint32_t part)
  * Cells there are all or nothing at edges, so they must not be wide. */
 static double multibounce_rays_finer(const struct tracer *tracer, uint32_t part)
 {
-    const double radius = tracer->placements[part].size.least_curvature_m;
+    const double radius = tracer->placements[part].size.least_radius_of_curvature_m;
     const double spread = 1.0 + 2.0 * farthest_middle(tracer, part) / radius;
     return fmin(fmax(spread * GLINT_CELL_WAVELENGTHS / WIDEST_WAVELENGTHS, 1.0), FINER_MAX);
 }

@@ -20,8 +20,11 @@ def shown_diff(what):
 @pytest.mark.parametrize("what", PLACES)
 def test_the_change_that_is_shown_fits_and_touches_few_places(what):
     diff = shown_diff(what)
-    subprocess.run(["git", "apply", "--check", "-"], cwd=SOURCE, check=True,
-                   input=diff, text=True)
+    fits = subprocess.run(["git", "apply", "--check", "-"], cwd=SOURCE, check=False,
+                          input=diff, text=True, capture_output=True)
+    assert fits.returncode == 0, (
+        f'"A new {what}": CONTRIBUTING.md\'s example no longer fits the code; move its hunk to '
+        f"where it does:\n{fits.stderr}")
     files = set(re.findall(r"^\+\+\+ b/(\S+)", diff, re.M)) - {"lib/scene/params.h"}
     assert len(files if what == "format" else {name.rpartition("/")[0] for name in files}) \
         == PLACES[what]

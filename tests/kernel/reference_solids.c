@@ -16,10 +16,11 @@ static double value_at(const struct surface *surface, struct point p)
         return pow(p.x / n[0], 2.0) + pow(p.y / n[1], 2.0) + pow(p.z / n[2], 2.0) - 1.0;
     case CONE:
         return p.x * p.x + p.y * p.y - pow(n[0] + n[1] * p.z, 2.0);
-    default:
+    case TORUS:
         return pow(dot(p, p) + n[0] * n[0] - n[1] * n[1], 2.0) -
                4.0 * n[0] * n[0] * (p.x * p.x + p.y * p.y);
     }
+    return NAN;
 }
 
 static struct point gradient_at(const struct surface *surface, struct point p, double step)
@@ -335,15 +336,16 @@ static int crossings(const struct surface *surface, struct point middle, struct 
         return real_roots(c, root);
     }
     const double a = surface->kind == PLANE ? 0.0 : even - at_0;
-    if (fabs(a) < 1e-14 * (fabs(odd) + fabs(at_0))) {
+    if (fabs(a) <= 1e-14 * (fabs(odd) + fabs(at_0))) {
         root[0] = -at_0 / odd;
         return odd != 0.0;
     }
     const double square = odd * odd - 4.0 * a * at_0;
     if (square < 0.0)
         return 0;
-    root[0] = (-odd - sqrt(square)) / (2.0 * a);
-    root[1] = (-odd + sqrt(square)) / (2.0 * a);
+    const double half = -0.5 * (odd + copysign(sqrt(square), odd)); /* where nothing cancels */
+    root[0] = half / a;
+    root[1] = half != 0.0 ? at_0 / half : 0.0;
     return 2;
 }
 

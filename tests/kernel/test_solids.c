@@ -190,13 +190,13 @@ static void test_against_the_reference(void **state)
         }
 }
 
-static void test_no_way_outwards_meets_a_convex_solid_again(void **state)
+static void test_ways_outwards_meet_hollow_solids_alone_again(void **state)
 {
     static const double reaches[] = {2.0, 100.0};
     for (const struct solid_row *row = solid_rows; row < solid_rows + solid_row_count; row++) {
         int self_hits = 0, tried = 0;
         struct solid solid;
-        for (int i = 0; i < RAYS && (i == 0 || is_convex(&solid.record)); i++) {
+        for (int i = 0; i < RAYS; i++) {
             if (i % 20 == 0)
                 solid = random_solid(row, (uint32_t)(i / 20 % 3), reaches[i / 60 % 2]);
             const struct ray ray = ray_towards(aim(&solid), 200.0);
@@ -205,10 +205,60 @@ static void test_no_way_outwards_meets_a_convex_solid_again(void **state)
             self_hits += is_met > 0;
         }
         print_message("%s: %d self-hits of %d\n", row->name, self_hits, tried);
-        if (!is_convex(&solid.record))
-            continue;
         assert_true(tried > RAYS / 8);
-        assert_int_equal(self_hits, 0);
+        assert_int_equal(self_hits > 0, !is_convex(&solid.record));
+    }
+}
+
+/* Between near hits on one surface the normal turns by at most their distance over the least radius
+ * of curvature. A tenth of that radius lengthens the way along the surface by 1e-3 at most. */
+static void test_surfaces_are_bent_no_more_than_is_said(void **state)
+{
+    for (const struct solid_row *row = solid_rows; row < solid_rows + solid_row_count; row++) {
+        /* near its axis, as lib/scene/shapes/shape.h says */
+        const int is_bent_more = row->shape == SHAPE_CONE || row->shape == SHAPE_TRUNCATED_CONE ||
+                                 row->shape == SHAPE_TORUS;
+        double most = 0.0;
+        int compared = 0;
+        struct solid solid;
+        struct shape_size size;
+        for (int i = 0; i < RAYS; i++) {
+            if (i % 20 == 0) {
+                solid = random_solid(row, 0, 0.0);
+                shape_size_init(&size, &solid.params);
+            }
+            const double radius = size.least_radius_of_curvature_m;
+            const double near = 0.1 * fmin(radius, size.bounding_radius_m);
+            const struct ray ray = ray_towards(aim(&solid), 50.0);
+            struct point at[2], start = ray.origin;
+            struct solid_hit hits[2];
+            double to_edge = INFINITY;
+            for (int k = 0; k < 2; k++) {
+                hits[k] = reference_hit(&solid, start, ray.direction, -50.0, 0.0);
+                at[k] = add(start, ray.direction, hits[k].distance);
+                to_edge =
+                    fmin(to_edge,
+                         fabs(dot(hits[k].normal, ray.direction)) < 0.05 ? 0.0 : hits[k].to_edge);
+                start = add(start, random_direction(), 0.3 * near);
+            }
+            const struct point way = add(at[1], at[0], -1.0);
+            const double distance = sqrt(dot(way, way));
+            const struct point own = turned(&solid.record, at[0]); /* its centre is the origin */
+            if (!(distance < near && to_edge > 2.0 * distance) ||
+                (is_bent_more && hypot(own.x, own.y) < radius + distance))
+                continue;
+            const struct point turn = add(hits[1].normal, hits[0].normal, -1.0);
+            const double bent = sqrt(dot(turn, turn)) - distance / radius;
+            most = fmax(most, sqrt(dot(turn, turn)) * size.bounding_radius_m / distance);
+            compared++;
+            if (bent > 2e-3 * distance / radius + 1e-6)
+                fail_msg("%s: its normal turns by %g rad within %g m, so "
+                         "least_radius_of_curvature_m is less than %g m",
+                         row->name, sqrt(dot(turn, turn)), distance, radius);
+        }
+        print_message("%s: %d pairs of hits, bent by up to 1/%.3g of its size\n", row->name,
+                      compared, most);
+        assert_true(compared > RAYS / 50);
     }
 }
 
@@ -407,6 +457,7 @@ static void test_burial(void **state)
 
 TEST_PROGRAM(NULL, NULL, TEST(test_every_shape_of_the_table_is_tested),
              TEST(test_against_the_reference),
-             TEST(test_no_way_outwards_meets_a_convex_solid_again), TEST(test_beyond_the_first),
+             TEST(test_ways_outwards_meet_hollow_solids_alone_again),
+             TEST(test_surfaces_are_bent_no_more_than_is_said), TEST(test_beyond_the_first),
              TEST(test_sixteen_lanes), TEST(test_along_the_axes), TEST(test_nearest_of_several),
              TEST(test_fan), TEST(test_burial))

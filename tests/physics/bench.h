@@ -12,8 +12,6 @@
 #include "trace/rough.h"
 #include "trace/tracer.h"
 
-#define BENCH_OBJECTS 8
-
 struct bench {
     struct report report;
     struct scene scene;

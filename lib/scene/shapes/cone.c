@@ -24,7 +24,7 @@ static void init(struct shape_size *size, const sonject_object_params *object)
         size->top_radius_m = 0.5 * object->top_diameter_m;
     size->bounding_radius_m = hypot(fmax(size->radius_m, size->top_radius_m), size->half_height_m);
     size->radius_about_nose_m = size->bounding_radius_m;
-    size->least_curvature_m = fmax(size->top_radius_m, 0.5 * size->radius_m);
+    size->least_radius_of_curvature_m = fmax(size->top_radius_m, 0.5 * size->radius_m);
 }
 
 const struct shape shape_cone = {.needs = SHAPE_HAS_DIAMETER | SHAPE_HAS_HEIGHT,

@@ -47,7 +47,7 @@ static void init(struct shape_size *size, const sonject_object_params *object)
     size->bounding_radius_m =
         fmax(size->half_length_m, /* tips and rims */
              hypot(fmax(size->nose.joint_m, size->tail.joint_m), size->radius_m));
-    size->least_curvature_m = size->radius_m;
+    size->least_radius_of_curvature_m = size->radius_m;
 }
 
 static double end_extent(const struct end_size *end, double radius, double outward, double along,

@@ -17,7 +17,7 @@ static void init(struct shape_size *size, const sonject_object_params *object)
     (void)object;
     size->bounding_radius_m = most;
     size->radius_about_nose_m = fmax(size->half_width_m, size->half_height_m);
-    size->least_curvature_m = least * least / most;
+    size->least_radius_of_curvature_m = least * least / most;
 }
 
 const struct shape shape_ellipsoid = {

@@ -26,7 +26,7 @@ struct cut_plane {
     double offset_m;  /* of the plane from the origin along it */
 };
 
-/* Which of them a shape has, the members of struct object_record in kernels/layout.h say. */
+/* Which of them a shape has, the files in kernels/shapes say. */
 struct shape_size {
     double half_length_m; /* of the straight part for a capsule */
     double half_width_m, half_height_m;
@@ -40,8 +40,11 @@ struct shape_size {
     const struct mesh *mesh;             /* of a mesh; borrowed from the scene */
     const struct user_shape *user_shape; /* likewise */
     /* Radii of the uncut shape: of a sphere about the origin and of a cylinder about the nose axis
-     * that hold it, and the least that its surface is bent by (INFINITY: all faces are flat). */
-    double bounding_radius_m, radius_about_nose_m, least_curvature_m;
+     * that hold it. */
+    double bounding_radius_m, radius_about_nose_m;
+    /* m; INFINITY where nothing is bent. Edges and tips do not count, nor what of a cone or torus
+     * is nearer to its axis than this. It decides how dense the rays on it are. */
+    double least_radius_of_curvature_m;
 };
 
 /* Keys that say what a shape is. */
@@ -69,8 +72,8 @@ struct shape {
     uint32_t may_have; /* besides those */
     /* Relations between its sizes; NULL: none. */
     void (*check)(struct check *check, const sonject_object_params *object);
-    /* Sizes and radii; those are at first half of what was given, and its radius_m. NULL: it has
-     * no others. */
+    /* Sizes and radii. Sizes come in halved; both bounding radii start at radius_m, the least
+     * radius of curvature at INFINITY. NULL: they stay so. */
     void (*init)(struct shape_size *size, const sonject_object_params *object);
     /* The largest p . v over its points p (its support function); uncut. */
     double (*extent)(const struct shape_size *size, const double v[3]);

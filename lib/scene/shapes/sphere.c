@@ -6,7 +6,7 @@ static void init(struct shape_size *size, const sonject_object_params *object)
 {
     (void)object;
     size->half_length_m = 0.0;
-    size->least_curvature_m = size->radius_m;
+    size->least_radius_of_curvature_m = size->radius_m;
 }
 
 static double extent(const struct shape_size *size, const double v[3])
