@@ -97,6 +97,8 @@ def test_the_stages_of_other_sonars_seas_and_images(sonject, scene, tmp_path, sw
         pixels = numpy.stack([swath, swath[::-1]], axis=2)
         (tmp_path / "swath.tif").write_bytes(images.tiff_bytes(pixels))
     compare_with_run(sonject, tmp_path, scene, *options_of(chosen))
+    told = json.loads((tmp_path / "run" / "run.json").read_text())["options"]["columns"]
+    assert told == ("paper" if "injection.columns=paper" in chosen else "focused")
 
 
 def test_the_same_trace_is_the_same_file(sonject, traced):

@@ -21,7 +21,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 ROW = re.compile(r"\| (\d+) \| (.+?) \| `(.+?)` \| `(.+?)` \| (?:`(.+?)`)? ?\| (.+?) \|$", re.M)
 FAILED = ("FAIL", "ERROR", "TIMEOUT")
-SUITES = ["unit", "kernel", "physics", "cli"]  # the quickest first
+SUITES = ["unit", "kernel", "physics", "cli", "fault", "python"]  # the quickest first
 
 
 def done(tree, *command):
