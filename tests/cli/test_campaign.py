@@ -424,6 +424,21 @@ def test_a_grid_draws_every_cell(command, ground):
                      for heading in (0, 30, 60, 90)}
 
 
+def test_a_random_design_draws_each_key_by_itself(command, ground):
+    settings = ["design=random", "images=8", "empty=0", "targets[0].weight=0", "splits={all: 1}",
+                "draw={sonar.altitude: {uniform: [10 m, 11 m]}, "
+                "seabed.lambert: {uniform: [-30 dB, -29 dB]}}"]
+    changes = [part for text in settings for part in ("--set", text)]
+    assert command("campaign", "campaign.yaml", "-o", "random", *changes, "--shard",
+                   "1/1").returncode == 0
+    drawn = [dict(text.split("=", 1) for text in record["set"])
+             for record in records(ground / "random")]
+    shares = [(float(each["sonar.altitude"].split()[0]) - 10,
+               float(each["seabed.lambert"].split()[0]) + 30) for each in drawn]
+    assert all(abs(one - other) > 1e-4 for one, other in shares)
+    assert len(set(shares)) == 8
+
+
 def test_the_example_runs_as_it_says(ground, environment):
     """Every twentieth image of it."""
     seabeds, campaign = comment_commands("tools/campaigns/minefield.yaml")
