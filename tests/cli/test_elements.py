@@ -28,6 +28,8 @@ def test_files_hold_the_series(sonject, scene, tmp_path):
     ground = math.sqrt((25 + 0.025 * (COLUMNS - 1) / 2) ** 2 - 10**2)
     nearest = math.hypot(ground, 10 - 0.25) - 0.25
     assert abs(peak * 1500 / 2 - nearest) < 0.5 * 0.025
+    # more than a quarter of the wavelength of 15 mm
+    sonject.done("elements", scene, "-o", "fine", "--set", "sonar.resolution=4 mm")
     sonject.done("elements", scene, "-o", "real", "--set", "elements.form=passband")
     assert numpy.load(tmp_path / "real" / "series.npy").dtype == numpy.float32
 
@@ -54,6 +56,7 @@ def test_what_is_wrong_leaves_nothing(sonject, scene, tmp_path):
     scene.write_text(SCENE + ARRAY)
     for setting, words in (
             ("elements.sampling_rate=20 kHz", "elements.sampling_rate: must be at least 30000 Hz"),
+            ("sonar.resolution=3.7 mm", "no aperture on a straight track resolves 0.0037 m"),
             ("sonar.motion={random: {rms: 1 mm, correlation: 1 m}}", "sonar.motion moves images alone")):
         assert_refused(sonject("elements", scene, "-o", "out", "--set", setting), 3, words)
     assert not files_below(tmp_path / "out")
