@@ -279,6 +279,8 @@ def test_two_sets_of_contacts(sonject, tmp_path):
     assert length["second"]["mean"] == pytest.approx(75, abs=1.5)
     assert 0 < length["first"]["standard_error"] < 1
     assert length["ks_distance"] == 1 and length["p_value"] < 0.02
+    turned = told(sonject("measure", "c.json", "--compare", "a.json"))
+    assert turned["shadow_range_pixels"]["ks_distance"] == 1
     assert same["shadow_range_pixels"]["p_value"] > 0.02
     assert other["shadow_range_m"]["p_value"] is None
     assert other["shadow_range_m"]["first"]["count"] == 0
