@@ -30,7 +30,6 @@ CLASSES = {
 }
 # Members that are no fields: a call without files leaves seam_before unset.
 NO_FIELDS = {"struct_size", "reserved", "seam_before"}
-REQUIRED = {"row_spacing_m", "column_spacing_m", "first_slant_range_m", "kind"}  # of parameters
 COMMENT = r"/\*(?:(?!\*/).)*\*/"
 
 
@@ -212,12 +211,10 @@ def documentation(header, title, described):
 
 def fields_of(header, structure):
     """(name, type in Python, comment) of the fields of a structure's class."""
-    base = CLASSES[structure][1]
     for declaration, comment in header.structures[structure]:
         written, name, length = split(declaration)
         if name in NO_FIELDS:
             continue
-        choice = re.match(r"sonject_\w+", comment)
         assert not length or written == "char", f"no field for {declaration}"
         if written in CLASSES:
             found = CLASSES[written][0]
@@ -227,8 +224,6 @@ def fields_of(header, structure):
             found = "float"
         elif re.search(r"(^|_)(is|has)_", name) or comment.startswith("1: "):
             found = "bool"
-        elif choice and choice[0] in header.enumerations and base not in ("Answer", "BoxBase"):
-            found = enumeration_name(choice[0])
         else:
             assert written in ("uint32_t", "uint64_t"), f"no field for {declaration}"
             found = "int"
@@ -237,24 +232,19 @@ def fields_of(header, structure):
 
 def classes(header):
     """_classes.py"""
-    chosen = sorted(enumeration_name(name) for name in header.enumerations)
     bases = sorted({base for _, base in CLASSES.values()})
     yield '"""The classes of structures, their fields as include/sonject declares them."""\n'
     yield "from dataclasses import dataclass\n"
     yield "from . import _interface as s"
     yield f"from ._parameters import {', '.join(bases)}"
-    yield f"from .enumerations import ({', '.join(chosen)})"
     for structure, (kind, base) in CLASSES.items():
         found = list(fields_of(header, structure))
-        is_answer = base in ("Answer", "BoxBase", "ElementLayoutBase")
-        yield f"\n\n@dataclass({'frozen' if is_answer else 'kw_only'}=True)"
+        yield "\n\n@dataclass(frozen=True)"
         yield f"class {kind}({base}):"
         yield from documentation(header, header.titles[structure],
                                  [(name, comment) for name, _, comment in found])
         yield f"    _structure = s.{structure}\n"
-        for name, kind_of, _ in found:
-            is_given = is_answer or name in REQUIRED
-            yield f"    {name}: {kind_of}" + ("" if is_given else f" = {kind_of}(0)")
+        yield from (f"    {name}: {kind_of}" for name, kind_of, _ in found)
 
 
 class Key:

@@ -64,8 +64,7 @@ class campaign
     }
     sonject_campaign_image describe(std::uint64_t id) const
     {
-        sonject_campaign_image image = {};
-        image.struct_size = sizeof image;
+        sonject_campaign_image image = defaults<sonject_campaign_image>();
         check(sonject_campaign_describe(handle_, id, &image));
         return image;
     }

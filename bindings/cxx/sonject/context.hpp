@@ -11,6 +11,7 @@
 #include <sonject/context.h>
 #include <sonject/convert.h>
 #include <sonject/error.hpp>
+#include <sonject/parameters.hpp>
 #include <sonject/run.h>
 #include <sonject/version.h>
 
@@ -36,8 +37,7 @@ class context
     explicit context(context_options options = context_options())
         : log_(new sonject::log(std::move(options.log))), handle_(nullptr)
     {
-        sonject_context_params params = sonject_context_params();
-        params.struct_size = sizeof params;
+        sonject_context_params params = defaults<sonject_context_params>();
         params.device_name = options.device_name.empty() ? nullptr : options.device_name.c_str();
         params.opencl_context = options.opencl_context;
         params.opencl_device = options.opencl_device;

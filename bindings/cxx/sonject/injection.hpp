@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <sonject/error.hpp>
+#include <sonject/parameters.hpp>
 #include <sonject/progress.hpp>
 #include <sonject/result.h>
 #include <sonject/scene.hpp>
@@ -20,9 +21,8 @@ namespace sonject
 struct pixels {
     pixels(const float *data, std::uint64_t rows, std::uint64_t columns,
            sonject_pixel_kind kind = SONJECT_PIXELS_AMPLITUDE, std::uint64_t row_stride = 0)
-        : value()
+        : value(defaults<sonject_pixels>())
     {
-        value.struct_size = sizeof value;
         value.kind = kind;
         value.rows = rows;
         value.columns = columns;
@@ -111,15 +111,13 @@ class result
     }
     sonject_object_truth object(std::uint32_t index) const
     {
-        sonject_object_truth truth = {};
-        truth.struct_size = sizeof truth;
+        sonject_object_truth truth = defaults<sonject_object_truth>();
         check(sonject_result_object(handle_, index, &truth));
         return truth;
     }
     sonject_statistics statistics() const
     {
-        sonject_statistics numbers = {};
-        numbers.struct_size = sizeof numbers;
+        sonject_statistics numbers = defaults<sonject_statistics>();
         check(sonject_result_statistics(handle_, &numbers));
         return numbers;
     }

@@ -19,8 +19,7 @@ namespace sonject
 /* What an image file says of its seabed and of the seam; see sonject_measure. */
 inline sonject_measurement measure(const context &context, const sonject_measure_params &params)
 {
-    sonject_measurement measurement = {};
-    measurement.struct_size = sizeof measurement;
+    sonject_measurement measurement = defaults<sonject_measurement>();
     context.check(sonject_measure(context.get(), &params, &measurement));
     return measurement;
 }
@@ -64,8 +63,7 @@ inline sonject_contact_measures measure_contact(const context &context, const pi
                                                 double row_spacing_m = 0.0,
                                                 double column_spacing_m = 0.0)
 {
-    sonject_contact_measures measures = {};
-    measures.struct_size = sizeof measures;
+    sonject_contact_measures measures = defaults<sonject_contact_measures>();
     context.check(sonject_measure_contact(context.get(), &image.value, box, row_spacing_m,
                                           column_spacing_m, &measures));
     return measures;

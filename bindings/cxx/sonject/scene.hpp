@@ -184,8 +184,7 @@ class scene
     sonject_element_layout describe_elements(std::uint64_t rows = 0,
                                              std::uint64_t columns = 0) const
     {
-        sonject_element_layout layout = {};
-        layout.struct_size = sizeof layout;
+        sonject_element_layout layout = defaults<sonject_element_layout>();
         check(sonject_elements_describe(context_, handle_, rows, columns, &layout));
         return layout;
     }

@@ -1,7 +1,6 @@
 """What the classes of C structures have in common, and what some of them have beside their fields."""
 
 import ctypes
-import enum
 from dataclasses import fields
 from typing import Any, ClassVar, Type, TypeVar
 
@@ -10,7 +9,7 @@ import numpy.typing
 
 from ._values import text
 
-Self = TypeVar("Self", bound="Mirror")
+Self = TypeVar("Self", bound="Answer")
 Array = numpy.typing.NDArray[Any]
 
 
@@ -20,11 +19,11 @@ def _from_c(kind: Any, value: Any) -> Any:
         return text(value)
     if isinstance(value, ctypes.Structure):
         return kind.from_structure(value)
-    return kind(value) if isinstance(kind, type) and issubclass(kind, (bool, enum.IntEnum)) else value
+    return bool(value) if kind is bool else value
 
 
-class Mirror:
-    """Mirrors one C structure; fields have the names of the structure's."""
+class Answer:
+    """What the library tells in a C structure; fields have the names of the structure's."""
 
     _structure: ClassVar[Type[ctypes.Structure]]
 
@@ -32,10 +31,6 @@ class Mirror:
     def from_structure(cls: Type[Self], structure: Any) -> Self:
         entries = fields(cls)  # type: ignore[arg-type]  # what derives from this is a dataclass
         return cls(**{each.name: _from_c(each.type, getattr(structure, each.name)) for each in entries})
-
-
-class Answer(Mirror):
-    """What the library tells."""
 
 
 class BoxBase(Answer):

@@ -81,14 +81,6 @@ def plain_text(name: str, value: Any) -> bytes:
     return value.encode("utf-8")
 
 
-def short_text(name: str, value: Any, capacity: int) -> bytes:
-    """value in UTF-8 with room for the terminator."""
-    encoded = plain_text(name, value)
-    if len(encoded) >= capacity:
-        raise ValueError(f"{name} must have at most {capacity - 1} bytes: {value!r}")
-    return encoded
-
-
 def file_name(name: str, value: Any) -> bytes:
     """A path in the file system's encoding."""
     try:
@@ -143,8 +135,6 @@ def fill(structure: ctypes.Structure, values: Mapping[str, Any]) -> None:
             value = real_number(name, value)
         elif kind in _LARGEST:
             value = whole_number(name, value, _LARGEST[kind])
-        elif issubclass(kind, ctypes.Array):
-            value = short_text(name, value, ctypes.sizeof(kind))
         setattr(structure, name, value)
 
 

@@ -40,8 +40,8 @@ def inject(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Res
     patch: array of rows (track positions) x columns (slant ranges), linear amplitudes or complex
     pixels; its pixel (0, 0) lies where the scene's geometry begins. float32 and complex64 arrays
     with contiguous columns are read where they lie, other floating point arrays are converted to
-    these, anything else is refused. None where the scene's input makes the patch, uniform or synthetic. The
-    patch is never changed.
+    these, anything else is refused. None where the scene's input makes the patch, uniform or
+    synthetic. The patch is never changed.
 
     progress: called with the finished fraction and the stage's name; a true answer cancels, and
     what it raises ends the call and is raised here.
@@ -217,8 +217,8 @@ def quicklook(
     array: Optional[str] = None,
     context: Optional[Context] = None,
 ) -> None:
-    """Draws an image file, a channel of an XTF file ("port", "starboard", its number, None for the only one), or the array of that name in
-    an HDF5 or MATLAB file, as a PNG.
+    """Draws an image file, a channel of an XTF file ("port", "starboard", its number, None for the
+    only one), or the array of that name in an HDF5 or MATLAB file, as a PNG.
 
     decibels: ends of the grey scale, None: chosen from the image; altitude_m, geometry: None for
     what the image's metadata says; transfer: None for plain amplitudes. The latter two have the keys
