@@ -77,12 +77,12 @@ SONJECT_API sonject_status sonject_scene_set_table(sonject_scene *scene, const c
  * sonject_text_release; on failure NULL. Errors: ARGUMENT (also a campaign's scene), MEMORY. */
 SONJECT_API sonject_status sonject_scene_text(const sonject_scene *scene, char **text);
 
-/* All keys that scenes have, as a JSON list of objects: path ("objects[].heading"), meaning, kind
- * (quantity, count, flag, word, text, file, section, list or special), unit, is_required, words
- * (null, or an array of them), and preset, least and most in the SI unit (null where there is
- * none). *json is the caller's, for sonject_text_release; on failure NULL. Errors: ARGUMENT,
- * MEMORY.
- */
+/* All keys that scenes have, as a JSON list of objects: path ("objects[].heading"), section (the
+ * path of the one that it is in), meaning, kind (quantity, count, flag, word, name, text, file,
+ * section, list or special), unit, has_value (it may be written as one value), is_list,
+ * is_required (in its section), words (an array of them), default and range in words, and preset,
+ * least and most in the SI unit; null where there is none. *json is the caller's, for
+ * sonject_text_release; on failure NULL. Errors: ARGUMENT, MEMORY. */
 SONJECT_API sonject_status sonject_keys(sonject_context *context, char **json);
 
 /* The names of the bands that a scene (section `bands`), read as sonject_scene_read would, leaves

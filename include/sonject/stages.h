@@ -12,12 +12,12 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
-/* Traces the scene and writes what rays added up to the file, for sonject_form, and, where it is not
- * NULL, its impulses to export_file as arrays of HDF5, described in lib/inject/impulses.h (builds without
- * it: UNSUPPORTED). Each appears whole or not at all. The file keeps the scene's text, and the
- * names of the files that it names, but not these: they, and the input image, are needed again; of
- * a scene with tables in memory it keeps no text. Errors: ARGUMENT, INPUT, DEVICE, STORAGE, MEMORY,
- * UNSUPPORTED, CANCELLED. */
+/* Traces the scene and writes what rays added up to the file, for sonject_form, and, where it is
+ * not NULL, its impulses to export_file as arrays of HDF5, described in lib/inject/impulses.h
+ * (builds without it: UNSUPPORTED). Each appears whole or not at all. The file keeps the scene's
+ * text, and the names of the files that it names, but not these: they, and the input image, are
+ * needed again; of a scene with tables in memory it keeps no text. Errors: ARGUMENT, INPUT, DEVICE,
+ * STORAGE, MEMORY, UNSUPPORTED, CANCELLED. */
 SONJECT_API sonject_status sonject_trace(sonject_context *context, const sonject_scene *scene,
                                          const char *file, const char *export_file,
                                          sonject_progress_function progress, void *user);
@@ -48,8 +48,8 @@ typedef struct sonject_form_params {
  * bandwidth the rays are the same only where that lays the same fine grid (lib/scene/patch_view.h);
  * else energies differ by the noise of two sets of rays, and the outermost pixels lack up to 2 % of
  * their energy. Errors: ARGUMENT, INPUT (not such a file, damaged, of another version, of another
- * scene or image; traced on a machine of another kind, whose mathematics differ; a key or value that needs a new trace), DEVICE, STORAGE, MEMORY, UNSUPPORTED,
- * CANCELLED. */
+ * scene or image; traced on a machine of another kind, whose mathematics differ; a key or value
+ * that needs a new trace), DEVICE, STORAGE, MEMORY, UNSUPPORTED, CANCELLED. */
 SONJECT_API sonject_status sonject_form(sonject_context *context, const sonject_scene *scene,
                                         const sonject_form_params *params,
                                         sonject_progress_function progress, void *user,

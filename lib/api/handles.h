@@ -12,8 +12,8 @@
 #include "device/device.h"
 #include "inject/injection.h"
 #include "scene/scene.h"
+#include "schema/scene_file.h"
 #include "swath/decoder.h"
-#include "trace/sums_file.h"
 
 struct sonject_context {
     struct report report; /* its host is the next member */

@@ -99,19 +99,6 @@ void check_within(struct check *check, const char *key, double value, double min
         check_failure(check, key, "must be %g...%g%s, not %g", minimum, maximum, unit, value);
 }
 
-void check_finite(struct check *check, const char *key, double value)
-{
-    if (!isfinite(value))
-        check_failure(check, key, "must be a finite number, not %g", value);
-}
-
-void check_choice(struct check *check, const char *key, uint32_t value, uint32_t count)
-{
-    if (value >= count)
-        check_failure(check, key, "has no choice number %lu; the last is %lu", (unsigned long)value,
-                      (unsigned long)count - 1);
-}
-
 void check_positive_length(struct check *check, const char *key, double value_m)
 {
     check_within(check, key, value_m, LENGTH_MIN_M, LENGTH_MAX_M, " m");

@@ -121,10 +121,6 @@ void check_relation(struct check *check, const char *key, const char *others, co
 /* unit: as it stands behind a number, " m"; "" for none. */
 void check_within(struct check *check, const char *key, double value, double minimum,
                   double maximum, const char *unit);
-void check_finite(struct check *check, const char *key, double value);
-
-/* Choices are numbered from 0. */
-void check_choice(struct check *check, const char *key, uint32_t value, uint32_t count);
 
 /* Lengths in m: above 0, from 0, and of any sign. */
 void check_positive_length(struct check *check, const char *key, double value_m);

@@ -65,7 +65,7 @@ static void add_rows(struct hash *hash, const struct section *section, const voi
             hash_add_text(hash, *(char *const *)member ? *(char *const *)member : "");
         else if (field->kind == FIELD_ENTRIES)
             hash_add(hash, (const char *)structure + field->count_offset, sizeof(uint32_t));
-        else if (field->kind != FIELD_SPECIAL || field->member)
+        else if (field->kind != FIELD_SPECIAL || field->offset != 0)
             hash_add(hash, member, value_bytes[field->kind]);
         for (uint32_t k = 0; !is_part(field) && k < field_entry_count(field, structure); k++) {
             const struct section *inner = field_below(field, structure, scene, k, &below);

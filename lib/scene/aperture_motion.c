@@ -46,15 +46,11 @@ void aperture_motion_clear(struct aperture_motion *motion)
     motion_table_clear(&motion->yaw_table);
 }
 
-bool motion_has_yaw(const sonject_motion_params *motion)
-{
-    return motion->yaw_count > 0 || motion->yaw_bias_rad != 0.0 ||
-           motion->yaw_random_rms_rad != 0.0;
-}
-
 bool aperture_motion_has_yaw(const struct aperture_motion *motion)
 {
-    return motion_has_yaw(&motion->params) || motion->yaw_table.count > 0;
+    const sonject_motion_params *params = &motion->params;
+    return params->yaw_count > 0 || params->yaw_bias_rad != 0.0 ||
+           params->yaw_random_rms_rad != 0.0 || motion->yaw_table.count > 0;
 }
 
 bool aperture_motion_is_still(const struct aperture_motion *motion)

@@ -33,8 +33,7 @@ sonject_status motion_table_set(struct motion_table *table, struct report *repor
 /* Of both tables. */
 void aperture_motion_clear(struct aperture_motion *motion);
 
-/* Whether there is yaw: of the keys' own, and with a table. */
-bool motion_has_yaw(const sonject_motion_params *motion);
+/* Whether there is yaw, which then has an advance; and whether there is no motion at all. */
 bool aperture_motion_has_yaw(const struct aperture_motion *motion);
 bool aperture_motion_is_still(const struct aperture_motion *motion);
 

@@ -231,10 +231,6 @@ static sonject_status set_motion(struct point_response *response, struct report 
                                  const struct scene *scene, const struct patch_view *view)
 {
     const double middle = view_processor_range(view, 0.5 * (double)(view->columns - 1));
-    if (aperture_motion_has_yaw(&scene->motion) && scene->motion.params.yaw_advance_m == 0.0)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "sonar.motion.yaw: a table of yaw is given without the advance from "
-                              "ping to ping: give that too");
     response->motion = &scene->motion;
     response->motion_range_m = middle / view->range_ratio;
     response->motion_phase_per_m = -4.0 * PI / view->wavelength_m * cos(view_grazing(view, middle));

@@ -73,21 +73,13 @@ double element_least_rate(const sonject_elements_params *elements, double freque
                                                      : bandwidth_hz;
 }
 
-static sonject_status plan_rate(sonject_element_layout *layout, struct report *report)
+static void plan_rate(sonject_element_layout *layout)
 {
     sonject_elements_params *elements = &layout->elements;
-    const bool is_passband = elements->form == SONJECT_SERIES_PASSBAND;
-    const double carrier = is_passband ? 2.0 * layout->centre_frequency_hz : 0.0;
-    const double least =
-        element_least_rate(elements, layout->centre_frequency_hz, layout->bandwidth_hz);
+    const double carrier =
+        elements->form == SONJECT_SERIES_PASSBAND ? 2.0 * layout->centre_frequency_hz : 0.0;
     if (elements->sampling_rate_hz == 0.0)
         elements->sampling_rate_hz = carrier + 2.0 * layout->bandwidth_hz;
-    if (elements->sampling_rate_hz < least)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "elements: sampling_rate must be at least %g Hz, %s, not %g Hz",
-                              least, is_passband ? "twice the highest frequency" : "the bandwidth",
-                              elements->sampling_rate_hz);
-    return SONJECT_OK;
 }
 
 /* Times of the first and the last sample that the patch's aperture needs, the pulse included. */
@@ -146,7 +138,7 @@ sonject_status element_plan(sonject_element_layout *layout, struct report *repor
                               response->resolution_m, wavelength);
     plan_array(layout);
     CHECK(plan_pings(layout, report, view));
-    CHECK(plan_rate(layout, report));
+    plan_rate(layout);
     return plan_times(layout, report, view, response);
 }
 

@@ -7,8 +7,8 @@
 #include "scene/patch_view.h"
 #include "scene/point_response.h"
 
-/* Fills *layout (not its struct_size). view, response: of the patch. Errors: INPUT (sampling rate
- * below the band, aspects beyond end-fire, an empty window, series too long to address). */
+/* Fills *layout (not its struct_size). view, response: of the patch. Errors: INPUT (aspects
+ * beyond end-fire, an empty window, series too long to address). */
 sonject_status element_plan(sonject_element_layout *layout, struct report *report,
                             const struct scene *scene, const struct patch_view *view,
                             const struct point_response *response);

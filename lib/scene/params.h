@@ -203,10 +203,10 @@ typedef enum sonject_reflection_kind {
 } sonject_reflection_kind;
 
 /* A surface returns sound in two parts that are never mixed (kernels/MATH.md).
- * Smooth: mirror-like, amplitude R(angle) exp(-P^2/2), P = 2 k roughness cos(angle).
+ * Smooth: specular, amplitude R(angle) exp(-P^2/2), P = 2 k roughness cos(angle).
  * Rough: scattering per area and solid angle f cos cos,
- *     f = lambert (n + 1)/2 (cos cos)^(n - 1)  +  a cone of rms slope glossy_slope about the mirror
- *     direction that returns at most the fraction glossy_albedo of the energy,
+ *     f = lambert (n + 1)/2 (cos cos)^(n - 1)  +  a cone of rms slope glossy_slope about the
+ *     specular direction that returns at most the fraction glossy_albedo of the energy,
  * reduced at both angles by what the smooth part keeps, so that no more energy leaves than came. */
 typedef struct sonject_material_params {
     uint32_t reflection_kind; /* sonject_reflection_kind */

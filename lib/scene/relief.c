@@ -57,8 +57,9 @@ static sonject_status check_scene(const struct scene *scene, struct report *repo
     double lowest, highest;
     if (forward->reflection_kind == SONJECT_REFLECTION_FLUID || forward->reflection != 0.0)
         return report_failure(report, SONJECT_ERROR_INPUT,
-                              "a seabed with relief cannot be smooth, for the mirror is a level "
-                              "plane: remove seabed.relief or the reflection of seabed.forward");
+                              "a seabed with relief cannot be smooth, for images of the sonar "
+                              "need a level plane: remove seabed.relief or the reflection of "
+                              "seabed.forward");
     if (scene->injection.mode == SONJECT_MODE_RESYNTHESISE &&
         scene->seabed.map == SONJECT_MAP_COHERENT)
         return report_failure(report, SONJECT_ERROR_INPUT,
@@ -93,7 +94,7 @@ static sonject_status lay_grid(struct making *making)
                               : feature->kind == RELIEF_SCOUR ? feature->width_m
                                                               : feature->radius_m);
     }
-    if (scene->relief.heights_m) { /* as fine as the caller's, down to what no pixel shows */
+    if (scene->relief.heights_m) { /* as fine as the file's, down to what no pixel shows */
         const sonject_relief_params *grid = &scene->relief.grid;
         step = fmin(step, fmax(0.5 * step, fmin(grid->row_spacing_m, grid->column_spacing_m)));
     }
@@ -281,7 +282,7 @@ static double taper(double inside, double side)
     return raised_cosine(1.0 - fmin(1.0, fmax(0.0, inside / width)));
 }
 
-/* Adds the caller's heights, and lets all fall to 0 at the edges. */
+/* Adds the file's heights, and lets all fall to 0 at the edges. */
 static void finish_heights(const struct making *making)
 {
     struct relief *relief = making->relief;

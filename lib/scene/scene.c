@@ -151,9 +151,8 @@ sonject_status scene_locate(const struct scene *scene, struct report *report, so
     for (; *name; go_out(name))
         for (size_t i = 0; i < scene->written.count; i++) {
             const struct written_key *key = &scene->written.keys[i];
-            const size_t set = strlen("--set ");
-            const bool is_told =
-                strncmp(key->place, "--set ", set) == 0 && strcmp(key->place + set, name) == 0;
+            const char *told = strrchr(key->place, ' '); /* "--set " or "set " is before it */
+            const bool is_told = told && strcmp(told + 1, name) == 0;
             if (strcmp(key->path, name) == 0)
                 return report_failure(report, status, "%s%s%s: %s", key->place, is_told ? "" : ": ",
                                       is_told ? "" : name, message);

@@ -1,4 +1,4 @@
-/* What is made from the tables of keys: defaults, checks, the list of all keys. */
+/* What is made from the tables of keys: defaults, bounds, the list of all keys. */
 #include "schema/keys.h"
 
 #include <stdio.h>
@@ -81,12 +81,6 @@ static const char *unit_behind(const struct field *field)
                                            : "";
 }
 
-/* Whether the key is not of another kind than the structure. */
-static bool field_applies(const struct field *field, const void *structure)
-{
-    return !field->has_kind || value32(structure, field->kind_offset) == field->kind_value;
-}
-
 uint32_t field_entry_count(const struct field *field, const void *structure)
 {
     if (field->kind != FIELD_ENTRIES)
@@ -141,23 +135,11 @@ void section_defaults(const struct section *section, void *structure, struct sce
     }
 }
 
-/* ---- Checks. */
+/* ---- Bounds. */
 
-static bool stands_for_word(const struct field *field, double number)
+static bool is_within(const struct field *field, double number)
 {
-    for (size_t i = 0; field->kind == FIELD_QUANTITY && field->words[i]; i++)
-        if (number == field->word_values[i])
-            return true;
-    return false;
-}
-
-static bool is_within(const struct field *field, double number, bool is_written)
-{
-    if (isnan(number))
-        return (field->bounds & NAN_IS_NONE) != 0;
-    if (!is_written && stands_for_word(field, number))
-        return true;
-    if (number == 0.0 && (field->bounds & ZERO_IS_NONE) && !(is_written && field->is_required))
+    if (number == 0.0 && (field->bounds & ZERO_IS_NONE))
         return true;
     if (!has_bounds(field))
         return is_count(field) || isfinite(number);
@@ -191,89 +173,19 @@ static void tell_range(const struct field *field, char text[200])
                  field->words[i + 1] ? ", " : " or ", field->words[i]);
 }
 
-static bool number_is_sound(const struct field *field, const void *structure, bool is_written,
-                            char what[300])
+bool field_is_sound(const struct field *field, const void *structure, char what[300])
 {
     char range[200];
-    const double number = number_of(field, structure);
-    if (is_within(field, number, is_written))
+    if (field->kind == FIELD_LABEL) {
+        snprintf(what, 300, "must be UTF-8 text without control characters");
+        return text_is_printable((const char *)structure + field->offset);
+    }
+    if (!is_number(field) || is_within(field, number_of(field, structure)))
         return true;
     tell_range(field, range);
-    if (field->is_required && isnan(number))
-        snprintf(what, 300, "must be set: it has no default");
-    else
-        snprintf(what, 300, "must be %s, not %.*g", *range ? range : "a finite number",
-                 is_count(field) ? 15 : 6, shown(field, number));
+    snprintf(what, 300, "must be %s, not %.*g", *range ? range : "a finite number",
+             is_count(field) ? 15 : 6, shown(field, number_of(field, structure)));
     return false;
-}
-
-static bool label_is_sound(const char *text, char what[300])
-{
-    if (!memchr(text, 0, SONJECT_NAME_CAPACITY))
-        snprintf(what, 300, "must be at most %d bytes long", SONJECT_NAME_CAPACITY - 1);
-    else if (!text_is_printable(text))
-        snprintf(what, 300, "must be UTF-8 text without control characters");
-    else
-        return true;
-    return false;
-}
-
-bool field_is_sound(const struct field *field, const void *structure, bool is_written,
-                    char what[300])
-{
-    const char *member = (const char *)structure + field->offset;
-    if (is_number(field))
-        return number_is_sound(field, structure, is_written, what);
-    if (field->kind == FIELD_LABEL)
-        return label_is_sound(member, what);
-    if (field->kind == FIELD_ENTRIES) {
-        const uint32_t count = value32(structure, field->count_offset);
-        snprintf(what, 300, "must be at most %lu, not %lu", (unsigned long)field->maximum,
-                 (unsigned long)count);
-        return count <= field->maximum;
-    }
-    if (field->kind != FIELD_WORD)
-        return true;
-    const uint32_t choices = count_words(field);
-    const uint32_t chosen = value32(structure, field->offset);
-    snprintf(what, 300, "has no choice number %lu; the last is %lu", (unsigned long)chosen,
-             (unsigned long)choices - 1);
-    return chosen < choices;
-}
-
-static void check_fields(struct check *check, const struct section *section, const void *structure,
-                         const char *prefix)
-{
-    for (size_t i = 0; i < section->count; i++) {
-        const struct field *field = &section->fields[i];
-        char what[300], name[120], inside[124];
-        const void *below;
-        if (field->is_in_scene || !field_applies(field, structure) ||
-            (field->is_hidden && field->section))
-            continue;
-        snprintf(name, sizeof name, "%s%s", prefix, field->key);
-        if (!field_is_sound(field, structure, false, what))
-            check_failure(check, name, "%s", what);
-        for (uint32_t k = 0; k < field_entry_count(field, structure); k++) {
-            const struct section *inner = field_below(field, structure, NULL, k, &below);
-            if (field->is_list)
-                snprintf(inside, sizeof inside, "%.100s[%lu].", name, (unsigned long)k);
-            else
-                snprintf(inside, sizeof inside, "%s.", name);
-            if (inner)
-                check_fields(check, inner, below, inside);
-        }
-    }
-}
-
-sonject_status section_check(const struct section *section, const void *structure,
-                             struct report *report, struct check_listener *listener)
-{
-    struct check check = {report, listener, SONJECT_OK};
-    check_fields(&check, section, structure, "");
-    if (section->relations)
-        section->relations(&check, structure);
-    return check.status;
 }
 
 /* ---- The list of all keys. */
@@ -374,18 +286,17 @@ static json_t *json_of_field(const char *prefix, const struct section *section,
             json_append(&words, json_string(field->words[i]));
     tell_preset(section, field, preset);
     tell_range(field, range);
-    return json_pack(
-        "{s:o, s:o, s:s, s:s, s:s, s:b, s:b, s:b, s:o?, s:s?, s:o, s:o, s:o, s:o, s:o}", "path",
-        json_sprintf("%s%s", prefix, field->key), "section",
-        json_sprintf("%.*s", prefix_length, prefix), "meaning", field->meaning, "kind",
-        kind_of(field), "unit", unit_of(field), "has_value", (int)has_value(field), "is_list",
-        (int)field->is_list, "is_required", (int)field->is_required, "words", words, "member",
-        field->member, "default", json_or_null(*preset, json_string(preset)), "range",
-        json_or_null(*range, json_string(range)), "preset",
-        json_or_null(*preset && (is_number(field) || field->kind == FIELD_WORD),
-                     json_number(field->preset)),
-        "least", json_or_null(is_bounded, json_number(field->least)), "most",
-        json_or_null(is_bounded, json_number(field->most)));
+    return json_pack("{s:o, s:o, s:s, s:s, s:s, s:b, s:b, s:b, s:o?, s:o, s:o, s:o, s:o, s:o}",
+                     "path", json_sprintf("%s%s", prefix, field->key), "section",
+                     json_sprintf("%.*s", prefix_length, prefix), "meaning", field->meaning, "kind",
+                     kind_of(field), "unit", unit_of(field), "has_value", (int)has_value(field),
+                     "is_list", (int)field->is_list, "is_required", (int)field->is_required,
+                     "words", words, "default", json_or_null(*preset, json_string(preset)), "range",
+                     json_or_null(*range, json_string(range)), "preset",
+                     json_or_null(*preset && (is_number(field) || field->kind == FIELD_WORD),
+                                  json_number(field->preset)),
+                     "least", json_or_null(is_bounded, json_number(field->least)), "most",
+                     json_or_null(is_bounded, json_number(field->most)));
 }
 
 /* Tables do not come back to themselves: parts within parts are listed as one key. */

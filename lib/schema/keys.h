@@ -34,10 +34,9 @@ enum field_kind {
 
 /* What bounds of a number mean. */
 enum bounds {
-    ABOVE_LEAST = 1,  /* `least` itself is too little */
-    BELOW_MOST = 2,   /* `most` itself is too much */
-    ZERO_IS_NONE = 4, /* 0 stands for no value, of keys that are not required */
-    NAN_IS_NONE = 8   /* NaN does */
+    ABOVE_LEAST = 1, /* `least` itself is too little */
+    BELOW_MOST = 2,  /* `most` itself is too much */
+    ZERO_IS_NONE = 4 /* 0 stands for no value */
 };
 
 struct reader;
@@ -53,7 +52,6 @@ struct field {
     bool is_hidden;   /* no key: a member that the way in which others are written tells */
     bool is_in_scene; /* offset is that in struct scene, wherever the section is */
     enum quantity quantity;
-    const char *member; /* of the section's structure, as C writes it */
     size_t offset;
     double preset;      /* the value that is there without the key; of a word its number */
     double least, most; /* both 0: any finite number, all that a count's type holds */
@@ -84,9 +82,9 @@ struct section {
     /* Keys of which exactly one is to be there, separated by blanks, "a b"; or pairs of which one
      * is, "a+b c+d". NULL: any. */
     const char *choice;
-    /* Whether values fit each other, once all are in their own bounds; NULL: they do. */
+    /* Whether values fit each other; NULL: they do. */
     void (*relations)(struct check *check, const void *structure);
-    /* Called in its place where a file's section was read, if there is one. */
+    /* Called in its place once a section was read, if there is one. */
     sonject_status (*finish)(struct reader *reader, const struct tree_node *node, void *structure);
     size_t bytes;  /* of the structure, where the section is all of it */
     bool may_lack; /* the choice */
@@ -97,7 +95,7 @@ struct section {
 #define COUNT(list) (sizeof(list) / sizeof(list)[0])
 #define ROWS(table) .fields = (table), .count = COUNT(table) /* of a section */
 
-#define MEMBER(its)             .member = #its, .offset = offsetof(STRUCTURE, its)
+#define MEMBER(its)             .offset = offsetof(STRUCTURE, its)
 #define QUANTITY(its, of)       .kind = FIELD_QUANTITY, .quantity = QUANTITY_##of, MEMBER(its)
 #define COUNT32(its, low, high) .kind = FIELD_COUNT32, MEMBER(its), WITHIN(low, high)
 #define COUNT64(its, low, high) .kind = FIELD_COUNT64, MEMBER(its), WITHIN(low, high)
@@ -116,7 +114,7 @@ struct section {
 #define PART(its, table) .kind = FIELD_SECTION, .section = &(table), MEMBER(its)
 #define SAME(table)      .kind = FIELD_SECTION, .section = &(table)
 #define OF_SCENE(its, table)                                                                       \
-    .kind = FIELD_SECTION, .section = &(table), .is_in_scene = true, .member = #its,               \
+    .kind = FIELD_SECTION, .section = &(table), .is_in_scene = true,                               \
     .offset = offsetof(struct scene, its)
 
 /* A list of at most as many entries as the array holds. word: what one is. */
@@ -131,7 +129,7 @@ struct section {
 #define FROM_ZERO         WITHIN(0.0, LENGTH_MAX_M)
 #define COORDINATE        WITHIN(-LENGTH_MAX_M, LENGTH_MAX_M)
 #define NONE_IF_ZERO      .bounds = ZERO_IS_NONE
-#define NONE_IF_NAN       .bounds = NAN_IS_NONE, .preset = NAN
+#define NONE_IF_NAN       .preset = NAN
 
 #define PI 3.14159265358979323846
 
@@ -159,15 +157,9 @@ struct section {
  * it sets, too; NULL: none. */
 void section_defaults(const struct section *section, void *structure, struct scene *scene);
 
-/* Whether all values are within their bounds, and fit each other. Messages begin with a key. report
- * keeps the first failure, listener hears all; either may be NULL. Errors: INPUT. */
-sonject_status section_check(const struct section *section, const void *structure,
-                             struct report *report, struct check_listener *listener);
-
-/* Whether one value of the structure is within its bounds; else what gets "must be 1...8, not 9".
- * is_written: the key is there, so that the value does not stand for none. */
-bool field_is_sound(const struct field *field, const void *structure, bool is_written,
-                    char what[300]);
+/* Whether a key's value in the structure is within its bounds; else what gets "must be 1...8, not
+ * 9". */
+bool field_is_sound(const struct field *field, const void *structure, char what[300]);
 
 /* The section that a structure's values continue in, and its structure; NULL: none. index: of the
  * entry of a list. scene: as of section_defaults. */

@@ -184,22 +184,18 @@ static const struct section fluid_section = {ROWS(fluid_fields), .finish = finis
     .range = "0...reflection^2 / pi, or 1 / pi where there is no reflection, or it is a fluid's"
 
 /* What a material has beside a name, and what it is without keys. */
-#define MATERIAL_FIELDS(smooth, rough_m, mu, mu_bounds)                                            \
+#define MATERIAL_FIELDS(smooth, rough_m, mu)                                                       \
     {"reflection", "told by reflection or fluid", HIDDEN,                                          \
      WORD(reflection_kind) = {"constant", "fluid"}},                                               \
-        {"reflection", "amplitude of the mirror-like part, -1 to 1", QUANTITY(reflection, NUMBER), \
+        {"reflection", "amplitude of the specular part, -1 to 1", QUANTITY(reflection, NUMBER),    \
          WITHIN(-1.0, 1.0), .preset = (smooth)},                                                   \
         {"roughness", "rms height", QUANTITY(roughness_m, LENGTH), WITHIN(0.0, 1.0),               \
          .preset = (rough_m)},                                                                     \
-        {"lambert",                                                                                \
-         "coefficient mu of the rough part",                                                       \
-         QUANTITY(lambert, LEVEL),                                                                 \
-         .preset = (mu),                                                                           \
-         .bounds = (mu_bounds),                                                                    \
+        {"lambert", "coefficient mu of the rough part", QUANTITY(lambert, LEVEL), .preset = (mu),  \
          LAMBERT_RANGE},                                                                           \
         {"exponent", "of the rough part's cosines, 1 for Lambert's law",                           \
          QUANTITY(lambert_exponent, NUMBER), WITHIN(1.0, 64.0), .preset = 1.0},                    \
-        {"glossy", "cone about the mirror direction", SAME(glossy_section)},                       \
+        {"glossy", "cone about the specular direction", SAME(glossy_section)},                     \
     {                                                                                              \
         "fluid", "what sound enters; gives the reflection at every angle", SAME(fluid_section),    \
             SETS(reflection_kind, SONJECT_REFLECTION_FLUID)                                        \
@@ -208,7 +204,7 @@ static const struct section fluid_section = {ROWS(fluid_fields), .finish = finis
 /* Names come first: the other keys change what they stand for. */
 static const struct field material_fields[] = {
     {"name", "of a known material", SPECIAL(read_material_name, "name")},
-    MATERIAL_FIELDS(0.9, 1.0e-3, 0.1, 0),
+    MATERIAL_FIELDS(0.9, 1.0e-3, 0.1),
 };
 const struct section material_section = {ROWS(material_fields), .finish = finish_material,
                                          .bytes = sizeof(STRUCTURE)};
@@ -216,10 +212,9 @@ const struct section material_section = {ROWS(material_fields), .finish = finish
 static const struct field forward_fields[] = {
     {"sediment", "name of a known material", SPECIAL(read_sediment_name, "name")},
     {"rule", "rough part from the model alone, or times the image's map", .kind = FIELD_WORD,
-     .is_in_scene = true, .member = "forward_rule",
-     .offset = offsetof(struct scene, seabed.forward_rule),
+     .is_in_scene = true, .offset = offsetof(struct scene, seabed.forward_rule),
      .words = {[SONJECT_FORWARD_MODEL] = "model", [SONJECT_FORWARD_MAP] = "map"}},
-    MATERIAL_FIELDS(0.0, 0.0, NAN, NAN_IS_NONE),
+    MATERIAL_FIELDS(0.0, 0.0, NAN),
 };
 const struct section forward_section = {ROWS(forward_fields), .finish = finish_material,
                                         .bytes = sizeof(STRUCTURE)};
@@ -248,15 +243,15 @@ static const struct field surface_fields[] = {
     {"material", "of the surface", HIDDEN, PART(material, material_section)},
     {"depth", "of the water: height of the surface over the mean seabed",
      QUANTITY(water_depth_m, LENGTH), FROM_ZERO, REQUIRED},
-    {"reflection", "amplitude of the mirror-like part, -1 to 1",
-     QUANTITY(material.reflection, NUMBER), WITHIN(-1.0, 1.0), .preset = -1.0},
+    {"reflection", "amplitude of the specular part, -1 to 1", QUANTITY(material.reflection, NUMBER),
+     WITHIN(-1.0, 1.0), .preset = -1.0},
     {"roughness", "rms height of the waves", QUANTITY(material.roughness_m, LENGTH),
      WITHIN(0.0, 1.0)},
     {"lambert", "coefficient mu of the rough part", QUANTITY(material.lambert, LEVEL),
      LAMBERT_RANGE},
     {"exponent", "of the rough part's cosines, 1 for Lambert's law",
      QUANTITY(material.lambert_exponent, NUMBER), WITHIN(1.0, 64.0), .preset = 1.0},
-    {"glossy", "cone about the mirror direction", PART(material, waves_section)},
+    {"glossy", "cone about the specular direction", PART(material, waves_section)},
 };
 const struct section surface_section = {ROWS(surface_fields), .relations = relate_surface,
                                         .bytes = sizeof(STRUCTURE)};

@@ -22,8 +22,7 @@
 #define END_SECTION(name, end)                                                                     \
     static const struct field name##_fields[] = {                                                  \
         {"depth", "of a spherical end, at most half the diameter",                                 \
-         QUANTITY(end##_depth_m, LENGTH), WITHIN(0.0, HUGE_VAL),                                   \
-         .bounds = ABOVE_LEAST | ZERO_IS_NONE,                                                     \
+         QUANTITY(end##_depth_m, LENGTH), WITHIN(0.0, HUGE_VAL), .bounds = ABOVE_LEAST,            \
          .range = "above 0 (write 'spherical' for a half sphere, 'flat' for none)",                \
          SETS(end, SONJECT_END_SPHERICAL), REQUIRED},                                              \
     };                                                                                             \
@@ -96,14 +95,6 @@ static const struct section cut_section = {ROWS(cut_fields)};
 #define STRUCTURE sonject_object_params
 static const struct field shape_fields[] = {SHAPE_FIELDS};
 
-/* Shape, energy and all else that members must be to each other. */
-static void relate_object(struct check *check, const void *structure)
-{
-    const sonject_object_params *object = structure;
-    check_shape(check, object);
-    relate_energy(check, "material.", &object->material, NAN);
-}
-
 void object_init(sonject_object_params *object)
 {
     section_defaults(&object_section, object, NULL);
@@ -150,18 +141,16 @@ static sonject_status finish_shape(struct reader *reader, const struct tree_node
 {
     sonject_object_params checked = *(const sonject_object_params *)structure;
     struct check check = check_at(reader, node);
-    if (count_given(node, "shape parts target") == 1 && !is_given(node, "target"))
+    const bool is_one = count_given(node, "shape parts target") == 1;
+    if (is_one && !is_given(node, "target"))
         check_shape_keys(reader, node, checked.shape);
-    if (count_given(node, "shape parts target") != 1 || !are_sound(reader, "shape target")) {
+    if (!is_one || !are_sound(reader, "shape target"))
         checked.shape = SONJECT_SHAPE_PARTS;
-        checked.cut_count = 0;
-    }
     if (!is_given(node, "material"))
         section_defaults(&material_section, &checked.material, NULL);
-    relate_object(&check, &checked);
-    return check.status == SONJECT_OK
-               ? check_cuts_in_scene(reader->scene, &checked, NULL, check.listener)
-               : check.status;
+    check_shape(&check, reader->scene, &checked);
+    relate_energy(&check, "material.", &checked.material, NAN);
+    return check.status;
 }
 
 /* ---- Parts: a list of shapes, each with its place, or of groups of such. */
@@ -460,8 +449,7 @@ static const struct field object_fields[] = {
      .unit = "list", .section = &part_section, .is_list = true, .read = read_object_parts},
 };
 const struct section object_section = {ROWS(object_fields), .choice = "shape parts target",
-                                       .relations = relate_object, .finish = finish_object,
-                                       .bytes = sizeof(STRUCTURE)};
+                                       .finish = finish_object, .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
 static sonject_status read_object(struct reader *reader, const struct tree_node *node,

@@ -299,7 +299,7 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
     if (field->has_kind)
         memcpy((char *)structure + field->kind_offset, &field->kind_value,
                sizeof field->kind_value);
-    if (!is_word_of(field, node) && !field_is_sound(field, of, true, what))
+    if (!is_word_of(field, node) && !field_is_sound(field, of, what))
         return refuse_value(reader, node, "%s", what);
     return SONJECT_OK;
 }

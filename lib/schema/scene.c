@@ -129,9 +129,8 @@ static sonject_status read_geometry(struct reader *reader, const struct tree_nod
 }
 
 #define STRUCTURE sonject_transfer_params
-static void relate_transfer(struct check *check, const void *structure)
+static void relate_transfer(struct check *check, const sonject_transfer_params *transfer)
 {
-    const sonject_transfer_params *transfer = structure;
     if (transfer->kind == SONJECT_TRANSFER_DECIBEL) {
         check_within(check, "parameter", transfer->parameter, 1e-6, 1e3, " dB per unit");
         check_within(check, "offset", transfer->offset, -1e3, 1e3, " dB");
@@ -175,8 +174,7 @@ static const struct field transfer_fields[] = {
     {"full_scale", "largest value that the recorder stores; by default the pixel type's",
      QUANTITY(full_scale, NUMBER), WITHIN(0.0, 1e30), NONE_IF_ZERO},
 };
-static const struct section transfer_section = {ROWS(transfer_fields), .relations = relate_transfer,
-                                                .finish = finish_transfer,
+static const struct section transfer_section = {ROWS(transfer_fields), .finish = finish_transfer,
                                                 .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
@@ -237,25 +235,13 @@ const struct section input_section = {ROWS(input_fields), .choice = "path unifor
 #undef STRUCTURE
 
 #define STRUCTURE sonject_patch_params
-static void relate_patch(struct check *check, const void *structure)
-{
-    const sonject_patch_params *patch = structure;
-    if (!patch->first_row && !patch->first_column && !patch->rows && !patch->columns)
-        return; /* all of the swath */
-    if (patch->rows == 0)
-        check_failure(check, "rows", "must be at least 1 pixel");
-    if (patch->columns == 0)
-        check_failure(check, "columns", "must be at least 1 pixel");
-}
-
 static const struct field patch_fields[] = {
     {"row", "first row of the swath", COUNT64(first_row, 0, SWATH_INDEX_MAX)},
     {"column", "first column of the swath", COUNT64(first_column, 0, SWATH_INDEX_MAX)},
-    {"rows", "track positions", COUNT64(rows, 1, SWATH_INDEX_MAX), NONE_IF_ZERO, REQUIRED},
-    {"columns", "range cells", COUNT64(columns, 1, SWATH_INDEX_MAX), NONE_IF_ZERO, REQUIRED},
+    {"rows", "track positions", COUNT64(rows, 1, SWATH_INDEX_MAX), REQUIRED},
+    {"columns", "range cells", COUNT64(columns, 1, SWATH_INDEX_MAX), REQUIRED},
 };
-static const struct section patch_section = {ROWS(patch_fields), .relations = relate_patch,
-                                             .bytes = sizeof(STRUCTURE)};
+static const struct section patch_section = {ROWS(patch_fields), .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
 /* ---- The injection. */

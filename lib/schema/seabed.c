@@ -95,9 +95,9 @@ static const struct field heights_fields[] = {
     {"offset", "height over the mean seabed where the file has 0", QUANTITY(offset_m, LENGTH),
      COORDINATE},
     {"row_spacing", "distance between rows", QUANTITY(grid.row_spacing_m, LENGTH), POSITIVE,
-     .preset = 0.025, REQUIRED},
+     REQUIRED},
     {"column_spacing", "distance between columns, horizontal",
-     QUANTITY(grid.column_spacing_m, LENGTH), POSITIVE, .preset = 0.025, REQUIRED},
+     QUANTITY(grid.column_spacing_m, LENGTH), POSITIVE, REQUIRED},
     {"first_ground_range", "of column 0, horizontal from the track",
      QUANTITY(grid.first_ground_range_m, LENGTH), COORDINATE, REQUIRED},
     {"first_along_track", "track position of row 0", QUANTITY(grid.first_along_track_m, LENGTH),
@@ -106,17 +106,16 @@ static const struct field heights_fields[] = {
 static const struct section heights_section = {ROWS(heights_fields)};
 #undef STRUCTURE
 
-/* The grid by itself, as a caller in C gives it. */
+/* The grid by itself, for its defaults and the scene's hash. */
 #define STRUCTURE sonject_relief_params
 static const struct field relief_grid_fields[] = {
-    {"rows", "of heights", COUNT32(rows, 2, RELIEF_GRID_SIDE_MAX), NONE_IF_ZERO},
-    {"columns", "of heights", COUNT32(columns, 2, RELIEF_GRID_SIDE_MAX), NONE_IF_ZERO},
-    {"row_spacing", "distance between rows", QUANTITY(row_spacing_m, LENGTH), POSITIVE,
+    {"rows", "of heights", COUNT32(rows, 0, 0)},
+    {"columns", "of heights", COUNT32(columns, 0, 0)},
+    {"row_spacing", "distance between rows", QUANTITY(row_spacing_m, LENGTH), .preset = 0.025},
+    {"column_spacing", "distance between columns", QUANTITY(column_spacing_m, LENGTH),
      .preset = 0.025},
-    {"column_spacing", "distance between columns", QUANTITY(column_spacing_m, LENGTH), POSITIVE,
-     .preset = 0.025},
-    {"first_ground_range", "of column 0", QUANTITY(first_ground_range_m, LENGTH), COORDINATE},
-    {"first_along_track", "of row 0", QUANTITY(first_along_track_m, LENGTH), COORDINATE},
+    {"first_ground_range", "of column 0", QUANTITY(first_ground_range_m, LENGTH)},
+    {"first_along_track", "of row 0", QUANTITY(first_along_track_m, LENGTH)},
 };
 const struct section relief_grid_section = {ROWS(relief_grid_fields), .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
@@ -200,7 +199,6 @@ static sonject_status read_relief_heights(struct reader *reader, const struct tr
     (void)structure;
     if (reader->scene->relief.heights_m)
         return refuse_value(reader, node, "only one file of heights is possible; join them");
-    section_defaults(&relief_grid_section, &text.grid, NULL);
     sonject_status status = read_section(reader, &heights_section, node, &text);
     if (status == SONJECT_OK) {
         status = load_heights(reader, &report, &text);

@@ -212,9 +212,6 @@ static sonject_status read_parameters(struct reader *reader, const struct tree_n
 static void relate_user_shape(struct check *check, const void *structure)
 {
     const sonject_user_shape_params *shape = structure;
-    if (shape->parameter_count > SONJECT_USER_PARAMETERS_CAPACITY)
-        check_failure(check, "parameters", "must be at most %d, not %lu",
-                      SONJECT_USER_PARAMETERS_CAPACITY, (unsigned long)shape->parameter_count);
     for (uint32_t i = 0; check->status == SONJECT_OK && i < shape->parameter_count; i++)
         check_within(check, "parameters", shape->parameters[i], -PARAMETER_MOST, PARAMETER_MOST,
                      "");

@@ -190,13 +190,6 @@ static sonject_status read_yaw_file(struct reader *reader, const struct tree_nod
     return read_motion_file(reader, node, "yaw_rad", YAW_MAX_RAD, &reader->scene->motion.yaw_table);
 }
 
-static void relate_motion(struct check *check, const void *structure)
-{
-    const sonject_motion_params *motion = structure;
-    if (motion_has_yaw(motion) && motion->yaw_advance_m == 0.0)
-        check_within(check, "yaw.advance", motion->yaw_advance_m, SCALE_MIN_M, SWAY_MAX_M, " m");
-}
-
 #define STRUCTURE sonject_motion_params
 static const struct field random_fields[] = {
     {"rms", "of the sway", QUANTITY(random_rms_m, LENGTH), WITHIN(0.0, SWAY_MAX_M), REQUIRED},
@@ -216,7 +209,7 @@ static const struct section random_yaw_section = {ROWS(random_yaw_fields)};
 
 static const struct field yaw_fields[] = {
     {"advance", "from ping to ping: what a ping's phase centres fill, half the array",
-     QUANTITY(yaw_advance_m, LENGTH), WITHIN(SCALE_MIN_M, SWAY_MAX_M), NONE_IF_ZERO, REQUIRED},
+     QUANTITY(yaw_advance_m, LENGTH), WITHIN(SCALE_MIN_M, SWAY_MAX_M), REQUIRED},
     {"bias", "of all pings, bow towards the imaged side", QUANTITY(yaw_bias_rad, ANGLE),
      WITHIN(-YAW_MAX_RAD, YAW_MAX_RAD)},
     {"sines", "list of them", ENTRIES(yaws, yaw_count, "sine", yaw_sine_section)},
@@ -232,8 +225,7 @@ static const struct field motion_fields[] = {
     {"yaw", "of an array of hydrophones, whose heading the processor does not know",
      SAME(yaw_section)},
 };
-static const struct section motion_section = {ROWS(motion_fields), .relations = relate_motion,
-                                              .bytes = sizeof(STRUCTURE)};
+static const struct section motion_section = {ROWS(motion_fields), .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
 /* ---- The sonar. */
@@ -256,23 +248,11 @@ static sonject_status read_altitude(struct reader *reader, const struct tree_nod
                : read_quantity(reader, node, QUANTITY_LENGTH, &sonar->altitude_m);
 }
 
-static void relate_sonar(struct check *check, const void *structure)
-{
-    const sonject_sonar_params *sonar = structure;
-    if (sonar->bandwidth_hz >= 2.0 * sonar->centre_frequency_hz)
-        check_relation(check, "bandwidth", "frequency",
-                       "must be below twice the frequency, %g Hz, not %g Hz",
-                       2.0 * sonar->centre_frequency_hz, sonar->bandwidth_hz);
-    if (sonar->kind == SONJECT_SONAR_REAL && sonar->array_length_m == 0.0)
-        check_positive_length(check, "array.length", sonar->array_length_m);
-}
-
 static sonject_status finish_sonar(struct reader *reader, const struct tree_node *node,
                                    void *structure)
 {
     const sonject_sonar_params *sonar = structure;
     const bool is_real = sonar->kind == SONJECT_SONAR_REAL;
-    struct check check = check_at(reader, node);
     if (is_real && !is_given(node, "array"))
         refuse_key(reader, node, "array", "missing; a real aperture needs its length");
     if (!is_real && is_given(node, "array"))
@@ -281,8 +261,11 @@ static sonject_status finish_sonar(struct reader *reader, const struct tree_node
     if (is_real && is_given(node, "aperture"))
         refuse_key(reader, node, "aperture",
                    "belongs to a synthetic aperture; a real one has that of its array");
-    relate_sonar(&check, sonar);
-    return check.status;
+    if (sonar->bandwidth_hz >= 2.0 * sonar->centre_frequency_hz)
+        refuse_relation(reader, node, "bandwidth", "frequency",
+                        "must be below twice the frequency, %g Hz, not %g Hz",
+                        2.0 * sonar->centre_frequency_hz, sonar->bandwidth_hz);
+    return SONJECT_OK;
 }
 
 #define STRUCTURE sonject_sonar_params
@@ -300,7 +283,7 @@ static const struct section response_section = {ROWS(response_fields)};
 /* Turned so far that the beam stays on the imaged side. */
 static const struct field array_fields[] = {
     {"length", "along the track; sets the beam", QUANTITY(array_length_m, LENGTH), POSITIVE,
-     NONE_IF_ZERO, REQUIRED},
+     REQUIRED},
     {"height", "across; 0 hears all elevations alike", QUANTITY(array_height_m, LENGTH), FROM_ZERO},
     {"heading", "of the long side, from along-track towards range",
      QUANTITY(array_heading_rad, ANGLE), WITHIN(-0.25 * PI, 0.25 * PI)},
@@ -341,8 +324,8 @@ static const struct field sonar_fields[] = {
     {"motion", "residual motion of a synthetic aperture's sonar",
      OF_SCENE(motion.params, motion_section)},
 };
-const struct section sonar_section = {ROWS(sonar_fields), .relations = relate_sonar,
-                                      .finish = finish_sonar, .bytes = sizeof(STRUCTURE)};
+const struct section sonar_section = {ROWS(sonar_fields), .finish = finish_sonar,
+                                      .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
 /* ---- The array of the element level. */

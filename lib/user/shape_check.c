@@ -21,7 +21,7 @@
 #define NEIGHBOURS 8      /* of each ray, at most */
 #define GRAZING    0.05   /* cosine of incidence below which sides are not judged */
 
-/* In the shape's own frame, as the kernels ask: see sonject_user_shape_params. */
+/* In the shape's own frame, as the kernels ask: see sonject/user_shape.h. */
 struct probe_ray {
     float point[3], direction[3];
     float nearest;
@@ -80,9 +80,8 @@ static sonject_status shape_probe_begin(struct shape_probe *probe, struct report
     memset(probe, 0, sizeof *probe);
     probe->report = report;
     probe->device = device;
-    sonject_status status =
-        user_kernel_create(report, device, shapes, false, PROGRAM_PROBE_USER_SHAPE,
-                           "probe_user_shape", &probe->kernel);
+    sonject_status status = user_kernel_create(report, device, shapes, 0, PROGRAM_PROBE_USER_SHAPE,
+                                               "probe_user_shape", &probe->kernel);
     THEN(status, buffer_create(report, device, sizeof record, &record, &probe->shape));
     if (status != SONJECT_OK)
         shape_probe_end(probe);
@@ -406,7 +405,7 @@ static sonject_status check_nearest(struct trial *trial)
     return SONJECT_OK;
 }
 
-/* Rays go on in the mirror's direction from just off the surface: what they meet first is not an
+/* Rays go on in the specular direction from just off the surface: what they meet first is not an
  * inner side, nor, of an open shape, the place that they come from. */
 static sonject_status check_restarts(struct trial *trial, struct shape_check *check)
 {

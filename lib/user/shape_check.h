@@ -1,4 +1,4 @@
-/* Whether a user's shape keeps its contract (sonject_user_shape_params), tried with rays, and the
+/* Whether a user's shape keeps its contract (sonject/user_shape.h), tried with rays, and the
  * probe on the device that asks it. */
 #ifndef SONJECT_USER_SHAPE_CHECK_H
 #define SONJECT_USER_SHAPE_CHECK_H

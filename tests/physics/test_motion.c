@@ -413,7 +413,7 @@ CLAIM(starboard_is_port_reversed)
 }
 
 /* Sway that turns sound by more than the aspects, so that no response is long enough; yaw whose
- * pings are unknown, or too many; motion that is too fast to be followed. */
+ * pings are too many; motion that is too fast to be followed. */
 CLAIM(motion_that_is_refused)
 {
     static const double x[] = {0.0, 1.0}, yaw[] = {1e-3, 2e-3};
@@ -426,7 +426,6 @@ CLAIM(motion_that_is_refused)
     assert_int_equal(
         motion_table_set(&sea->bench->scene.motion.yaw_table, &sea->bench->report, x, yaw, 2),
         SONJECT_OK);
-    EXPECT_REFUSED(sea, "without the advance", sea_check_response(sea));
     sea->motion->yaw_advance_m = 0.5;
     assert_int_equal(sea_check_response(sea), SONJECT_OK);
     sea->motion->yaw_advance_m = 1e-4;

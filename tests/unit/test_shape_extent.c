@@ -424,6 +424,7 @@ static void test_cut_meshes_lie_as_deep(void **state)
 static void test_cuts_must_leave_something(void **state)
 {
     struct report report = {{0}, NULL, NULL};
+    struct check check = {&report, NULL, SONJECT_OK};
     struct scene scene;
     struct mesh mesh;
     struct mesh_sample sample;
@@ -439,14 +440,17 @@ static void test_cuts_must_leave_something(void **state)
     object.cuts[0].distance_m = -0.99;
     object.cuts[1].azimuth_rad = PI;
     object.cuts[1].distance_m = 1.0;
-    assert_int_equal(section_check(&object_section, &object, &report, NULL), SONJECT_OK);
-    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, NULL), SONJECT_OK);
+    check_shape(&check, &scene, &object);
+    assert_int_equal(check.status, SONJECT_OK);
     object.cuts[1].distance_m = 0.98;
-    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, NULL), SONJECT_ERROR_INPUT);
+    check_shape(&check, &scene, &object);
+    assert_int_equal(check.status, SONJECT_ERROR_INPUT);
     assert_string_equal(report.message, "cuts leave nothing of the object; move one outwards");
     object.cut_count = 1;
     object.cuts[0].distance_m = -1.0; /* touches */
-    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, NULL), SONJECT_ERROR_INPUT);
+    check.status = SONJECT_OK;
+    check_shape(&check, &scene, &object);
+    assert_int_equal(check.status, SONJECT_ERROR_INPUT);
     mesh_clear(&mesh);
 }
 

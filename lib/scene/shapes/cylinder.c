@@ -3,24 +3,19 @@
 
 #include "scene/shapes/shape.h"
 
-static void check_end(struct check *check, const sonject_object_params *object,
-                      const char *const keys[2], uint32_t kind, double depth_m)
+static void check_end(struct check *check, const sonject_object_params *object, const char *key,
+                      double depth_m)
 {
-    check_choice(check, keys[0], kind, SONJECT_END_SPHERICAL + 1);
     if (!(depth_m >= 0.0 && depth_m <= 0.5 * object->diameter_m))
-        check_relation(check, keys[1], "diameter", "must be 0...%g m (half the diameter), not %g",
+        check_relation(check, key, "diameter", "must be 0...%g m (half the diameter), not %g",
                        0.5 * object->diameter_m, depth_m);
 }
 
 static void check(struct check *check, const sonject_object_params *object)
 {
-    static const char *const nose_keys[2] = {"nose_end", "nose_end.depth"};
-    static const char *const tail_keys[2] = {"tail_end", "tail_end.depth"};
-    check_end(check, object, nose_keys, object->nose_end, object->nose_end_depth_m);
-    check_end(check, object, tail_keys, object->tail_end, object->tail_end_depth_m);
-    if (object->nose_end > SONJECT_END_SPHERICAL || object->tail_end > SONJECT_END_SPHERICAL)
-        return;
     struct shape_size size;
+    check_end(check, object, "nose_end.depth", object->nose_end_depth_m);
+    check_end(check, object, "tail_end.depth", object->tail_end_depth_m);
     shape_size_init(&size, object);
     const double ends = size.nose.depth_m + size.tail.depth_m;
     if (object->length_m < ends)

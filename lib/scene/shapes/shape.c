@@ -215,21 +215,7 @@ void shape_record_init(struct object_record *record, const struct shape_size *si
     }
 }
 
-static void check_cuts(struct check *check, const sonject_object_params *object)
-{
-    if (object->cut_count > SONJECT_CUTS_CAPACITY) {
-        check_failure(check, "cuts", "must be at most %d, not %lu", SONJECT_CUTS_CAPACITY,
-                      (unsigned long)object->cut_count);
-        return;
-    }
-    for (uint32_t i = 0; i < object->cut_count; i++) {
-        check_finite(check, "cuts", object->cuts[i].azimuth_rad);
-        check_finite(check, "cuts", object->cuts[i].elevation_rad);
-        check_coordinate(check, "cuts", object->cuts[i].distance_m);
-    }
-}
-
-/* The sizes that a shape needs; the others may be anything finite. */
+/* 0 is a length that nobody gave, else rows of keys keep them in their bounds. */
 static void check_sizes(struct check *check, const sonject_object_params *object, uint32_t needs)
 {
     if (needs & SHAPE_HAS_LENGTH)
@@ -240,58 +226,24 @@ static void check_sizes(struct check *check, const sonject_object_params *object
         check_positive_length(check, "diameter", object->diameter_m);
     if (needs & SHAPE_HAS_HEIGHT)
         check_positive_length(check, "height", object->height_m);
-    if (needs & SHAPE_HAS_TOP_DIAMETER)
-        check_length(check, "top_diameter", object->top_diameter_m);
-    check_finite(check, "length", object->length_m);
-    check_finite(check, "width", object->width_m);
-    check_finite(check, "diameter", object->diameter_m);
-    check_finite(check, "height", object->height_m);
-    check_finite(check, "top_diameter", object->top_diameter_m);
-    check_finite(check, "front_height", object->front_height_m);
-    check_finite(check, "nose_end.depth", object->nose_end_depth_m);
-    check_finite(check, "tail_end.depth", object->tail_end_depth_m);
 }
 
-void check_shape(struct check *check, const sonject_object_params *object)
+void check_shape(struct check *check, const struct scene *scene,
+                 const sonject_object_params *object)
 {
     const struct shape *shape = shape_of(object->shape);
-    check_choice(check, "shape", object->shape, SONJECT_SHAPE_PARTS + 1);
-    if (!shape)
-        return;
-    if (object->shape == SONJECT_SHAPE_PARTS) {
-        if (object->cut_count > 0)
-            check_failure(check, "cuts", "are not made in objects of parts; cut the parts");
-        return;
-    }
-    if (shape->needs & (SHAPE_HAS_MESH | SHAPE_HAS_CODE)) {
-        check_cuts(check, object);
-        return; /* what they leave check_cuts_in_scene finds */
-    }
+    struct shape_size size;
     check_sizes(check, object, shape->needs);
     if (shape->check)
         shape->check(check, object);
-    check_cuts(check, object);
-    if (check->status != SONJECT_OK)
+    const bool is_there = object->shape == SONJECT_SHAPE_MESH ? object->mesh < scene->mesh_count
+                          : object->shape == SONJECT_SHAPE_USER
+                              ? object->user_shape < scene->user_shapes.count
+                              : object->shape != SONJECT_SHAPE_PARTS;
+    if (check->status != SONJECT_OK || object->cut_count == 0 || !is_there)
         return;
-    struct shape_size size;
-    shape_size_init(&size, object);
-    if (!shape_is_left(&size, object->shape))
-        check_relation(check, "cuts", "length width diameter height",
-                       "leave nothing of the object; move one outwards");
-}
-
-sonject_status check_cuts_in_scene(const struct scene *scene, const sonject_object_params *object,
-                                   struct report *report, struct check_listener *listener)
-{
-    struct check check = {report, listener, SONJECT_OK};
-    struct shape_size size;
-    const bool is_in_scene =
-        (object->shape == SONJECT_SHAPE_MESH && object->mesh < scene->mesh_count) ||
-        (object->shape == SONJECT_SHAPE_USER && object->user_shape < scene->user_shapes.count);
-    if (object->cut_count == 0 || !is_in_scene)
-        return SONJECT_OK;
     shape_size_init_in_scene(&size, scene, object);
     if (!shape_is_left(&size, object->shape))
-        check_failure(&check, "cuts", "leave nothing of the object; move one outwards");
-    return check.status;
+        check_relation(check, "cuts", "length width diameter height mesh user",
+                       "leave nothing of the object; move one outwards");
 }

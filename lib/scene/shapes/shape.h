@@ -42,8 +42,8 @@ struct shape_size {
     /* Radii of the uncut shape: of a sphere about the origin and of a cylinder about the nose axis
      * that hold it. */
     double bounding_radius_m, radius_about_nose_m;
-    /* m; INFINITY where nothing is bent. Edges and tips do not count, nor what of a cone or torus
-     * is nearer to its axis than this. It decides how dense the rays on it are. */
+    /* m; INFINITY where nothing is bent. Edges and tips do not count, nor what of a cone is nearer
+     * to its axis than this. It decides how dense the rays on it are. */
     double least_radius_of_curvature_m;
 };
 
@@ -124,13 +124,9 @@ void record_set_slant(struct object_record *record, double across, double up, do
 /* The radii of boxes and of what lies in them. */
 void shape_init_box(struct shape_size *size, const sonject_object_params *object);
 
-/* Shape, sizes, ends and cuts of an object, as object.h states them. */
-void check_shape(struct check *check, const sonject_object_params *object);
-
-/* Whether the cuts of a mesh or of a user's shape, which is the scene's, leave something;
- * check_object tells it of all other shapes, and has passed this one. Errors: INPUT, as
- * check_object. */
-sonject_status check_cuts_in_scene(const struct scene *scene, const sonject_object_params *object,
-                                   struct report *report, struct check_listener *listener);
+/* Whether an object's sizes fit each other and its cuts leave something of it. scene: that has its
+ * mesh or user's shape, if it was read. */
+void check_shape(struct check *check, const struct scene *scene,
+                 const sonject_object_params *object);
 
 #endif
