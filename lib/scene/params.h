@@ -287,14 +287,6 @@ sonject_material_params surface_material(const sonject_surface_params *surface);
 
 /* Objects: shape, pose and surface of each thing that is put on the seabed. */
 
-/* Lengths are overall. Length runs along the object's nose direction (own x), width across it (own
- * y, to the left of the nose as seen from above), height upwards when the pose is level (own z). An
- * object is the same thing to port and to starboard. */
-#define SCENE_SHAPE(NUMBER, name, traits) SONJECT_SHAPE_##NUMBER = SHAPE_##NUMBER,
-typedef enum sonject_shape {
-    ALL_SHAPES(SCENE_SHAPE) SONJECT_SHAPE_PARTS = SHAPE_PARTS /* the union of parts; no sizes */
-} sonject_shape;
-
 /* An end of a cylinder. With an open end the cylinder is a tube: its wall is thin and reflects on
  * both sides. */
 typedef enum sonject_end {
@@ -332,8 +324,11 @@ typedef enum sonject_position_kind {
     SONJECT_POSITION_PIXELS = 2 /* along: row, range: column of the swath, centres at integers */
 } sonject_position_kind;
 
+/* Lengths are overall. Length runs along the object's nose direction (own x), width across it (own
+ * y, to the left of the nose as seen from above), height upwards when the pose is level (own z). An
+ * object is the same thing to port and to starboard. */
 typedef struct sonject_object_params {
-    uint32_t shape;                         /* sonject_shape; half a wavelength large at least */
+    uint32_t shape;                         /* enum shape_kind; half a wavelength at least */
     char name[SONJECT_NAME_CAPACITY];       /* "" becomes "object N"; both are terminated UTF-8
                                                without controls of terminals or text direction */
     char class_name[SONJECT_NAME_CAPACITY]; /* label class; "" becomes the shape's name */

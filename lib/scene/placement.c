@@ -135,7 +135,7 @@ static uint32_t pose_parts(struct placement *parts, const struct scene *scene, u
     double axes[3][3];
     uint32_t count = 0;
     object_axes(axes, &scene->objects[object], is_mirrored);
-    if (scene->objects[object].shape != SONJECT_SHAPE_PARTS) {
+    if (scene->objects[object].shape != SHAPE_PARTS) {
         if (parts)
             parts[0] = pose_part(scene, object, NULL, axes);
         return 1;
@@ -340,7 +340,7 @@ static sonject_status check_shape_count(struct report *report, const struct scen
 {
     uint32_t count = scene->part_count;
     for (uint32_t i = 0; i < scene->object_count; i++)
-        count += scene->objects[i].shape != SONJECT_SHAPE_PARTS;
+        count += scene->objects[i].shape != SHAPE_PARTS;
     if (count <= SCENE_SHAPES_MAX)
         return SONJECT_OK;
     return report_failure(report, SONJECT_ERROR_INPUT,

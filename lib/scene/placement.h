@@ -10,7 +10,7 @@
 
 /* One part. */
 struct placement {
-    uint32_t shape;                          /* sonject_shape */
+    uint32_t shape;                          /* enum shape_kind */
     uint32_t object;                         /* number of the object that it belongs to */
     const sonject_material_params *material; /* the scene's */
     double centre[3];  /* m: x of the view, horizontal range from the track, height */

@@ -53,8 +53,7 @@ static const struct section cut_section = {ROWS(cut_fields)};
 #define SHAPE_WORD(NUMBER, name, traits) [SHAPE_##NUMBER] = #name,
 #define SHAPE_FIELDS                                                                               \
     {"shape", "of the object or part; objects are at least half a wavelength large",               \
-     WORD(shape) = {ALL_SHAPES(SHAPE_WORD)[SONJECT_SHAPE_PARTS] = ""},                             \
-     .preset = SONJECT_SHAPE_SPHERE},                                                              \
+     WORD(shape) = {ALL_SHAPES(SHAPE_WORD)[SHAPE_PARTS] = ""}, .preset = SHAPE_SPHERE},            \
         {"user", "code that is the shape, where that is user", .kind = FIELD_SPECIAL,              \
          .section = &user_section, .read = read_user_shape},                                       \
         {"length", "overall along the nose", SIZE(length_m)},                                      \
@@ -120,7 +119,7 @@ static void check_shape_keys(struct reader *reader, const struct tree_node *node
 {
     const struct shape *row = shape_of(shape);
     const char *name = shape_name(shape);
-    if (shape == SONJECT_SHAPE_PARTS) {
+    if (shape == SHAPE_PARTS) {
         refuse_shape_keys(reader, node, "the parts have shapes of their own");
         return;
     }
@@ -145,7 +144,7 @@ static sonject_status finish_shape(struct reader *reader, const struct tree_node
     if (is_one && !is_given(node, "target"))
         check_shape_keys(reader, node, checked.shape);
     if (!is_one || !are_sound(reader, "shape target"))
-        checked.shape = SONJECT_SHAPE_PARTS;
+        checked.shape = SHAPE_PARTS;
     if (!is_given(node, "material"))
         section_defaults(&material_section, &checked.material, NULL);
     check_shape(&check, reader->scene, &checked);
@@ -255,7 +254,7 @@ static sonject_status read_group(struct reader *reader, const struct tree_node *
     struct part_text *part = structure;
     const struct frame frame = frame_of(part);
     part->is_group = true;
-    part->shape.shape = SONJECT_SHAPE_PARTS;
+    part->shape.shape = SHAPE_PARTS;
     return read_part_list(reader, node,
                           (struct part_list){&frame, &part->shape.material, part->level + 1});
 }
@@ -310,7 +309,7 @@ static sonject_status note_parts(struct reader *reader, const struct tree_node *
 {
     struct target_text *target = structure;
     (void)reader;
-    target->object.shape = SONJECT_SHAPE_PARTS;
+    target->object.shape = SHAPE_PARTS;
     target->parts = node;
     return SONJECT_OK;
 }
@@ -408,7 +407,7 @@ static sonject_status read_object_parts(struct reader *reader, const struct tree
                                         void *structure)
 {
     sonject_object_params *object = structure;
-    object->shape = SONJECT_SHAPE_PARTS;
+    object->shape = SHAPE_PARTS;
     return read_parts(reader, node, &object->material);
 }
 

@@ -259,10 +259,10 @@ static void overall_size(const struct placement *placement, double *half_length,
     *half_length = fmax(shape_extent(&uncut, placement->shape, nose),
                         shape_extent(&uncut, placement->shape, tail));
     *radius = uncut.radius_about_nose_m;
-    if (placement->shape == SONJECT_SHAPE_SPHERE)
+    if (placement->shape == SHAPE_SPHERE)
         *half_length = 0.0;
     /* unless it is slender, a user's shape has its own sphere */
-    if (placement->shape == SONJECT_SHAPE_USER && *half_length <= 2.0 * *radius) {
+    if (placement->shape == SHAPE_USER && *half_length <= 2.0 * *radius) {
         *half_length = 0.0;
         *radius = placement->bounding_radius_m;
     }

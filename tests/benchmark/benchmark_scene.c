@@ -58,7 +58,7 @@ void benchmark_set_up(struct benchmark_scene *set, size_t pixels)
     printf("device: %s, %u lanes, %u cores\n", set->tracer.device->name,
            (unsigned)set->tracer.device->width, (unsigned)set->tracer.device->compute_units);
     object_init(&capsule);
-    capsule.shape = SONJECT_SHAPE_CAPSULE;
+    capsule.shape = SHAPE_CAPSULE;
     capsule.length_m = 2.3;
     capsule.diameter_m = 0.3;
     capsule.heading_rad = 0.6;

@@ -32,14 +32,14 @@ static double mirrored_digits(uint32_t i, uint32_t base)
 
 static void shape_part(sonject_object_params *part, uint32_t number, double size)
 {
-    static const sonject_shape shapes[] = {SONJECT_SHAPE_SPHERE, SONJECT_SHAPE_CAPSULE,
-                                           SONJECT_SHAPE_BOX, SONJECT_SHAPE_CYLINDER};
+    static const enum shape_kind shapes[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX,
+                                             SHAPE_CYLINDER};
     object_init(part);
     part->shape = shapes[number % 4];
     part->length_m = 1.3 * size;
     part->width_m = 0.8 * size;
     part->height_m = 0.6 * size;
-    part->diameter_m = part->shape == SONJECT_SHAPE_SPHERE ? size : 0.6 * size;
+    part->diameter_m = part->shape == SHAPE_SPHERE ? size : 0.6 * size;
 }
 
 static void strew(struct benchmark_scene *set, uint32_t parts, double size)
@@ -50,7 +50,7 @@ static void strew(struct benchmark_scene *set, uint32_t parts, double size)
         sonject_object_params object;
         shape_part(&object, i, size);
         if (in_cluster > 1)
-            object.shape = SONJECT_SHAPE_PARTS;
+            object.shape = SHAPE_PARTS;
         object.heading_rad = 6.28 * mirrored_digits(i + 1, 5);
         object.position_kind = SONJECT_POSITION_PIXELS;
         object.position_along = PIXELS * (0.08 + 0.84 * mirrored_digits(i + 1, 2));

@@ -20,8 +20,8 @@ static void shape_object(sonject_object_params *object, uint32_t number, double 
     object->length_m = size * (0.5 + draw(counter));
     object->width_m = 0.6 * object->length_m;
     object->height_m = 0.15 * object->length_m;
-    object->diameter_m = object->shape == SONJECT_SHAPE_SPHERE ? size : 0.4 * object->length_m;
-    if (object->shape == SONJECT_SHAPE_MESH) {
+    object->diameter_m = object->shape == SHAPE_SPHERE ? size : 0.4 * object->length_m;
+    if (object->shape == SHAPE_MESH) {
         object->cut_count = 1 + number / 12 % 2;
         object->cuts[0] = (sonject_cut){0.4 * number, 0.3, 0.05};
         object->cuts[1] = (sonject_cut){0.4 * number + 2.0, -0.5, 0.1};

@@ -135,9 +135,7 @@ static void place_crowd(struct bench *bench)
               user_shapes_append(&bench->scene.user_shapes, &bench->report, &params));
     bench_add_tetrahedron(bench);
     for (int i = 0; i < 22; i++) {
-        const sonject_shape shape = i == 0   ? SONJECT_SHAPE_MESH
-                                    : i == 1 ? SONJECT_SHAPE_USER
-                                             : SONJECT_SHAPE_SPHERE;
+        const enum shape_kind shape = i == 0 ? SHAPE_MESH : i == 1 ? SHAPE_USER : SHAPE_SPHERE;
         place(bench_add(bench, shape, 0.0, 0.0, i < 2 ? 0.0 : 0.08 + 0.002 * i),
               12.0 + 18.0 * (i % 5), 15.0 + 22.0 * (i / 5), 0.0, 0.0, 0.0);
     }
@@ -150,16 +148,16 @@ static void place_objects(struct bench *bench, enum object_set set)
     if (set == MORE_SHAPES) {
         place_more_shapes(bench);
     } else if (set == FOUR_OBJECTS) {
-        place(bench_add(bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.4), 20.2, 40.7, 0.0, 0.0, 0.0);
-        place(bench_add(bench, SONJECT_SHAPE_CYLINDER, 0.8, 0.0, 0.3), 50.0, 30.0, 0.7, 0.2, 0.0);
-        place(bench_add(bench, SONJECT_SHAPE_CAPSULE, 1.0, 0.0, 0.3), 60.0, 70.0, -0.4, 0.1, 0.3);
-        place(bench_add(bench, SONJECT_SHAPE_PLANE, 0.6, 0.4, 0.0), 40.0, 55.0, 0.3, -0.5, 0.4)
-            ->burial_m = 0.05;
+        place(bench_add(bench, SHAPE_SPHERE, 0.0, 0.0, 0.4), 20.2, 40.7, 0.0, 0.0, 0.0);
+        place(bench_add(bench, SHAPE_CYLINDER, 0.8, 0.0, 0.3), 50.0, 30.0, 0.7, 0.2, 0.0);
+        place(bench_add(bench, SHAPE_CAPSULE, 1.0, 0.0, 0.3), 60.0, 70.0, -0.4, 0.1, 0.3);
+        place(bench_add(bench, SHAPE_PLANE, 0.6, 0.4, 0.0), 40.0, 55.0, 0.3, -0.5, 0.4)->burial_m =
+            0.05;
     } else if (set == TWO_OBJECTS) {
-        place(bench_add(bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.5), 47.5, 63.5, 0.0, 0.0, 0.0)
+        place(bench_add(bench, SHAPE_SPHERE, 0.0, 0.0, 0.5), 47.5, 63.5, 0.0, 0.0, 0.0)
             ->material.lambert = 0.2;
-        sonject_object_params *capsule = place(
-            bench_add(bench, SONJECT_SHAPE_CAPSULE, 1.0, 0.0, 0.3), 56.0, 55.0, 0.6, 0.0, 0.0);
+        sonject_object_params *capsule =
+            place(bench_add(bench, SHAPE_CAPSULE, 1.0, 0.0, 0.3), 56.0, 55.0, 0.6, 0.0, 0.0);
         capsule->material.reflection = capsule->material.roughness_m = 0.0;
         capsule->material.lambert = 0.1;
         capsule->material.lambert_exponent = 2.0;

@@ -43,7 +43,7 @@ static void cut_solid_begin(struct cut_solid *solid, const struct mesh_sample *s
                                sample->corners, sample->triangles, &options, &scene->meshes[0]));
     solid->mesh = &scene->meshes[0];
     solid->is_sheet = !solid->mesh->topology.is_closed;
-    sonject_object_params *object = bench_add(&solid->bench, SONJECT_SHAPE_MESH, 0.0, 0.0, 0.0);
+    sonject_object_params *object = bench_add(&solid->bench, SHAPE_MESH, 0.0, 0.0, 0.0);
     object->burial_m = -2.0;
     object->heading_rad = 0.6;
     object->pitch_rad = 0.3;

@@ -100,7 +100,7 @@ void bench_set_layers(struct bench *bench, const struct water_layer *layers, siz
         memcpy(scene->water_layers, layers, count * sizeof *layers);
 }
 
-sonject_object_params *bench_add(struct bench *bench, sonject_shape shape, double length_m,
+sonject_object_params *bench_add(struct bench *bench, enum shape_kind shape, double length_m,
                                  double width_m, double diameter_m)
 {
     sonject_object_params object;

@@ -41,7 +41,7 @@ void bench_set_layers(struct bench *bench, const struct water_layer *layers, siz
 
 /* An object in the middle of the patch, rigid and without a rough part, to be changed at will.
  * All lengths are those of the shape's own words. */
-sonject_object_params *bench_add(struct bench *bench, sonject_shape shape, double length_m,
+sonject_object_params *bench_add(struct bench *bench, enum shape_kind shape, double length_m,
                                  double width_m, double diameter_m);
 
 /* A feature of the seabed's relief, in the middle of the patch, to be changed at will. */

@@ -96,7 +96,7 @@ struct sea *sea_open(size_t rows, size_t columns, double middle_range_m)
 
 sonject_object_params *sea_add_sphere(struct sea *sea, double radius_m, double height_m)
 {
-    sonject_object_params *sphere = sea_add(sea, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 2.0 * radius_m);
+    sonject_object_params *sphere = sea_add(sea, SHAPE_SPHERE, 0.0, 0.0, 2.0 * radius_m);
     sphere->burial_m = -height_m;
     return sphere;
 }
@@ -121,7 +121,7 @@ void make_rough(sonject_object_params *object, double lambert)
     object->material.lambert = lambert;
 }
 
-sonject_object_params *sea_add_part(struct sea *sea, sonject_shape shape, const double centre[3],
+sonject_object_params *sea_add_part(struct sea *sea, enum shape_kind shape, const double centre[3],
                                     const double heading_pitch_roll[3])
 {
     struct scene *scene = &sea->bench->scene;

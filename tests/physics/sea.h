@@ -74,7 +74,7 @@ void make_rough(sonject_object_params *object, double lambert);
 
 /* A part of the first object, which is of parts, with that one's surface; turned about its own
  * axes. Valid until the next one is added. */
-sonject_object_params *sea_add_part(struct sea *sea, sonject_shape shape, const double centre[3],
+sonject_object_params *sea_add_part(struct sea *sea, enum shape_kind shape, const double centre[3],
                                     const double heading_pitch_roll[3]);
 
 /* Gives all objects and their parts a surface. */

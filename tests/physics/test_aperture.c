@@ -27,7 +27,7 @@ static struct sea *open_aperture(double range_m, uint32_t window, double ray_sca
 static const double *behind_screen(struct sea *sea, double width_m, double height_m,
                                    double ground_range_m)
 {
-    sonject_object_params *screen = sea_add(sea, SONJECT_SHAPE_PLANE, width_m, 2.0 * height_m, 0.0);
+    sonject_object_params *screen = sea_add(sea, SHAPE_PLANE, width_m, 2.0 * height_m, 0.0);
     screen->roll_rad = 0.5 * PI;
     screen->burial_m = height_m;
     sea_ready(sea);

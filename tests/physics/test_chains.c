@@ -18,7 +18,7 @@ static struct ranges ranges_about(double middle, int count)
 
 /* One object. Surfaces are so bright that the third order is heard. 24 seeds of few rays know their
  * standard errors better. */
-static struct sea *open_with(sonject_shape shape, double length_m, double diameter_m)
+static struct sea *open_with(enum shape_kind shape, double length_m, double diameter_m)
 {
     struct sea *sea = sea_open(160, 240, MIDDLE_M);
     sonject_object_params *object = sea_add(sea, shape, length_m, 0.0, diameter_m);
@@ -36,7 +36,7 @@ static struct sea *open_with(sonject_shape shape, double length_m, double diamet
  */
 static struct sea *open_capsule(bool has_relief)
 {
-    struct sea *sea = open_with(SONJECT_SHAPE_CAPSULE, 2.3, 0.3);
+    struct sea *sea = open_with(SHAPE_CAPSULE, 2.3, 0.3);
     sea_object(sea, 0)->burial_m = 0.1;
     if (has_relief) {
         sea_add_ripples(sea, 0.6, 0.06, 1.2, 0.5);
@@ -47,7 +47,7 @@ static struct sea *open_capsule(bool has_relief)
 
 /* An object that is all within one sphere, which seabed under its overhang is within too: from
  * there no cone leads to a target. Near by and in a wide patch, for brute force's sake. */
-static struct sea *open_overhang(sonject_shape shape, double diameter_m)
+static struct sea *open_overhang(enum shape_kind shape, double diameter_m)
 {
     struct sea *sea = open_with(shape, 0.0, diameter_m);
     sea->geometry->row_spacing_m = 0.1;
@@ -108,10 +108,10 @@ CLAIM(brute_force_finds_what_connections_find)
 {
     compare_estimators("brute force", open_capsule(false), MIDDLE_M, 1.0);
     compare_estimators("over relief", open_capsule(true), MIDDLE_M, 3.0);
-    struct sea *sea = open_overhang(SONJECT_SHAPE_TORUS, 1.2);
+    struct sea *sea = open_overhang(SHAPE_TORUS, 1.2);
     sea_object(sea, 0)->height_m = 0.4;
     compare_estimators("under a torus", sea, NEAR_M, 0.7);
-    sea = open_overhang(SONJECT_SHAPE_MESH, 0.0);
+    sea = open_overhang(SHAPE_MESH, 0.0);
     sea_object(sea, 0)->pitch_rad = PI; /* on its tip */
     sea_add_tetrahedron(sea);
     compare_estimators("under a mesh", sea, NEAR_M, 0.7);
@@ -167,8 +167,7 @@ CLAIM(orders_have_the_references_energy)
     for (int is_drum = 0; is_drum < 2; is_drum++) {
         struct reference_scene scene;
         struct reference_request request;
-        struct sea *sea =
-            is_drum ? open_with(SONJECT_SHAPE_CYLINDER, 0.6, 0.6) : open_capsule(false);
+        struct sea *sea = is_drum ? open_with(SHAPE_CYLINDER, 0.6, 0.6) : open_capsule(false);
         sea_ready(sea);
         reference_of_sea(sea, is_drum ? REFERENCE_CYLINDER : REFERENCE_CAPSULE, &scene, &request);
         request.ranges = ranges_about(MIDDLE_M, CHAIN_RANGES);
@@ -232,7 +231,7 @@ CLAIM(the_narrowest_cone_is_in_scale)
         double energies[SEEDS / 2];
         struct sea *sea = sea_open(80, 160, MIDDLE_M);
         sea_add_sphere(sea, 0.25, 0.0);
-        sea_add(sea, SONJECT_SHAPE_PLANE, 1.0, 0.6, 0.0)->roll_rad = 68.0 * PI / 180.0;
+        sea_add(sea, SHAPE_PLANE, 1.0, 0.6, 0.0)->roll_rad = 68.0 * PI / 180.0;
         for (uint32_t k = 0; k < 2; k++) {
             make_rough(sea_object(sea, k), 0.0);
             sea_object(sea, k)->material.glossy_albedo = 1.0;

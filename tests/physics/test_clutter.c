@@ -105,7 +105,7 @@ CLAIM(sound_led_to_many_targets_has_its_energy)
             object->material.reflection = 0.0;
             if (k % 3 > 0)
                 continue;
-            object->shape = SONJECT_SHAPE_CYLINDER;
+            object->shape = SHAPE_CYLINDER;
             object->length_m = 0.5;
             object->diameter_m = 0.08;
             object->heading_rad = 0.7 * k;
@@ -152,9 +152,9 @@ CLAIM(too_many_shapes_are_refused)
     struct sea *sea = sea_open(160, 160, MIDDLE_M);
     struct bench *bench = sea->bench;
     add_object(sea, 80.0, 80.0, 0.1);
-    sea_object(sea, 0)->shape = SONJECT_SHAPE_PARTS;
+    sea_object(sea, 0)->shape = SHAPE_PARTS;
     for (int i = 0; i < 1000; i++)
-        sea_add_part(sea, SONJECT_SHAPE_SPHERE, nowhere, nowhere);
+        sea_add_part(sea, SHAPE_SPHERE, nowhere, nowhere);
     for (int i = 0; i < 24; i++)
         add_object(sea, 80.0, 80.0, 0.1);
     sea_ready(sea); /* 1024 */

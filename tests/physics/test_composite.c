@@ -30,7 +30,7 @@ static double pixel_energy(const struct injection_result *result, bool is_comple
 /* A black plate over the seabed. */
 static void add_plate(struct sea *sea, double length, double width)
 {
-    sonject_object_params *plate = sea_add(sea, SONJECT_SHAPE_PLANE, length, width, 0.0);
+    sonject_object_params *plate = sea_add(sea, SHAPE_PLANE, length, width, 0.0);
     plate->material.reflection = 0.0;
     plate->burial_m = -0.5;
 }
@@ -131,7 +131,7 @@ CLAIM(a_partial_shadow_keeps_its_share)
     set_noise(sea, -60.0);
     const double complex *field = measured_field(sea, 5);
     for (int k = 0; k < 8; k++) {
-        sonject_object_params *slat = sea_add(sea, SONJECT_SHAPE_PLANE, 0.06, 1.5, 0.0);
+        sonject_object_params *slat = sea_add(sea, SHAPE_PLANE, 0.06, 1.5, 0.0);
         slat->material.reflection = 0.0;
         slat->burial_m = -0.3;
         place_in_pixels(slat, 140.0 + 4.3 * k, 150.0);
@@ -172,7 +172,7 @@ CLAIM(the_change_is_that_of_the_second_interaction)
             field[2 * i + 1] = (float)(size * sin(turn));
         }
         const struct injection_result *result[2];
-        sonject_object_params *object = sea_add(sea, SONJECT_SHAPE_CAPSULE, 2.3, 0.0, 0.3);
+        sonject_object_params *object = sea_add(sea, SHAPE_CAPSULE, 2.3, 0.0, 0.3);
         object->burial_m = 0.1;
         assert_int_equal(sonject_material_named("steel", &object->material), SONJECT_OK);
         sea_ready(sea);

@@ -119,7 +119,7 @@ static void draw_slab(struct pose *pose)
 {
     sonject_object_params *object = &pose->object;
     draw_place(pose);
-    object->shape = SONJECT_SHAPE_BOX;
+    object->shape = SHAPE_BOX;
     object->length_m = draw(0.7, 1.3);
     object->width_m = draw(0.03, 0.05);
     object->height_m = draw(0.25, 0.5);
@@ -133,7 +133,7 @@ static void draw_smooth_box(struct pose *pose)
 {
     sonject_object_params *object = &pose->object;
     draw_place(pose);
-    object->shape = SONJECT_SHAPE_BOX;
+    object->shape = SHAPE_BOX;
     object->length_m = draw(0.7, 1.3);
     object->width_m = draw(0.2, 0.6);
     object->height_m = draw(0.25, 0.5);
@@ -152,7 +152,7 @@ static void draw_truncated_cone(struct pose *pose)
     sonject_object_params *object = &pose->object;
     draw_place(pose);
     object->material.reflection = 0.0;
-    object->shape = SONJECT_SHAPE_TRUNCATED_CONE;
+    object->shape = SHAPE_TRUNCATED_CONE;
     object->diameter_m = draw(0.8, 1.2);
     object->top_diameter_m = draw(0.3, 0.6);
     object->height_m = draw(0.3, 0.5);
@@ -279,7 +279,7 @@ static void set_object(sonject_context *context, sonject_scene *scene,
         "{shape: %s, position: {row: %.17g, column: %.17g}, heading: %.17g rad, pitch: %.17g rad, "
         "roll: %.17g rad, burial: %.17g, level: {over_seabed: %.17g}, material: {reflection: "
         "%.17g}",
-        object->shape == SONJECT_SHAPE_BOX ? "box" : "truncated_cone", object->position_along,
+        object->shape == SHAPE_BOX ? "box" : "truncated_cone", object->position_along,
         object->position_range, object->heading_rad, object->pitch_rad, object->roll_rad,
         object->burial_m, object->level_db, object->material.reflection);
     length = add_key(text, sizeof text, length, "length", object->length_m);

@@ -10,7 +10,7 @@
 #define WAVELENGTH 0.015
 
 /* A shape 1 m over the seabed. */
-static struct sea *open_with(sonject_shape shape, double length, double width, double height,
+static struct sea *open_with(enum shape_kind shape, double length, double width, double height,
                              double diameter)
 {
     struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
@@ -63,7 +63,7 @@ CLAIM(smallest_spheres_echo)
     static const double radii[] = {0.2505, 0.4, 0.5, 0.8}; /* wavelengths */
     for (size_t i = 0; i < COUNT(radii); i++) {
         const double a = radii[i] * WAVELENGTH;
-        struct sea *sea = open_with(SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.0, 2.0 * a);
+        struct sea *sea = open_with(SHAPE_SPHERE, 0.0, 0.0, 0.0, 2.0 * a);
         print_message("sphere of radius %.1f mm\n", 1e3 * a);
         expect_close("small sphere's level re a/2, dB",
                      decibels_of_amplitude(sea_peak(sea, NULL) / (0.5 * a)), 0.0, 2.0);
@@ -147,7 +147,7 @@ CLAIM(a_capsule_shows_the_ball_of_an_end)
 {
     static const double degrees[][2] = {{30.0, 0.0}, {-45.0, 15.0}, {60.0, -20.0}, {90.0, 10.0}};
     for (size_t i = 0; i < COUNT(degrees); i++) {
-        struct sea *sea = open_with(SONJECT_SHAPE_CAPSULE, 2.3, 0.0, 0.0, 0.6);
+        struct sea *sea = open_with(SHAPE_CAPSULE, 2.3, 0.0, 0.0, 0.6);
         sea_object(sea, 0)->burial_m = -2.0;
         turn(sea, degrees[i][0], degrees[i][1], 0.0);
         print_message("heading %.0f, pitch %.0f degrees\n", degrees[i][0], degrees[i][1]);
@@ -164,7 +164,7 @@ CLAIM(a_cylinder_broadside)
     const double curvature = 1.0 / (1.0 / 0.15 + 1.0 / RANGE);
     double along[2];
     for (int is_open = 0; is_open < 2; is_open++) {
-        struct sea *sea = open_with(SONJECT_SHAPE_CYLINDER, 1.0, 0.0, 0.0, 0.3);
+        struct sea *sea = open_with(SHAPE_CYLINDER, 1.0, 0.0, 0.0, 0.3);
         sonject_object_params *object = sea_object(sea, 0);
         object->nose_end = object->tail_end = is_open ? SONJECT_END_OPEN : SONJECT_END_FLAT;
         expect_close("no W, dB re 1 m^2", decibels_of_amplitude(sea_peak(sea, NULL)),
@@ -204,7 +204,7 @@ CLAIM(a_cylinder_off_axis)
 {
     static const double degrees[] = {0.1, 0.2, 0.3, 0.62, 1.06};
     for (size_t i = 0; i < COUNT(degrees); i++) {
-        struct sea *sea = open_with(SONJECT_SHAPE_CYLINDER, 1.0, 0.0, 0.0, 0.3);
+        struct sea *sea = open_with(SHAPE_CYLINDER, 1.0, 0.0, 0.0, 0.3);
         turn(sea, degrees[i], 0.0, 0.0);
         /* between the sight and the plane across the axis, which is level while the sight is not:
          * sin(theta) = sin(heading) cos(depression) */
@@ -223,7 +223,7 @@ CLAIM(a_cylinder_leaves_the_aspects)
     static const double degrees[] = {3.0, 5.0, 13.0};
     for (size_t i = 0; i < COUNT(degrees); i++) {
         const double theta = degrees[i] * PI / 180.0;
-        struct sea *sea = open_with(SONJECT_SHAPE_CYLINDER, 3.0, 0.0, 0.0, 0.3);
+        struct sea *sea = open_with(SHAPE_CYLINDER, 3.0, 0.0, 0.0, 0.3);
         turn(sea, degrees[i], 0.0, 0.0);
         const struct image *image = sea_image(sea);
         /* mean energy along the middle of the wall, over columns; the pulse's energy spread over
@@ -257,30 +257,27 @@ CLAIM(flat_faces)
     static const double box[] = {0.2, 0.1}, slope[] = {0.15, 0.25};
     static const struct {
         const char *name;
-        sonject_shape shape;
+        enum shape_kind shape;
         double length, width, height, diameter; /* m */
         double cut;                             /* m from the centre to the nose; 0: none */
         double forward, before;                 /* rad; face before the centre, m */
         double (*depth)(double, double, const double *);
         const double *sizes;
     } faces[] = {
-        {"end", SONJECT_SHAPE_CYLINDER, 0.2, 0.0, 0.0, 0.1, 0.0, 0.0, 0.1, disc_depth, sizes[0]},
-        {"end", SONJECT_SHAPE_CYLINDER, 0.2, 0.0, 0.0, 0.3, 0.0, 0.0, 0.1, disc_depth, sizes[1]},
-        {"end", SONJECT_SHAPE_CYLINDER, 0.2, 0.0, 0.0, 0.6, 0.0, 0.0, 0.1, disc_depth, sizes[2]},
-        {"plate", SONJECT_SHAPE_PLANE, 0.1, 0.1, 0.0, 0.0, 0.0, -0.5 * PI, 0.0, rectangle_depth,
-         sizes[0]},
-        {"plate", SONJECT_SHAPE_PLANE, 0.3, 0.3, 0.0, 0.0, 0.0, -0.5 * PI, 0.0, rectangle_depth,
-         sizes[1]},
-        {"plate", SONJECT_SHAPE_PLANE, 0.6, 0.6, 0.0, 0.0, 0.0, -0.5 * PI, 0.0, rectangle_depth,
-         sizes[2]},
-        {"disc", SONJECT_SHAPE_DISC, 0.0, 0.0, 0.0, 0.1, 0.0, -0.5 * PI, 0.0, disc_depth, sizes[0]},
-        {"disc", SONJECT_SHAPE_DISC, 0.0, 0.0, 0.0, 0.3, 0.0, -0.5 * PI, 0.0, disc_depth, sizes[1]},
-        {"disc", SONJECT_SHAPE_DISC, 0.0, 0.0, 0.0, 0.6, 0.0, -0.5 * PI, 0.0, disc_depth, sizes[2]},
-        {"box", SONJECT_SHAPE_BOX, 0.6, 0.4, 0.2, 0.0, 0.0, 0.0, 0.3, rectangle_depth, box},
-        {"wedge", SONJECT_SHAPE_WEDGE, 0.4, 0.3, 0.3, 0.0, 0.0, -0.92729521800161219, 0.0,
-         rectangle_depth, slope}, /* atan(0.4 / 0.3) */
-        {"cut", SONJECT_SHAPE_CYLINDER, 1.0, 0.0, 0.0, 0.3, 0.1, 0.0, 0.1, disc_depth, sizes[1]},
-        {"cut", SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.0, 0.5, 0.2, 0.0, 0.2, disc_depth, sizes[1]},
+        {"end", SHAPE_CYLINDER, 0.2, 0.0, 0.0, 0.1, 0.0, 0.0, 0.1, disc_depth, sizes[0]},
+        {"end", SHAPE_CYLINDER, 0.2, 0.0, 0.0, 0.3, 0.0, 0.0, 0.1, disc_depth, sizes[1]},
+        {"end", SHAPE_CYLINDER, 0.2, 0.0, 0.0, 0.6, 0.0, 0.0, 0.1, disc_depth, sizes[2]},
+        {"plate", SHAPE_PLANE, 0.1, 0.1, 0.0, 0.0, 0.0, -0.5 * PI, 0.0, rectangle_depth, sizes[0]},
+        {"plate", SHAPE_PLANE, 0.3, 0.3, 0.0, 0.0, 0.0, -0.5 * PI, 0.0, rectangle_depth, sizes[1]},
+        {"plate", SHAPE_PLANE, 0.6, 0.6, 0.0, 0.0, 0.0, -0.5 * PI, 0.0, rectangle_depth, sizes[2]},
+        {"disc", SHAPE_DISC, 0.0, 0.0, 0.0, 0.1, 0.0, -0.5 * PI, 0.0, disc_depth, sizes[0]},
+        {"disc", SHAPE_DISC, 0.0, 0.0, 0.0, 0.3, 0.0, -0.5 * PI, 0.0, disc_depth, sizes[1]},
+        {"disc", SHAPE_DISC, 0.0, 0.0, 0.0, 0.6, 0.0, -0.5 * PI, 0.0, disc_depth, sizes[2]},
+        {"box", SHAPE_BOX, 0.6, 0.4, 0.2, 0.0, 0.0, 0.0, 0.3, rectangle_depth, box},
+        {"wedge", SHAPE_WEDGE, 0.4, 0.3, 0.3, 0.0, 0.0, -0.92729521800161219, 0.0, rectangle_depth,
+         slope}, /* atan(0.4 / 0.3) */
+        {"cut", SHAPE_CYLINDER, 1.0, 0.0, 0.0, 0.3, 0.1, 0.0, 0.1, disc_depth, sizes[1]},
+        {"cut", SHAPE_SPHERE, 0.0, 0.0, 0.0, 0.5, 0.2, 0.0, 0.2, disc_depth, sizes[1]},
     };
     for (size_t i = 0; i < COUNT(faces); i++) {
         struct sea *sea = open_with(faces[i].shape, faces[i].length, faces[i].width,
@@ -310,7 +307,7 @@ CLAIM(a_plate_off_the_sight)
 {
     const double tilt = 0.1, sizes[] = {0.15, 0.25 * cos(tilt), tan(tilt)};
     const struct front front = {tilted_depth, sizes, 0.26};
-    struct sea *sea = open_with(SONJECT_SHAPE_PLANE, 0.5, 0.3, 0.0, 0.0);
+    struct sea *sea = open_with(SHAPE_PLANE, 0.5, 0.3, 0.0, 0.0);
     double peak = 0.0, off = 0.0;
     face_sonar(sea, -0.5 * PI + tilt);
     const double nearest = sea_slant_range(sea, 0) - 0.25 * sin(tilt);
@@ -341,7 +338,7 @@ CLAIM(phase_and_level_are_those_of_path_and_surface)
                  {0, -0.7, 0}, {0, -0.7, 0.5e-3}, {0, -0.7, 1e-3}, {0, -0.7, 2e-3}};
     double before = 0.0;
     for (size_t i = 0; i < COUNT(cases); i++) {
-        struct sea *sea = open_with(SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.0, 0.6);
+        struct sea *sea = open_with(SHAPE_SPHERE, 0.0, 0.0, 0.0, 0.6);
         sonject_object_params *sphere = sea_object(sea, 0);
         place_in_metres(sphere, 0.0, RANGE + cases[i].longer * WAVELENGTH / 8.0);
         sphere->material.reflection = cases[i].reflection;
@@ -366,7 +363,7 @@ CLAIM(more_rays_change_no_glint)
     double level[3];
     static const double scales[] = {1.0, 4.0, 16.0};
     for (size_t i = 0; i < 3; i++) {
-        struct sea *sea = open_with(SONJECT_SHAPE_CAPSULE, 1.0, 0.0, 0.0, 0.3);
+        struct sea *sea = open_with(SHAPE_CAPSULE, 1.0, 0.0, 0.0, 0.3);
         sea->injection->ray_scale = scales[i];
         sea_object(sea, 0)->heading_rad = 0.2;
         level[i] = decibels_of_amplitude(sea_peak(sea, NULL));
@@ -383,7 +380,7 @@ CLAIM(little_is_left_beside_a_glint)
 {
     static const double scales[] = {1.0, 4.0};
     for (size_t i = 0; i < 2; i++) {
-        struct sea *sea = open_with(SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.0, 0.8);
+        struct sea *sea = open_with(SHAPE_SPHERE, 0.0, 0.0, 0.0, 0.8);
         sea->injection->ray_scale = scales[i];
         const struct image *image = sea_image(sea);
         /* between the glint and the terminator (0.4 m behind), clear of both pulses (-108 dB at
@@ -411,7 +408,7 @@ CLAIM(an_ellipsoid)
         {0.0, 0.0, 0.0}, {40.0, 0.0, 0.0}, {70.0, 25.0, 0.0}, {-100.0, -15.0, 60.0}};
     static const double half[] = {0.5, 0.35, 0.25};
     for (size_t i = 0; i < COUNT(poses); i++) {
-        struct sea *sea = open_with(SONJECT_SHAPE_ELLIPSOID, 1.0, 0.7, 0.5, 0.0);
+        struct sea *sea = open_with(SHAPE_ELLIPSOID, 1.0, 0.7, 0.5, 0.0);
         turn(sea, poses[i][0], poses[i][1], poses[i][2]);
         const double *centre = sea_centre(sea, 0), slant = sea_slant_range(sea, 0);
         double square = 0.0, range;
@@ -438,7 +435,7 @@ CLAIM(an_ellipsoid)
 CLAIM(a_torus)
 {
     for (int is_face_on = 0; is_face_on < 2; is_face_on++) {
-        struct sea *sea = open_with(SONJECT_SHAPE_TORUS, 0.0, 0.0, 0.3, 1.0);
+        struct sea *sea = open_with(SHAPE_TORUS, 0.0, 0.0, 0.3, 1.0);
         face_sonar(sea, is_face_on ? -0.5 * PI : 0.0);
         const double distance = sea_slant_range(sea, 0) - (is_face_on ? 0.15 : 0.5);
         double complex mean = 0.0;
@@ -464,7 +461,7 @@ CLAIM(a_cone_tip_on)
 {
     static const double sizes[] = {0.3, 1.0 / 3.0}; /* radius, height over radius */
     const struct front front = {cone_depth, sizes, 0.31};
-    struct sea *sea = open_with(SONJECT_SHAPE_CONE, 0.0, 0.0, 0.1, 0.6);
+    struct sea *sea = open_with(SHAPE_CONE, 0.0, 0.0, 0.1, 0.6);
     face_sonar(sea, -0.5 * PI);
     const double tip = sea_slant_range(sea, 0) - 0.05;
     const struct line line = sea_line(sea, 0);
@@ -486,8 +483,7 @@ CLAIM(a_capsule_is_a_cylinder_with_round_ends)
     const struct image *images[2];
     double peak;
     for (int i = 0; i < 2; i++) {
-        struct sea *sea =
-            open_with(i ? SONJECT_SHAPE_CYLINDER : SONJECT_SHAPE_CAPSULE, 1.4, 0.0, 0.0, 0.4);
+        struct sea *sea = open_with(i ? SHAPE_CYLINDER : SHAPE_CAPSULE, 1.4, 0.0, 0.0, 0.4);
         sonject_object_params *object = sea_object(sea, 0);
         object->nose_end = object->tail_end = i ? SONJECT_END_SPHERICAL : SONJECT_END_FLAT;
         object->heading_rad = 0.6;

@@ -157,7 +157,7 @@ CLAIM(a_wall_on_the_seabed)
         const uint32_t interactions = 1 + i % 3;
         const double buried = i < 3 ? 0.0 : 0.15;
         struct sea *sea = open_at(30.0, COLUMNS, interactions, 1.0);
-        sonject_object_params *object = sea_add(sea, SONJECT_SHAPE_PLANE, length, b + buried, 0.0);
+        sonject_object_params *object = sea_add(sea, SHAPE_PLANE, length, b + buried, 0.0);
         object->roll_rad = 0.5 * PI;
         object->burial_m = buried;
         const struct line line = sea_line(sea, 0);
@@ -215,7 +215,7 @@ static void add_plate(struct sea *sea, double wide, double beyond, double height
 {
     const double *centre = sea_centre(sea, 0);
     const double at = centre[1] * 10.0 / (10.0 + centre[2]) + beyond;
-    sonject_object_params *plate = sea_add(sea, SONJECT_SHAPE_PLANE, 0.8, wide, 0.0);
+    sonject_object_params *plate = sea_add(sea, SHAPE_PLANE, 0.8, wide, 0.0);
     plate->material.reflection = 0.0;
     plate->burial_m = -height;
     plate->roll_rad = is_upright ? 0.5 * PI : 0.0;

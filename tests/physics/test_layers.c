@@ -190,7 +190,7 @@ CLAIM(a_rough_plate)
         sea->sonar->bandwidth_hz = 15e3; /* columns sample the pulse's energy */
         sea->injection->ray_scale = 16.0;
         sea->seabed->lambert = 1e-9;
-        sonject_object_params *object = sea_add(sea, SONJECT_SHAPE_PLANE, 0.4, 0.4, 0.0);
+        sonject_object_params *object = sea_add(sea, SHAPE_PLANE, 0.4, 0.4, 0.0);
         object->burial_m = number / 2 ? -0.3 : -1.5;
         object->heading_rad = -0.5 * PI;
         make_rough(object, 0.1);
@@ -228,7 +228,7 @@ CLAIM(the_shadow_of_a_flat_top)
         const double height = number % 2 ? 0.3 : 0.6;
         struct sea *sea = open_sea(number, 121, 401);
         sea->injection->ray_scale = 16.0;
-        sea_add(sea, SONJECT_SHAPE_PLANE, 2.0, 1.2, 0.0)->burial_m = -height;
+        sea_add(sea, SHAPE_PLANE, 2.0, 1.2, 0.0)->burial_m = -height;
         const double *visibility = visibility_of(sea_image(sea)) + 60 * 401;
         const double centre = sea_centre(sea, 0)[1];
         const double near = column_behind(sea, centre - 0.6, height);
@@ -262,7 +262,7 @@ static const struct image *all_echoes(const struct water_layer *layers, size_t c
     sonject_object_params *sphere = sea_add_sphere(sea, 0.2, 0.0);
     sphere->material.lambert = 0.05;
     sphere->material.roughness_m = 1e-3;
-    sonject_object_params *capsule = sea_add(sea, SONJECT_SHAPE_CAPSULE, 1.0, 0.0, 0.3);
+    sonject_object_params *capsule = sea_add(sea, SHAPE_CAPSULE, 1.0, 0.0, 0.3);
     capsule->material.lambert = 0.05;
     capsule->heading_rad = 0.4;
     capsule->burial_m = -0.5;

@@ -40,8 +40,7 @@ enum ball {
 static sonject_object_params *add_ball(struct sea *sea, enum ball kind, int subdivisions,
                                        const sonject_cut *cut, double height)
 {
-    static const sonject_shape shapes[] = {SONJECT_SHAPE_SPHERE, SONJECT_SHAPE_MESH,
-                                           SONJECT_SHAPE_USER};
+    static const enum shape_kind shapes[] = {SHAPE_SPHERE, SHAPE_MESH, SHAPE_USER};
     struct mesh_sample sample;
     sonject_object_params *object =
         sea_add(sea, shapes[kind], 0.0, 0.0, kind == SPHERE ? 2.0 * BALL : 0.0);
@@ -210,7 +209,7 @@ CLAIM(both_sides_show_the_same)
     for (int i = 0; i < 2; i++) {
         struct sea *sea = sea_open(ROWS, COLUMNS, FAR_M);
         sea->geometry->side = i ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
-        sonject_object_params *object = sea_add(sea, SONJECT_SHAPE_MESH, 0.0, 0.0, 0.0);
+        sonject_object_params *object = sea_add(sea, SHAPE_MESH, 0.0, 0.0, 0.0);
         make_rough(object, 0.1);
         object->heading_rad = i ? PI - 0.4 : 0.4;
         sea_add_mesh(sea, &box, 1.0, 0.0);
@@ -240,7 +239,7 @@ CLAIM(a_box_of_facets_is_the_box)
             struct mesh_sample sample;
             struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
             sonject_object_params *object =
-                sea_add(sea, is_mesh ? SONJECT_SHAPE_MESH : SONJECT_SHAPE_BOX, 1.0, 0.6, 0.0);
+                sea_add(sea, is_mesh ? SHAPE_MESH : SHAPE_BOX, 1.0, 0.6, 0.0);
             object->height_m = 0.3;
             object->heading_rad = poses[pose][0];
             object->pitch_rad = poses[pose][1];
@@ -270,7 +269,7 @@ static const struct image *image_of_sheet(int kind, bool is_rough)
     struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
     sea->injection->interactions = is_rough ? 3 : 1;
     sonject_object_params *object =
-        sea_add(sea, kind < 2 ? SONJECT_SHAPE_MESH : SONJECT_SHAPE_PLANE, 0.6, 0.4, 0.0);
+        sea_add(sea, kind < 2 ? SHAPE_MESH : SHAPE_PLANE, 0.6, 0.4, 0.0);
     object->heading_rad = 0.1;
     object->roll_rad = -1.3;
     if (is_rough)
@@ -338,8 +337,8 @@ static struct sea *open_lambert_sphere(enum sphere_kind kind, double range)
 {
     struct mesh_sample sample;
     struct sea *sea = sea_open(ROWS, COLUMNS, range);
-    sonject_object_params *object = sea_add(
-        sea, kind == EXACT ? SONJECT_SHAPE_SPHERE : SONJECT_SHAPE_MESH, 0.0, 0.0, 2.0 * RADIUS);
+    sonject_object_params *object =
+        sea_add(sea, kind == EXACT ? SHAPE_SPHERE : SHAPE_MESH, 0.0, 0.0, 2.0 * RADIUS);
     make_rough(object, 0.1);
     object->burial_m = -1.0;
     sample_sphere(&sample, 2);
@@ -460,7 +459,7 @@ static size_t lay_rings(struct sea *sea, bool is_shared)
     sea->injection->interactions = 2;
     for (uint32_t i = 0; i < RINGS; i++) {
         struct mesh_sample sample;
-        sonject_object_params *object = sea_add(sea, SONJECT_SHAPE_MESH, 0.0, 0.0, 0.0);
+        sonject_object_params *object = sea_add(sea, SHAPE_MESH, 0.0, 0.0, 0.0);
         object->mesh = is_shared ? 0 : i;
         place_in_metres(object, 1.0, RANGE - 1.2 + i);
         object->heading_rad = 0.7 * i;
@@ -510,7 +509,7 @@ CLAIM(tallies_have_the_bits_of_plain_c)
         struct mesh_sample sample;
         struct sea *sea = sea_open(ROWS, COLUMNS, FAR_M);
         struct bench *bench = sea->bench;
-        make_rough(sea_add(sea, SONJECT_SHAPE_MESH, 0.0, 0.0, 0.0), 0.1);
+        make_rough(sea_add(sea, SHAPE_MESH, 0.0, 0.0, 0.0), 0.1);
         sample_sphere(&sample, 4);
         add_sample(sea, &sample, BALL, is_smooth ? 1.0 : 0.0);
         sea->sonar->transducer_side_m = 0.1;

@@ -20,7 +20,7 @@ static struct sea *open_at(uint32_t interactions)
 /* A rigid plate, as part 0, 1, ..., to be put where it is wanted. */
 static void add_plate(struct sea *sea, double length, double width)
 {
-    sea_add(sea, SONJECT_SHAPE_PLANE, length, width, 0.0)->burial_m = -1.0;
+    sea_add(sea, SHAPE_PLANE, length, width, 0.0)->burial_m = -1.0;
 }
 
 static void cross(const double a[3], const double b[3], double out[3])
@@ -216,7 +216,7 @@ CLAIM(a_caustic)
     for (int i = 0; i < 4; i++) {
         const double radius = radii[i / 2], half_angle = 0.06 / radius;
         struct sea *sea = open_at(2);
-        sonject_object_params *tube = sea_add(sea, SONJECT_SHAPE_CYLINDER, 0.15, 0.0, 2.0 * radius);
+        sonject_object_params *tube = sea_add(sea, SHAPE_CYLINDER, 0.15, 0.0, 2.0 * radius);
         tube->burial_m = -1.0;
         tube->nose_end = tube->tail_end = SONJECT_END_OPEN;
         tube->cuts[0].azimuth_rad = -0.5 * PI;
@@ -357,9 +357,9 @@ CLAIM(no_second_face_changes_nothing)
     for (int i = 0; i < 5; i++) {
         static const uint32_t interactions[] = {1, 2, 5, 4, 1};
         struct sea *sea = open_at(interactions[i]);
-        sea_add(sea, SONJECT_SHAPE_CAPSULE, 0.6, 0.0, 0.3)->heading_rad = 0.05;
+        sea_add(sea, SHAPE_CAPSULE, 0.6, 0.0, 0.3)->heading_rad = 0.05;
         if (i >= 3) {
-            sonject_object_params *box = sea_add(sea, SONJECT_SHAPE_BOX, 0.3, 0.3, 0.0);
+            sonject_object_params *box = sea_add(sea, SHAPE_BOX, 0.3, 0.3, 0.0);
             box->height_m = 0.3;
             place_in_metres(box, 0.0, RANGE + 1.5);
             if (i == 3)

@@ -14,8 +14,8 @@
 #define GRAZING    0.245 /* rad, of the sound that comes to the objects, about */
 
 /* An object of one shape, or of parts: then width and height are those of its boxes. */
-static sonject_object_params *add(struct sea *sea, sonject_shape shape, double length, double width,
-                                  double height, double diameter)
+static sonject_object_params *add(struct sea *sea, enum shape_kind shape, double length,
+                                  double width, double height, double diameter)
 {
     sonject_object_params *object = sea_add(sea, shape, length, width, diameter);
     object->height_m = height;
@@ -23,7 +23,7 @@ static sonject_object_params *add(struct sea *sea, sonject_shape shape, double l
 }
 
 /* A part of the first object, with the object's surface, level in it unless turned. */
-static sonject_object_params *add_part(struct sea *sea, sonject_shape shape, double length,
+static sonject_object_params *add_part(struct sea *sea, enum shape_kind shape, double length,
                                        double diameter, double along, double across, double up)
 {
     static const double level[3] = {0.0, 0.0, 0.0};
@@ -43,40 +43,40 @@ typedef void (*builder)(struct sea *sea, bool other);
 static void build_capsule(struct sea *sea, bool of_parts)
 {
     const double straight = LENGTH - DIAMETER;
-    add(sea, of_parts ? SONJECT_SHAPE_PARTS : SONJECT_SHAPE_CAPSULE, LENGTH, 0.0, 0.0, DIAMETER);
+    add(sea, of_parts ? SHAPE_PARTS : SHAPE_CAPSULE, LENGTH, 0.0, 0.0, DIAMETER);
     if (!of_parts)
         return;
-    add_part(sea, SONJECT_SHAPE_CYLINDER, straight, DIAMETER, 0.0, 0.0, 0.0);
-    add_part(sea, SONJECT_SHAPE_SPHERE, 0.0, DIAMETER, 0.5 * straight, 0.0, 0.0);
-    add_part(sea, SONJECT_SHAPE_SPHERE, 0.0, DIAMETER, -0.5 * straight, 0.0, 0.0);
+    add_part(sea, SHAPE_CYLINDER, straight, DIAMETER, 0.0, 0.0, 0.0);
+    add_part(sea, SHAPE_SPHERE, 0.0, DIAMETER, 0.5 * straight, 0.0, 0.0);
+    add_part(sea, SHAPE_SPHERE, 0.0, DIAMETER, -0.5 * straight, 0.0, 0.0);
 }
 
 static void build_box(struct sea *sea, bool of_parts)
 {
-    add(sea, of_parts ? SONJECT_SHAPE_PARTS : SONJECT_SHAPE_BOX, 1.0, 0.6, 0.4, 0.0);
+    add(sea, of_parts ? SHAPE_PARTS : SHAPE_BOX, 1.0, 0.6, 0.4, 0.0);
     if (!of_parts)
         return;
-    add_part(sea, SONJECT_SHAPE_BOX, 0.7, 0.0, -0.15, 0.0, 0.0);
-    add_part(sea, SONJECT_SHAPE_BOX, 0.3, 0.0, 0.35, 0.0, 0.0);
+    add_part(sea, SHAPE_BOX, 0.7, 0.0, -0.15, 0.0, 0.0);
+    add_part(sea, SHAPE_BOX, 0.3, 0.0, 0.35, 0.0, 0.0);
 }
 
 /* Two spheres in one place, or a sphere that lies in another: the second touches no sound. */
 static void build_spheres(struct sea *sea, bool of_parts)
 {
-    add(sea, of_parts ? SONJECT_SHAPE_PARTS : SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.0, 0.6);
+    add(sea, of_parts ? SHAPE_PARTS : SHAPE_SPHERE, 0.0, 0.0, 0.0, 0.6);
     if (!of_parts)
         return;
-    add_part(sea, SONJECT_SHAPE_SPHERE, 0.0, 0.6, 0.0, 0.0, 0.0);
-    add_part(sea, SONJECT_SHAPE_SPHERE, 0.0, 0.6, 0.0, 0.0, 0.0);
+    add_part(sea, SHAPE_SPHERE, 0.0, 0.6, 0.0, 0.0, 0.0);
+    add_part(sea, SHAPE_SPHERE, 0.0, 0.6, 0.0, 0.0, 0.0);
 }
 
 static void build_hidden_sphere(struct sea *sea, bool of_parts)
 {
-    add(sea, of_parts ? SONJECT_SHAPE_PARTS : SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.0, 0.6);
+    add(sea, of_parts ? SHAPE_PARTS : SHAPE_SPHERE, 0.0, 0.0, 0.0, 0.6);
     if (!of_parts)
         return;
-    add_part(sea, SONJECT_SHAPE_SPHERE, 0.0, 0.6, 0.0, 0.0, 0.0);
-    add_part(sea, SONJECT_SHAPE_SPHERE, 0.0, 0.4, 0.05, -0.05, 0.02);
+    add_part(sea, SHAPE_SPHERE, 0.0, 0.6, 0.0, 0.0, 0.0);
+    add_part(sea, SHAPE_SPHERE, 0.0, 0.4, 0.05, -0.05, 0.02);
 }
 
 /* A lopsided object on the starboard side, and one of the other hand on the port side. Pose is
@@ -86,14 +86,13 @@ static void build_lopsided(struct sea *sea, bool is_starboard)
     const double hand = is_starboard ? 1.0 : -1.0;
     const double centre[3] = {-0.4, -0.2 * hand, 0.2}, pose[3] = {0.7 * hand, 0.3, 0.4 * hand};
     sea->geometry->side = is_starboard ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
-    add(sea, SONJECT_SHAPE_PARTS, 0.0, 0.0, 0.0, 0.0);
-    add_part(sea, SONJECT_SHAPE_CYLINDER, 1.0, 0.2, 0.0, 0.0, 0.0);
-    sonject_object_params *cut =
-        add_part(sea, SONJECT_SHAPE_SPHERE, 0.0, 0.4, 0.5, 0.3 * hand, 0.1);
+    add(sea, SHAPE_PARTS, 0.0, 0.0, 0.0, 0.0);
+    add_part(sea, SHAPE_CYLINDER, 1.0, 0.2, 0.0, 0.0, 0.0);
+    sonject_object_params *cut = add_part(sea, SHAPE_SPHERE, 0.0, 0.4, 0.5, 0.3 * hand, 0.1);
     cut->cut_count = 1;
     cut->cuts[0].azimuth_rad = 1.0 * hand;
     cut->cuts[0].distance_m = 0.05;
-    sonject_object_params *turned = sea_add_part(sea, SONJECT_SHAPE_CYLINDER, centre, pose);
+    sonject_object_params *turned = sea_add_part(sea, SHAPE_CYLINDER, centre, pose);
     turned->length_m = 0.8;
     turned->diameter_m = 0.2;
 }
@@ -133,13 +132,12 @@ static void put_triangle(uint32_t **corners, uint32_t a, uint32_t b, uint32_t c)
 
 static void build_union(struct sea *sea, bool is_mesh)
 {
-    add(sea, is_mesh ? SONJECT_SHAPE_MESH : SONJECT_SHAPE_PARTS, 0.0, 2.0 * HALF_WIDTH, BOX_TOP,
-        2.0 * RADIUS);
+    add(sea, is_mesh ? SHAPE_MESH : SHAPE_PARTS, 0.0, 2.0 * HALF_WIDTH, BOX_TOP, 2.0 * RADIUS);
     if (!is_mesh) { /* a mesh counts from its middle, and so do they */
         const double length = TOP - BOX_TOP + SUNK;
         const double centre[3] = {0.0, 0.0, 0.5 * (TOP - length)}, upright[3] = {0, 0.5 * PI, 0};
-        add_part(sea, SONJECT_SHAPE_BOX, 2.0 * HALF_WIDTH, 0.0, 0.0, 0.0, 0.5 * (BOX_TOP - TOP));
-        sea_add_part(sea, SONJECT_SHAPE_CYLINDER, centre, upright)->length_m = length;
+        add_part(sea, SHAPE_BOX, 2.0 * HALF_WIDTH, 0.0, 0.0, 0.0, 0.5 * (BOX_TOP - TOP));
+        sea_add_part(sea, SHAPE_CYLINDER, centre, upright)->length_m = length;
         return;
     }
     const size_t vertices = RINGS * SECTORS + 2;
@@ -339,15 +337,15 @@ CLAIM(parts_rest_on_the_seabed)
         const double behind[3] = {-0.5, 0.0, 0.0}, level[3] = {0.0, -pitch, 0.0};
         struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
         sea->geometry->side = i % 2 ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
-        sonject_object_params *object = add(sea, SONJECT_SHAPE_PARTS, 0.0, 0.4, 0.2, 0.0);
+        sonject_object_params *object = add(sea, SHAPE_PARTS, 0.0, 0.4, 0.2, 0.0);
         object->heading_rad = 0.7;
         object->pitch_rad = pitch;
         object->burial_kind = i / 2;
         object->burial_m = 0.05;
         object->burial_fraction = 0.25;
         object->proud_height_m = 0.3;
-        add_part(sea, SONJECT_SHAPE_SPHERE, 0.0, 0.4, 1.0, 0.0, 0.0);
-        sea_add_part(sea, SONJECT_SHAPE_BOX, behind, level)->length_m = 0.6;
+        add_part(sea, SHAPE_SPHERE, 0.0, 0.4, 1.0, 0.0, 0.0);
+        sea_add_part(sea, SHAPE_BOX, behind, level)->length_m = 0.6;
         sea_ready(sea);
         const struct placed_object *placed = &sea->bench->placed.objects[0];
         expect_close("lowest point, m", placed->bottom_m, bottom, 1e-12);

@@ -258,7 +258,7 @@ static double place_of(size_t row)
  * row, 1 m before the middle of the patch: mean over columns that the pulse joins. */
 static void line_behind_screen(struct sea *sea, double range, double line[LONG_ROWS])
 {
-    sonject_object_params *screen = sea_add(sea, SONJECT_SHAPE_PLANE, SCREEN_M, 2.0, 0.0);
+    sonject_object_params *screen = sea_add(sea, SHAPE_PLANE, SCREEN_M, 2.0, 0.0);
     screen->roll_rad = 0.5 * PI;
     screen->burial_m = 1.0;
     place_in_metres(screen, LONG_MIDDLE_ROW * SPACING, range - 1.0);

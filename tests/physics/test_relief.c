@@ -306,7 +306,7 @@ CLAIM(a_shadow_on_a_slope)
 {
     const double slope = 0.25;
     struct sea *sea = open_sea(4.0);
-    sea_add(sea, SONJECT_SHAPE_BOX, 2.0, 0.1, 0.0)->height_m = 0.6;
+    sea_add(sea, SHAPE_BOX, 2.0, 0.1, 0.0)->height_m = 0.6;
     lay_slope(sea, 0.0, slope);
     const double *visibility = visibility_of(sea_image(sea)) + (ROWS / 2) * COLUMNS;
     const double altitude = sea->sonar->altitude_m, middle = middle_ground(sea);

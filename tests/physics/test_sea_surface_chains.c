@@ -78,7 +78,7 @@ CLAIM(a_disc_under_a_lambert_surface)
     for (int is_focused = 0; is_focused < 2; is_focused++) {
         struct estimate expected[RANGES];
         struct sea *sea = sea_open(ROWS, COLUMNS, MIDDLE_M);
-        sonject_object_params *disc = sea_add(sea, SONJECT_SHAPE_DISC, 0.0, 0.0, DISC_M);
+        sonject_object_params *disc = sea_add(sea, SHAPE_DISC, 0.0, 0.0, DISC_M);
         sea->geometry->row_spacing_m = 0.1;
         sea->injection->ray_scale = 4.0;
         disc->burial_m = -1.5;

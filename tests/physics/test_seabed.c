@@ -198,7 +198,7 @@ CLAIM(a_face_within_a_pixel)
     static double energy[STEPS][2 * REACH + 1], beyond[STEPS];
     struct sea *sea = sea_open(64, 96, 50.0);
     sea->injection->ray_scale = 16.0;
-    sonject_object_params *face = sea_add(sea, SONJECT_SHAPE_PLANE, SIDE_M, SIDE_M, 0.0);
+    sonject_object_params *face = sea_add(sea, SHAPE_PLANE, SIDE_M, SIDE_M, 0.0);
     face->burial_m = -1.0;
     make_rough(face, LAMBERT);
     double sum = 0.0;

@@ -39,7 +39,7 @@ CLAIM(the_shadow_of_a_flat_top)
     static const double heights[] = {0.3, 0.6, 1.0};
     for (size_t i = 0; i < 3; i++) {
         struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
-        sea_add(sea, SONJECT_SHAPE_PLANE, 2.0, 1.2, 0.0)->burial_m = -heights[i];
+        sea_add(sea, SHAPE_PLANE, 2.0, 1.2, 0.0)->burial_m = -heights[i];
         const double *visibility = trace_visibility(sea), *row = visibility + 100 * COLUMNS;
         const double h = sea->sonar->altitude_m, centre = sea_centre(sea, 0)[1];
         const double near = (centre - 0.6) * h / (h - heights[i]);
@@ -74,7 +74,7 @@ CLAIM(a_wide_source_dims_the_sides_of_a_shadow)
         struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
         sea->sonar->transducer_side_m = sides[i];
         sea->injection->ray_scale = 16.0;
-        sea_add(sea, SONJECT_SHAPE_PLANE, 2.0, 1.2, 0.0)->burial_m = -height;
+        sea_add(sea, SHAPE_PLANE, 2.0, 1.2, 0.0)->burial_m = -height;
         const struct image *image = sea_image(sea);
         const double h = sea->sonar->altitude_m;
         const size_t middle =
@@ -121,7 +121,7 @@ static const struct injection_result *inject_plate(struct sea *sea, double row, 
     float *pixels = claim_memory(sea->pixels, sizeof *pixels);
     for (size_t i = 0; i < sea->pixels; i++)
         pixels[i] = 1.0f;
-    sonject_object_params *object = sea_add(sea, SONJECT_SHAPE_PLANE, 1.0, 0.7, 0.0);
+    sonject_object_params *object = sea_add(sea, SHAPE_PLANE, 1.0, 0.7, 0.0);
     place_in_pixels(object, row, 180.0);
     object->heading_rad = heading;
     object->pitch_rad = 0.3;

@@ -14,7 +14,7 @@ static const double spacings[][2] = {{0.025, 0.025}, {0.01, 0.0125}, {0.1, 0.075
 static const double offsets[][2] = {{0.0, 0.0}, {0.5, 0.27}, {0.21, 0.5}, {0.77, 0.83}};
 #define PLACES (COUNT(spacings) * COUNT(offsets))
 
-static struct sea *hang(size_t place, sonject_shape shape, double length_m, double diameter_m)
+static struct sea *hang(size_t place, enum shape_kind shape, double length_m, double diameter_m)
 {
     const double *spacing = spacings[place % COUNT(spacings)];
     const double *offset = offsets[place / COUNT(spacings)];
@@ -63,7 +63,7 @@ CLAIM(spheres_wherever_pixels_lie)
     static const double radii[] = {0.15, 0.3};
     const double expected[] = {sphere_db(radii[0]), sphere_db(radii[1])};
     for (size_t i = 0; i < 2 * PLACES; i++) {
-        struct sea *sea = hang(i / 2, SONJECT_SHAPE_SPHERE, 0.0, 2.0 * radii[i % 2]);
+        struct sea *sea = hang(i / 2, SHAPE_SPHERE, 0.0, 2.0 * radii[i % 2]);
         expect_close("sphere's target strength, dB", peak_db(sea), expected[i % 2], CLOSED_FORM);
         if (i % 2)
             continue;
@@ -82,9 +82,9 @@ CLAIM(spheres_wherever_pixels_lie)
 CLAIM(a_cylinder_peaks_at_its_ends)
 {
     for (size_t i = 0; i < PLACES; i++)
-        expect_close(
-            "cylinder's target strength, dB", peak_db(hang(i, SONJECT_SHAPE_CYLINDER, 1.5, 0.3)),
-            decibels_of_amplitude(GIBBS * RESOLUTION * sqrt(0.5 * 0.15 / WAVELENGTH)), CLOSED_FORM);
+        expect_close("cylinder's target strength, dB", peak_db(hang(i, SHAPE_CYLINDER, 1.5, 0.3)),
+                     decibels_of_amplitude(GIBBS * RESOLUTION * sqrt(0.5 * 0.15 / WAVELENGTH)),
+                     CLOSED_FORM);
 }
 
 /* Lambert's sphere: the expected energy, speckle averaged out. No closed form is held here, but
@@ -93,7 +93,7 @@ CLAIM(a_rough_sphere_wherever_pixels_lie)
 {
     double lowest = INFINITY, highest = -INFINITY;
     for (size_t i = 0; i < PLACES; i += COUNT(spacings)) {
-        struct sea *sea = hang(i, SONJECT_SHAPE_SPHERE, 0.0, 0.6);
+        struct sea *sea = hang(i, SHAPE_SPHERE, 0.0, 0.6);
         make_rough(sea_object(sea, 0), 0.1);
         const double peak = peak_db(sea);
         lowest = fmin(lowest, peak);

@@ -28,10 +28,9 @@ enum sound_shape {
  * long to compile, are then the same. */
 static sonject_object_params *add_shape(struct sea *sea, enum sound_shape shape, bool is_user)
 {
-    static const sonject_shape own[] = {SONJECT_SHAPE_SPHERE, SONJECT_SHAPE_DISC,
-                                        SONJECT_SHAPE_PARTS};
-    sonject_object_params *object = sea_add(sea, is_user ? SONJECT_SHAPE_USER : own[shape], 0.0,
-                                            0.0, is_user ? 0.0 : 2.0 * RADIUS);
+    static const enum shape_kind own[] = {SHAPE_SPHERE, SHAPE_DISC, SHAPE_PARTS};
+    sonject_object_params *object =
+        sea_add(sea, is_user ? SHAPE_USER : own[shape], 0.0, 0.0, is_user ? 0.0 : 2.0 * RADIUS);
     object->user_shape = shape;
     if (!is_user)
         return object;
@@ -124,7 +123,7 @@ CLAIM(a_shape_by_code_meets_itself)
         for (int i = 0; !is_user && i < 2; i++) {
             static const double level[3] = {0.0, 0.0, 0.0};
             const double centre[3] = {i == 0 ? -0.3 : 0.3, 0.0, 0.0};
-            sea_add_part(sea, SONJECT_SHAPE_SPHERE, centre, level)->diameter_m = 0.5;
+            sea_add_part(sea, SHAPE_SPHERE, centre, level)->diameter_m = 0.5;
         }
         const struct energies energies = sea_chains(sea, &all_ranges, 10, 4);
         energy[is_user] = energy_of(&energies, 1, 0);
@@ -147,9 +146,9 @@ CLAIM(several_codes_beside_a_mesh)
         for (int i = 0; i < 5; i++) {
             const bool is_dome = i == 0 || i == 3, is_sphere = i == 1 || i == 2;
             sonject_object_params *object = sea_add(sea,
-                                                    i == 4               ? SONJECT_SHAPE_MESH
-                                                    : is_dome || is_user ? SONJECT_SHAPE_USER
-                                                                         : SONJECT_SHAPE_SPHERE,
+                                                    i == 4               ? SHAPE_MESH
+                                                    : is_dome || is_user ? SHAPE_USER
+                                                                         : SHAPE_SPHERE,
                                                     0.0, 0.0, is_sphere ? 2.0 * radii[i - 1] : 0.0);
             place_in_pixels(object, 40.0 + 60.0 * i, 50.0);
             make_rough(object, 0.1);
@@ -250,7 +249,7 @@ CLAIM(a_missing_normal_fails_the_run)
     static struct rough_trace trace;
     struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
     struct tracer *tracer = &sea->bench->tracer;
-    make_rough(sea_add(sea, SONJECT_SHAPE_USER, 0.0, 0.0, 0.0), 0.1);
+    make_rough(sea_add(sea, SHAPE_USER, 0.0, 0.0, 0.0), 0.1);
     sea_add_code(sea, "my.cl",
                  SPHERE_DISTANCE
                  "float3 shape_normal(float3 p, const float *a) { return 0.0f * p; }\n",

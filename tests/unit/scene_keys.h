@@ -366,7 +366,7 @@ static const struct key_case {
     {"injection.order_energies", "true", S(BOOL, injection.order_energies), .number = 1.0},
     {"objects[].name", "M\xC3\xBCll 7: #1", O(TEXT, name), .text = "M\xC3\xBCll 7: #1"},
     {"objects[].class", "\"mine\"", O(TEXT, class_name), .text = "mine"},
-    {"objects[].shape", "capsule", O(U32, shape), .number = SONJECT_SHAPE_CAPSULE,
+    {"objects[].shape", "capsule", O(U32, shape), .number = SHAPE_CAPSULE,
      .other = "objects[0].length=2 m"},
     {"objects[].length", "1.2 m", O(DOUBLE, length_m), .number = 1.2,
      .other = "objects[0].shape=cylinder"},
@@ -433,10 +433,10 @@ static const struct key_case {
 #define A_SPHERE     "shape: sphere, diameter: 1"
 #define A_CYLINDER   "shape: cylinder, length: 1, diameter: 0.5"
     {"objects[].target", SOURCE_ROOT "/tools/targets/oil_drum.yaml", O(U32, shape),
-     .number = SONJECT_SHAPE_PARTS, .other = "objects[0]={}"},
+     .number = SHAPE_PARTS, .other = "objects[0]={}"},
     {"objects[].parts[].name", "left ear", P(TEXT, shape.name), .text = "left ear",
      .other = A_PART(A_SPHERE)},
-    {"objects[].parts[].shape", "disc", P(U32, shape.shape), .number = SONJECT_SHAPE_DISC,
+    {"objects[].parts[].shape", "disc", P(U32, shape.shape), .number = SHAPE_DISC,
      .other = A_PART("diameter: 1")},
     {"objects[].parts[].diameter", "30 cm", P(DOUBLE, shape.diameter_m), .number = 0.3,
      .other = A_PART("shape: sphere")},

@@ -47,7 +47,7 @@ static void test_units_and_axes(void **state)
         char text[1000];
         snprintf(text, sizeof text, SCENE "  - shape: mesh\n    mesh: %s\n", cases[i].keys);
         expect_scene_taken(folder, text);
-        assert_int_equal(folder->scene.objects[0].shape, SONJECT_SHAPE_MESH);
+        assert_int_equal(folder->scene.objects[0].shape, SHAPE_MESH);
         expect_size(folder, cases[i].size[0], cases[i].size[1], cases[i].size[2]);
     }
     remove_file(folder, "corner.obj");

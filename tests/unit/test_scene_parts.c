@@ -39,8 +39,8 @@ static void test_parts_belong_to_their_objects(void **state)
         expect_vector(part_at(folder, i)->centre, 0.0, 0.0, 0.0);
     }
     assert_string_equal(part_at(folder, 2)->shape.name, "last");
-    assert_int_equal(folder->scene.objects[0].shape, SONJECT_SHAPE_PARTS);
-    assert_int_equal(folder->scene.objects[1].shape, SONJECT_SHAPE_SPHERE);
+    assert_int_equal(folder->scene.objects[0].shape, SHAPE_PARTS);
+    assert_int_equal(folder->scene.objects[1].shape, SHAPE_SPHERE);
 }
 
 /* A group turned to its own y: what lies ahead of its origin comes to lie across the object; what
@@ -127,7 +127,7 @@ static void test_overrides_reach_parts(void **state)
         fail_msg("%s", folder->report.message);
     assert_int_equal(folder->scene.part_count, 3);
     assert_true(part_at(folder, 1)->shape.diameter_m == 0.7);
-    assert_int_equal(part_at(folder, 2)->shape.shape, SONJECT_SHAPE_DISC);
+    assert_int_equal(part_at(folder, 2)->shape.shape, SHAPE_DISC);
 }
 
 static void test_what_is_refused(void **state)
@@ -210,7 +210,7 @@ static void test_targets_are_files(void **state)
     assert_string_equal(objects[1].name, "other");
     assert_string_equal(objects[1].class_name, "mine");
     assert_true(objects[1].heading_rad > 1.5 && objects[1].burial_m == 0.1);
-    assert_true(objects[0].shape == SONJECT_SHAPE_PARTS && objects[1].shape == SONJECT_SHAPE_PARTS);
+    assert_true(objects[0].shape == SHAPE_PARTS && objects[1].shape == SHAPE_PARTS);
 }
 
 static void test_targets_may_have_one_shape(void **state)
@@ -219,7 +219,7 @@ static void test_targets_may_have_one_shape(void **state)
     write_target(folder, "sonject_target: 1\nshape: torus\ndiameter: 1\nheight: 0.2\n");
     expect_scene_taken(folder, OBJECT "target: target.yaml\n");
     remove_file(folder, "target.yaml");
-    assert_int_equal(folder->scene.objects[0].shape, SONJECT_SHAPE_TORUS);
+    assert_int_equal(folder->scene.objects[0].shape, SHAPE_TORUS);
     assert_true(folder->scene.objects[0].height_m == 0.2);
     assert_int_equal(folder->scene.part_count, 0);
 }

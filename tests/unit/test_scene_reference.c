@@ -92,7 +92,7 @@ static void print_shape_keys(FILE *out)
 {
     const char *joint = "";
     fputs("\nA shape's keys, in brackets those that it may have:", out);
-    for (uint32_t shape = 0; shape < SONJECT_SHAPE_PARTS; shape++) {
+    for (uint32_t shape = 0; shape < SHAPE_PARTS; shape++) {
         fprintf(out, "%s `%s`", joint, shape_name(shape));
         joint = ":";
         for (const struct shape_key_name *its = shape_keys; its->key; its++) {

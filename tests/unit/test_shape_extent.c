@@ -134,7 +134,7 @@ static void test_closed_forms(void **state)
     expect_extent(&object, s, 0.0, s, -0.6 * s);
     expect_extent(&object, 0.0, 1.0, 0.0, 0.8);
     expect_extent(&object, 0.0, 0.0, -1.0, 0.8);
-    object.shape = SONJECT_SHAPE_BOX;
+    object.shape = SHAPE_BOX;
     object.length_m = object.width_m = object.height_m = 2.0;
     object.cut_count = 1;
     object.cuts[0].elevation_rad = 0.25 * PI;
@@ -142,7 +142,7 @@ static void test_closed_forms(void **state)
     expect_extent(&object, s, 0.0, s, s);
     expect_extent(&object, 1.0, 0.0, 0.0, 1.0);
     expect_extent(&object, 0.8, 0.0, 0.6, 0.8); /* the corner (1, 0) */
-    object.shape = SONJECT_SHAPE_TORUS;
+    object.shape = SHAPE_TORUS;
     object.height_m = 0.5;
     object.cuts[0].elevation_rad = 0.5 * PI;
     object.cuts[0].distance_m = 0.15;
@@ -166,7 +166,7 @@ static void test_bounding_radius(void **state)
     struct shape_size size;
     sonject_object_params object;
     object_init(&object);
-    object.shape = SONJECT_SHAPE_CYLINDER;
+    object.shape = SHAPE_CYLINDER;
     object.length_m = 2.0;
     object.diameter_m = 0.5;
     object.nose_end = object.tail_end = SONJECT_END_SPHERICAL;
@@ -317,8 +317,8 @@ static void compare_extents(const struct mesh *mesh, sonject_object_params *obje
         shape_size_of_mesh(&of_mesh, mesh);
         sample_direction(v);
         const bool is_left = shape_is_left(&size, object->shape);
-        const double extent = shape_extent(&of_mesh, SONJECT_SHAPE_MESH, v);
-        if (shape_is_left(&of_mesh, SONJECT_SHAPE_MESH) != isfinite(extent) ||
+        const double extent = shape_extent(&of_mesh, SHAPE_MESH, v);
+        if (shape_is_left(&of_mesh, SHAPE_MESH) != isfinite(extent) ||
             (!is_left && isfinite(extent)))
             fail_msg("cuts %d: the shape is %sleft", i, is_left ? "" : "not ");
         if (!is_thick(object))
@@ -337,7 +337,7 @@ static void test_extents_of_meshes(void **state)
     struct mesh_sample sample;
     sonject_object_params object;
     object_init(&object);
-    object.shape = SONJECT_SHAPE_BOX;
+    object.shape = SHAPE_BOX;
     object.length_m = 2.0;
     object.width_m = 1.2;
     object.height_m = 0.6;
@@ -364,18 +364,17 @@ static void test_extents_of_user_shapes(void **state)
     struct shape_size size;
     sonject_object_params object;
     object_init(&object);
-    object.shape = SONJECT_SHAPE_USER;
+    object.shape = SHAPE_USER;
     object.cut_count = 1;
     object.cuts[0].elevation_rad = 0.5 * PI;
     object.cuts[0].distance_m = -0.6;
     shape_size_init(&size, &object);
     shape_size_of_user_shape(&size, &shape);
-    assert_true(shape_is_left(&size, SONJECT_SHAPE_USER));
-    assert_true(fabs(shape_extent(&size, SONJECT_SHAPE_USER, upward) + 0.6) < 1e-9);
-    assert_true(fabs(shape_extent(&size, SONJECT_SHAPE_USER, nose) - 0.8) <
-                1e-9);             /* of the sphere */
+    assert_true(shape_is_left(&size, SHAPE_USER));
+    assert_true(fabs(shape_extent(&size, SHAPE_USER, upward) + 0.6) < 1e-9);
+    assert_true(fabs(shape_extent(&size, SHAPE_USER, nose) - 0.8) < 1e-9); /* of the sphere */
     size.cuts[0].offset_m = -0.85; /* of the sphere something would be left, of the box not */
-    assert_false(shape_is_left(&size, SONJECT_SHAPE_USER));
+    assert_false(shape_is_left(&size, SHAPE_USER));
 }
 
 /* A cut mesh of a box lies as deep as the cut box. */
@@ -393,7 +392,7 @@ static void test_cut_meshes_lie_as_deep(void **state)
     for (int i = 0; i < 200; i++) {
         sonject_object_params object;
         object_init(&object);
-        object.shape = SONJECT_SHAPE_BOX;
+        object.shape = SHAPE_BOX;
         object.length_m = 2.0;
         object.width_m = 1.2;
         object.height_m = 0.6;
@@ -408,7 +407,7 @@ static void test_cut_meshes_lie_as_deep(void **state)
         double heights[3], burial; /* of the centre: box, mesh, and uncut mesh */
         for (int k = 0; k < 3; k++) {
             struct placement placement;
-            object.shape = k == 0 ? SONJECT_SHAPE_BOX : SONJECT_SHAPE_MESH;
+            object.shape = k == 0 ? SHAPE_BOX : SHAPE_MESH;
             object.cut_count = k < 2 ? object.cut_count : 0;
             EXPECT_OK(&report, place(&placement, &burial, &report, &view, &mesh, &object));
             heights[k] = placement.centre[2];
@@ -435,7 +434,7 @@ static void test_cuts_must_leave_something(void **state)
     scene.meshes = &mesh;
     scene.mesh_count = 1;
     object_init(&object);
-    object.shape = SONJECT_SHAPE_MESH;
+    object.shape = SHAPE_MESH;
     object.cut_count = 2;
     object.cuts[0].distance_m = -0.99;
     object.cuts[1].azimuth_rad = PI;

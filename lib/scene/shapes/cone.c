@@ -20,7 +20,7 @@ static void record(struct object_record *record, const struct shape_size *size)
 
 static void init(struct shape_size *size, const sonject_object_params *object)
 {
-    if (object->shape == SONJECT_SHAPE_TRUNCATED_CONE)
+    if (object->shape == SHAPE_TRUNCATED_CONE)
         size->top_radius_m = 0.5 * object->top_diameter_m;
     size->bounding_radius_m = hypot(fmax(size->radius_m, size->top_radius_m), size->half_height_m);
     size->radius_about_nose_m = size->bounding_radius_m;

@@ -78,9 +78,9 @@ void shape_size_init_in_scene(struct shape_size *size, const struct scene *scene
                               const sonject_object_params *object)
 {
     shape_size_init(size, object);
-    if (object->shape == SONJECT_SHAPE_MESH)
+    if (object->shape == SHAPE_MESH)
         shape_size_of_mesh(size, &scene->meshes[object->mesh]);
-    if (object->shape == SONJECT_SHAPE_USER)
+    if (object->shape == SHAPE_USER)
         shape_size_of_user_shape(size, &scene->user_shapes.shapes[object->user_shape]);
 }
 
@@ -236,10 +236,10 @@ void check_shape(struct check *check, const struct scene *scene,
     check_sizes(check, object, shape->needs);
     if (shape->check)
         shape->check(check, object);
-    const bool is_there = object->shape == SONJECT_SHAPE_MESH ? object->mesh < scene->mesh_count
-                          : object->shape == SONJECT_SHAPE_USER
+    const bool is_there = object->shape == SHAPE_MESH ? object->mesh < scene->mesh_count
+                          : object->shape == SHAPE_USER
                               ? object->user_shape < scene->user_shapes.count
-                              : object->shape != SONJECT_SHAPE_PARTS;
+                              : object->shape != SHAPE_PARTS;
     if (check->status != SONJECT_OK || object->cut_count == 0 || !is_there)
         return;
     shape_size_init_in_scene(&size, scene, object);

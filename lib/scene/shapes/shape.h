@@ -88,7 +88,7 @@ struct shape {
 #define SHAPE_DECLARATION(NUMBER, name, traits) extern const struct shape shape_##name;
 ALL_SHAPES(SHAPE_DECLARATION)
 
-/* By its number, sonject_shape; NULL for an unknown one. */
+/* By its number, enum shape_kind; NULL for an unknown one. */
 const struct shape *shape_of(uint32_t shape);
 
 /* The sizes of an object; those of a mesh and of a user's shape are not known without the scene. */

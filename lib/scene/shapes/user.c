@@ -27,14 +27,13 @@ static struct shape_size sphere_about(const struct shape_size *size)
 static double extent(const struct shape_size *size, const double v[3])
 {
     const struct shape_size sphere = sphere_about(size);
-    return fmin(shape_extent(size, SONJECT_SHAPE_BOX, v),
-                shape_extent(&sphere, SONJECT_SHAPE_SPHERE, v));
+    return fmin(shape_extent(size, SHAPE_BOX, v), shape_extent(&sphere, SHAPE_SPHERE, v));
 }
 
 static bool is_left(const struct shape_size *size)
 {
     const struct shape_size sphere = sphere_about(size);
-    return shape_is_left(size, SONJECT_SHAPE_BOX) && shape_is_left(&sphere, SONJECT_SHAPE_SPHERE);
+    return shape_is_left(size, SHAPE_BOX) && shape_is_left(&sphere, SHAPE_SPHERE);
 }
 
 const struct shape shape_user = {
