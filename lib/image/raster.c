@@ -42,6 +42,12 @@ bool pixel_store(enum pixel_type type, void *pixels, size_t i, double number)
     return true;
 }
 
+bool layouts_are_alike(const struct raster_layout *one, const struct raster_layout *other)
+{
+    return one->rows == other->rows && one->columns == other->columns &&
+           one->channels == other->channels && one->type == other->type;
+}
+
 bool region_bytes(const struct raster_layout *layout, const struct region *region, size_t *bytes)
 {
     if (region->rows > SIZE_MAX || region->columns > SIZE_MAX)

@@ -38,6 +38,8 @@ struct raster_layout {
     enum pixel_type type;
 };
 
+bool layouts_are_alike(const struct raster_layout *one, const struct raster_layout *other);
+
 struct region {
     uint64_t first_row, first_column, rows, columns;
 };

@@ -231,8 +231,7 @@ sonject_status mesh_require_closed(struct report *report, const char *name, cons
     const float *vertex = &mesh->vertices[3 * (size_t)topology->edge[0]];
     return input_failure(
         report, name,
-        "the mesh does not enclose a volume: %zu edges belong to one triangle, %zu to more "
-        "than "
+        "the mesh does not enclose a volume: %zu edges belong to one triangle, %zu to more than "
         "two, %zu are twisted, one of them at (%g, %g, %g) m: close it in a mesh editor",
         topology->open_edges, topology->crowded_edges, topology->twisted_edges,
         (double)vertex[0] + mesh->centre_m[0], (double)vertex[1] + mesh->centre_m[1],

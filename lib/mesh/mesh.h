@@ -48,9 +48,9 @@ struct mesh {
     size_t degenerate; /* triangles of the file with two equal corners, which were left out */
 
     struct mesh_hierarchy hierarchy;
-    char *name;                  /* of its file, or as given; owned */
-    struct file_identity file;   /* as it was before it was read; of a mesh from arrays: 0 */
-    struct mesh_options options; /* that it was read with */
+    char *name;                          /* of its file; owned */
+    struct file_identity file;           /* as it was before it was read */
+    struct mesh_options options;         /* that it was read with */
     struct mesh_corner_normals *normals; /* hierarchy.leaf_count * MESH_SLOTS; NULL: flat; owned */
 };
 

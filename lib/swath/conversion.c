@@ -234,8 +234,7 @@ static sonject_status write_into(struct report *report, const sonject_convert_pa
         status =
             input_failure(report, params->into,
                           "files of this kind are not changed in place: write a new .tif instead");
-    else if (layout.rows != ours->rows || layout.columns != ours->columns ||
-             layout.channels != ours->channels || layout.type != ours->type)
+    else if (!layouts_are_alike(&layout, ours))
         status = report_failure(report, SONJECT_ERROR_INPUT,
                                 "%s holds %llu x %llu %s samples, the input %llu x %llu %s ones: "
                                 "both must be alike",

@@ -221,8 +221,10 @@ static sonject_status patch_copy(struct report *report, const struct decoded_ima
     struct decoder_request request = {.function = DECODER_CLOSE};
     CHECK(open_image(report, DECODER_OPEN_COPY, image->path, copy->part, image->array, &patched));
     sonject_status status =
-        pass(&(struct passage){report, patched, copy->region, true, (unsigned char *)copy->pixels,
-                               copy->progress, copy->user});
+        layouts_are_alike(&image->layout, &patched->layout)
+            ? pass(&(struct passage){report, patched, copy->region, true,
+                                     (unsigned char *)copy->pixels, copy->progress, copy->user})
+            : input_failure(report, image->path, "changed while it was read");
     THEN(status, ask(report, patched, &request, NULL, NULL, 0));
     if (status == SONJECT_OK)
         patched->handle = 0;
@@ -231,7 +233,8 @@ static sonject_status patch_copy(struct report *report, const struct decoded_ima
 }
 
 /* Whatever went into the copy must come out of it: a file that says contradictory things of itself
- * may fool the writer, but not the reader as well. */
+ * may fool the writer, but not the reader as well. Where samples lie in the place of what says so,
+ * it may have become an image of other sides or another type. */
 static sonject_status check_copy(struct report *report, const struct decoded_image *image,
                                  const struct swath_copy *copy)
 {
@@ -242,6 +245,8 @@ static sonject_status check_copy(struct report *report, const struct decoded_ima
         region_bytes(&image->layout, copy->region, &bytes) ? allocate_array(bytes, 1) : NULL;
     CHECK_MEMORY(report, found, "the patch");
     sonject_status status = decoded_image_open(&unheard, copy->part, image->array, &made);
+    if (status == SONJECT_OK && !layouts_are_alike(&image->layout, &made->layout))
+        status = SONJECT_ERROR_INPUT;
     THEN(status, decoded_image_read(&unheard, made, copy->region, found));
     if (status == SONJECT_OK && memcmp(found, copy->pixels, bytes) != 0)
         status = SONJECT_ERROR_INPUT;

@@ -3,8 +3,6 @@
 #ifndef SONJECT_SWATH_GEOMETRY_NOTES_H
 #define SONJECT_SWATH_GEOMETRY_NOTES_H
 
-#include "scene/params.h"
-
 #include "scene/scene.h"
 #include "swath/raster_file.h"
 #include "swath/swath_file.h"

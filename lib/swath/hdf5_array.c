@@ -7,6 +7,7 @@
 #define _POSIX_C_SOURCE   200809L
 #define _FILE_OFFSET_BITS 64
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,7 +19,8 @@
 #include "swath/raster_file.h"
 #include "swath/swath_format.h"
 
-#define NAME_BYTES 256 /* of a data set's path, the final 0 among them */
+#define NAME_BYTES 256    /* of a data set's path, the final 0 among them */
+#define LINKS_MAX  100000 /* that are followed: groups may hold each other */
 
 /* What a data set is. */
 struct data_set {
@@ -85,14 +87,11 @@ static bool take_compound(hid_t type, struct data_set *set)
            numbers[0] >= STORED_FLOAT32;
 }
 
-/* What the data set of that path is; false if it is not one of two dimensions. */
-static bool look_at(hid_t file, const char *name, struct data_set *set)
+/* What the data set is; false if it is not one of two dimensions. */
+static bool look_at(hid_t group, const char *name, struct data_set *set)
 {
     memset(set, 0, sizeof *set);
-    if (strlen(name) >= sizeof set->name)
-        return false;
-    strcpy(set->name, name);
-    const hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT);
+    const hid_t dataset = H5Dopen2(group, name, H5P_DEFAULT);
     const hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
     const hid_t type = dataset < 0 ? -1 : H5Dget_type(dataset);
     const bool is_plane =
@@ -111,24 +110,37 @@ static bool look_at(hid_t file, const char *name, struct data_set *set)
     return is_plane;
 }
 
-/* A walk through all links of the file, of which hard ones count. */
+/* A walk through all groups, of whose links hard ones count. */
 struct walk {
     struct array_list list;
     struct data_set *chosen;
+    char path[NAME_BYTES]; /* of the group */
+    unsigned links;
 };
 
-static herr_t visit_link(hid_t root, const char *name, const H5L_info_t *link, void *user)
+/* H5Lvisit would end where a group or a data set is damaged: these are passed over. */
+static herr_t visit_link(hid_t group, const char *name, const H5L_info_t *link, void *user)
 {
     struct walk *walk = user;
     struct data_set set;
+    const size_t end = strlen(walk->path);
     /* MATLAB keeps what its cells refer to under names that begin with # */
-    if (link->type != H5L_TYPE_HARD || name[0] == '#' || strstr(name, "/#") ||
-        !look_at(root, name, &set))
+    if (link->type != H5L_TYPE_HARD || name[0] == '#' ||
+        end + strlen(name) + 2 > sizeof walk->path || walk->links++ >= LINKS_MAX)
         return 0;
-    const uint64_t rows = set.sides[set.is_turned];
-    const uint64_t columns = set.sides[!set.is_turned];
-    if (array_list_add(&walk->list, name, rows, columns, set.is_read && rows > 1 && columns > 1))
-        *walk->chosen = set;
+    sprintf(walk->path + end, "%s%s", end > 0 ? "/" : "", name);
+    if (look_at(group, name, &set)) {
+        const uint64_t rows = set.sides[set.is_turned];
+        const uint64_t columns = set.sides[!set.is_turned];
+        strcpy(set.name, walk->path);
+        if (array_list_add(&walk->list, set.name, rows, columns,
+                           set.is_read && rows > 1 && columns > 1))
+            *walk->chosen = set;
+    } else {
+        H5Literate_by_name(group, name, H5_INDEX_NAME, H5_ITER_INC, NULL, visit_link, walk,
+                           H5P_DEFAULT);
+    }
+    walk->path[end] = '\0';
     return 0;
 }
 
@@ -140,7 +152,7 @@ static sonject_status choose_set(struct report *report, struct hdf5_array *array
     while (wanted && *wanted == '/')
         wanted++;
     walk.list.wanted = wanted;
-    if (H5Lvisit(array->file, H5_INDEX_NAME, H5_ITER_INC, visit_link, &walk) < 0 &&
+    if (H5Literate(array->file, H5_INDEX_NAME, H5_ITER_INC, NULL, visit_link, &walk) < 0 &&
         walk.list.matches == 0)
         return input_failure(report, array->path, "is damaged: HDF5 cannot read it; copy it again");
     CHECK(array_list_check(report, array->path, &walk.list));

@@ -1,6 +1,5 @@
 #include "swath/swath_format.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -46,14 +45,6 @@ static double stored_number(bool is_big_endian, enum stored_type type, const uns
     return is_negative ? (double)word - (double)(UINT64_C(1) << (8 * size)) : (double)word;
 }
 
-/* False for a finite number that is too large. */
-static bool float_of_double(double number, float *rounded)
-{
-    const bool is_held = !(fabs(number) > (double)FLT_MAX) || isinf(number);
-    *rounded = is_held ? (float)number : 0.0f;
-    return is_held;
-}
-
 /* A number that the type holds. */
 static void put_number(double number, enum stored_type type, unsigned char *bytes,
                        bool is_big_endian)
@@ -87,7 +78,7 @@ static bool store(const struct stored_samples *stored, enum stored_type type, do
     const double old = stored_number(stored->is_big_endian, type, bytes);
     const double most = is_whole(type) ? largest_of(stored, type) : 0.0;
     float single;
-    if ((float_of_double(old, &single) && (double)single == number) ||
+    if ((pixel_store(PIXEL_FLOAT32, &single, 0, old) && (double)single == number) ||
         (isnan(old) && isnan(number)))
         return !is_whole(type) || old <= most;
     if (is_whole(type) && !(number >= 0.0 && number <= (double)(float)most))

@@ -350,6 +350,11 @@ static void test_bad_content(void **state)
          "0 0 0\n3 0 0 1\n",
          "vertex number 1, but numbers run from 0 to 0"},
         {"a.ply",
+         "ply\nformat binary_little_endian 1.0\nelement vertex 10000000000000\n"
+         "property float x\nproperty float y\nproperty float z\nelement face 1\n"
+         "property list uchar int vertex_index\nend_header\n",
+         "the file holds 0 at most"},
+        {"a.ply",
          "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
          "property float z\nelement face 1\nproperty list uint int vertex_index\nend_header\n"
          "0 0 0\n1 0 0\n0 1 0\n4000000000 0 1 2\n",

@@ -342,11 +342,12 @@ static struct canvas blank_canvas(uint32_t height, uint32_t width)
     return canvas;
 }
 
-/* Every printable character is drawn and keeps to its box, and turned text is the same text turned.
- */
+/* Every printable character is drawn, differs from the others, keeps to its box, and turned text is
+ * the same text turned. */
 static void test_font(void **state)
 {
     const struct colour black = {0, 0, 0};
+    static uint8_t all['~' + 1][40 * 40 * 3];
     for (char c = ' '; c <= '~'; c++) {
         const char text[] = {c, '\0'};
         const int64_t length = text_length(text, 1);
@@ -366,6 +367,9 @@ static void test_font(void **state)
             inked++;
         }
         assert_int_equal(inked > 0, c != ' ');
+        memcpy(all[(int)c], drawn.rgb, sizeof all[0]);
+        for (char other = ' '; other < c; other++)
+            assert_memory_not_equal(all[(int)c], all[(int)other], sizeof all[0]);
         free(turned.rgb);
         free(drawn.rgb);
     }

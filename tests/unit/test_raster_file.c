@@ -111,6 +111,7 @@ static void attributes_stay_in_copies_of_png_and_jpeg_which_are_png(void **state
         const struct region whole = whole_of(layout);
         const char *path = file_in(sources[i].name);
         const char *copy = file_in("copy");
+        struct swath_file *file;
         size_t count;
         EXPECT_OK(&report, raster_file_write(&report, path, layout, channels, attributes, 2,
                                              make_image(layout)));
@@ -119,6 +120,10 @@ static void attributes_stay_in_copies_of_png_and_jpeg_which_are_png(void **state
         EXPECT_OK(&report, copy_with_patch(path, copy, &patch_region, patch, NULL, NULL));
         expect_pixels(copy, layout, stored, &patch_region, patch);
         assert_memory_equal(load(copy, &count), i == 3 ? "II*" : "\x89PN", 3);
+        EXPECT_OK(&report, open_image(path, &file));
+        const char *extension = swath_file_new_extension(file);
+        assert_true(i == 3 ? !extension : extension && strcmp(extension, ".png") == 0);
+        swath_file_close(&file);
         for (int k = 0; k < 2; k++, path = copy) {
             expect_attribute(path, "sonject:frequency", 10, "100000 Hz"); /* just fits */
             expect_attribute(path, "sonject:frequency", 9, NULL);

@@ -2,8 +2,6 @@
  */
 #include "claims.h"
 
-#include "scene/params.h"
-
 #include "image/statistics.h"
 #include "image/synthetic.h"
 #include "scene/scene.h"

@@ -127,7 +127,7 @@ static void expected_samples(const struct kind *kind, const struct region *regio
              column++)
             for (uint32_t channel = 0; channel < channels_of(kind); channel++) {
                 const bool is_new = is_patched && row == 2 && column == 3;
-                const double number = is_new           ? 99.0
+                const double number = is_new           ? 99.25
                                       : kind->is_whole ? sample_at(true, row, column)
                                                        : sample_at(false, row, column);
                 put_sample(kind->type, samples, i++, channel ? -number : number);
@@ -369,6 +369,7 @@ static void expect_refused(const char *name, const char *array, const void *byte
         fail_msg("'%s' is not in '%s'", words, report.message);
 }
 
+/* Beside a group that is damaged, too. */
 static void arrays_are_told_by_their_names(void **state)
 {
     static struct draft draft;
@@ -385,6 +386,17 @@ static void arrays_are_told_by_their_names(void **state)
     EXPECT_OK(&report,
               swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, "/deep/img", &file));
     swath_file_close(&file);
+    read_draft(path, &draft);
+    unsigned char *names = memmem(draft.bytes, draft.count, "HEAP", 4); /* of the root's links */
+    names = memmem(names + 4, draft.count - (size_t)(names + 4 - draft.bytes), "HEAP", 4);
+    memset(names, 0, 4);
+    write_draft(path, &draft, draft.count);
+    for (int is_named = 0; is_named < 2; is_named++) {
+        EXPECT_OK(&report, swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY,
+                                                 is_named ? "other" : NULL, &file));
+        swath_file_close(&file);
+    }
+    expect_refused("a.h5", "deep/img", NULL, 0, "holds no array 'deep/img'");
 #endif
 }
 

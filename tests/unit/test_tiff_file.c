@@ -107,7 +107,7 @@ static void blocks_may_grow_and_hold_all_rows(void **state)
 }
 
 /* Some writers store equal tiles once: changing one would change the others. A strip that is said
- * to lie where the directory is: the patch would destroy it. */
+ * to lie where the directory is: the patch would destroy it, or make it another image's. */
 static void blocks_in_each_others_place_are_refused(void **state)
 {
     const struct tiff_build build = {
@@ -130,6 +130,16 @@ static void blocks_in_each_others_place_are_refused(void **state)
                      SONJECT_ERROR_INPUT);
     expect_message(path, "cannot be replaced");
     assert_int_equal(count_entries(folder->path), 1);
+    const size_t directory = (size_t)number_from_bytes(bytes + 4, 4, false);
+    number_to_bytes(directory, places + 12, 4, false);
+    write_bytes(path, bytes, count + 5 * COLUMNS);
+    tiff_say(bytes, TIFFTAG_BITSPERSAMPLE, 32);
+    tiff_say(bytes, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
+    tiff_say(bytes, TIFFTAG_IMAGEWIDTH, COLUMNS / 4);
+    assert_int_equal(
+        copy_with_patch(path, file_in("b.tif"), &bottom, bytes + directory, NULL, NULL),
+        SONJECT_ERROR_INPUT);
+    expect_message(path, "cannot be replaced");
 }
 
 /* What libtiff writes, and what tags say that are changed (tag, number), as it would not write. */
