@@ -63,13 +63,8 @@ void arguments_release(const struct verb *verb, void *options);
 
 void arguments_help(const struct verb *verb, FILE *file);
 
-/* ---- Numbers on the command line: whole texts only, the same in every locale. */
-
-/* A finite decimal number such as "-2.5e3". */
+/* A whole text that is a finite decimal number, such as "-2.5e3", in every locale. */
 bool number_parse(const char *text, double *value);
-
-/* Decimal digits, up to 2^64 - 1. */
-bool whole_number_parse(const char *text, uint64_t *value);
 
 /* ---- What a mistyped word was perhaps meant to be. */
 

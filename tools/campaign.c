@@ -1,7 +1,5 @@
 /* sonject campaign: many injections, as a data set. */
 #include <stddef.h>
-#include <stdio.h>
-#include <string.h>
 
 #include <sonject/sonject.h>
 

@@ -1,7 +1,4 @@
 /* sonject quicklook: a picture of an image, with axes in metres. */
-#include <stdio.h>
-#include <string.h>
-
 #include <sonject/sonject.h>
 
 #include "console.h"

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
+
 static void log_notes(void *progress, const char *line)
 {
     if (strncmp(line, "note: ", 6) == 0)
@@ -85,7 +87,7 @@ static bool parse_shard(const char *text, uint64_t *part, uint64_t *whole)
         return false;
     memcpy(first, text, (size_t)(slash - text));
     first[slash - text] = '\0';
-    return whole_number_parse(first, part) && whole_number_parse(slash + 1, whole) && *part >= 1 &&
+    return text_to_count(first, part) && text_to_count(slash + 1, whole) && *part >= 1 &&
            *part <= *whole && *whole <= UINT32_MAX;
 }
 

@@ -38,7 +38,7 @@ static sonject_status trace(sonject_context *context, const void *verb_options,
 static int work(const void *verb_options)
 {
     const struct trace_options *options = verb_options;
-    return stage_work(&options->stage, trace, verb_options, "the impulses are in ");
+    return stage_work(&options->stage, trace, verb_options, "the sums are in ");
 }
 
 const struct verb trace_verb = {

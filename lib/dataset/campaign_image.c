@@ -17,8 +17,6 @@
 #include "swath/geometry_notes.h"
 #include "swath/raster_file.h"
 
-#define IMAGE_NAME_CAPACITY 48
-
 const struct output_kind output_kinds[OUTPUT_KINDS] = {
     [OUTPUT_IMAGE] = {"images", NULL},
     [OUTPUT_TRUTH] = {"truth", ".json"},
@@ -32,9 +30,8 @@ const struct output_kind output_kinds[OUTPUT_KINDS] = {
     [OUTPUT_RECORD] = {"records", ".json"},
 };
 
-/* The file's name within its split, "images/00000007.png". extension: of pixels. Returns name. */
-static const char *image_file_name(uint64_t id, enum output output, const char *extension,
-                                   char name[IMAGE_NAME_CAPACITY])
+const char *image_file_name(uint64_t id, enum output output, const char *extension,
+                            char name[IMAGE_NAME_CAPACITY])
 {
     const struct output_kind *kind = &output_kinds[output];
     snprintf(name, IMAGE_NAME_CAPACITY, "%s/%08" PRIu64 "%s", kind->folder, id,

@@ -13,6 +13,13 @@ extern const struct output_kind {
     const char *folder, *extension;
 } output_kinds[OUTPUT_KINDS];
 
+#define IMAGE_NAME_CAPACITY 48
+
+/* The name of an image's file within its split, "images/00000007.png". extension: of pixels.
+ * Returns name. */
+const char *image_file_name(uint64_t id, enum output output, const char *extension,
+                            char name[IMAGE_NAME_CAPACITY]);
+
 /* What campaign.json says that documents need. Starts as all zeros, is for data_set_clear. */
 struct data_set {
     struct report *report;

@@ -149,7 +149,7 @@ static sonject_status add_object(struct statistics_page *page, size_t split, con
         if (strcmp(json_string_value(name), member_text(object, "class")) == 0)
             page->counts[split * json_array_size(page->classes) + i]++;
     }
-    for (i = 0; is_taken && i < sizeof values / sizeof *values; i++) {
+    for (i = 0; is_taken && i < COUNT(values); i++) {
         const json_t *value = json_object_get(object, values[i].key);
         if (json_is_number(value))
             CHECK(add_value(page, values[i].name, values[i].unit, json_number_value(value)));
@@ -160,15 +160,14 @@ static sonject_status add_object(struct statistics_page *page, size_t split, con
 static sonject_status add_image(struct statistics_page *page, size_t split, uint64_t id)
 {
     const struct data_set *set = page->set;
-    char path[PATH_CAPACITY];
+    char path[PATH_CAPACITY], name[IMAGE_NAME_CAPACITY];
     json_t *record = NULL;
     json_t *truth = NULL;
     const bool is_taken = id % page->every == 0;
     size_t i;
     const json_t *entry;
-    CHECK(path_in(set->report, path, set->folder, "%s/%s/%08llu%s", set->split_names[split],
-                  output_kinds[OUTPUT_TRUTH].folder, (unsigned long long)id,
-                  output_kinds[OUTPUT_TRUTH].extension));
+    CHECK(path_in(set->report, path, set->folder, "%s/%s", set->split_names[split],
+                  image_file_name(id, OUTPUT_TRUTH, NULL, name)));
     sonject_status status = data_set_record(set, split, id, &record);
     THEN(status, json_document_read(set->report, path, &truth));
     json_array_foreach(json_object_get(record, "set"), i, entry)

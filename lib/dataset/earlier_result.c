@@ -1,4 +1,4 @@
-
+/* What a folder holds of an earlier call. */
 #include <stdlib.h>
 #include <string.h>
 

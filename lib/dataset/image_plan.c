@@ -38,17 +38,17 @@ struct drawing {
 };
 
 /* Begins an empty plan, for image_plan_clear. trial: its step, or NO_TRIAL. */
-static void drawing_init(struct drawing *sample, struct report *report,
+static void drawing_init(struct drawing *drawing, struct report *report,
                          const struct campaign *campaign, uint32_t trial, struct image_plan *plan)
 {
     memset(plan, 0, sizeof *plan);
     plan->chip.rows = campaign->chip_rows;
     plan->chip.columns = campaign->chip_columns;
-    memset(sample, 0, sizeof *sample);
-    sample->report = report;
-    sample->campaign = campaign;
-    sample->plan = plan;
-    sample->trial = trial;
+    memset(drawing, 0, sizeof *drawing);
+    drawing->report = report;
+    drawing->campaign = campaign;
+    drawing->plan = plan;
+    drawing->trial = trial;
 }
 
 /* A seed for each category, so that they do not draw alike. */
@@ -58,25 +58,25 @@ static uint64_t category_seed(const struct campaign *campaign, uint32_t category
 }
 
 /* Adds a key to the plan; text is given up, and NULL counts as memory that was out. */
-static void add_key(struct drawing *sample, struct tree_place place, char *text)
+static void add_key(struct drawing *drawing, struct tree_place place, char *text)
 {
-    struct image_plan *plan = sample->plan;
-    if (sample->status == SONJECT_OK && !text)
-        sample->status = report_out_of_memory(sample->report, "an image's scene");
-    THEN(sample->status,
-         grow_list(sample->report, &plan->keys, plan->key_count, sizeof *plan->keys));
-    if (sample->status == SONJECT_OK)
+    struct image_plan *plan = drawing->plan;
+    if (drawing->status == SONJECT_OK && !text)
+        drawing->status = report_out_of_memory(drawing->report, "an image's scene");
+    THEN(drawing->status,
+         grow_list(drawing->report, &plan->keys, plan->key_count, sizeof *plan->keys));
+    if (drawing->status == SONJECT_OK)
         plan->keys[plan->key_count++] = (struct plan_key){text, place};
     else
         free(text);
 }
 
-static void add_value(struct drawing *sample, struct tree_place place, const char *prefix,
+static void add_value(struct drawing *drawing, struct tree_place place, const char *prefix,
                       const char *key, const char *value)
 {
     struct growing_text text = {NULL, 0, 0, false};
     growing_text_add(&text, "%s%s=%s", prefix, key, value);
-    add_key(sample, place, growing_text_end(&text));
+    add_key(drawing, place, growing_text_end(&text));
 }
 
 static const char *trial_value(const struct distribution *distribution, uint32_t step,
@@ -88,22 +88,22 @@ static const char *trial_value(const struct distribution *distribution, uint32_t
 }
 
 /* The index-th of count values; random designs count by image instead. */
-static const char *draw_value(struct drawing *sample, const struct distribution *distribution,
+static const char *draw_value(struct drawing *drawing, const struct distribution *distribution,
                               uint64_t seed, uint64_t index, uint64_t count,
                               char text[DISTRIBUTION_TEXT_CAPACITY])
 {
-    const struct campaign *campaign = sample->campaign;
+    const struct campaign *campaign = drawing->campaign;
     const uint32_t steps = distribution_steps(distribution);
-    if (sample->trial != NO_TRIAL)
-        return trial_value(distribution, sample->trial, text);
+    if (drawing->trial != NO_TRIAL)
+        return trial_value(distribution, drawing->trial, text);
     if (campaign->design == DESIGN_GRID && steps > 0) {
-        const uint32_t step = (uint32_t)(sample->cell % steps);
-        sample->cell /= steps;
+        const uint32_t step = (uint32_t)(drawing->cell % steps);
+        drawing->cell /= steps;
         return distribution_step(distribution, step, text);
     }
     const double u = campaign->design == DESIGN_STRATIFIED
                          ? stratified_number(seed, distribution->stream, index, count)
-                         : uniform_number(seed, distribution->stream, sample->plan->id);
+                         : uniform_number(seed, distribution->stream, drawing->plan->id);
     return distribution_value(distribution, u, text);
 }
 
@@ -148,37 +148,37 @@ static void choose_place(const struct campaign *campaign, struct image_plan *pla
 }
 
 /* The kind of image, in random order; index and count of the image among those of its kind. */
-static void choose_kind(struct drawing *sample, uint64_t within)
+static void choose_kind(struct drawing *drawing, uint64_t within)
 {
-    const struct campaign *campaign = sample->campaign;
-    struct image_plan *plan = sample->plan;
+    const struct campaign *campaign = drawing->campaign;
+    struct image_plan *plan = drawing->plan;
     const struct split *split = &campaign->splits[plan->split];
     uint64_t slot =
         permuted_index(category_seed(campaign, plan->split), STREAM_KIND, within, split->images);
     while (slot >= split->shares[plan->category])
         slot -= split->shares[plan->category++];
-    sample->index = slot;
+    drawing->index = slot;
     for (size_t i = 0; i < campaign->split_count; i++) {
         const uint64_t share = campaign->splits[i].shares[plan->category];
-        sample->index += i < plan->split ? share : 0;
-        sample->count += share;
+        drawing->index += i < plan->split ? share : 0;
+        drawing->count += share;
     }
-    sample->cell = permuted_index(category_seed(campaign, plan->category), STREAM_GRID,
-                                  sample->index, sample->count);
+    drawing->cell = permuted_index(category_seed(campaign, plan->category), STREAM_GRID,
+                                   drawing->index, drawing->count);
 }
 
 #define CANDIDATES 16 /* places that are tried for an object beside others */
 
 /* Draws that an object has of its own, and those of all objects that it has not. number: of the
  * object; 0 is the target, if there is one. */
-static void draw_object(struct drawing *sample, const struct item *item, uint32_t number,
+static void draw_object(struct drawing *drawing, const struct item *item, uint32_t number,
                         bool is_clutter)
 {
-    const struct campaign *campaign = sample->campaign;
+    const struct campaign *campaign = drawing->campaign;
     const struct draws *both[] = {&campaign->object_draws, &item->draws};
-    const uint64_t place = sample->plan->id * OBJECTS_OF_IMAGE + number;
+    const uint64_t place = drawing->plan->id * OBJECTS_OF_IMAGE + number;
     const uint64_t seed =
-        category_seed(campaign, is_clutter ? UINT32_MAX - 1 : sample->plan->category);
+        category_seed(campaign, is_clutter ? UINT32_MAX - 1 : drawing->plan->category);
     char prefix[32];
     snprintf(prefix, sizeof prefix, "objects[%u].", (unsigned)number);
     for (int k = 0; k < 2; k++)
@@ -188,24 +188,24 @@ static void draw_object(struct drawing *sample, const struct item *item, uint32_
             if (k == 0 && draws_have_key(&item->draws, distribution->key))
                 continue;
             const char *value =
-                is_clutter && sample->trial == NO_TRIAL
+                is_clutter && drawing->trial == NO_TRIAL
                     ? distribution_value(distribution,
                                          uniform_number(seed, distribution->stream, place), text)
-                    : draw_value(sample, distribution, seed, sample->index, sample->count, text);
-            add_value(sample, distribution->place, prefix, distribution->key, value);
+                    : draw_value(drawing, distribution, seed, drawing->index, drawing->count, text);
+            add_value(drawing, distribution->place, prefix, distribution->key, value);
         }
 }
 
 /* A place in the middle part of the chip: the first candidate for the first object, for others the
  * one that is farthest from all before. */
-static void place_object(struct drawing *sample)
+static void place_object(struct drawing *drawing)
 {
-    const struct campaign *campaign = sample->campaign;
-    const struct region *chip = &sample->plan->chip;
-    const uint32_t number = sample->objects;
+    const struct campaign *campaign = drawing->campaign;
+    const struct region *chip = &drawing->plan->chip;
+    const uint32_t number = drawing->objects;
     double farthest = -1.0;
     for (uint32_t i = 0; i < (number > 0 ? CANDIDATES : 1u); i++) {
-        const uint64_t index = (sample->plan->id * OBJECTS_OF_IMAGE + number) * CANDIDATES + i;
+        const uint64_t index = (drawing->plan->id * OBJECTS_OF_IMAGE + number) * CANDIDATES + i;
         const double u = uniform_number(campaign->seed, STREAM_OBJECT_ROW, index) - 0.5;
         const double v = uniform_number(campaign->seed, STREAM_OBJECT_COLUMN, index) - 0.5;
         const double row =
@@ -214,37 +214,38 @@ static void place_object(struct drawing *sample)
             0.5 * (double)(chip->columns - 1) + campaign->spread * (double)(chip->columns - 1) * v;
         double nearest = HUGE_VAL;
         for (uint32_t j = 0; j < number; j++)
-            nearest = fmin(nearest, hypot(row - sample->rows[j], column - sample->columns[j]));
+            nearest = fmin(nearest, hypot(row - drawing->rows[j], column - drawing->columns[j]));
         if (nearest > farthest) {
             farthest = nearest;
-            sample->rows[number] = row;
-            sample->columns[number] = column;
+            drawing->rows[number] = row;
+            drawing->columns[number] = column;
         }
     }
-    sample->objects++;
+    drawing->objects++;
 }
 
-static void write_object(struct drawing *sample, const struct item *item, struct growing_text *text)
+static void write_object(struct drawing *drawing, const struct item *item,
+                         struct growing_text *text)
 {
-    const struct region *chip = &sample->plan->chip;
+    const struct region *chip = &drawing->plan->chip;
     const struct tree_node class_name = {
         .kind = TREE_TEXT, .is_quoted = true, .text = (char *)item->class_name};
-    const uint32_t number = sample->objects;
+    const uint32_t number = drawing->objects;
     char row[32], column[32];
-    place_object(sample);
-    text_of_number(row, sizeof row, (double)chip->first_row + sample->rows[number], 9);
-    text_of_number(column, sizeof column, (double)chip->first_column + sample->columns[number], 9);
+    place_object(drawing);
+    text_of_number(row, sizeof row, (double)chip->first_row + drawing->rows[number], 9);
+    text_of_number(column, sizeof column, (double)chip->first_column + drawing->columns[number], 9);
     growing_text_add(text, "%s{\"class\": ", number > 0 ? ", " : "");
     tree_write_flow(&class_name, text);
     growing_text_add(text, ", \"position\": {\"row\": %s, \"column\": %s}%s%s", row, column,
                      item->object[1] == '}' ? "" : ", ", item->object + 1);
 }
 
-static uint32_t clutter_objects(struct drawing *sample)
+static uint32_t clutter_objects(struct drawing *drawing)
 {
-    const struct campaign *campaign = sample->campaign;
+    const struct campaign *campaign = drawing->campaign;
     const struct distribution *number = &campaign->clutter_number;
-    const uint32_t category = sample->plan->category;
+    const uint32_t category = drawing->plan->category;
     char text[DISTRIBUTION_TEXT_CAPACITY];
     uint64_t count = 1;
     if (category == CATEGORY_EMPTY || campaign->clutter_count == 0)
@@ -252,19 +253,19 @@ static uint32_t clutter_objects(struct drawing *sample)
     if (number->count > 0)
         text_to_count(
             distribution_value(
-                number, uniform_number(campaign->seed, number->stream, sample->plan->id), text),
+                number, uniform_number(campaign->seed, number->stream, drawing->plan->id), text),
             &count);
     return (uint32_t)(category == CATEGORY_CLUTTER && count == 0 ? 1 : count);
 }
 
-static const struct item *choose_clutter(const struct drawing *sample, uint32_t number)
+static const struct item *choose_clutter(const struct drawing *drawing, uint32_t number)
 {
-    const struct campaign *campaign = sample->campaign;
+    const struct campaign *campaign = drawing->campaign;
     double left = 0.0;
     for (size_t i = 0; i < campaign->clutter_count; i++)
         left += campaign->clutter[i].weight;
     left *=
-        uniform_number(campaign->seed, STREAM_ITEM, sample->plan->id * OBJECTS_OF_IMAGE + number);
+        uniform_number(campaign->seed, STREAM_ITEM, drawing->plan->id * OBJECTS_OF_IMAGE + number);
     const struct item *item = campaign->clutter;
     while (item + 1 < campaign->clutter + campaign->clutter_count && left >= item->weight)
         left -= (item++)->weight;
@@ -272,93 +273,93 @@ static const struct item *choose_clutter(const struct drawing *sample, uint32_t 
 }
 
 /* All of the image; the target comes first, if there is one. */
-static uint32_t choose_objects(struct drawing *sample, const struct item *trial_clutter,
+static uint32_t choose_objects(struct drawing *drawing, const struct item *trial_clutter,
                                const struct item **items)
 {
-    const uint32_t category = sample->plan->category;
+    const uint32_t category = drawing->plan->category;
     uint32_t count = 0;
     if (category >= CATEGORY_TARGET)
-        items[count++] = &sample->campaign->targets[category - CATEGORY_TARGET];
+        items[count++] = &drawing->campaign->targets[category - CATEGORY_TARGET];
     if (trial_clutter) {
         items[count++] = trial_clutter;
-    } else if (sample->trial == NO_TRIAL) {
-        const uint32_t end = count + clutter_objects(sample);
+    } else if (drawing->trial == NO_TRIAL) {
+        const uint32_t end = count + clutter_objects(drawing);
         for (; count < end; count++)
-            items[count] = choose_clutter(sample, count);
+            items[count] = choose_clutter(drawing, count);
     }
     return count;
 }
 
 /* The objects in one value, and then what is drawn of each. */
-static void draw_objects(struct drawing *sample, const struct item *trial_clutter)
+static void draw_objects(struct drawing *drawing, const struct item *trial_clutter)
 {
     const struct tree_place nowhere = {NULL, 0, 0};
     const struct item *items[OBJECTS_OF_IMAGE];
     struct growing_text text = {NULL, 0, 0, false};
-    const uint32_t count = choose_objects(sample, trial_clutter, items);
-    const uint32_t first_clutter = sample->plan->category >= CATEGORY_TARGET ? 1 : 0;
-    sample->plan->object_count = count;
+    const uint32_t count = choose_objects(drawing, trial_clutter, items);
+    const uint32_t first_clutter = drawing->plan->category >= CATEGORY_TARGET ? 1 : 0;
+    drawing->plan->object_count = count;
     growing_text_add(&text, "objects=[");
     for (uint32_t i = 0; i < count; i++)
-        write_object(sample, items[i], &text);
+        write_object(drawing, items[i], &text);
     growing_text_add(&text, "]");
-    add_key(sample, nowhere, growing_text_end(&text));
+    add_key(drawing, nowhere, growing_text_end(&text));
     for (uint32_t i = 0; i < count; i++)
-        draw_object(sample, items[i], i, i >= first_clutter);
+        draw_object(drawing, items[i], i, i >= first_clutter);
 }
 
 /* The swath's own keys, the chip and the seed, what is drawn of the scene, and the objects. */
-static sonject_status fill_plan(struct drawing *sample, const struct item *trial_clutter)
+static sonject_status fill_plan(struct drawing *drawing, const struct item *trial_clutter)
 {
-    const struct campaign *campaign = sample->campaign;
-    const struct region *chip = &sample->plan->chip;
+    const struct campaign *campaign = drawing->campaign;
+    const struct region *chip = &drawing->plan->chip;
     const struct tree_place nowhere = {NULL, 0, 0};
-    const struct swath_plan *swath = &campaign->swaths[sample->plan->swath];
+    const struct swath_plan *swath = &campaign->swaths[drawing->plan->swath];
     char text[160];
     for (size_t i = 0; i < swath->key_count; i++)
-        add_key(sample, swath->place, copy_text(swath->keys[i]));
+        add_key(drawing, swath->place, copy_text(swath->keys[i]));
     snprintf(text, sizeof text, "{row: %llu, column: %llu, rows: %llu, columns: %llu}",
              (unsigned long long)chip->first_row, (unsigned long long)chip->first_column,
              (unsigned long long)chip->rows, (unsigned long long)chip->columns);
-    add_value(sample, nowhere, "", "patch", text);
-    snprintf(text, sizeof text, "%llu", (unsigned long long)sample->plan->seed);
-    add_value(sample, nowhere, "", "injection.seed", text);
+    add_value(drawing, nowhere, "", "patch", text);
+    snprintf(text, sizeof text, "%llu", (unsigned long long)drawing->plan->seed);
+    add_value(drawing, nowhere, "", "injection.seed", text);
     for (size_t i = 0; i < campaign->draws.count; i++) {
         const struct distribution *distribution = &campaign->draws.list[i];
-        const char *value = draw_value(sample, distribution, campaign->seed, sample->plan->id,
+        const char *value = draw_value(drawing, distribution, campaign->seed, drawing->plan->id,
                                        campaign->images, text);
-        add_value(sample, distribution->place, "", distribution->key, value);
+        add_value(drawing, distribution->place, "", distribution->key, value);
     }
-    draw_objects(sample, trial_clutter);
-    return sample->status;
+    draw_objects(drawing, trial_clutter);
+    return drawing->status;
 }
 
 sonject_status image_plan_make(struct report *report, const struct campaign *campaign, uint64_t id,
                                struct image_plan *plan)
 {
-    struct drawing sample;
-    drawing_init(&sample, report, campaign, NO_TRIAL, plan);
+    struct drawing drawing;
+    drawing_init(&drawing, report, campaign, NO_TRIAL, plan);
     plan->id = id;
     plan->seed = (uint64_t)(uniform_number(campaign->seed, STREAM_SEED, id) * 0x1p52);
     plan->split = image_split(campaign, id);
     const uint64_t within = id - campaign->splits[plan->split].first_image;
     choose_place(campaign, plan, within);
-    choose_kind(&sample, within);
-    return fill_plan(&sample, NULL);
+    choose_kind(&drawing, within);
+    return fill_plan(&drawing, NULL);
 }
 
 sonject_status image_plan_try(struct report *report, const struct campaign *campaign,
                               uint32_t swath, uint32_t category, uint32_t item, uint32_t step,
                               struct image_plan *plan)
 {
-    struct drawing sample;
-    drawing_init(&sample, report, campaign, step, plan);
+    struct drawing drawing;
+    drawing_init(&drawing, report, campaign, step, plan);
     plan->swath = swath;
     plan->category = category;
     if (campaign->swaths[swath].room.places > 0)
         crop_sample(&campaign->swaths[swath].room, 0.0, 0.0, &plan->chip.first_row,
                     &plan->chip.first_column);
-    return fill_plan(&sample, category == CATEGORY_CLUTTER ? &campaign->clutter[item] : NULL);
+    return fill_plan(&drawing, category == CATEGORY_CLUTTER ? &campaign->clutter[item] : NULL);
 }
 
 void image_plan_clear(struct image_plan *plan)

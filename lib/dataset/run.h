@@ -1,4 +1,4 @@
-/* Whole runs on files, from rays, from impulses that were kept, or from shards; and their files:
+/* Whole runs on files, from rays, from sums that were kept, or from shards; and their files:
  * images, labels and JSON. */
 #ifndef SONJECT_DATASET_RUN_H
 #define SONJECT_DATASET_RUN_H
@@ -22,8 +22,8 @@ sonject_status run_scene(struct report *report, struct device_slot *slot,
 void tell_noise_floor(struct report *report, const struct scene *scene,
                       const sonject_statistics *statistics);
 
-/* Traces the request's scene and writes its impulses to the file, and to export_file where it is
- * neither NULL nor "": sonject_trace. */
+/* Traces the request's scene and writes its sums to the file, and its impulses to export_file where
+ * that is neither NULL nor "": sonject_trace. */
 sonject_status trace_scene(struct report *report, struct device_slot *slot,
                            const struct run_request *request, const char *file,
                            const char *export_file);
@@ -94,9 +94,9 @@ sonject_status write_layer(struct report *report, const struct run_facts *facts,
  * at all, and lists them in facts->files. Errors: STORAGE, MEMORY. */
 sonject_status write_layers(struct report *report, struct run_facts *facts, const char *folder);
 
-/* Writes coco.json, contacts.csv, and what facts->label_formats asks for, and lists
- * them in facts->files; label files of other formats that an earlier run left are removed. Errors:
- * STORAGE, MEMORY. */
+/* Writes coco.json, contacts.csv, and what facts->label_formats asks for, and lists them in
+ * facts->files; label files of other formats that an earlier run left are removed. Errors: STORAGE,
+ * MEMORY. */
 sonject_status write_labels(struct report *report, struct run_facts *facts, const char *folder);
 
 /* The formats (sum of sonject_labels) that a run.json names. */

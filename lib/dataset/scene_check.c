@@ -1,7 +1,6 @@
 #include "dataset/run.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,9 +20,9 @@ static double grazing_degrees(const struct patch_view *view, double processor_ra
     return view_grazing(view, processor_range) * DEGREES_PER_RADIAN;
 }
 
-static void describe_water(struct growing_text *text, const struct ray_path *way)
+static void describe_water(struct growing_text *text, const struct ray_path *path)
 {
-    const struct water *water = way->water;
+    const struct water *water = path->water;
     growing_text_add(text, "water      %.1f m/s around seabed and objects",
                      water->straight_speed_mps);
     if (water->count == 1)
@@ -31,8 +30,8 @@ static void describe_water(struct growing_text *text, const struct ray_path *way
     else
         growing_text_add(text, " up to %.2f m, %.1f m/s at the sonar, %zu layers%s\n",
                          water->layers[1].bottom_m,
-                         water_layer_at(water, way->sonar_height_m)->speed_mps, water->count,
-                         way->is_straight ? ", none of which the sound crosses" : "");
+                         water_layer_at(water, path->sonar_height_m)->speed_mps, water->count,
+                         path->is_straight ? ", none of which the sound crosses" : "");
 }
 
 static void describe_patch(struct growing_text *text, const struct scene *scene,

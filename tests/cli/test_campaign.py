@@ -1,5 +1,6 @@
 """Campaigns: what the data set holds, and that it is the same however it came about."""
 
+import ctypes
 import json
 import random
 import shutil
@@ -401,6 +402,42 @@ def test_records_are_believed_as_they_were_written_alone(command, damaged):
     assert contents(damaged) == before
 
 
+class Digest(ctypes.Structure):
+    _fields_ = [("low", ctypes.c_uint64), ("high", ctypes.c_uint64)]
+
+
+def hashed(record):
+    """The record's text with the hash that the command would give it."""
+    jansson, xxhash = ctypes.CDLL("libjansson.so.4"), ctypes.CDLL("libxxhash.so.0")
+    jansson.json_loads.restype, jansson.json_dumps.restype = ctypes.c_void_p, ctypes.c_char_p
+    jansson.json_dumps.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+    digest = xxhash.XXH3_128bits
+    digest.restype, digest.argtypes = Digest, [ctypes.c_char_p, ctypes.c_size_t]
+    compact = jansson.json_dumps(jansson.json_loads(json.dumps(record).encode(), 0, None), 0x20)
+    own = digest(compact + b"\0", len(compact) + 1)
+    return f'{compact.decode()[:-1]},"xxh3":"{own.high:016x}{own.low:016x}"}}'
+
+
+def test_records_with_a_hash_of_their_own_do_no_harm(command, damaged):
+    """What somebody wrote who knows how."""
+    record = next(each for each in records(damaged) if each["annotations"])
+    path = damaged / of_image(record, "records", ".json")
+    del record["xxh3"]
+    outside = [{**record["files"][0], "name": "../" + record["split"] + "/" + record["files"][0]["name"]}]
+    for change in ({}, {"files": outside}, {"target": "whale" * 99, "set": [1, "<b>=1 <script>", "=1", "a="]},
+                   {"annotations": None, "set": None},
+                   {"annotations": [1, {"bbox": ["0"]}, {"bbox": [2**63 - 1] * 4, "category_id": -1}]}):
+        path.write_text(hashed({**record, **change}))
+        answer = command("merge", damaged.name)
+        if "files" in change:
+            assert_refused(answer, 3, "not as it was written", outside[0]["name"])
+        elif change.get("annotations"):
+            assert answer.returncode in (0, 5), answer.stderr
+        else:
+            assert answer.returncode == 0, answer.stderr
+        assert "<script" not in (damaged / "report.html").read_text()
+
+
 def test_two_campaigns_in_one_folder_make_one_data_set(ground, environment, whole):
     arguments = [COMMAND, "campaign", "campaign.yaml", "-o", "twice", "--quiet"]
     both = [subprocess.Popen(arguments, cwd=ground, env=environment, stderr=subprocess.PIPE)
@@ -463,6 +500,7 @@ HOSTILE = [
     (['draw={"objects[].headnig": 3}'], "headnig", "did you mean 'heading'?"),
     (['draw={patch.rows: 3}'], "patch.rows", "the campaign itself"),
     (['draw={seabed.lambert: {uniform: [-3 dB, -30 dB]}}'], "seabed.lambert", "swap them"),
+    (['draw={seabed.lambert: {uniform: [nan, 1]}}'], "seabed.lambert", "not a finite number"),
     (['draw={seabed.lambert: {uniform: [-30 dB, 1]}}'], "seabed.lambert", "same unit"),
     (['draw={seabed.lambert: {log_uniform: [-30 dB, -3 dB]}}'], "seabed.lambert", "above 0"),
     (['draw={seabed.lambert: {unifrom: [-30 dB, -3 dB]}}'], "seabed.lambert", "'uniform'"),
@@ -475,6 +513,7 @@ HOSTILE = [
       'sonar.resolution: {uniform: [3 cm, 4 cm], steps: 1000000}, '
       'sonar.frequency: {uniform: [90 kHz, 91 kHz], steps: 1000000}}'], "grid", "more than"),
     (["chip.rows=200"], "swath0.png", "too few for images of 200 x 64"),
+    (["chip.rows=15"], "chip.rows", "16...8192"),
     (["swaths[0].avoid=[{row: 0, column: 0, rows: 1099511627776, columns: 1099511627776}]"],
      "swath0.png", "leave no room"),
     (["chip.slant_range=[60 m, 70 m]"], "swath0.png", "60 to 70 m"),
@@ -486,6 +525,7 @@ HOSTILE = [
     (["splits={train: 0.5}"], "splits", "add up to 0.5"),
     (["targets[0].class=''"], "class", "1 to"),
     (["targets[0].object={shape: sphere, diamter: 1 m}"], "diamter", "did you mean 'diameter'?"),
+    (["empty=1.5"], "empty", "0...1"),
     (["clutter.number=51"], "clutter.number", "0 to 50"),
     (["outputs=[shadows]"], "outputs", "did you mean 'shadow'?"),
     (["draw={seabed.lambert: {choice: [" + "0.1, " * 20000 + "0.1]}}"], "campaign.yaml",

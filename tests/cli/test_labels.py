@@ -160,7 +160,8 @@ def test_contact_records(folder, seen):
             assert line[key] == entry[key] or float(line[key]) == pytest.approx(entry[key])
         for key, size in entry["dimensions"].items():
             assert float(line[key]) == size
-        assert line["longitude_deg"] == line["easting_m"] == ""
+        assert float(line["heading_deg"]) == pytest.approx(entry["pose"]["heading_deg"])
+        assert line["longitude_deg"] == line["easting_m"] == line["sonar_heading_deg"] == ""
         mask = seen.get(entry["id"])
         cells = [line[f"box_{key}"] for key in ("row", "column", "rows", "columns")]
         assert cells == ([""] * 4 if mask is None else [str(side) for side in box_of(mask)])
@@ -316,3 +317,4 @@ def test_contacts_lie_abeam_of_the_recorded_track(sonject, tmp_path, case):
     (line,) = csv_lines(tmp_path / "out")
     assert [float(line[key]) for key in keys] == pytest.approx(list(position.values()),
                                                                abs=1e-9 if units else 1e-4)
+    assert float(line["sonar_heading_deg"]) == pytest.approx(math.degrees(heading), abs=1e-3)

@@ -1,11 +1,7 @@
 /* The seam: chance where there is none, told where there is one. */
-#include "claims.h"
+#include "plain_seabed.h"
 
-#include "scene/params.h"
-
-#include "image/synthetic.h"
 #include "measure/measures.h"
-#include "scene/scene.h"
 
 #define ROWS    400
 #define COLUMNS 400
@@ -13,25 +9,10 @@
 
 static struct report report;
 
-/* Rayleigh amplitudes of a plain seabed whose rows are correlated. */
+/* Rows are correlated. */
 static float *seabed(double row_width, uint64_t seed)
 {
-    struct scene scene;
-    float *pixels = calloc(PIXELS, sizeof *pixels);
-    assert_non_null(pixels);
-    scene_init(&scene);
-    sonject_synthetic_params *synthetic = &scene.synthetic;
-    scene.geometry.first_slant_range_m = 40.0;
-    synthetic->rows = ROWS;
-    synthetic->columns = COLUMNS;
-    synthetic->seed = seed;
-    synthetic->speckle_shape = INFINITY;
-    synthetic->ripple_contrast = 0.0;
-    synthetic->patch_contrast_db = 0.0;
-    assert_int_equal(
-        synthesise_seabed(&report, synthetic, &scene.geometry, row_width * 0.025, 0.025, pixels),
-        SONJECT_OK);
-    return pixels;
+    return make_plain_seabed(ROWS, COLUMNS, INFINITY, row_width, 1.0, seed);
 }
 
 /* A target of 60 x 30 pixels, and a band of 36 around it. */

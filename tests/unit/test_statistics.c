@@ -1,10 +1,8 @@
 /* Statistics of image patches; contrast, looks, texture and correlation of speckle that is known.
  */
-#include "claims.h"
+#include "plain_seabed.h"
 
 #include "image/statistics.h"
-#include "image/synthetic.h"
-#include "scene/scene.h"
 
 #define ROWS    512
 #define COLUMNS 512
@@ -235,26 +233,11 @@ static void test_correlation(void **state)
     assert_true(correlation(a, up, 0) == 0.0);
 }
 
-/* Adds the intensity of a plain seabed: sinc response of row_width pixels, Gaussian one of a -3 dB
- * width of column_width pixels. */
+/* Adds the intensity of a plain seabed. */
 static void add_seabed(double shape, double row_width, double column_width, uint64_t seed,
                        float *intensity)
 {
-    struct scene scene;
-    float *pixels = calloc(PIXELS, sizeof *pixels);
-    assert_non_null(pixels);
-    scene_init(&scene);
-    sonject_synthetic_params *synthetic = &scene.synthetic;
-    scene.geometry.first_slant_range_m = 40.0;
-    synthetic->rows = ROWS;
-    synthetic->columns = COLUMNS;
-    synthetic->seed = seed;
-    synthetic->speckle_shape = shape;
-    synthetic->ripple_contrast = 0.0;
-    synthetic->patch_contrast_db = 0.0;
-    assert_int_equal(synthesise_seabed(&report, synthetic, &scene.geometry, row_width * 0.025,
-                                       column_width * 0.025, pixels),
-                     SONJECT_OK);
+    float *pixels = make_plain_seabed(ROWS, COLUMNS, shape, row_width, column_width, seed);
     for (size_t i = 0; i < PIXELS; i++)
         intensity[i] += pixels[i] * pixels[i];
     free(pixels);
