@@ -110,7 +110,7 @@ FUNCTION vfloat cone_scattering(struct vector3 normal, struct vector3 one, struc
     return facet_density(tilt, slope) * 0.25f * shading / most;
 }
 
-/* Density of the cone's directions, 1/sr, as sample_cone draws them. */
+/* Density of the cone's directions, 1/sr, as sample_cone finds them. */
 FUNCTION vfloat cone_density(struct vector3 normal, struct vector3 back, struct vector3 direction,
                              float slope)
 {

@@ -4,7 +4,6 @@
 #define SONJECT_KERNELS_CHAIN_ECHO_H
 
 #include "chain_hit.h"
-#include "reflectivity_map.h"
 #include "tally.h"
 
 /* Where the source is as seen from a hit. */
@@ -34,8 +33,14 @@ FUNCTION vfloat first_leg(const struct chain *chain, vfloat receiver_x)
     return chain->range + shift * shift / (SQUARE_ROOT(first * first + shift * shift) + first);
 }
 
-/* A straight way; its range is left to be set. */
-FUNCTION struct source_path straight_way(struct vector3 to)
+/* Along-track, where the receiver is as the echo of a hit is imaged. */
+FUNCTION vfloat receiver_of(GLOBAL const struct chain_record *chains, const struct chain *chain)
+{
+    return chains->is_focused ? 0.5f * (chain->first_x + chain->hit.point.x) : chain->first_x;
+}
+
+/* A straight path; its range is left to be set. */
+FUNCTION struct source_path straight_path(struct vector3 to)
 {
     struct source_path way;
     way.path = SQUARE_ROOT(dot3(to, to));
@@ -60,7 +65,7 @@ FUNCTION struct source_path path_to_source(const struct fan_record *fan, const s
     struct vector3 to = to_receiver(fan, point, receiver_x + aside);
     to.y += up * fan->sine_depression;
     to.z += up * fan->cosine_depression;
-    struct source_path way = straight_way(to);
+    struct source_path way = straight_path(to);
     const vfloat height_along =
         point.y * fan->cosine_depression - point.z * fan->sine_depression; /* of p towards R */
     const vfloat height_across = point.y * fan->sine_depression + point.z * fan->cosine_depression;
@@ -112,7 +117,9 @@ struct chain_echo {
 
 #define NO_STRIP (-1073741824)
 
-/* The strip of the whole track at x, limited: the tally drops what is beside it. */
+/* As track_strip_at (aspects.h), to 1/16 of a strip: what lies closer to a strip's edge may count
+ * as the next one's. The bits of images depend on it. Limited: the tally drops what is beside it.
+ */
 FUNCTION vint strip_at(const struct fan_record *fan, vfloat x)
 {
     const vfloat strip = (x - fan->first_strip_x) / fan->strip_width;
@@ -150,9 +157,10 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
 }
 
 /* A path that was found one way may also stand for its reverse. What began with a specular bounce
- * does, because nothing finds the reverse: its last hit would be the boundary. In focused columns,
- * where both are seen from the same place, so do the chains that began on the seabed and end on a
- * target: they are led there on purpose, and those found from the target are left out for them. */
+ * does, because nothing finds the reverse: its last hit would be the specular one. In focused
+ * columns, where both are seen from the same place, so do the chains that began on the seabed and
+ * end on a target: they are led there on purpose, and those found from the target are left out for
+ * them. */
 struct ways_counted {
     mask is_counted, counts_reverse;
 };
@@ -199,16 +207,13 @@ FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains
     }
     if (has_sea_surface(chains))
         count_ways_by_sea_surface(chains, order, chain, &ways);
-    /* one object seen by way of the seabed's specular part is a pair of sources'
-     * (trace_rough_images.h)
-     */
+    /* one object seen by way of the seabed's specular part: trace_rough_images.h */
     if (order == 2 && chains->estimator == CHAINS_CONNECT)
         ways.is_counted = ways.is_counted & ~(chain->began_smooth & began_on_seabed);
     return ways;
 }
 
-/* Keeps the echo that a hit sends to the source: energy is that of the path, way the one to the
- * source. */
+/* Keeps the echo that a hit sends to the source. range: half the path less the reference range. */
 FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
                         struct ways_counted ways, const struct chain *chain, vfloat energy,
                         vfloat range, vfloat normalisation, struct chain_echo *echo)
@@ -216,15 +221,14 @@ FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_
     const mask both = ways.counts_reverse;
     vfloat kept = energy * normalisation;
     const vint none = VINT_OF(SPLAT((float)NO_STRIP));
-    vint strip, reverse;
+    const vint strip = strip_at(fan, receiver_of(chains, chain));
+    vint reverse;
     if (chains->is_focused) {
         /* a path and its reverse are one echo of twice the amplitude, four times the energy: 4
          * where this path counts for both, 2 where the reverse is found by itself */
         kept = SELECT(both, kept * 4.0f, kept * 2.0f);
-        strip = strip_at(fan, 0.5f * (chain->first_x + chain->hit.point.x));
         reverse = none;
     } else {
-        strip = strip_at(fan, chain->first_x);
         reverse = SELECT(both, strip_at(fan, chain->hit.point.x), none);
     }
     kept = SELECT(ways.is_counted & chain->is_alive, kept, SPLAT(0.0f));
@@ -239,48 +243,6 @@ FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_
     STORE_VFLOAT(bins.later, echo->later);
     STORE_VINT(strip, echo->strip);
     STORE_VINT(reverse, echo->reverse_strip);
-}
-
-/* Connects the hit to the source and gives the echo: energy f cos / r^2 at the source, normalised
- * by the fourth power of half the path (MATH.md). */
-FUNCTION void connect_chain(const struct fan_record *fan,
-                            GLOBAL const struct ray_piece_record *pieces,
-                            GLOBAL const struct chain_record *chains,
-                            GLOBAL const struct object_record *objects, GLOBAL const float *map,
-                            int order, const struct chain *chain, RECORD_WORD draw,
-                            struct chain_echo *echo, struct outcome_record *outcome)
-{
-    const struct chain_hit *hit = &chain->hit;
-    vfloat receiver_x = chain->first_x;
-    vfloat source_aside = SPLAT(0.0f);
-    vfloat source_up = SPLAT(0.0f);
-    if (chains->is_focused)
-        receiver_x = 0.5f * (chain->first_x + hit->point.x);
-    if (fan->source_side > 0.0f) {
-        vfloat along, across;
-        two_uniforms(chain->key, chain->number, draw, &along, &across);
-        source_aside = (along - 0.5f) * fan->source_side;
-        source_up = (across - 0.5f) * fan->source_side;
-    }
-    struct source_path way;
-    if (fan->table.pieces > 0)
-        way = path_through_layers(fan, pieces, chain, receiver_x, source_aside, source_up);
-    else
-        way = path_to_source(fan, chain, receiver_x, source_aside, source_up);
-    const vfloat scattering = scattering_at(fan, chains, objects, hit, way.direction) *
-                              map_factor(fan, pieces, chains, map, hit);
-    const vfloat cosine = dot3(hit->normal, way.direction);
-    mask is_open = chain->is_alive & MASK_OF(scattering > 0.0f);
-    if (ANY(is_open)) {
-        outcome->queries += count_lanes(is_open);
-        is_open = is_open_way(fan, objects, hit, way.direction, way.path, is_open);
-    }
-    const vfloat energy =
-        SELECT(is_open, chain->energy * scattering * cosine * way.spreading, SPLAT(0.0f));
-    const vfloat half_path = fan->reference_range + way.range;
-    const vfloat square = half_path * half_path;
-    keep_echo(fan, chains, count_ways(chains, order, chain), chain, energy, way.range,
-              square * square, echo);
 }
 
 #endif

@@ -4,6 +4,7 @@
 #define SONJECT_KERNELS_CHAIN_SEA_SURFACE_H
 
 #include "chain_echo.h"
+#include "reflectivity_map.h"
 
 /* Puts the hit on the sea surface where a ray meets that first. */
 FUNCTION void meet_sea_surface(GLOBAL const struct chain_record *chains, struct vector3 start,
@@ -47,10 +48,10 @@ FUNCTION void leave_out_unheard(const struct fan_record *fan,
 /* The way to the image of the source's point (aside, up) in the sea surface, formed as in
  * path_to_source: |s - p|^2 - R^2 = |p|^2 - 2 s.p + up^2 + 4 H (H - h) (+ x^2), h the height of
  * that point and H that of the surface. */
-FUNCTION struct source_path way_to_image(const struct fan_record *fan,
-                                         GLOBAL const struct chain_record *chains,
-                                         const struct chain *chain, vfloat receiver_x, vfloat aside,
-                                         vfloat up)
+FUNCTION struct source_path path_to_image(const struct fan_record *fan,
+                                          GLOBAL const struct chain_record *chains,
+                                          const struct chain *chain, vfloat receiver_x,
+                                          vfloat aside, vfloat up)
 {
     const struct vector3 point = chain->hit.point;
     const float r = fan->reference_range;
@@ -62,7 +63,7 @@ FUNCTION struct source_path way_to_image(const struct fan_record *fan,
     to.x = receiver_x + aside - point.x;
     to.y = source_y - point.y;
     to.z = image_z - point.z;
-    struct source_path way = straight_way(to);
+    struct source_path way = straight_path(to);
     const vfloat excess = (to.x * to.x + point.y * point.y + point.z * point.z -
                            2.0f * (source_y * point.y + image_z * point.z) + up * up +
                            4.0f * surface * (surface - source_z)) /
@@ -92,7 +93,8 @@ FUNCTION mask is_open_to_image(const struct fan_record *fan,
 }
 
 /* What the hit returns in lanes that want it, to a receiver broadside of receiver_x: straight, or
- * by way of the sea surface's specular part. */
+ * by way of the sea surface's specular part. Energy f cos / r^2 at the source, normalised by the
+ * fourth power of half the path (MATH.md). */
 FUNCTION vfloat energy_returned(const struct fan_record *fan,
                                 GLOBAL const struct ray_piece_record *pieces,
                                 GLOBAL const struct chain_record *chains,
@@ -109,18 +111,20 @@ FUNCTION vfloat energy_returned(const struct fan_record *fan,
         aside = (aside - 0.5f) * fan->source_side;
         up = (up - 0.5f) * fan->source_side;
     }
-    const struct source_path way = by_image
-                                       ? way_to_image(fan, chains, chain, receiver_x, aside, up)
-                                       : path_to_source(fan, chain, receiver_x, aside, up);
+    const struct source_path way =
+        by_image                ? path_to_image(fan, chains, chain, receiver_x, aside, up)
+        : fan->table.pieces > 0 ? path_through_layers(fan, pieces, chain, receiver_x, aside, up)
+                                : path_to_source(fan, chain, receiver_x, aside, up);
     vfloat scattering = scattering_at(fan, chains, objects, hit, way.direction) *
                         map_factor(fan, pieces, chains, map, hit);
     if (by_image)
         scattering = scattering * specular_energy(&chains->sea_surface, magnitude(way.direction.z));
     mask is_open = is_wanted & MASK_OF(scattering > 0.0f);
-    outcome->queries += count_lanes(is_open) * (by_image ? 2u : 1u);
-    if (ANY(is_open))
+    if (ANY(is_open)) {
+        outcome->queries += count_lanes(is_open) * (by_image ? 2u : 1u);
         is_open = by_image ? is_open_to_image(fan, chains, objects, hit, &way, is_open)
                            : is_open_way(fan, objects, hit, way.direction, way.path, is_open);
+    }
     *range = way.range;
     const vfloat half_path = fan->reference_range + way.range;
     const vfloat square = half_path * half_path;
@@ -151,11 +155,10 @@ FUNCTION void connect_to_image(const struct fan_record *fan,
     struct ways_counted ways;
     ways.is_counted = may_end_on_boundary(order, chain);
     ways.counts_reverse = chains->is_focused ? ways.is_counted : ways.is_counted & 0;
-    const vfloat receiver_x =
-        chains->is_focused ? 0.5f * (chain->first_x + chain->hit.point.x) : chain->first_x;
     vfloat range;
-    const vfloat energy = energy_returned(fan, pieces, chains, objects, map, chain, receiver_x, 1,
-                                          draw, ways.is_counted, &range, outcome);
+    const vfloat energy =
+        energy_returned(fan, pieces, chains, objects, map, chain, receiver_of(chains, chain), 1,
+                        draw, ways.is_counted, &range, outcome);
     keep_echo(fan, chains, ways, chain, energy, range, SPLAT(chains->finer[order - 1]), echo);
 }
 

@@ -11,11 +11,11 @@
 /* How a chain goes on from a hit. */
 struct chain_step {
     struct vector3 direction;
-    vfloat weight; /* f cos / density, or the boundary's energy over its probability */
+    vfloat weight; /* f cos / density, or the specular part's energy over its probability */
     mask is_specular;
 };
 
-/* A step by a rough part: what the surface scatters that way over the density it was drawn with. */
+/* A step by a rough part: what the surface scatters that way over the density it was sampled with. */
 FUNCTION struct chain_step step_in_direction(GLOBAL const struct surface_record *surface,
                                              const struct chain_hit *hit, struct vector3 direction,
                                              vfloat density)

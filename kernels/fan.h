@@ -5,6 +5,7 @@
 #include "elementary.h"
 #include "interval.h"
 #include "layout.h"
+#include "random.h"
 #include "ray_table.h"
 
 /* A ray through the frame's neighbourhood, counted from its point closest to the origin: at 500 m
@@ -75,6 +76,21 @@ FUNCTION int strip_of_item(const struct fan_record *fan, int item)
     return (int)(turn * fan->strip_stride % fan->strips);
 }
 
+/* The random numbers of a strip of this launch. */
+FUNCTION struct random_key key_of_strip(const struct fan_record *fan, int strip)
+{
+    return random_key_of(fan->seed_low, fan->seed_high, fan->stream,
+                         (RECORD_WORD)(fan->first_strip + strip));
+}
+
+/* How many of `most` rays from the first on the fan has. */
+FUNCTION RECORD_WORD rays_from(const struct fan_record *fan, RECORD_WORD first_ray,
+                               RECORD_WORD most)
+{
+    const RECORD_WORD left = fan->rays - first_ray;
+    return left < most ? left : most;
+}
+
 /* Along-track position of the middle of a strip of this launch. */
 FUNCTION float strip_position(const struct fan_record *fan, int strip)
 {
@@ -84,11 +100,10 @@ FUNCTION float strip_position(const struct fan_record *fan, int strip)
 /* The bins between whose middles a bin coordinate lies; far outside -> bins that do not exist. */
 struct bin_pair {
     vint bin;     /* the first */
-    vfloat later; /* The bin coordinate of what no bin is to hold. */
-#define BEFORE_BINS (-9.0f)
-
-    /* 0...1: the share of the second */
+    vfloat later; /* 0...1: the share of the second */
 };
+
+#define BEFORE_BINS (-9.0f) /* the bin coordinate of what no bin is to hold */
 
 FUNCTION struct bin_pair bins_about(vfloat coordinate)
 {

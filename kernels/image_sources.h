@@ -1,4 +1,4 @@
-/* Ways between an object and two sources, each the sonar or an image of it in level boundaries. A
+/* Paths between an object and two sources, each the sonar or an image of it in level boundaries. A
  * line between source and object is straight in unfolded space; what stands in its way is looked
  * for along the folded line (kernels/MATH.md, "Image sources"). */
 #ifndef SONJECT_KERNELS_IMAGE_SOURCES_H
@@ -214,8 +214,7 @@ FUNCTION struct image_path follow_path(const struct fan_record *fan,
         path.spreading = spreading_through_layers(fan, pair, ray, hit, &path, half_path);
     path.cosine_back = -dot3(hit->normal, path.back.direction);
     const mask is_lit = hit->is_hit & MASK_OF(path.cosine_back > 0.0f);
-    /* start off the surface by more than its rounding, less than anything that throws a shadow */
-    const struct vector3 start = along3(hit->start, hit->normal, SPLAT(2.0e-5f));
+    const struct vector3 start = along3(hit->start, hit->normal, SPLAT(START_OFF_SURFACE));
     const struct leg out = follow_leg(fan, pair, &pair->outgoing, objects, start,
                                       reversed3(ray->direction), path.wavefront_out, is_lit);
     const struct leg returned =

@@ -158,7 +158,7 @@ FUNCTION vfloat first_end_beyond(struct interval inside, vfloat start, vfloat mi
 
 /* Distance along the ray to the first surface beyond `minimum`, FAR_AWAY if there is none. The ray
  * is first moved to its closest approach to the object, so that single precision holds the shape
- * and not the range (physics.md section 9 at 500 m). */
+ * and not the range, at 500 m too. */
 FUNCTION vfloat object_distance(GLOBAL const struct object_record *object, struct vector3 point,
                                 struct vector3 direction, vfloat minimum)
 {

@@ -1,6 +1,6 @@
 /* One ray's walk through part of a mesh's hierarchy, with a child or a triangle in each lane. */
-#ifndef SONJECT_KERNELS_MESH_ALONE_H
-#define SONJECT_KERNELS_MESH_ALONE_H
+#ifndef SONJECT_KERNELS_MESH_SINGLE_H
+#define SONJECT_KERNELS_MESH_SINGLE_H
 
 #include "mesh_ray.h"
 

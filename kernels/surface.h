@@ -118,7 +118,7 @@ FUNCTION vfloat rough_scattering(GLOBAL const struct surface_record *surface, st
     return SELECT(is_above, scattering, SPLAT(0.0f));
 }
 
-/* Share of the cone in the directions that are drawn. */
+/* Share of the cone in the directions that are sampled. */
 FUNCTION float cone_share(GLOBAL const struct surface_record *surface)
 {
     const float all = rough_albedo(surface);

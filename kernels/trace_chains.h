@@ -4,9 +4,24 @@
 #ifndef SONJECT_KERNELS_TRACE_CHAINS_H
 #define SONJECT_KERNELS_TRACE_CHAINS_H
 
-#include "chain_echo.h"
 #include "chain_sea_surface.h"
 #include "chain_step.h"
+
+/* Connects the hit to the source and gives the echo. */
+FUNCTION void connect_chain(const struct fan_record *fan,
+                            GLOBAL const struct ray_piece_record *pieces,
+                            GLOBAL const struct chain_record *chains,
+                            GLOBAL const struct object_record *objects, GLOBAL const float *map,
+                            int order, const struct chain *chain, RECORD_WORD draw,
+                            struct chain_echo *echo, struct outcome_record *outcome)
+{
+    vfloat range;
+    const vfloat energy =
+        energy_returned(fan, pieces, chains, objects, map, chain, receiver_of(chains, chain), 0,
+                        draw, chain->is_alive, &range, outcome);
+    keep_echo(fan, chains, count_ways(chains, order, chain), chain, energy, range, SPLAT(1.0f),
+              echo);
+}
 
 /* Where a ray crosses the source's rectangle: the echo of brute force, which counts what happens to
  * arrive. Per unit of the source's strength a rectangle of area A seen under the angle theta stands
@@ -242,12 +257,6 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
     }
 }
 
-FUNCTION RECORD_WORD rays_of_block(const struct fan_record *fan, RECORD_WORD first_ray)
-{
-    const RECORD_WORD left = fan->rays - first_ray;
-    return left < THIN_BLOCK ? left : THIN_BLOCK;
-}
-
 #define CHOICE_RAYS 16u /* that choose their targets alike; a multiple of any width */
 
 /* How the rays from first_ray on choose: as their middle sees the targets from the seabed, blurred
@@ -291,7 +300,7 @@ FUNCTION void trace_chain_block(const struct fan_record *fan,
 {
     struct target_choice choice;
     const int is_shared = chains->groups > 0 && fan->only_object == -1;
-    const RECORD_WORD count = rays_of_block(fan, first_ray);
+    const RECORD_WORD count = rays_from(fan, first_ray, THIN_BLOCK);
     for (RECORD_WORD ray = 0; ray < count; ray += WIDTH) {
         if (is_shared && ray % CHOICE_RAYS == 0)
             aim_choice(fan, pieces, chains, spheres, strip, first_ray + ray, &choice);
@@ -310,8 +319,7 @@ FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
                                                   int strip, int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};
-    const struct random_key key = random_key_of(fan->seed_low, fan->seed_high, fan->stream,
-                                                (RECORD_WORD)(fan->first_strip + strip));
+    const struct random_key key = key_of_strip(fan, strip);
     const RECORD_WORD blocks = (fan->rays + THIN_BLOCK - 1u) / THIN_BLOCK;
     const RECORD_WORD stride = (RECORD_WORD)fan->segments * WIDTH;
     for (RECORD_WORD some = (RECORD_WORD)segment * WIDTH; some < blocks; some += stride) {
@@ -323,8 +331,8 @@ FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
             const RECORD_WORD first_ray = (some + lane) * THIN_BLOCK;
             /* rays that are known to miss their object are traced by that */
             if (lanes[lane] > 0.0f || fan->only_object >= 0) {
-                outcome.rays += rays_of_block(fan, first_ray);
-                outcome.queries += rays_of_block(fan, first_ray);
+                outcome.rays += rays_from(fan, first_ray, THIN_BLOCK);
+                outcome.queries += rays_from(fan, first_ray, THIN_BLOCK);
             }
             if (lanes[lane] > 0.0f)
                 trace_chain_block(fan, pieces, chains, objects, spheres, map, tallies, strip, key,

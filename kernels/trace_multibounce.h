@@ -338,16 +338,13 @@ FUNCTION struct outcome_record trace_multibounce_strip(
     int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};
-    const struct random_key key = random_key_of(fan->seed_low, fan->seed_high, fan->stream,
-                                                (RECORD_WORD)(fan->first_strip + strip));
-    const RECORD_WORD groups = (fan->rays + WIDTH - 1u) / WIDTH;
+    const struct random_key key = key_of_strip(fan, strip);
+    const RECORD_WORD step = (RECORD_WORD)fan->segments * WIDTH;
     for (int stratum = 0; stratum < (int)fan->strata; stratum++)
-        for (RECORD_WORD group = (RECORD_WORD)segment; group < groups;
-             group += (RECORD_WORD)fan->segments) {
-            const RECORD_WORD left = fan->rays - group * WIDTH;
-            outcome.rays += left < WIDTH ? left : WIDTH;
+        for (RECORD_WORD ray = (RECORD_WORD)segment * WIDTH; ray < fan->rays; ray += step) {
+            outcome.rays += rays_from(fan, ray, WIDTH);
             trace_multibounce_group(fan, pieces, pair, multibounce, objects, echoes, listed, strip,
-                                    stratum, key, group * WIDTH, &outcome);
+                                    stratum, key, ray, &outcome);
         }
     outcome.queries += outcome.rays;
     return outcome;

@@ -336,16 +336,13 @@ FUNCTION struct outcome_record trace_rough_strip(const struct fan_record *fan,
                                                  GLOBAL TALLY *tiles, int strip, int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};
-    const struct random_key key = random_key_of(fan->seed_low, fan->seed_high, fan->stream,
-                                                (RECORD_WORD)(fan->first_strip + strip));
+    const struct random_key key = key_of_strip(fan, strip);
     const struct rough_tallies tallies = rough_tallies_of(fan, strip, seabed, tiles);
-    const RECORD_WORD groups = (fan->rays + WIDTH - 1u) / WIDTH;
-    for (RECORD_WORD group = (RECORD_WORD)segment; group < groups;
-         group += (RECORD_WORD)fan->segments) {
+    const RECORD_WORD step = (RECORD_WORD)fan->segments * WIDTH;
+    for (RECORD_WORD ray = (RECORD_WORD)segment * WIDTH; ray < fan->rays; ray += step) {
         struct rough_echo echo;
-        const RECORD_WORD left = fan->rays - group * WIDTH;
-        outcome.rays += left < WIDTH ? left : WIDTH;
-        trace_rough_group(fan, pieces, objects, strip, key, group * WIDTH, &echo, &outcome);
+        outcome.rays += rays_from(fan, ray, WIDTH);
+        trace_rough_group(fan, pieces, objects, strip, key, ray, &echo, &outcome);
         for (int lane = 0; lane < WIDTH; lane++)
             tally_rough_echo(fan, objects, map, &tallies, &echo, lane, &outcome);
     }

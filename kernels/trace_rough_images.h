@@ -54,19 +54,14 @@ FUNCTION struct outcome_record trace_rough_images_strip(
     GLOBAL TALLY *tiles, int strip, int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};
-    const int track_strip = fan->first_strip + strip;
-    const struct random_key key =
-        random_key_of(fan->seed_low, fan->seed_high, fan->stream, (RECORD_WORD)track_strip);
+    const struct random_key key = key_of_strip(fan, strip);
     GLOBAL const struct object_record *object = &objects[fan->only_object];
-    GLOBAL TALLY *line = tile_line(object, tiles, TILE_ENERGY, track_strip);
-    const RECORD_WORD groups = (fan->rays + WIDTH - 1u) / WIDTH;
-    for (RECORD_WORD group = (RECORD_WORD)segment; group < groups;
-         group += (RECORD_WORD)fan->segments) {
+    GLOBAL TALLY *line = tile_line(object, tiles, TILE_ENERGY, fan->first_strip + strip);
+    const RECORD_WORD step = (RECORD_WORD)fan->segments * WIDTH;
+    for (RECORD_WORD ray = (RECORD_WORD)segment * WIDTH; ray < fan->rays; ray += step) {
         struct image_echo echo;
-        const RECORD_WORD left = fan->rays - group * WIDTH;
-        outcome.rays += left < WIDTH ? left : WIDTH;
-        trace_rough_images_group(fan, pieces, pair, objects, strip, key, group * WIDTH, &echo,
-                                 &outcome);
+        outcome.rays += rays_from(fan, ray, WIDTH);
+        trace_rough_images_group(fan, pieces, pair, objects, strip, key, ray, &echo, &outcome);
         for (int lane = 0; lane < WIDTH; lane++) {
             const int bin = echo.bin[lane] - object->tile_first_bin;
             if (!line || bin < -1 || bin >= object->tile_bins || echo.energy[lane] == 0.0f)

@@ -162,17 +162,14 @@ FUNCTION struct outcome_record trace_smooth_strip(const struct fan_record *fan,
                                                   GLOBAL TALLY *tally, int strip, int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};
-    const struct random_key key = random_key_of(fan->seed_low, fan->seed_high, fan->stream,
-                                                (RECORD_WORD)(fan->first_strip + strip));
+    const struct random_key key = key_of_strip(fan, strip);
     GLOBAL TALLY *line = tally + (long)strip * fan->bins * 2;
-    const RECORD_WORD groups = (fan->rays + WIDTH - 1u) / WIDTH;
+    const RECORD_WORD step = (RECORD_WORD)fan->segments * WIDTH;
     for (int stratum = 0; stratum < (int)fan->strata; stratum++)
-        for (RECORD_WORD group = (RECORD_WORD)segment; group < groups;
-             group += (RECORD_WORD)fan->segments) {
+        for (RECORD_WORD ray = (RECORD_WORD)segment * WIDTH; ray < fan->rays; ray += step) {
             struct smooth_echo echo;
-            const RECORD_WORD left = fan->rays - group * WIDTH;
-            outcome.rays += left < WIDTH ? left : WIDTH;
-            trace_smooth_group(fan, pieces, objects, strip, stratum, key, group * WIDTH, &echo);
+            outcome.rays += rays_from(fan, ray, WIDTH);
+            trace_smooth_group(fan, pieces, objects, strip, stratum, key, ray, &echo);
             for (int lane = 0; lane < WIDTH; lane++)
                 tally_smooth_echo(line, &echo, lane, &outcome);
         }

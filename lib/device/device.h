@@ -30,8 +30,7 @@ struct device {
     struct _cl_command_queue *queue;
 };
 
-/* Names of all devices, the default one first marked: see sonject_devices. Errors: DEVICE, MEMORY.
- */
+/* Names of all devices, the default one marked: see sonject_devices. Errors: DEVICE, MEMORY. */
 sonject_status device_list(struct report *report, sonject_device_info *devices, size_t capacity,
                            size_t *count);
 

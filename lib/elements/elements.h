@@ -1,7 +1,6 @@
 /* Time series of the hydrophones (kernels/MATH.md, "Element level"): impulses that are heard, which
- * are traced lines without their empty cells, kept until all are there; what leads from ratios of
- * pressures to pressures, a source level and what the water absorbs; and the pulse of a series, on
- * samples so fine that echoes may be shared between two of them. */
+ * are traced lines without their empty cells, kept until all are there; and what leads from ratios
+ * of pressures to pressures, a source level and what the water absorbs. */
 #ifndef SONJECT_ELEMENTS_ELEMENTS_H
 #define SONJECT_ELEMENTS_ELEMENTS_H
 
@@ -9,7 +8,6 @@
 
 #include "base/report.h"
 #include "device/device.h"
-#include "kernels/element_series_records.h"
 #include "scene/element_plan.h"
 #include "scene/patch_view.h"
 
@@ -50,14 +48,6 @@ sonject_status impulse_list_add_speckle(struct impulse_list *list, const struct 
  * the impulse's own range. */
 void impulse_list_set_source_level(struct impulse_list *list, const struct patch_view *view,
                                    double source_level_db, double absorption_db_per_m);
-
-struct fine_pulse {
-    uint32_t fine; /* samples for each of the series */
-    uint32_t taps;
-    double first_time_s;               /* of fine sample 0 */
-    float *real_part, *imaginary_part; /* owned, taps each: sample n of the series is the sum over
-                                          taps of fine sample n * fine + tap times tap */
-};
 
 struct series_request {
     const sonject_element_layout *layout;

@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "elements/elements.h"
+#include "kernels/element_series_records.h"
 
 #define PI                    3.14159265358979323846
 #define SAMPLES_PER_DEVIATION 16.0      /* sharing between two fine samples then errs by 5e-4 */
@@ -15,6 +16,15 @@
 #define PAIRS_MAX             65536.0
 #define WORK_ITEMS            65536 /* that a GPU wants */
 #define SHARE_SAMPLES         64    /* of a line, for a work-item at least */
+
+/* The pulse of a series, on samples so fine that echoes may be shared between two of them. */
+struct fine_pulse {
+    uint32_t fine; /* samples for each of the series */
+    uint32_t taps;
+    double first_time_s;               /* of fine sample 0 */
+    float *real_part, *imaginary_part; /* owned, taps each: sample n of the series is the sum over
+                                          taps of fine sample n * fine + tap times tap */
+};
 
 static void fine_pulse_clear(struct fine_pulse *pulse)
 {

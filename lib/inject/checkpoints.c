@@ -218,8 +218,8 @@ static sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is
     return SONJECT_OK;
 }
 
-/* Forms the result, and traces what tracing->checkpoint does not hold yet; for another response than
- * was traced where the request says so. */
+/* Forms the result, and traces what tracing->checkpoint does not hold yet; for another response
+ * than was traced where the request says so. */
 static sonject_status form_traced(struct tracing *tracing, struct injection_result *result)
 {
     const struct checkpoint_job *job = tracing->job;

@@ -80,6 +80,9 @@ double along_track_speckle_correlation(const struct point_response *response, do
 void tell_match(const struct image_match *match, const struct point_response *response,
                 sonject_statistics *statistics);
 
+/* -INFINITY for 0. */
+double decibels(double ratio);
+
 /* Rows and columns of a view. */
 struct window {
     size_t first_row, rows, first_column, columns;

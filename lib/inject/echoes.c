@@ -381,7 +381,7 @@ static sonject_status finish(struct forming *forming)
 }
 
 sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
-                           const struct echo_request *request, const struct impulse_source *source)
+                           const struct echo_request *request, const struct injection_input *other)
 {
     struct forming forming;
     const struct impulse_sink sink = {take, &forming};
@@ -393,8 +393,8 @@ sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
     forming.request = request;
     sonject_status status = allocate_planes(echoes, tracer, request);
     /* rays are traced here, unless a checkpoint has what they would find */
-    THEN(status, source ? source->deliver(source->giver, tracer, request, &sink)
-                        : trace_impulses(tracer, request, &sink));
+    THEN(status, other ? trace_other_response(tracer, other, request, &sink)
+                       : trace_impulses(tracer, request, &sink));
     THEN(status, finish(&forming));
     form_lines_end(&forming.energies);
     form_lines_end(&forming.field);

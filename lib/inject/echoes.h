@@ -68,10 +68,11 @@ struct echo_request {
 sonject_status echo_request_tell(const struct echo_request *request, struct report *report,
                                  double fraction, const char *stage);
 
-/* Forms all of it from impulses as they come; source NULL: from rays of the tracer. On failure
- * *echoes is empty. Errors: DEVICE, MEMORY, and those of trace_impulses or the source. */
+/* Forms all of it from impulses as they come: of rays of the tracer, or of other->traced where
+ * other is not NULL. On failure *echoes is empty. Errors: DEVICE, MEMORY, and those of
+ * trace_impulses or trace_other_response. */
 sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
-                           const struct echo_request *request, const struct impulse_source *source);
+                           const struct echo_request *request, const struct injection_input *other);
 
 void echoes_clear(struct echoes *echoes);
 
@@ -133,7 +134,7 @@ struct formed {
  * DEVICE, MEMORY. */
 sonject_status form_end(struct form_lines *lines, struct formed *formed);
 
-/* Forms a drawing of energies on a grid: sqrt(energy) times complex normal deviates. Errors:
+/* Forms a realisation of energies on a grid: sqrt(energy) times complex normal deviates. Errors:
  * DEVICE, MEMORY. */
 sonject_status form_speckle(struct tracer *tracer, const struct line_grid *grid,
                             const float *energy, uint32_t stream, struct formed *formed);

@@ -44,16 +44,6 @@ struct impulse_sink {
     void *taker;
 };
 
-struct echo_request;
-
-/* Where they come from: rays of the tracer that forms them, or of one for another response. */
-struct impulse_source {
-    /* Hands out all sets. Errors: of the source, and the sink's own. */
-    sonject_status (*deliver)(void *giver, struct tracer *tracer,
-                              const struct echo_request *request, const struct impulse_sink *sink);
-    void *giver;
-};
-
 /* Whether these are the first, or the last, of their set. */
 static inline int impulse_lines_begin(const struct impulse_lines *lines)
 {
@@ -66,11 +56,20 @@ static inline int impulse_lines_end(const struct impulse_lines *lines)
            lines->grid.strips.first + lines->grid.strips.count;
 }
 
+struct echo_request;
+struct injection_input;
+
 /* By rays: traces everything that the request asks for, and hands it on as it comes, unless the
- * sink is NULL, so that only a checkpoint keeps it. Errors: INPUT,
- * DEVICE, MEMORY, CANCELLED, and the sink's own. */
+ * sink is NULL, so that only a checkpoint keeps it. Errors: INPUT, DEVICE, MEMORY, CANCELLED, and
+ * the sink's own. */
 sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *request,
                               const struct impulse_sink *sink);
+
+/* The same by rays of input->traced, which has another response than the tracer: that gets the
+ * counts. Errors: also those of injection_run. */
+sonject_status trace_other_response(struct tracer *tracer, const struct injection_input *input,
+                                    const struct echo_request *request,
+                                    const struct impulse_sink *sink);
 
 /* Whether impulses that `traced` lays the grids of can be formed with the tracer's response: bins,
  * strips and margins must be fine and wide enough. Errors: INPUT. */
@@ -95,7 +94,6 @@ sonject_status check_response_fits(const struct tracer *tracer, const struct tra
  * floats with an attribute units, in chunks of whole strips of about 1 MB, shuffled and deflated.
  * Rows are the view's: of images to starboard the last row comes first (patch_view.h). */
 struct impulse_export;
-struct injection_input;
 
 struct export_facts {
     const char *scene_hash, *image_hash;

@@ -315,12 +315,10 @@ static void prepared_clear(struct prepared *prepared)
     injection_setup_clear(&prepared->setup);
 }
 
-/* Impulses of the scene that is traced, for a tracer of another response. */
-static sonject_status deliver_others(void *giver, struct tracer *tracer,
-                                     const struct echo_request *request,
-                                     const struct impulse_sink *sink)
+sonject_status trace_other_response(struct tracer *tracer, const struct injection_input *input,
+                                    const struct echo_request *request,
+                                    const struct impulse_sink *sink)
 {
-    const struct injection_input *input = giver;
     struct prepared traced;
     sonject_status status = prepare(&traced, tracer->report, tracer->device, input->traced, input,
                                     request->progress, request->user);
@@ -339,12 +337,10 @@ static sonject_status form_and_compose(struct prepared *prepared,
     const float *pixels = prepared->setup.pixels;
     const struct image_match *match = &prepared->match;
     const struct patch_level *level = &prepared->patch.level;
-    struct injection_input others = *input;
-    const struct impulse_source traced = {deliver_others, &others};
     struct echoes echoes;
     prepared->patch.request.wants_coherent = match->looks > 1.0;
     sonject_status status =
-        echoes_form(&echoes, tracer, &prepared->patch.request, input->traced ? &traced : NULL);
+        echoes_form(&echoes, tracer, &prepared->patch.request, input->traced ? input : NULL);
     const double start = clock_seconds();
     THEN(status, set_target_levels(tracer, &echoes, result));
     THEN(status, compose(tracer, match, level, &echoes, pixels, input->is_complex, result));

@@ -182,7 +182,7 @@ sonject_status patch_request_init(struct patch_request *patch, struct tracer *tr
     return SONJECT_OK;
 }
 
-static double decibels(double ratio)
+double decibels(double ratio)
 {
     return ratio > 0.0 ? 10.0 * log10(ratio) : -INFINITY;
 }

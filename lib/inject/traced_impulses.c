@@ -122,8 +122,8 @@ static sonject_status emit_tile(const struct tracing *tracing, uint32_t number)
     return emit(tracing, &lines);
 }
 
-/* Chunks that are the same wherever the grid begins: its extent depends on echoes of corners, which
- * are not all known where another process traces some of them. */
+/* Chunks that are the same wherever the grid begins: its extent depends on multi-bounce echoes,
+ * which are not all known where another process traces some of them. */
 static struct span next_glint_strips(const struct glints *glints, struct span before)
 {
     const int32_t chunk = glints->chunk;

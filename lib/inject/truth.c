@@ -61,11 +61,6 @@ static struct pixel_levels levels_at(const struct patch_level *level, const stru
     return levels;
 }
 
-static double decibels(double ratio)
-{
-    return ratio > 0.0 ? 10.0 * log10(ratio) : -INFINITY;
-}
-
 static void find_object(const struct patch_level *level, const struct echoes *echoes,
                         uint32_t number, struct injection_result *result)
 {

@@ -1,7 +1,7 @@
 /* Snell's law through level layers (kernels/MATH.md, "Layers"). A ray is known by its ray parameter
  * p = cos(grazing angle) / c. Where sound is fastest, at c_max, that angle's cotangent x runs from
- * 0 to infinity; in x nothing cancels near total reflection and ranges grow about linearly: p c =
- * rho x / sqrt(1 + x^2),  sin = sqrt((1 + x^2 (1 - rho^2)) / (1 + x^2)),  rho = c / c_max
+ * 0 to infinity; in x nothing cancels near total reflection and ranges grow about linearly:
+ *     p c = rho x / sqrt(1 + x^2),  sin = sqrt((1 + x^2 (1 - rho^2)) / (1 + x^2)),  rho = c / c_max
  */
 #include "medium/water.h"
 
@@ -128,8 +128,8 @@ static void add_layer(struct sums *sums, double height, double speed, double fas
     sums->growth += height * speed / (sine * sine * sine);
 }
 
-static struct sums sum_way(const struct ray_path *path, const struct legs *legs, double last,
-                           double fastest_speed, double x)
+static struct sums sum_path(const struct ray_path *path, const struct legs *legs, double last,
+                            double fastest_speed, double x)
 {
     struct sums sums = {0.0, 0.0, 0.0, 0.0};
     for (size_t i = 0; i < path->water->count; i++) {
@@ -195,8 +195,9 @@ struct arrival ray_path_arrival(const struct ray_path *path, double grazing_rad,
     const double fast_cosine = cosine * fastest_speed / speed;
     if (!(fast_cosine < 1.0))
         return none;
-    const struct sums sums = sum_way(path, &legs, last, fastest_speed,
-                                     fast_cosine / sqrt((1.0 - fast_cosine) * (1.0 + fast_cosine)));
+    const struct sums sums =
+        sum_path(path, &legs, last, fastest_speed,
+                 fast_cosine / sqrt((1.0 - fast_cosine) * (1.0 + fast_cosine)));
     const double at_sonar = water_layer_at(path->water, path->sonar_height_m)->speed_mps / speed;
     struct arrival ray;
     ray.ground_range_m = sums.range;
@@ -216,7 +217,7 @@ static double find_ray(const struct ray_path *path, const struct legs *legs, dou
     double low = 0.0, high = INFINITY;
     double x = 1.0;
     for (int i = 0; i < NEWTON_STEPS; i++) {
-        const struct sums sums = sum_way(path, legs, last, fastest_speed, x);
+        const struct sums sums = sum_path(path, legs, last, fastest_speed, x);
         const double found = is_time ? sums.time : sums.range;
         const double square = 1.0 + x * x;
         const double per_x = 1.0 / (fastest_speed * square * sqrt(square));
@@ -265,7 +266,7 @@ double ray_path_range(const struct ray_path *path, double ground_range_m, double
     if (path->is_straight)
         return hypot(ground_range_m, path->image_height_m - height_m);
     const struct found_ray ray = ray_to(path, height_m, ground_range_m, false);
-    return sum_way(path, &ray.legs, ray.last, ray.fastest_speed, ray.x).time *
+    return sum_path(path, &ray.legs, ray.last, ray.fastest_speed, ray.x).time *
            path->water->straight_speed_mps;
 }
 
@@ -279,8 +280,8 @@ double ray_path_ground_range(const struct ray_path *path, double straight_range_
     const struct legs legs = legs_of(path);
     const double last = last_height(path, 0.0);
     const double time = straight_range_m / path->water->straight_speed_mps;
-    if (time <= sum_way(path, &legs, last, fastest(path, &legs, last), 0.0).time)
+    if (time <= sum_path(path, &legs, last, fastest(path, &legs, last), 0.0).time)
         return 0.0;
     const struct found_ray ray = ray_to(path, 0.0, time, true);
-    return sum_way(path, &ray.legs, ray.last, ray.fastest_speed, ray.x).range;
+    return sum_path(path, &ray.legs, ray.last, ray.fastest_speed, ray.x).range;
 }

@@ -29,11 +29,11 @@ struct water_layer {
 #define WATER_SPEED_MAX_MPS     10000.0
 
 /* Layers of a profile whose heights rise by WATER_HEIGHT_STEP_MIN_M or more, the last one above the
- * seabed. Each linear piece above the seabed gives equally
- * high layers with the piece's sound speed at their middle, as many as keep the steps from one to
- * the next below 1/20000 of the speed; below the first sample and above the last one the speed is
- * theirs. Equal neighbours are one layer. On success *layers is the caller's for free(). Errors:
- * INPUT (more than WATER_LAYERS_MAX), MEMORY. */
+ * seabed. Each linear piece above the seabed gives equally high layers with the piece's sound speed
+ * at their middle, as many as keep the steps from one to the next below 1/20000 of the speed; below
+ * the first sample and above the last one the speed is theirs. Equal neighbours are one layer. On
+ * success *layers is the caller's for free(). Errors: INPUT (more than WATER_LAYERS_MAX), MEMORY.
+ */
 sonject_status layers_of_profile(const double *heights_m, const double *speeds_mps, size_t count,
                                  struct report *report, struct water_layer **layers,
                                  size_t *layer_count);

@@ -266,8 +266,8 @@ static struct most_sent most_sent_by_surfaces(const struct chain_trace *trace,
 }
 
 /* The most that one ray can bring is about its wavefront times what surfaces send on and back.
- * Quanta leave four powers of ten over that, since directions that are drawn rarely count for many,
- * and below it eleven. Orders in one plane have the quanta of the one that brings most. */
+ * Quanta leave four powers of ten over that, since sampled directions rarely count for many, and
+ * below it eleven. Orders in one plane have the quanta of the one that brings most. */
 static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tracer,
                                     const float *map)
 {

@@ -1,9 +1,9 @@
 #include "trace/checkpoint.h"
-#include "base/file.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 
 /* Strips are traced some at a time, so that a signal does not wait for long. */

@@ -343,6 +343,19 @@ struct elevations elevations_of_object(const struct tracer *tracer, uint32_t obj
     return elevations_of_points(path, grazing, (const double(*)[2])corners, 4);
 }
 
+void fan_aim_at_part(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
+                     const struct ray_path *path, double cell_m)
+{
+    const double *centre = tracer->placements[part].centre;
+    const double grazing = ray_path_grazing(path, centre[1], centre[2]);
+    const double radius = ray_path_arrival(path, grazing, centre[2]).wavefront_m;
+    const struct elevations edges = elevations_of_object(tracer, part, path);
+    const double rays = ceil((edges.highest - edges.lowest) * radius / cell_m) + 1.0;
+    fan->rays = (uint32_t)rays;
+    fan->first_elevation = (float)edges.lowest;
+    fan->elevation_step = (float)((edges.highest - edges.lowest) / rays);
+}
+
 sonject_status object_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t object,
                                const struct ray_path *path, struct ray_table_record *record)
 {

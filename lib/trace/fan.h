@@ -62,6 +62,10 @@ sonject_status fan_set_rays(struct fan_record *fan, struct report *report, doubl
 struct elevations elevations_of_object(const struct tracer *tracer, uint32_t object,
                                        const struct ray_path *path);
 
+/* Lays rays over a part as seen on a path, at most cell_m apart on the wavefront. */
+void fan_aim_at_part(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
+                     const struct ray_path *path, double cell_m);
+
 /* Appends the rays of a path to an object in the object's frame. Errors: as patch_rays_init. */
 sonject_status object_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t object,
                                const struct ray_path *path, struct ray_table_record *record);

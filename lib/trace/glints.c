@@ -8,7 +8,7 @@
 #include "trace/fan.h"
 #include "trace/object_buffer.h"
 
-#define STRIP_WAVELENGTHS  0.25 /* widest sub-strip: wider ones alias glints (physics.md 2) */
+#define STRIP_WAVELENGTHS  0.25 /* widest sub-strip: wider ones alias glints */
 #define BINS_PER_DEVIATION 16.0 /* linear sharing between bins then errs by 5e-4 */
 #define IMAGE_STRIPS       64   /* of a launch: there may be dozens of pairs at a time */
 
@@ -34,18 +34,9 @@ void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint
 void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t number,
                     const struct ray_path *path, double finer)
 {
-    const struct placement *placement = &tracer->placements[number];
-    const double radius =
-        ray_path_arrival(path, ray_path_grazing(path, placement->centre[1], placement->centre[2]),
-                         placement->centre[2])
-            .wavefront_m;
     const double cell = GLINT_CELL_WAVELENGTHS * tracer->view.wavelength_m /
                         sqrt(tracer->scene->injection.ray_scale) / finer;
-    const struct elevations edges = elevations_of_object(tracer, number, path);
-    const double rays = ceil((edges.highest - edges.lowest) * radius / cell) + 1.0;
-    fan->rays = (uint32_t)rays;
-    fan->first_elevation = (float)edges.lowest;
-    fan->elevation_step = (float)((edges.highest - edges.lowest) / rays);
+    fan_aim_at_part(fan, tracer, number, path, cell);
     fan->strata = (uint32_t)ceil(fan->strip_width / cell - 1e-6);
     fan->only_object = (int32_t)number;
 }
@@ -164,10 +155,10 @@ sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32
         if (glints->grid.strips.count > 0)
             status = begin_images(glints, tracer, object);
     }
-    THEN(status, multibounce_begin(&glints->corners, tracer, object));
+    THEN(status, multibounce_begin(&glints->multibounce, tracer, object));
     if (status == SONJECT_OK) {
-        glints->grid.strips = span_join(glints->grid.strips, glints->corners.grid.strips);
-        glints->grid.bins = span_join(glints->grid.bins, glints->corners.grid.bins);
+        glints->grid.strips = span_join(glints->grid.strips, glints->multibounce.grid.strips);
+        glints->grid.bins = span_join(glints->grid.bins, glints->multibounce.grid.bins);
         glints->chunk = glints->traces[0].chunk;
         for (size_t i = 1; i < glints->count; i++)
             if (glints->traces[i].chunk < glints->chunk)
@@ -187,7 +178,7 @@ void glints_end(struct glints *glints)
 {
     for (size_t i = 0; i < glints->count; i++)
         smooth_trace_end(&glints->traces[i]);
-    multibounce_end(&glints->corners);
+    multibounce_end(&glints->multibounce);
     free(glints->traces);
     free(glints->real_part);
     free(glints->imaginary_part);
@@ -213,7 +204,7 @@ sonject_status glints_trace(struct glints *glints, struct tracer *tracer, struct
                             float *real_part, float *imaginary_part)
 {
     const size_t bytes = (size_t)strips.count * (size_t)glints->grid.bins.count * sizeof *real_part;
-    if (glints->count == 1 && glints->corners.grid.strips.count == 0)
+    if (glints->count == 1 && glints->multibounce.grid.strips.count == 0)
         return smooth_trace_strips(&glints->traces[0], tracer, strips, real_part, imaginary_part);
     memset(real_part, 0, bytes);
     memset(imaginary_part, 0, bytes);
@@ -226,6 +217,6 @@ sonject_status glints_trace(struct glints *glints, struct tracer *tracer, struct
         add_bins(glints, &glints->traces[i], some.count, (size_t)(some.first - strips.first),
                  real_part, imaginary_part);
     }
-    multibounce_add(&glints->corners, strips, &glints->grid, real_part, imaginary_part);
+    multibounce_add(&glints->multibounce, strips, &glints->grid, real_part, imaginary_part);
     return SONJECT_OK;
 }

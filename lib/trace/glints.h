@@ -71,7 +71,8 @@ void multibounce_sums_clear(struct multibounce_sums *sums);
 bool multibounce_sums_add(struct multibounce_sums *sums,
                           const struct multibounce_echo_record *echoes, size_t count);
 
-struct corners {
+/* The echoes that a part is the first to meet. */
+struct multibounce {
     struct line_grid grid;         /* that holds all echoes; as glints' are; no strips: no echoes */
     struct span first_hits;        /* sub-strips that the part covers */
     struct multibounce_sums *sums; /* of each pair of sources; owned */
@@ -88,12 +89,13 @@ struct span multibounce_bins(const struct tracer *tracer, uint32_t part,
 
 /* Traces all echoes that a part is the first to meet. On success to be given to multibounce_end; on
  * failure nothing is held. Errors: DEVICE, MEMORY. */
-sonject_status multibounce_begin(struct corners *corners, struct tracer *tracer, uint32_t part);
-void multibounce_end(struct corners *corners);
+sonject_status multibounce_begin(struct multibounce *multibounce, struct tracer *tracer,
+                                 uint32_t part);
+void multibounce_end(struct multibounce *multibounce);
 
 /* Adds the echoes of strips, complex amplitudes in m, to planes of strips.count x grid->bins.count.
  */
-void multibounce_add(const struct corners *corners, struct span strips,
+void multibounce_add(const struct multibounce *multibounce, struct span strips,
                      const struct line_grid *grid, float *real_part, float *imaginary_part);
 
 /* The launch's buffers. */
@@ -117,14 +119,15 @@ struct multibounce_launch {
 /* The steps of multibounce_begin: the grid of one pair's echoes and its launch, whose echoes are
  * listed chunk by chunk of first hits. The grid's bins.count is 0, and nothing is held, where there
  * can be none; else to be given to multibounce_launch_end. */
-void multibounce_init(struct corners *corners, const struct tracer *tracer, uint32_t part);
-sonject_status multibounce_launch_begin(struct multibounce_launch *corner, struct line_grid *grid,
-                                        const struct corners *corners, struct tracer *tracer,
-                                        uint32_t part, const struct image_pair *pair);
-void multibounce_launch_end(struct multibounce_launch *corner);
+void multibounce_init(struct multibounce *multibounce, const struct tracer *tracer, uint32_t part);
+sonject_status multibounce_launch_begin(struct multibounce_launch *of_pair, struct line_grid *grid,
+                                        const struct multibounce *multibounce,
+                                        struct tracer *tracer, uint32_t part,
+                                        const struct image_pair *pair);
+void multibounce_launch_end(struct multibounce_launch *of_pair);
 
 /* Adds the echoes of first hits in strips.count <= chunk sub-strips to the sums. */
-sonject_status multibounce_launch_strips(struct multibounce_launch *corner, struct tracer *tracer,
+sonject_status multibounce_launch_strips(struct multibounce_launch *of_pair, struct tracer *tracer,
                                          struct span strips, struct multibounce_sums *sums);
 
 struct glints {
@@ -132,7 +135,7 @@ struct glints {
     struct smooth_trace *traces; /* owned; the straight one is the first */
     size_t count;
     int32_t chunk;                     /* sub-strips that a call of glints_trace may take */
-    struct corners corners;            /* owned */
+    struct multibounce multibounce;    /* owned */
     float *real_part, *imaginary_part; /* owned; a chunk of one trace */
 };
 

@@ -79,7 +79,7 @@ struct span span_overlap(struct span one, struct span other);
 
 /* Fills in the pair's record, and a fan from the outgoing source, in a frame centred on the
  * object. The fan as fan_record_init, its bins and phases those of half the path. Appends the rays
- * of both ways. Errors: as patch_rays_init. */
+ * of both paths. Errors: as patch_rays_init. */
 sonject_status image_pair_aim(struct fan_record *fan, struct image_pair_record *record,
                               struct ray_table *rays, const struct tracer *tracer, uint32_t object,
                               const struct image_pair *pair, const struct line_grid *grid);

@@ -30,8 +30,8 @@ bool multibounce_may_echo(const struct tracer *tracer, uint32_t part)
 }
 
 /* No less than what each further interaction may add to a path between the first and last hit: the
- * diagonal of a box around the smooth parts, or half that of one around them and their mirror
- * images in the seabed, which take two interactions. */
+ * diagonal of a box around the smooth parts, or half that of one around them and their images in
+ * the seabed, which take two interactions. */
 static double longest_step(const struct tracer *tracer)
 {
     double height;
@@ -151,24 +151,24 @@ static struct span mean_strips(struct span one, struct span other)
     return mean;
 }
 
-void multibounce_init(struct corners *corners, const struct tracer *tracer, uint32_t part)
+void multibounce_init(struct multibounce *multibounce, const struct tracer *tracer, uint32_t part)
 {
     struct line_grid other;
-    glint_strips_init(&corners->grid, tracer, part);
-    corners->grid.bins.first = corners->grid.bins.count = 0;
-    corners->first_hits = corners->grid.strips;
-    struct span last_hits = corners->grid.strips;
+    glint_strips_init(&multibounce->grid, tracer, part);
+    multibounce->grid.bins.first = multibounce->grid.bins.count = 0;
+    multibounce->first_hits = multibounce->grid.strips;
+    struct span last_hits = multibounce->grid.strips;
     for (uint32_t i = 0; i < tracer->part_count; i++)
-        if (material_is_smooth(tracer->placements[i].material)) {
+        if (is_smooth(tracer, i)) {
             glint_strips_init(&other, tracer, i);
             last_hits = span_join(last_hits, other.strips);
         }
     if (tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED)
-        corners->grid.strips = mean_strips(corners->first_hits, last_hits);
+        multibounce->grid.strips = mean_strips(multibounce->first_hits, last_hits);
 }
 
 /* Paths may gather much of a wide tube in one cell, so quanta leave seven powers of ten over what a
- * plane boundary's cell brings. */
+ * plane face's cell brings. */
 static void choose_quanta(struct fan_record *fan)
 {
     const double cell =
@@ -190,74 +190,75 @@ static void multibounce_record_init(struct multibounce_record *record, const str
         surface_record_init(&record->seabed, seabed, tracer->view.wavelength_m);
 }
 
-static sonject_status begin_launch(struct multibounce_launch *corner, struct tracer *tracer,
+static sonject_status begin_launch(struct multibounce_launch *of_pair, struct tracer *tracer,
                                    uint32_t part)
 {
     const struct part_list parts = all_parts(tracer);
-    struct launch *launch = &corner->launch;
+    struct launch *launch = &of_pair->launch;
     sonject_status status =
         launch_begin(launch, tracer, PROGRAM_TRACE_MULTIBOUNCE, "trace_multibounce");
     THEN(status, launch_add_objects(launch, tracer, &parts, tracer->placements[part].centre, NULL));
-    THEN(status, launch_add(launch, tracer, sizeof corner->sources, &corner->sources));
-    THEN(status, launch_add(launch, tracer, sizeof corner->record, &corner->record));
+    THEN(status, launch_add(launch, tracer, sizeof of_pair->sources, &of_pair->sources));
+    THEN(status, launch_add(launch, tracer, sizeof of_pair->record, &of_pair->record));
     THEN(status, launch_add(launch, tracer,
-                            corner->capacity * sizeof(struct multibounce_echo_record), NULL));
+                            of_pair->capacity * sizeof(struct multibounce_echo_record), NULL));
     THEN(status, launch_add(launch, tracer, sizeof(uint32_t), NULL));
     return status;
 }
 
 /* So many sub-strips that all their rays may echo at every hit. */
-static void choose_chunk(struct multibounce_launch *corner, const struct corners *corners)
+static void choose_chunk(struct multibounce_launch *of_pair, const struct multibounce *multibounce)
 {
-    const struct fan_record *fan = &corner->launch.fan;
+    const struct fan_record *fan = &of_pair->launch.fan;
     const size_t a_strip =
-        (size_t)fan->rays * fan->strata * (size_t)(corner->record.interactions - 1);
-    const size_t strips = (size_t)corners->first_hits.count;
+        (size_t)fan->rays * fan->strata * (size_t)(of_pair->record.interactions - 1);
+    const size_t strips = (size_t)multibounce->first_hits.count;
     const size_t fitting = ECHOES_A_LAUNCH / a_strip;
-    corner->chunk = (int32_t)(fitting < 1 ? 1 : fitting < strips ? fitting : strips);
-    corner->capacity = (size_t)corner->chunk * a_strip;
+    of_pair->chunk = (int32_t)(fitting < 1 ? 1 : fitting < strips ? fitting : strips);
+    of_pair->capacity = (size_t)of_pair->chunk * a_strip;
 }
 
-sonject_status multibounce_launch_begin(struct multibounce_launch *corner, struct line_grid *grid,
-                                        const struct corners *corners, struct tracer *tracer,
-                                        uint32_t part, const struct image_pair *pair)
+sonject_status multibounce_launch_begin(struct multibounce_launch *of_pair, struct line_grid *grid,
+                                        const struct multibounce *multibounce,
+                                        struct tracer *tracer, uint32_t part,
+                                        const struct image_pair *pair)
 {
-    struct fan_record *fan = &corner->launch.fan;
-    memset(corner, 0, sizeof *corner);
-    *grid = corners->grid;
+    struct fan_record *fan = &of_pair->launch.fan;
+    memset(of_pair, 0, sizeof *of_pair);
+    *grid = multibounce->grid;
     grid->bins = multibounce_pair_bins(tracer, part, pair, grid);
     if (grid->bins.count == 0)
         return SONJECT_OK;
-    multibounce_record_init(&corner->record, tracer, pair);
+    multibounce_record_init(&of_pair->record, tracer, pair);
     sonject_status status =
-        image_pair_aim(fan, &corner->sources, &corner->launch.rays, tracer, part, pair, grid);
+        image_pair_aim(fan, &of_pair->sources, &of_pair->launch.rays, tracer, part, pair, grid);
     fan->stream = STREAM_MULTIBOUNCE_RAYS + STREAMS_OF_PAIR * pair->number + part;
     glint_fan_init(fan, tracer, part, &pair->outgoing->path, multibounce_rays_finer(tracer, part));
     choose_quanta(fan);
-    choose_chunk(corner, corners);
-    THEN(status, begin_launch(corner, tracer, part));
+    choose_chunk(of_pair, multibounce);
+    THEN(status, begin_launch(of_pair, tracer, part));
     if (status != SONJECT_OK)
-        multibounce_launch_end(corner);
+        multibounce_launch_end(of_pair);
     return status;
 }
 
-void multibounce_launch_end(struct multibounce_launch *corner)
+void multibounce_launch_end(struct multibounce_launch *of_pair)
 {
-    launch_end(&corner->launch);
+    launch_end(&of_pair->launch);
 }
 
-sonject_status multibounce_launch_strips(struct multibounce_launch *corner, struct tracer *tracer,
+sonject_status multibounce_launch_strips(struct multibounce_launch *of_pair, struct tracer *tracer,
                                          struct span strips, struct multibounce_sums *sums)
 {
     struct report *report = tracer->report;
     struct device *device = tracer->device;
-    const device_buffer *buffers = corner->launch.buffers;
+    const device_buffer *buffers = of_pair->launch.buffers;
     uint32_t listed = 0;
     const void *mapped;
-    corner->launch.fan.first_strip = strips.first;
-    corner->launch.fan.strips = strips.count;
+    of_pair->launch.fan.first_strip = strips.first;
+    of_pair->launch.fan.strips = strips.count;
     CHECK(buffer_clear(report, device, buffers[MULTIBOUNCE_LISTED], sizeof listed));
-    CHECK(launch_run(&corner->launch, tracer));
+    CHECK(launch_run(&of_pair->launch, tracer));
     CHECK(buffer_read(report, device, buffers[MULTIBOUNCE_LISTED], 0, sizeof listed, &listed));
     if (listed == 0)
         return SONJECT_OK;
@@ -265,7 +266,7 @@ sonject_status multibounce_launch_strips(struct multibounce_launch *corner, stru
                      listed * sizeof(struct multibounce_echo_record), &mapped));
     const bool is_added = multibounce_sums_add(sums, mapped, listed);
     buffer_unmap(device, buffers[MULTIBOUNCE_ECHOES], mapped);
-    CHECK_MEMORY(report, is_added, "echoes of corners");
+    CHECK_MEMORY(report, is_added, "multi-bounce echoes");
     return SONJECT_OK;
 }
 
@@ -385,77 +386,80 @@ static void add_tile_to_planes(const int64_t *tile, struct span rows, struct spa
     }
 }
 
-static sonject_status trace_pair(struct multibounce_sums *sums, struct multibounce_launch *corner,
-                                 const struct corners *corners, struct tracer *tracer,
+static sonject_status trace_pair(struct multibounce_sums *sums, struct multibounce_launch *of_pair,
+                                 const struct multibounce *multibounce, struct tracer *tracer,
                                  const struct line_grid *grid)
 {
     const double ratio = tracer->view.range_ratio;
-    const struct span all = corners->first_hits;
-    CHECK_MEMORY(tracer->report, multibounce_sums_init(sums, grid), "echoes of corners");
-    sums->amplitude_of_quantum = ratio * ratio / corner->launch.fan.quanta;
-    for (int32_t done = 0; done < all.count; done += corner->chunk) {
+    const struct span all = multibounce->first_hits;
+    CHECK_MEMORY(tracer->report, multibounce_sums_init(sums, grid), "multi-bounce echoes");
+    sums->amplitude_of_quantum = ratio * ratio / of_pair->launch.fan.quanta;
+    for (int32_t done = 0; done < all.count; done += of_pair->chunk) {
         const int32_t left = all.count - done;
-        const struct span strips = {all.first + done, left < corner->chunk ? left : corner->chunk};
-        CHECK(multibounce_launch_strips(corner, tracer, strips, sums));
+        const struct span strips = {all.first + done,
+                                    left < of_pair->chunk ? left : of_pair->chunk};
+        CHECK(multibounce_launch_strips(of_pair, tracer, strips, sums));
     }
     return share_sums(sums, tracer->checkpoint);
 }
 
-static sonject_status trace_pairs(struct corners *corners, struct tracer *tracer, uint32_t part)
+static sonject_status trace_pairs(struct multibounce *multibounce, struct tracer *tracer,
+                                  uint32_t part)
 {
     struct image_pairs pairs;
     struct image_pair pair;
-    struct multibounce_launch corner;
+    struct multibounce_launch of_pair;
     struct line_grid grid;
     image_pairs_begin(&pairs, tracer, part, true, 2);
     while (image_pairs_next(&pairs, &pair)) {
-        CHECK(multibounce_launch_begin(&corner, &grid, corners, tracer, part, &pair));
+        CHECK(multibounce_launch_begin(&of_pair, &grid, multibounce, tracer, part, &pair));
         if (grid.bins.count == 0)
             continue;
-        const sonject_status status =
-            trace_pair(&corners->sums[corners->count++], &corner, corners, tracer, &grid);
-        multibounce_launch_end(&corner);
+        const sonject_status status = trace_pair(&multibounce->sums[multibounce->count++], &of_pair,
+                                                 multibounce, tracer, &grid);
+        multibounce_launch_end(&of_pair);
         CHECK(status);
     }
     return SONJECT_OK;
 }
 
-sonject_status multibounce_begin(struct corners *corners, struct tracer *tracer, uint32_t part)
+sonject_status multibounce_begin(struct multibounce *multibounce, struct tracer *tracer,
+                                 uint32_t part)
 {
-    memset(corners, 0, sizeof *corners);
+    memset(multibounce, 0, sizeof *multibounce);
     if (!multibounce_may_echo(tracer, part))
         return SONJECT_OK;
-    corners->sums = allocate_array(PAIRS_MAX, sizeof *corners->sums);
-    CHECK_MEMORY(tracer->report, corners->sums, "echoes of corners");
-    multibounce_init(corners, tracer, part);
-    const sonject_status status = trace_pairs(corners, tracer, part);
+    multibounce->sums = allocate_array(PAIRS_MAX, sizeof *multibounce->sums);
+    CHECK_MEMORY(tracer->report, multibounce->sums, "multi-bounce echoes");
+    multibounce_init(multibounce, tracer, part);
+    const sonject_status status = trace_pairs(multibounce, tracer, part);
     if (status != SONJECT_OK) {
-        multibounce_end(corners);
+        multibounce_end(multibounce);
         return status;
     }
-    corners->grid.strips.count = 0;
-    for (size_t i = 0; i < corners->count; i++) {
+    multibounce->grid.strips.count = 0;
+    for (size_t i = 0; i < multibounce->count; i++) {
         struct span strips, bins;
-        find_extent(&corners->sums[i], &strips, &bins);
-        corners->grid.strips = span_join(corners->grid.strips, strips);
-        corners->grid.bins = span_join(corners->grid.bins, bins);
+        find_extent(&multibounce->sums[i], &strips, &bins);
+        multibounce->grid.strips = span_join(multibounce->grid.strips, strips);
+        multibounce->grid.bins = span_join(multibounce->grid.bins, bins);
     }
     return SONJECT_OK;
 }
 
-void multibounce_end(struct corners *corners)
+void multibounce_end(struct multibounce *multibounce)
 {
-    for (size_t i = 0; i < corners->count; i++)
-        multibounce_sums_clear(&corners->sums[i]);
-    free(corners->sums);
-    memset(corners, 0, sizeof *corners);
+    for (size_t i = 0; i < multibounce->count; i++)
+        multibounce_sums_clear(&multibounce->sums[i]);
+    free(multibounce->sums);
+    memset(multibounce, 0, sizeof *multibounce);
 }
 
-void multibounce_add(const struct corners *corners, struct span strips,
+void multibounce_add(const struct multibounce *multibounce, struct span strips,
                      const struct line_grid *grid, float *real_part, float *imaginary_part)
 {
-    for (size_t k = 0; k < corners->count; k++) {
-        const struct multibounce_sums *sums = &corners->sums[k];
+    for (size_t k = 0; k < multibounce->count; k++) {
+        const struct multibounce_sums *sums = &multibounce->sums[k];
         for (size_t i = 0; i < sums->rows * sums->columns; i++) {
             const struct span tile_strips =
                 span_of_tile(i / sums->columns, TILE_STRIPS, sums->grid.strips);

@@ -169,10 +169,9 @@ void part_list_clear(struct part_list *parts)
     memset(parts, 0, sizeof *parts);
 }
 
-void object_record_init(struct object_record *record, const struct tracer *tracer, uint32_t part,
-                        const double origin[3])
+void object_record_init(struct object_record *record, const struct tracer *tracer,
+                        const struct placement *placement, const double origin[3])
 {
-    const struct placement *placement = &tracer->placements[part];
     memset(record, 0, sizeof *record);
     record->centre_x = (float)(placement->centre[0] - origin[0]);
     record->centre_y = (float)(placement->centre[1] - origin[1]);
@@ -190,7 +189,7 @@ sonject_status object_records_create(struct object_record **records, const struc
     *records = allocate_array(parts->count, sizeof **records);
     CHECK_MEMORY(tracer->report, *records, "objects");
     for (uint32_t i = 0; i < parts->count; i++)
-        object_record_init(&(*records)[i], tracer, parts->numbers ? parts->numbers[i] : i, origin);
+        object_record_init(&(*records)[i], tracer, placement_of(tracer, parts, i), origin);
     return SONJECT_OK;
 }
 

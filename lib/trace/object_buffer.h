@@ -37,8 +37,8 @@ sonject_status parts_in_way(struct part_list *parts, const struct tracer *tracer
 void part_list_clear(struct part_list *parts);
 
 /* The record of one part in a frame; its tile left 0. */
-void object_record_init(struct object_record *record, const struct tracer *tracer, uint32_t part,
-                        const double origin[3]);
+void object_record_init(struct object_record *record, const struct tracer *tracer,
+                        const struct placement *placement, const double origin[3]);
 
 /* Records of parts, to be given to free(). Errors: MEMORY; then *records is NULL. */
 sonject_status object_records_create(struct object_record **records, const struct tracer *tracer,

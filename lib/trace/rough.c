@@ -204,25 +204,6 @@ static sonject_status init_fan(struct rough_trace *trace, struct tracer *tracer,
     return status;
 }
 
-/* As dense as the fan that goes straight to the objects. */
-static void aim_at_part(struct fan_record *fan, const struct rough_trace *trace,
-                        const struct tracer *tracer, uint32_t part, const struct ray_path *path)
-{
-    const struct placement *placement = &tracer->placements[part];
-    const struct elevations edges = elevations_of_object(tracer, part, path);
-    const double radius =
-        ray_path_arrival(path, ray_path_grazing(path, placement->centre[1], placement->centre[2]),
-                         placement->centre[2])
-            .wavefront_m;
-    const double bin =
-        tracer->view.column_spacing_m / trace->grid.bins_per_pixel / tracer->view.range_ratio;
-    const double step = bin / radius / (RAYS_PER_BIN * tracer->scene->injection.ray_scale);
-    const double rays = ceil((edges.highest - edges.lowest) / step) + 1.0;
-    fan->rays = (uint32_t)rays;
-    fan->first_elevation = (float)edges.lowest;
-    fan->elevation_step = (float)((edges.highest - edges.lowest) / rays);
-}
-
 static sonject_status begin(struct rough_trace *trace, struct tracer *tracer, const float *map,
                             const struct point_response *response, bool is_beam)
 {
@@ -327,11 +308,15 @@ static sonject_status trace_pair(struct rough_trace *trace, struct tracer *trace
 {
     const uint32_t part = parts->numbers[parts->target];
     const struct rough_tile *tile = &trace->tiles[tracer->placements[part].object];
+    const double bin =
+        tracer->view.column_spacing_m / trace->grid.bins_per_pixel / tracer->view.range_ratio;
     struct fan_record *fan = &launch->fan;
     struct image_pair_record record;
     sonject_status status =
         image_pair_aim(fan, &record, &launch->rays, tracer, part, pair, &trace->grid);
-    aim_at_part(fan, trace, tracer, part, &pair->outgoing->path);
+    /* as dense as the fan that goes straight to the objects */
+    fan_aim_at_part(fan, tracer, part, &pair->outgoing->path,
+                    bin / (RAYS_PER_BIN * tracer->scene->injection.ray_scale));
     fan_set_parts(fan, tracer, parts);
     fan->stream = STREAM_IMAGE_ROUGH_RAYS + STREAMS_OF_PAIR * pair->number + part;
     fan->quanta = trace->launch.fan.quanta;

@@ -54,7 +54,7 @@ static void cut_solid_begin(struct cut_solid *solid, const struct mesh_sample *s
     const double origin[3] = {centre[0] + 0.3, centre[1] - 0.7, centre[2] + 0.2};
     struct object_record record;
     device_buffer buffer = NULL;
-    object_record_init(&record, &solid->bench.tracer, 0, origin);
+    object_record_init(&record, &solid->bench.tracer, solid->bench.placements, origin);
     if (object_buffer_create(&solid->bench.tracer, &record, &(struct part_list){NULL, 1, 0},
                              &buffer) != SONJECT_OK)
         fail_msg("%s", solid->bench.report.message);

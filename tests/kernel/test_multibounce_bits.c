@@ -72,36 +72,36 @@ static void make_scene(struct bench *bench, const struct variant *variant)
     bench_ready(bench);
 }
 
-static uint64_t add_on_device(struct bench *bench, const struct corners *corners,
-                              struct multibounce_launch *corner, int32_t wanted_chunk,
+static uint64_t add_on_device(struct bench *bench, const struct multibounce *multibounce,
+                              struct multibounce_launch *of_pair, int32_t wanted_chunk,
                               struct multibounce_sums *sums)
 {
-    const struct span all = corners->first_hits;
-    const int32_t chunk = wanted_chunk < corner->chunk ? wanted_chunk : corner->chunk;
+    const struct span all = multibounce->first_hits;
+    const int32_t chunk = wanted_chunk < of_pair->chunk ? wanted_chunk : of_pair->chunk;
     bench->tracer.counts.impulses = 0;
     for (int32_t done = 0; done < all.count; done += chunk) {
         const int32_t left = all.count - done;
         const struct span strips = {all.first + done, left < chunk ? left : chunk};
-        EXPECT_OK(&bench->report, multibounce_launch_strips(corner, &bench->tracer, strips, sums));
+        EXPECT_OK(&bench->report, multibounce_launch_strips(of_pair, &bench->tracer, strips, sums));
     }
     return bench->tracer.counts.impulses;
 }
 
-static uint64_t add_as_c(struct bench *bench, const struct corners *corners,
-                         struct multibounce_launch *corner, struct multibounce_sums *sums)
+static uint64_t add_as_c(struct bench *bench, const struct multibounce *multibounce,
+                         struct multibounce_launch *of_pair, struct multibounce_sums *sums)
 {
     struct object_record *objects =
-        bench_copy_buffer(bench, corner->launch.buffers[MULTIBOUNCE_OBJECTS]);
-    struct multibounce_echo_record *echoes = calloc(corner->capacity, sizeof *echoes);
+        bench_copy_buffer(bench, of_pair->launch.buffers[MULTIBOUNCE_OBJECTS]);
+    struct multibounce_echo_record *echoes = calloc(of_pair->capacity, sizeof *echoes);
     uint64_t impulses = 0;
     assert_non_null(echoes);
-    corner->launch.fan.strips = 1;
-    corner->launch.fan.segments = 1;
-    for (int32_t strip = 0; strip < corners->first_hits.count; strip++) {
+    of_pair->launch.fan.strips = 1;
+    of_pair->launch.fan.segments = 1;
+    for (int32_t strip = 0; strip < multibounce->first_hits.count; strip++) {
         uint32_t listed = 0;
-        corner->launch.fan.first_strip = corners->first_hits.first + strip;
+        of_pair->launch.fan.first_strip = multibounce->first_hits.first + strip;
         const struct outcome_record outcome = trace_multibounce_strip(
-            &corner->launch.fan, corner->launch.rays.pieces, &corner->sources, &corner->record,
+            &of_pair->launch.fan, of_pair->launch.rays.pieces, &of_pair->sources, &of_pair->record,
             objects, echoes, &listed, 0, 0);
         assert_int_equal(outcome.faults, 0);
         assert_int_equal(outcome.impulses, listed);
@@ -124,27 +124,28 @@ static void expect_same(const struct multibounce_sums *a, const struct multiboun
 }
 
 /* Echoes of one pair; compares them in launches as they come and in small ones. */
-static uint64_t compare_pair(struct bench *bench, const struct corners *corners, uint32_t part,
-                             const struct image_pair *pair)
+static uint64_t compare_pair(struct bench *bench, const struct multibounce *multibounce,
+                             uint32_t part, const struct image_pair *pair)
 {
     static const int32_t chunks[] = {1 << 20, 37};
-    struct multibounce_launch corner;
+    struct multibounce_launch of_pair;
     struct line_grid grid;
     struct multibounce_sums expected, measured;
     EXPECT_OK(&bench->report,
-              multibounce_launch_begin(&corner, &grid, corners, &bench->tracer, part, pair));
+              multibounce_launch_begin(&of_pair, &grid, multibounce, &bench->tracer, part, pair));
     if (grid.bins.count == 0)
         return 0;
     assert_true(multibounce_sums_init(&expected, &grid));
-    const uint64_t impulses = add_as_c(bench, corners, &corner, &expected);
+    const uint64_t impulses = add_as_c(bench, multibounce, &of_pair, &expected);
     for (size_t i = 0; i < COUNT(chunks); i++) {
         assert_true(multibounce_sums_init(&measured, &grid));
-        assert_int_equal(add_on_device(bench, corners, &corner, chunks[i], &measured), impulses);
+        assert_int_equal(add_on_device(bench, multibounce, &of_pair, chunks[i], &measured),
+                         impulses);
         expect_same(&measured, &expected);
         multibounce_sums_clear(&measured);
     }
     multibounce_sums_clear(&expected);
-    multibounce_launch_end(&corner);
+    multibounce_launch_end(&of_pair);
     return impulses;
 }
 
@@ -154,14 +155,14 @@ static void compare_variant(struct bench *bench, const struct variant *variant)
     uint64_t impulses = 0;
     size_t pairs = 0;
     for (uint32_t part = 0; part < bench->scene.object_count; part++) {
-        struct corners corners;
+        struct multibounce multibounce;
         struct image_pairs all;
         struct image_pair pair;
         assert_true(multibounce_may_echo(&bench->tracer, part));
-        multibounce_init(&corners, &bench->tracer, part);
+        multibounce_init(&multibounce, &bench->tracer, part);
         image_pairs_begin(&all, &bench->tracer, part, true, 2);
         for (; image_pairs_next(&all, &pair); pairs++)
-            impulses += compare_pair(bench, &corners, part, &pair);
+            impulses += compare_pair(bench, &multibounce, part, &pair);
     }
     print_message("%s: %zu pairs, %llu echoes\n", variant->name, pairs,
                   (unsigned long long)impulses);
@@ -170,7 +171,7 @@ static void compare_variant(struct bench *bench, const struct variant *variant)
 }
 
 /* At the ends of the row of widths: programs take long to compile (see test_bits.c). */
-static void test_corner_tallies(void **state)
+static void test_multibounce_tallies(void **state)
 {
     uint32_t widths[2];
     const size_t count = bench_end_widths(widths);
@@ -193,7 +194,7 @@ static void test_corner_tallies(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_corner_tallies),
+        cmocka_unit_test(test_multibounce_tallies),
     };
     return bench_run_on_devices(tests, COUNT(tests));
 }
