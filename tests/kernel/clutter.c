@@ -1,7 +1,6 @@
 #include "kernel/clutter.h"
 
 #include "claims.h"
-#include "mesh_arrays.h"
 #include "random.h"
 
 /* Draws in turn. */

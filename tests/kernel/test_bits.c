@@ -83,21 +83,6 @@ static const struct scene_case {
      4.0, 3},
 };
 
-static sonject_object_params *place(sonject_object_params *object, double row, double column,
-                                    double heading, double pitch, double roll)
-{
-    object->position_kind = SONJECT_POSITION_PIXELS;
-    object->position_along = row;
-    object->position_range = column;
-    object->heading_rad = heading;
-    object->pitch_rad = pitch;
-    object->roll_rad = roll;
-    object->material.lambert = 0.05;
-    object->material.reflection = 0.8;
-    object->material.roughness_m = 1e-3;
-    return object;
-}
-
 static void cut(sonject_object_params *object, double azimuth, double elevation, double distance)
 {
     object->cuts[object->cut_count++] = (sonject_cut){azimuth, elevation, distance};
@@ -116,7 +101,7 @@ static void place_more_shapes(struct bench *bench)
                 row->fit(object, 0.1);
         } while (row->shape == SHAPE_CYLINDER && object->nose_end == SONJECT_END_FLAT &&
                  object->tail_end == SONJECT_END_FLAT);
-        place(object, 15.0 + 22.0 * (i % 4), 20.0 + 25.0 * (i / 4), 0.3 + 0.7 * i, 0.2, 0.1);
+        bench_place(object, 15.0 + 22.0 * (i % 4), 20.0 + 25.0 * (i / 4), 0.3 + 0.7 * i, 0.2, 0.1);
         if (i % 3 > 0)
             cut(object, 0.4 + i, 0.9, 0.05);
         if (i % 3 > 1)
@@ -136,8 +121,8 @@ static void place_crowd(struct bench *bench)
     bench_add_tetrahedron(bench);
     for (int i = 0; i < 22; i++) {
         const enum shape_kind shape = i == 0 ? SHAPE_MESH : i == 1 ? SHAPE_USER : SHAPE_SPHERE;
-        place(bench_add(bench, shape, 0.0, 0.0, i < 2 ? 0.0 : 0.08 + 0.002 * i),
-              12.0 + 18.0 * (i % 5), 15.0 + 22.0 * (i / 5), 0.0, 0.0, 0.0);
+        bench_place(bench_add(bench, shape, 0.0, 0.0, i < 2 ? 0.0 : 0.08 + 0.002 * i),
+                    12.0 + 18.0 * (i % 5), 15.0 + 22.0 * (i / 5), 0.0, 0.0, 0.0);
     }
 }
 
@@ -148,16 +133,16 @@ static void place_objects(struct bench *bench, enum object_set set)
     if (set == MORE_SHAPES) {
         place_more_shapes(bench);
     } else if (set == FOUR_OBJECTS) {
-        place(bench_add(bench, SHAPE_SPHERE, 0.0, 0.0, 0.4), 20.2, 40.7, 0.0, 0.0, 0.0);
-        place(bench_add(bench, SHAPE_CYLINDER, 0.8, 0.0, 0.3), 50.0, 30.0, 0.7, 0.2, 0.0);
-        place(bench_add(bench, SHAPE_CAPSULE, 1.0, 0.0, 0.3), 60.0, 70.0, -0.4, 0.1, 0.3);
-        place(bench_add(bench, SHAPE_PLANE, 0.6, 0.4, 0.0), 40.0, 55.0, 0.3, -0.5, 0.4)->burial_m =
-            0.05;
+        bench_place(bench_add(bench, SHAPE_SPHERE, 0.0, 0.0, 0.4), 20.2, 40.7, 0.0, 0.0, 0.0);
+        bench_place(bench_add(bench, SHAPE_CYLINDER, 0.8, 0.0, 0.3), 50.0, 30.0, 0.7, 0.2, 0.0);
+        bench_place(bench_add(bench, SHAPE_CAPSULE, 1.0, 0.0, 0.3), 60.0, 70.0, -0.4, 0.1, 0.3);
+        bench_place(bench_add(bench, SHAPE_PLANE, 0.6, 0.4, 0.0), 40.0, 55.0, 0.3, -0.5, 0.4)
+            ->burial_m = 0.05;
     } else if (set == TWO_OBJECTS) {
-        place(bench_add(bench, SHAPE_SPHERE, 0.0, 0.0, 0.5), 47.5, 63.5, 0.0, 0.0, 0.0)
+        bench_place(bench_add(bench, SHAPE_SPHERE, 0.0, 0.0, 0.5), 47.5, 63.5, 0.0, 0.0, 0.0)
             ->material.lambert = 0.2;
         sonject_object_params *capsule =
-            place(bench_add(bench, SHAPE_CAPSULE, 1.0, 0.0, 0.3), 56.0, 55.0, 0.6, 0.0, 0.0);
+            bench_place(bench_add(bench, SHAPE_CAPSULE, 1.0, 0.0, 0.3), 56.0, 55.0, 0.6, 0.0, 0.0);
         capsule->material.reflection = capsule->material.roughness_m = 0.0;
         capsule->material.lambert = 0.1;
         capsule->material.lambert_exponent = 2.0;

@@ -20,42 +20,29 @@ static const struct variant variants[] = {
     {"focused, smooth seabed, through layers", SONJECT_COLUMNS_FOCUSED, 1, 1},
 };
 
-static void place(sonject_object_params *object, double row, double column, double heading,
-                  double pitch, double roll)
-{
-    object->position_kind = SONJECT_POSITION_PIXELS;
-    object->position_along = row;
-    object->position_range = column;
-    object->heading_rad = heading;
-    object->pitch_rad = pitch;
-    object->roll_rad = roll;
-    object->material.reflection = 0.8;
-    object->material.roughness_m = 5e-4;
-}
-
 /* A plate that leans, a cut sphere, a torus, half a tube and a box, close to each other. */
 static void make_scene(struct bench *bench, const struct variant *variant)
 {
     static const struct water_layer layers[] = {{0.0, 1490.0, 1.02}, {3.0, 1530.0, 1.0}};
     struct scene *scene = &bench->scene;
-    place(bench_add(bench, SHAPE_PLANE, 0.5, 0.4, 0.0), 30.0, 70.0, 0.2, 0.1, 0.9);
+    bench_place(bench_add(bench, SHAPE_PLANE, 0.5, 0.4, 0.0), 30.0, 70.0, 0.2, 0.1, 0.9);
     sonject_object_params *sphere = bench_add(bench, SHAPE_SPHERE, 0.0, 0.0, 0.3);
-    place(sphere, 24.0, 55.0, 0.0, 0.0, 0.0);
+    bench_place(sphere, 24.0, 55.0, 0.0, 0.0, 0.0);
     sphere->cuts[0].azimuth_rad = 1.0;
     sphere->cuts[0].elevation_rad = 0.3;
     sphere->cuts[0].distance_m = 0.1;
     sphere->cut_count = 1;
     sonject_object_params *torus = bench_add(bench, SHAPE_TORUS, 0.0, 0.0, 0.5);
     torus->height_m = 0.12;
-    place(torus, 44.0, 60.0, 0.3, 1.0, 0.0);
+    bench_place(torus, 44.0, 60.0, 0.3, 1.0, 0.0);
     sonject_object_params *tube = bench_add(bench, SHAPE_CYLINDER, 0.4, 0.0, 0.4);
-    place(tube, 20.0, 85.0, 1.3, 0.1, 0.0);
+    bench_place(tube, 20.0, 85.0, 1.3, 0.1, 0.0);
     tube->nose_end = SONJECT_END_OPEN;
     tube->tail_end = SONJECT_END_SPHERICAL;
     tube->tail_end_depth_m = 0.05;
     sonject_object_params *box = bench_add(bench, SHAPE_BOX, 0.4, 0.3, 0.0);
     box->height_m = 0.3;
-    place(box, 40.0, 80.0, 0.7, 0.0, 0.0);
+    bench_place(box, 40.0, 80.0, 0.7, 0.0, 0.0);
     if (variant->has_layers)
         bench_set_layers(bench, layers, 2);
     if (variant->seabed_is_smooth) {

@@ -328,7 +328,8 @@ static void test_along_the_axes(void **state)
         }
         print_message("%s along axes: %d hits, %d misses, %d undecided, off by %.2g\n", row->name,
                       worst.hits, worst.misses, worst.undecided, worst.of_size);
-        assert_true(worst.hits > RAYS / 80); /* a plane is hit by about 420, by chance */
+        /* least often a plane is met: a third of the rays hits LW/1.21(L^2 + W^2), 430 +- 17 */
+        assert_true(worst.hits > RAYS / 45);
         assert_true(worst.of_size < 1e-5 && worst.normal < 1e-3);
     }
 }

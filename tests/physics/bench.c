@@ -117,6 +117,21 @@ sonject_object_params *bench_add(struct bench *bench, enum shape_kind shape, dou
     return &bench->scene.objects[bench->scene.object_count - 1];
 }
 
+sonject_object_params *bench_place(sonject_object_params *object, double row, double column,
+                                   double heading, double pitch, double roll)
+{
+    object->position_kind = SONJECT_POSITION_PIXELS;
+    object->position_along = row;
+    object->position_range = column;
+    object->heading_rad = heading;
+    object->pitch_rad = pitch;
+    object->roll_rad = roll;
+    object->material.lambert = 0.05;
+    object->material.reflection = 0.8;
+    object->material.roughness_m = 1e-3;
+    return object;
+}
+
 struct relief_feature *bench_add_relief(struct bench *bench, enum relief_kind kind)
 {
     struct relief_feature feature;

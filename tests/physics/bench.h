@@ -44,6 +44,10 @@ void bench_set_layers(struct bench *bench, const struct water_layer *layers, siz
 sonject_object_params *bench_add(struct bench *bench, enum shape_kind shape, double length_m,
                                  double width_m, double diameter_m);
 
+/* Puts an object somewhere, in pixels, and makes it scatter, too; returns it. */
+sonject_object_params *bench_place(sonject_object_params *object, double row, double column,
+                                   double heading, double pitch, double roll);
+
 /* A feature of the seabed's relief, in the middle of the patch, to be changed at will. */
 struct relief_feature *bench_add_relief(struct bench *bench, enum relief_kind kind);
 

@@ -39,7 +39,7 @@ double gain_of(const struct sea *sea, struct reference_sound out, struct referen
  * tubes and all mirrors; nearest: that point's, over the horizontal. */
 struct family {
     double complex amplitude;
-    double range; /* apparent */
+    double range; /* the processor's */
 };
 struct family family_of(const struct sea *sea, enum image_of_sonar out, enum image_of_sonar home);
 

@@ -33,7 +33,7 @@ struct multibounce_way {
 /* Out from the sonar and home to it, straight between the faces. */
 struct multibounce_way straight_way(const struct sea *sea);
 
-/* The echo first -> last at an processor range through the pulse, all strips together, of sources
+/* The echo first -> last at a processor range through the pulse, all strips together, of sources
  * broadside of the mean of both points; normalised by the square of half the path. spacing: of the
  * last face's points, m. Of the first face's points one at most is stationary for each. */
 double complex multibounce_echo(const struct sea *sea, const struct multibounce_way *way,

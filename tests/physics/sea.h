@@ -51,7 +51,7 @@ struct sea {
 };
 
 /* Lays a patch with default parameters: 100 kHz, 30 kHz, 10 m altitude, 2.5 cm, but with broadside
- * rays alone. Its middle column is at an processor range. There is one sea at a time: an earlier
+ * rays alone. Its middle column is at a processor range. There is one sea at a time: an earlier
  * one is closed. */
 struct sea *sea_open(size_t rows, size_t columns, double middle_range_m);
 
@@ -127,7 +127,7 @@ sonject_status sea_check_response(struct sea *sea);
             fail_msg("'%s' does not say '%s'", sea_message(sea), words);                           \
     } while (0)
 
-/* Ranges are apparent, the processor's; heights those of the relief. */
+/* Ranges are the processor's, heights those of the relief. */
 #define sea_view(sea)                  (&(sea)->bench->tracer.view)
 #define sea_range(sea, column)         view_processor_range(sea_view(sea), column)
 #define sea_column(sea, range_m)       view_column_of_range(sea_view(sea), range_m)
@@ -179,7 +179,7 @@ struct line {
 
 struct line sea_line(struct sea *sea, uint32_t object);
 
-/* Through the pulse, at an processor range; the largest amplitude after it, and its range. */
+/* Through the pulse, at a processor range; the largest amplitude after it, and its range. */
 double complex line_at(const struct sea *sea, const struct line *line, double range_m);
 double line_peak(const struct sea *sea, const struct line *line, double *range_m);
 double line_energy(const struct line *line);
@@ -274,7 +274,7 @@ enum noise {
 };
 double complex *sea_noise(struct sea *sea, enum noise kind);
 
-/* Of the seabed, energy or realisation, over what is expected of a pixel at an processor range
+/* Of the seabed, energy or realisation, over what is expected of a pixel at a processor range
  * (sea_seabed_level or a closed form), without so many rows and columns at either side: the mean of
  * the columns' means and its error, of which three lie within a pulse at most. */
 typedef double expected_level(const struct sea *sea, double processor_range_m);

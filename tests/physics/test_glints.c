@@ -32,7 +32,7 @@ static void turn(struct sea *sea, double heading_deg, double pitch_deg, double r
 
 /* Rigid sphere, all sub-strips together: a/2, or with the wavefront's own curvature in elevation
  * (the fan is a line of circular fans) a/2 / sqrt(1 + a/r). A wrong sound speed in the processor
- * scales ranges by c_ref/c and, since amplitudes are normalised by the square of the apparent
+ * scales ranges by c_ref/c and, since amplitudes are normalised by the square of the processor's
  * range, amplitudes by its square. */
 CLAIM(a_sphere_echoes_half_its_radius)
 {
