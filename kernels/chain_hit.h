@@ -32,7 +32,7 @@ FUNCTION struct nearest_hit find_nearest_ahead(const struct fan_record *fan,
     struct nearest_hit nearest;
     if (has_object_tree(objects, fan->objects)) {
         const struct object_search search = {limit, is_any, left_behind, is_ray};
-        return walk_objects(objects, fan->objects, start, direction, minimum, &search);
+        return search_objects(objects, fan->objects, start, direction, minimum, &search);
     }
     nearest.distance = SPLAT(FAR_AWAY);
     nearest.object = VINT_OF(SPLAT(-1.0f));

@@ -339,7 +339,7 @@ FUNCTION struct nearest_hit find_nearest_hit(GLOBAL const struct object_record *
     struct nearest_hit nearest;
     if (has_object_tree(objects, count)) {
         const struct object_search search = {SPLAT(FAR_AWAY), 0, SPLAT_VINT(-1), SPLAT_VINT(-1)};
-        return walk_objects(objects, count, point, direction, minimum, &search);
+        return search_objects(objects, count, point, direction, minimum, &search);
     }
     nearest.distance = SPLAT(FAR_AWAY);
     nearest.object = VINT_OF(SPLAT(-1.0f));
@@ -358,7 +358,7 @@ FUNCTION vfloat find_obstacle(GLOBAL const struct object_record *objects, int co
 {
     if (has_object_tree(objects, count)) {
         const struct object_search search = {path, 1, SPLAT_VINT(-1), SPLAT_VINT(-1)};
-        return walk_objects(objects, count, point, direction, 0.0f, &search).distance;
+        return search_objects(objects, count, point, direction, 0.0f, &search).distance;
     }
     return find_nearest_hit(objects, count, point, direction, 0.0f).distance;
 }

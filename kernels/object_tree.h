@@ -231,4 +231,18 @@ NOINLINE struct nearest_hit walk_objects(GLOBAL const struct object_record *obje
     return nearest;
 }
 
+/* The same, copied by members: what is called returns through memory, where the hit that its caller
+ * looks for among few objects would lie, too. */
+FUNCTION struct nearest_hit search_objects(GLOBAL const struct object_record *objects, int count,
+                                           struct vector3 point, struct vector3 direction,
+                                           float minimum, const struct object_search *search)
+{
+    const struct nearest_hit found =
+        walk_objects(objects, count, point, direction, minimum, search);
+    struct nearest_hit nearest;
+    nearest.distance = found.distance;
+    nearest.object = found.object;
+    return nearest;
+}
+
 #endif

@@ -161,156 +161,87 @@ FUNCTION void tally_rough_echo(const struct fan_record *fan,
     outcome->impulses += echo->target[lane] > 0.0f;
 }
 
-/* A ray of the fan and what it meets. */
-struct rough_ray {
-    struct fan_ray ray;
-    struct aspect_ray squinted;
-    vfloat strip_of_cell; /* times wavefront: the area across the ray that it stands for */
-    vfloat source_along, source_across; /* of the point of the source, shares of its sides */
-    vfloat to_seabed;                   /* m along the squinted ray */
-    struct nearest_hit nearest;
-    mask is_ray, on_object;
-};
-
-/* distances along the squinted ray times its cosine are those along the fan's */
-FUNCTION struct rough_ray rough_ray_at(const struct fan_record *fan,
-                                       GLOBAL const struct ray_piece_record *pieces,
-                                       GLOBAL const struct object_record *objects, int strip,
-                                       struct random_key key, word number, vfloat *chance)
+/* What the objects that rays meet send on to the source, f cos, and the range of these echoes. */
+FUNCTION vfloat scattering_of_targets(const struct fan_record *fan,
+                                      GLOBAL const struct object_record *objects,
+                                      const struct fan_ray *ray, const struct aspect_ray *squinted,
+                                      struct nearest_hit nearest, mask on_object,
+                                      vfloat source_along, vfloat source_across, vfloat *range,
+                                      struct outcome_record *outcome)
 {
-    struct rough_ray rough;
-    vfloat along, across;
-    three_uniforms(key, number, 0, &along, &across, chance);
-    const float spread = has_beam(fan) ? 0.0f : fan->strip_width; /* pings are points */
-    rough.is_ray = MASK_OF(number < fan->rays);
-    rough.ray =
-        fan_ray_at(fan, pieces, strip_position(fan, strip) + (along - 0.5f) * spread,
-                   fan->first_elevation + (VFLOAT_OF(number) + across) * fan->elevation_step);
-    rough.squinted =
-        aspect_ray_of(fan, &rough.ray, (RECORD_WORD)(fan->first_strip + strip), number, *chance);
-    rough.strip_of_cell = fan->strip_width * fan->elevation_step * rough.squinted.cosine;
-    rough.to_seabed = seabed_distance(fan, objects, rough.squinted.start, rough.squinted.direction,
-                                      SPLAT(-fan->reference_range), rough.is_ray);
-    rough.nearest = find_nearest_hit(objects, fan->objects, rough.squinted.start,
-                                     rough.squinted.direction, -fan->reference_range);
-    rough.on_object = rough.is_ray & MASK_OF(rough.nearest.distance < rough.to_seabed);
-    rough.source_along = SPLAT(0.5f);
-    rough.source_across = SPLAT(0.5f);
-    /* a point source at the receiver sees what its rays meet: nothing is to be tested */
-    if (fan->source_side > 0.0f)
-        two_uniforms(key, number, 1, &rough.source_along, &rough.source_across);
-    return rough;
-}
-
-/* What the seabed returns, had no object stood before it. */
-FUNCTION void seabed_echo(const struct fan_record *fan,
-                          GLOBAL const struct ray_piece_record *pieces,
-                          GLOBAL const struct object_record *objects, int strip,
-                          const struct rough_ray *rough, struct rough_echo *echo,
-                          struct outcome_record *outcome)
-{
-    const struct aspect_ray *squinted = &rough->squinted;
-    const vfloat distance = rough->to_seabed * squinted->cosine;
-    const vfloat straight_range = rough->ray.range_at_closest + distance;
-    const struct vector3 point = along3(squinted->start, squinted->direction, rough->to_seabed);
-    const struct vector3 normal = seabed_normal(fan, objects, point, squinted->direction);
-    vfloat range = straight_range;
-    vfloat cosine = has_relief(fan) ? -dot3(normal, squinted->direction) : -squinted->direction.z;
-    mask is_open = rough->is_ray & MASK_OF(rough->to_seabed < 0.5f * FAR_AWAY);
-    if (fan->source_side > 0.0f && ANY(is_open)) {
-        const struct connection way =
-            connect_to_source(fan, objects, &rough->ray, squinted, point, normal, distance,
-                              rough->source_along, rough->source_across);
-        outcome->queries += count_lanes(is_open);
-        range = way.range;
-        cosine = way.cosine;
-        is_open = is_open & (way.is_open | rough->on_object);
-    }
-    vfloat weight = squinted->weight * fan->quanta;
-    if (has_beam(fan)) {
-        weight = weight * beam_spread(fan, squinted, straight_range);
-        range = whole_range(fan, squinted, range);
-    }
-    const vfloat gain = refraction_gain(fan, &rough->ray, distance);
-    const vfloat energy = fan->seabed_lambert * cosine * rough->strip_of_cell *
-                          (rough->ray.wavefront + distance) * (gain * gain) * weight;
-    const struct bin_pair bins = bins_about(
-        SELECT(is_open, range * fan->bins_per_metre + fan->bin_at_reference, SPLAT(BEFORE_BINS)));
-    const vfloat x = has_relief(fan) || has_beam(fan) ? point.x : rough->ray.closest.x;
-    const vfloat row = fan->map_row_at_origin + x * fan->map_rows_per_metre;
-    const vfloat map_range = has_relief(fan) ? range_in_plan(fan, pieces, point) : straight_range;
-    const vfloat column = fan->map_column_at_reference + map_range * fan->map_columns_per_metre;
-    const vint strips = has_aspects(fan) && has_relief(fan) ? track_strip_at(fan, point.x)
-                                                            : SPLAT_VINT(fan->first_strip + strip);
-    const vfloat kept = SELECT(is_open, energy, SPLAT(0.0f));
-    const vfloat safe_row = smaller(larger(row, SPLAT(-1.0f)), SPLAT(1.0e8f));
-    const vfloat safe_column = smaller(larger(column, SPLAT(-1.0f)), SPLAT(1.0e8f));
-    STORE_VFLOAT(kept, echo->seabed);
-    STORE_VINT(strips, echo->seabed_strip);
-    STORE_VINT(bins.bin, echo->seabed_bin);
-    STORE_VFLOAT(bins.later, echo->seabed_later);
-    STORE_VFLOAT(safe_row, echo->row);
-    STORE_VFLOAT(safe_column, echo->column);
-}
-
-/* What the objects return. */
-FUNCTION void target_echo(const struct fan_record *fan, GLOBAL const struct object_record *objects,
-                          int strip, const struct rough_ray *rough, struct rough_echo *echo,
-                          struct outcome_record *outcome)
-{
-    const struct aspect_ray *squinted = &rough->squinted;
-    const mask on_object = rough->on_object;
-    const vfloat to_target = SELECT(on_object, rough->nearest.distance, SPLAT(0.0f));
-    const vfloat target_distance = to_target * squinted->cosine;
-    vfloat range = rough->ray.range_at_closest + target_distance;
-    const vfloat gain = refraction_gain(fan, &rough->ray, target_distance);
-    vfloat weight = squinted->weight * fan->quanta;
-    if (has_beam(fan))
-        weight = weight * beam_spread(fan, squinted, range);
-    const vfloat area =
-        rough->strip_of_cell * (rough->ray.wavefront + target_distance) * (gain * gain) * weight;
-    vfloat energy = SPLAT(0.0f);
+    vfloat scattering = SPLAT(0.0f);
     const int objects_end = ANY(on_object) ? fan->objects : 0;
-    for (int i = surface_after(-1, objects_end, rough->nearest.object, on_object); i < objects_end;
-         i = surface_after(i, objects_end, rough->nearest.object, on_object)) {
-        const mask here = on_object & MASK_OF(rough->nearest.object == i);
+    for (int i = surface_after(-1, objects_end, nearest.object, on_object); i < objects_end;
+         i = surface_after(i, objects_end, nearest.object, on_object)) {
+        const mask here = on_object & MASK_OF(nearest.object == i);
         if (!ANY(here))
             continue;
-        const vfloat distance = SELECT(here, rough->nearest.distance, SPLAT(0.0f));
+        const vfloat distance = SELECT(here, nearest.distance, SPLAT(0.0f));
         const struct surface_face face = object_face(
             &objects[i], FACE_OF_SCATTERING, squinted->start, squinted->direction, distance);
+        const struct vector3 normal = face.normal;
         const struct vector3 back = reversed3(squinted->direction);
         struct vector3 out = back;
         mask is_open = here;
         if (fan->source_side > 0.0f) {
             const struct connection way = connect_to_source(
-                fan, objects, &rough->ray, squinted,
-                lifted_point(along3(squinted->start, squinted->direction, distance), &face),
-                face.normal, distance * squinted->cosine, rough->source_along,
-                rough->source_across);
+                fan, objects, ray, squinted,
+                lifted_point(along3(squinted->start, squinted->direction, distance), &face), normal,
+                distance * squinted->cosine, source_along, source_across);
             outcome->queries += count_lanes(here);
             is_open = is_open & way.is_open;
             out = way.direction;
-            range = SELECT(here, way.range, range);
+            *range = SELECT(here, way.range, *range);
         }
-        energy = SELECT(is_open,
-                        rough_scattering(&objects[i].surface, face.normal, back, out) *
-                            dot3(face.normal, out) * area,
-                        energy);
+        scattering = SELECT(
+            is_open, rough_scattering(&objects[i].surface, normal, back, out) * dot3(normal, out),
+            scattering);
     }
-    if (has_beam(fan))
-        range = whole_range(fan, squinted, range);
-    const struct bin_pair bins = bins_about(range * fan->bins_per_metre + fan->bin_at_reference);
-    const vint strips =
-        has_aspects(fan)
-            ? track_strip_at(fan, squinted->start.x + squinted->direction.x * to_target)
-            : SPLAT_VINT(fan->first_strip + strip);
-    STORE_VFLOAT(energy, echo->target);
-    STORE_VINT(strips, echo->target_strip);
-    STORE_VINT(bins.bin, echo->target_bin);
-    STORE_VFLOAT(bins.later, echo->target_later);
-    const vint objects_met = SELECT(on_object, rough->nearest.object, VINT_OF(SPLAT(-1.0f)));
-    STORE_VINT(objects_met, echo->object);
+    return scattering;
+}
+
+/* What the seabed returns where a ray meets it, had no object stood before it. */
+struct seabed_return {
+    struct vector3 point;
+    vfloat energy, range, straight_range; /* quanta; range: by way of the source's point */
+    mask is_open;
+};
+
+/* strip_of_cell: times wavefront, the area across the ray that it stands for; on_object: rays that
+ * meet an object first, whose way to the source that may hide. */
+FUNCTION struct seabed_return seabed_return_of(const struct fan_record *fan,
+                                               GLOBAL const struct object_record *objects,
+                                               const struct fan_ray *ray,
+                                               const struct aspect_ray *squinted, vfloat to_seabed,
+                                               mask is_ray, mask on_object, vfloat strip_of_cell,
+                                               vfloat source_along, vfloat source_across,
+                                               struct outcome_record *outcome)
+{
+    struct seabed_return bed;
+    const vfloat distance = to_seabed * squinted->cosine;
+    bed.straight_range = ray->range_at_closest + distance;
+    bed.range = bed.straight_range;
+    bed.point = along3(squinted->start, squinted->direction, to_seabed);
+    bed.is_open = is_ray & MASK_OF(to_seabed < 0.5f * FAR_AWAY);
+    const struct vector3 normal = seabed_normal(fan, objects, bed.point, squinted->direction);
+    vfloat cosine = has_relief(fan) ? -dot3(normal, squinted->direction) : -squinted->direction.z;
+    if (fan->source_side > 0.0f && ANY(bed.is_open)) {
+        const struct connection way = connect_to_source(
+            fan, objects, ray, squinted, bed.point, normal, distance, source_along, source_across);
+        outcome->queries += count_lanes(bed.is_open);
+        bed.range = way.range;
+        cosine = way.cosine;
+        bed.is_open = bed.is_open & (way.is_open | on_object);
+    }
+    vfloat weight = squinted->weight * fan->quanta;
+    if (has_beam(fan)) {
+        weight = weight * beam_spread(fan, squinted, bed.straight_range);
+        bed.range = whole_range(fan, squinted, bed.range);
+    }
+    const vfloat gain = refraction_gain(fan, ray, distance);
+    bed.energy = fan->seabed_lambert * cosine * strip_of_cell * (ray->wavefront + distance) *
+                 (gain * gain) * weight;
+    return bed;
 }
 
 /* Traces one group of WIDTH rays of a strip. */
@@ -320,11 +251,78 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
                                 struct random_key key, RECORD_WORD first_ray,
                                 struct rough_echo *echo, struct outcome_record *outcome)
 {
-    vfloat chance;
-    const struct rough_ray rough = rough_ray_at(fan, pieces, objects, strip, key,
-                                                SPLAT_WORD(first_ray) + LANE_NUMBERS, &chance);
-    seabed_echo(fan, pieces, objects, strip, &rough, echo, outcome);
-    target_echo(fan, objects, strip, &rough, echo, outcome);
+    const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
+    const mask is_ray = MASK_OF(number < fan->rays);
+    const int own_strip = fan->first_strip + strip;
+    vfloat along, across, chance;
+    three_uniforms(key, number, 0, &along, &across, &chance);
+    const float spread = has_beam(fan) ? 0.0f : fan->strip_width; /* pings are points */
+    const vfloat x = strip_position(fan, strip) + (along - 0.5f) * spread;
+    const struct fan_ray ray = fan_ray_at(
+        fan, pieces, x, fan->first_elevation + (VFLOAT_OF(number) + across) * fan->elevation_step);
+    /* distances along the squinted ray times its cosine are those along the fan's */
+    const struct aspect_ray squinted =
+        aspect_ray_of(fan, &ray, (RECORD_WORD)own_strip, number, chance);
+    const vfloat strip_of_cell = fan->strip_width * fan->elevation_step * squinted.cosine;
+    const vfloat to_seabed = seabed_distance(fan, objects, squinted.start, squinted.direction,
+                                             SPLAT(-fan->reference_range), is_ray);
+    const struct nearest_hit nearest = find_nearest_hit(objects, fan->objects, squinted.start,
+                                                        squinted.direction, -fan->reference_range);
+    const mask on_object = is_ray & MASK_OF(nearest.distance < to_seabed);
+    /* a point source at the receiver sees what its rays meet: nothing is to be tested */
+    vfloat source_along = SPLAT(0.5f), source_across = SPLAT(0.5f);
+    if (fan->source_side > 0.0f)
+        two_uniforms(key, number, 1, &source_along, &source_across);
+    const struct seabed_return bed =
+        seabed_return_of(fan, objects, &ray, &squinted, to_seabed, is_ray, on_object, strip_of_cell,
+                         source_along, source_across, outcome);
+
+    const vfloat to_target = SELECT(on_object, nearest.distance, SPLAT(0.0f));
+    const vfloat target_distance = to_target * squinted.cosine;
+    vfloat target_range = ray.range_at_closest + target_distance;
+    const vfloat target_gain = refraction_gain(fan, &ray, target_distance);
+    vfloat target_weight = squinted.weight * fan->quanta;
+    if (has_beam(fan))
+        target_weight = target_weight * beam_spread(fan, &squinted, target_range);
+    const vfloat target_area = strip_of_cell * (ray.wavefront + target_distance) *
+                               (target_gain * target_gain) * target_weight;
+    const vfloat energy =
+        target_area * scattering_of_targets(fan, objects, &ray, &squinted, nearest, on_object,
+                                            source_along, source_across, &target_range, outcome);
+    if (has_beam(fan))
+        target_range = whole_range(fan, &squinted, target_range);
+
+    const struct bin_pair seabed_bins = bins_about(SELECT(
+        bed.is_open, bed.range * fan->bins_per_metre + fan->bin_at_reference, SPLAT(BEFORE_BINS)));
+    const struct bin_pair target_bins =
+        bins_about(target_range * fan->bins_per_metre + fan->bin_at_reference);
+    const vint object_numbers = SELECT(on_object, nearest.object, VINT_OF(SPLAT(-1.0f)));
+    const vfloat kept = SELECT(bed.is_open, bed.energy, SPLAT(0.0f));
+    const vfloat bed_x = has_relief(fan) || has_beam(fan) ? bed.point.x : x;
+    const vfloat row = fan->map_row_at_origin + bed_x * fan->map_rows_per_metre;
+    const vfloat map_range =
+        has_relief(fan) ? range_in_plan(fan, pieces, bed.point) : bed.straight_range;
+    const vfloat column = fan->map_column_at_reference + map_range * fan->map_columns_per_metre;
+    const vfloat safe_row = smaller(larger(row, SPLAT(-1.0f)), SPLAT(1.0e8f));
+    const vfloat safe_column = smaller(larger(column, SPLAT(-1.0f)), SPLAT(1.0e8f));
+    vint seabed_strips = SPLAT_VINT(own_strip);
+    vint target_strips = seabed_strips;
+    if (has_aspects(fan)) {
+        if (has_relief(fan))
+            seabed_strips = track_strip_at(fan, bed.point.x);
+        target_strips = track_strip_at(fan, squinted.start.x + squinted.direction.x * to_target);
+    }
+    STORE_VFLOAT(kept, echo->seabed);
+    STORE_VFLOAT(energy, echo->target);
+    STORE_VINT(seabed_strips, echo->seabed_strip);
+    STORE_VINT(target_strips, echo->target_strip);
+    STORE_VINT(seabed_bins.bin, echo->seabed_bin);
+    STORE_VINT(target_bins.bin, echo->target_bin);
+    STORE_VFLOAT(seabed_bins.later, echo->seabed_later);
+    STORE_VFLOAT(target_bins.later, echo->target_later);
+    STORE_VINT(object_numbers, echo->object);
+    STORE_VFLOAT(safe_row, echo->row);
+    STORE_VFLOAT(safe_column, echo->column);
     STORE_VFLOAT(chance, echo->chance);
 }
 
