@@ -15,7 +15,7 @@ struct chain_step {
     mask is_specular;
 };
 
-/* A step by a rough part: what the surface scatters that way over the density it was sampled with. */
+/* A step by a rough part: what the surface scatters that way over the density of its sampling. */
 FUNCTION struct chain_step step_in_direction(GLOBAL const struct surface_record *surface,
                                              const struct chain_hit *hit, struct vector3 direction,
                                              vfloat density)
