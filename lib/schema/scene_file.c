@@ -52,8 +52,17 @@ static sonject_status check_bands(struct reader *reader, const struct tree_node 
     return status;
 }
 
-/* Moves the upper section's values into the lower one; what they take the place of goes the other
- * way. */
+/* What an override made, of the node or within it; NULL: nothing. */
+static const struct tree_node *set_within(const struct tree_node *node)
+{
+    const struct tree_node *set = node->place.override ? node : NULL;
+    for (size_t i = 0; !set && i < node->count; i++)
+        set = set_within(&node->entries[i].value);
+    return set;
+}
+
+/* Moves the upper section's values into the lower one, but where overrides have set that; what they
+ * take the place of goes the other way. */
 static sonject_status lay_over(struct reader *reader, struct tree *tree, struct tree_node *lower,
                                struct tree_node *upper)
 {
@@ -61,10 +70,14 @@ static sonject_status lay_over(struct reader *reader, struct tree *tree, struct 
     for (size_t i = 0; status == SONJECT_OK && i < upper->count; i++) {
         struct tree_entry *above = &upper->entries[i];
         struct tree_entry *below = tree_find(lower, above->key);
+        const struct tree_node *set = below ? set_within(&below->value) : NULL;
         const size_t before = key_path_add(&reader->path, above->key);
         if (below && below->value.kind == TREE_SECTION && above->value.kind == TREE_SECTION) {
             status = lay_over(reader, tree, &below->value, &above->value);
-        } else {
+        } else if (set && set != &below->value) {
+            status = refuse_value(reader, set, "the band has its own %s: set the whole of it",
+                                  above->key);
+        } else if (!set) {
             if (!below)
                 status = tree_append(tree, lower, &reader->path, above->key, above->place, &below);
             if (status == SONJECT_OK) {

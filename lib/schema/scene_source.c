@@ -10,22 +10,6 @@
 #include "schema/keys.h"
 #include "schema/scene_file.h"
 
-sonject_status scene_source_keep(struct scene_source *source, struct report *report,
-                                 const char *path, char *text, const char *const *overrides,
-                                 size_t count)
-{
-    source->text = text;
-    source->path = copy_text(path);
-    source->overrides = allocate_array(count, sizeof *source->overrides);
-    CHECK_MEMORY(report, text && source->path && source->overrides, "a scene");
-    for (; source->override_count < count; source->override_count++) {
-        char *override = copy_text(overrides[source->override_count]);
-        CHECK_MEMORY(report, override, "a scene");
-        source->overrides[source->override_count] = override;
-    }
-    return SONJECT_OK;
-}
-
 static void array_clear(struct number_array *array)
 {
     free(array->name);
@@ -117,6 +101,23 @@ static void keep_override(struct scene_source *source, const char *override)
         source->overrides[kept++] = override;
     source->override_count = kept;
     source->set_count = kept - given;
+}
+
+sonject_status scene_source_keep(struct scene_source *source, struct report *report,
+                                 const char *path, char *text, const char *const *overrides,
+                                 size_t count)
+{
+    source->text = text;
+    source->path = copy_text(path);
+    source->overrides = allocate_array(count, sizeof *source->overrides);
+    CHECK_MEMORY(report, text && source->path && source->overrides, "a scene");
+    for (size_t i = 0; i < count; i++) {
+        char *override = copy_text(overrides[i]);
+        CHECK_MEMORY(report, override, "a scene");
+        keep_override(source, override);
+    }
+    source->set_count = 0;
+    return SONJECT_OK;
 }
 
 /* "key=value", for free(). */

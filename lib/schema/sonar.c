@@ -381,7 +381,7 @@ static const struct field elements_fields[] = {
      WORD(pulse) = {[SONJECT_SERIES_COMPRESSED] = "compressed", [SONJECT_SERIES_CHIRP] = "chirp"}},
     {"chirp", "its duration", QUANTITY(chirp_duration_s, TIME), WITHIN(1e-9, 100.0),
      .preset = 0.01},
-    {"sampling_rate", "by default twice the highest frequency in passband, else the bandwidth",
+    {"sampling_rate", "by default twice the bandwidth, in passband with twice the frequency added",
      QUANTITY(sampling_rate_hz, FREQUENCY), WITHIN(1.0, 1e10), NONE_IF_ZERO},
     {"first_time", "of the first sample, after transmission; by default what the patch needs",
      QUANTITY(first_time_s, TIME), WITHIN(0.0, 3600.0), NONE_IF_NAN},

@@ -40,6 +40,34 @@ static void test_a_band_may_stand_in_the_file(void **state)
     assert_true(folder->scene.sonar.centre_frequency_hz == 400e3);
 }
 
+static void what_is_set_beats_the_band(void **state)
+{
+    static const char *const set[] = {"band=high", "sonar.frequency=300 kHz",
+                                      "seabed.lambert=-10 dB", "bands.high.sonar.bandwidth=25 kHz"};
+    static const char *const whole[] = {"band=high",
+                                        "sonar={altitude: 5, frequency: 90 kHz, bandwidth: 9 kHz}"};
+    static const char *const within[] = {"band=one", "objects[0].heading=3 deg"};
+    static const char *const own[] = {"band=one", "objects=[]"};
+    static const char scene[] = HEAD
+        "objects: [{shape: sphere, diameter: 1, position: {row: 1, column: 1}}]\n"
+        "bands: {one: {objects: [{shape: sphere, diameter: 2, position: {row: 1, column: 1}}]}}\n";
+    struct scene_folder *folder = *state;
+    write_scene(folder, TWO_BANDS, strlen(TWO_BANDS));
+    assert_int_equal(read_scene(folder, set, COUNT(set)), SONJECT_OK);
+    assert_true(folder->scene.sonar.centre_frequency_hz == 300e3);
+    assert_true(folder->scene.sonar.bandwidth_hz == 25e3);
+    assert_true(folder->scene.seabed.lambert == 0.1);
+    assert_int_equal(read_scene(folder, whole, COUNT(whole)), SONJECT_OK);
+    assert_true(folder->scene.sonar.centre_frequency_hz == 90e3);
+    assert_true(folder->scene.sonar.altitude_m == 5.0);
+    write_scene(folder, scene, strlen(scene));
+    assert_int_equal(read_scene(folder, own, COUNT(own)), SONJECT_OK);
+    assert_int_equal(folder->scene.object_count, 0);
+    assert_int_equal(read_scene(folder, within, COUNT(within)), SONJECT_ERROR_INPUT);
+    assert_non_null(
+        strstr(folder->report.message, "the band has its own objects: set the whole of it"));
+}
+
 static void expect_names(struct scene_folder *folder, const char *text,
                          const char *const *overrides, size_t count, const char *expected)
 {
@@ -85,5 +113,5 @@ static void test_what_is_wrong_is_told(void **state)
 }
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_a_band_changes_its_keys_alone),
-             TEST(test_a_band_may_stand_in_the_file), TEST(test_bands_that_are_left_are_named),
-             TEST(test_what_is_wrong_is_told))
+             TEST(test_a_band_may_stand_in_the_file), TEST(what_is_set_beats_the_band),
+             TEST(test_bands_that_are_left_are_named), TEST(test_what_is_wrong_is_told))

@@ -102,6 +102,22 @@ static void what_is_set_replaces_what_was_used_before(void **state)
     sonject_scene_release(&scene);
 }
 
+static void a_call_beats_all_that_was_given_with_the_text(void **state)
+{
+    static const char *const given[] = {"sonar.altitude=5",
+                                        "sonar={frequency: 100e3, bandwidth: 30e3, altitude: 6}"};
+    sonject_context *context = *state;
+    sonject_scene *scene = NULL;
+    sonject_scene_read_params params = {.struct_size = sizeof params, .text = HEAD};
+    params.overrides = given;
+    params.override_count = COUNT(given);
+    EXPECT_OK(&context->report, sonject_scene_read(context, NULL, &params, &scene));
+    assert_true(use(context, scene)->sonar.altitude_m == 6.0);
+    set(context, scene, "sonar.altitude", "7");
+    assert_true(use(context, scene)->sonar.altitude_m == 7.0);
+    sonject_scene_release(&scene);
+}
+
 static void keys_that_are_none_are_refused_at_once(void **state)
 {
     static const struct {
@@ -301,6 +317,7 @@ static void tables_that_are_none_are_refused(void **state)
 TEST_PROGRAM(make_context, release_context,
              TEST(a_scene_that_is_set_is_that_of_a_text_that_says_so),
              TEST(what_is_set_replaces_what_was_used_before),
+             TEST(a_call_beats_all_that_was_given_with_the_text),
              TEST(keys_that_are_none_are_refused_at_once),
              TEST(values_are_checked_by_the_call_that_uses_the_scene),
              TEST(a_target_is_that_of_a_file_and_its_code_needs_consent),

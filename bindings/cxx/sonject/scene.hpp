@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
+#include <locale>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -85,9 +86,11 @@ class scene
     /* The same of a number, in the key's SI unit (angles: degrees), with all its digits. */
     void set(const std::string &key, double value)
     {
-        char text[32];
-        std::snprintf(text, sizeof text, "%.17g", value);
-        set(key, std::string(text));
+        std::ostringstream text;
+        text.imbue(std::locale::classic()); /* a host's may have a comma for the point */
+        text.precision(17);
+        text << value;
+        set(key, text.str());
     }
     /* Numbers in place of a table's file: rows of as many columns as are named, separated by
      * commas; of heights, without names, column_count. See sonject_scene_set_table. */

@@ -161,7 +161,7 @@ def override_texts(overrides: Overrides) -> Any:
     if isinstance(overrides, str):
         raise TypeError("overrides must be a list of texts or a mapping, not one text")
     if isinstance(overrides, Mapping):
-        overrides = [f"{key}={value}" for key, value in overrides.items()]
+        overrides = [f"{key}={value if isinstance(value, str) else key_text(key, value)}" for key, value in overrides.items()]
     texts = [file_name("override", each) for each in overrides]
     return (ctypes.c_char_p * len(texts))(*texts)
 

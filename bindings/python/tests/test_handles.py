@@ -7,6 +7,7 @@ import sys
 import pytest
 
 import sonject
+from sonject._values import override_texts
 from conftest import KEYS, PACKAGE
 
 
@@ -100,6 +101,9 @@ def test_a_missing_scene_file_is_named(tmp_path, context):
 def test_overrides_are_texts_or_a_mapping(context):
     with pytest.raises(TypeError, match="overrides"):
         sonject.Scene.read("scene.yaml", overrides="injection.seed=1", context=context)
+    values = {"injection.order_energies": True, "sonar": {"altitude": 10}, "sonar.bandwidth": "30 kHz"}
+    assert list(override_texts(values)) == [b"injection.order_energies=true", b'sonar={"altitude": 10}',
+                                            b"sonar.bandwidth=30 kHz"]
 
 
 def test_log_errors_are_raised(amplitude_patch, make_scene):
