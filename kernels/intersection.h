@@ -104,10 +104,6 @@ FUNCTION int has_trait(GLOBAL const struct object_record *object, int trait)
 /* Whether a straight way that leaves the outer side never meets the object again. */
 FUNCTION int is_convex(GLOBAL const struct object_record *object)
 {
-#ifdef WITH_USER_SHAPES
-    if (object->shape == SHAPE_USER)
-        return 0;
-#endif
     return !has_trait(object, SHAPE_IS_HOLLOW);
 }
 

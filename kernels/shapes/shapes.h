@@ -30,7 +30,7 @@ enum shape_trait {
 #define SCENE_SHAPES(ROW)                                                                          \
     ROW(TRUNCATED_CONE, truncated_cone, 0)                                                         \
     ROW(MESH, mesh, SHAPE_IS_HOLLOW)                                                               \
-    ROW(USER, user, 0)
+    ROW(USER, user, SHAPE_IS_HOLLOW)
 
 /* Cylinders that have other ends than flat ones. */
 #define ENDED_CYLINDERS(ROW)                                                                       \

@@ -108,6 +108,16 @@ CLAIM(a_sphere_by_code_has_the_spheres_chains)
     }
 }
 
+/* Of PAIR_CODE, as parts of the last object. */
+static void add_two_spheres(struct sea *sea)
+{
+    for (int i = 0; i < 2; i++) {
+        static const double level[3] = {0.0, 0.0, 0.0};
+        const double centre[3] = {i == 0 ? -0.3 : 0.3, 0.0, 0.0};
+        sea_add_part(sea, SHAPE_SPHERE, centre, level)->diameter_m = 0.5;
+    }
+}
+
 /* Two spheres light each other. As one shape of code they must find each other as parts do; the
  * seabed scatters nothing. */
 CLAIM(a_shape_by_code_meets_itself)
@@ -120,17 +130,43 @@ CLAIM(a_shape_by_code_meets_itself)
         sonject_object_params *object = add_shape(sea, PAIR_SHAPE, is_user);
         make_rough(object, 0.1);
         object->burial_m = -0.5;
-        for (int i = 0; !is_user && i < 2; i++) {
-            static const double level[3] = {0.0, 0.0, 0.0};
-            const double centre[3] = {i == 0 ? -0.3 : 0.3, 0.0, 0.0};
-            sea_add_part(sea, SHAPE_SPHERE, centre, level)->diameter_m = 0.5;
-        }
+        if (!is_user)
+            add_two_spheres(sea);
         const struct energies energies = sea_chains(sea, &all_ranges, 10, 4);
         energy[is_user] = energy_of(&energies, 1, 0);
     }
     const struct estimate ratio = ratio_of(energy[1], energy[0]);
     assert_true(ratio.error < 0.02);
     expect_estimate("echoes between the spheres", ratio, 1.0, 0.0);
+}
+
+/* Two rigid spheres by code send on what each reflects to the other, as parts do: what two
+ * interactions add, through the pulse. Other rays over the same spheres: 0.2 dB. */
+CLAIM(a_shape_by_code_echoes_from_face_to_face)
+{
+    double peak[2], range[2];
+    for (int is_user = 0; is_user < 2; is_user++) {
+        struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+        sea->injection->ray_scale = 4.0;
+        add_shape(sea, PAIR_SHAPE, is_user)->burial_m = -0.5;
+        if (!is_user)
+            add_two_spheres(sea);
+        struct line lines[2];
+        for (int i = 0; i < 2; i++) {
+            sea->injection->interactions = i == 0 ? 2 : 1;
+            lines[i] = sea_line(sea, 0);
+            if (is_user)
+                continue;
+            const struct line other = sea_line(sea, 1);
+            line_add(&lines[i], &other, 1.0);
+        }
+        line_add(&lines[0], &lines[1], -1.0);
+        peak[is_user] = line_peak(sea, &lines[0], &range[is_user]);
+    }
+    assert_true(peak[0] > 0.05); /* of a sphere's own echo: 0.125 */
+    expect_close("echo from sphere to sphere, dB", decibels_of_amplitude(peak[1] / peak[0]), 0.0,
+                 0.2);
+    expect_close("its range, m", range[1], range[0], 1e-3);
 }
 
 /* Dome, sphere twice (one code, two sizes), dome of other sizes and a mesh, along the track: each

@@ -15,6 +15,7 @@ void shape_size_of_user_shape(struct shape_size *size, const struct user_shape *
     size->bounding_radius_m = (1.0 + 1e-6) * shape->bounding_radius_m;
     size->radius_about_nose_m =
         fmin(hypot(size->half_width_m, size->half_height_m), size->bounding_radius_m);
+    size->least_radius_of_curvature_m = 0.0; /* it is not known: rays are as dense as they get */
 }
 
 static struct shape_size sphere_about(const struct shape_size *size)
