@@ -3,7 +3,7 @@
 # shellcheck shell=sh disable=SC2034
 
 build_packages="build-essential meson ninja-build pkg-config python3
-    libopenimageio-dev libtiff-dev libhdf5-dev zlib1g-dev libyaml-dev libjansson-dev libxxhash-dev
+    libopenimageio-dev libpng-dev libtiff-dev libhdf5-dev zlib1g-dev libyaml-dev libjansson-dev libxxhash-dev
     ocl-icd-opencl-dev opencl-headers pocl-opencl-icd"
 test_packages="cmake doxygen groff-base libcmocka-dev python3-numpy python3-pytest
     python3-h5py python3-scipy python3-venv clang locales"

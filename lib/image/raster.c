@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 
+#define ROWS_BYTES  ((uint64_t)64 << 20)
 #define STEPS_LEAST 16 /* fewer levels are no picture that tells its step */
 
 size_t pixel_bytes(enum pixel_type type)
@@ -46,6 +47,13 @@ bool layouts_are_alike(const struct raster_layout *one, const struct raster_layo
 {
     return one->rows == other->rows && one->columns == other->columns &&
            one->channels == other->channels && one->type == other->type;
+}
+
+uint64_t rows_at_once(const struct raster_layout *layout)
+{
+    const uint64_t rows =
+        ROWS_BYTES / (layout->columns * layout->channels * pixel_bytes(layout->type));
+    return rows == 0 ? 1 : rows < layout->rows ? rows : layout->rows;
 }
 
 bool region_bytes(const struct raster_layout *layout, const struct region *region, size_t *bytes)

@@ -40,6 +40,9 @@ struct raster_layout {
 
 bool layouts_are_alike(const struct raster_layout *one, const struct raster_layout *other);
 
+/* Rows that are in memory where an image is written some at a time: of about 64 MB at most. */
+uint64_t rows_at_once(const struct raster_layout *layout);
+
 struct region {
     uint64_t first_row, first_column, rows, columns;
 };

@@ -71,8 +71,8 @@ static sonject_status find_library(const struct question *question,
 {
     const struct raster_module *module;
     if (!*question->texts[2] && is_raster(question->texts[1], kind)) {
-        CHECK(raster_module_find(question->report, question->texts[0], &module));
-        *library = *kind == IMAGE_TIFF ? module->tiff : module->others;
+        CHECK(raster_module_find(question->report, question->texts[0], *kind, &module));
+        *library = module->libraries[*kind];
         return SONJECT_OK;
     }
 #ifdef HAS_HDF5

@@ -4,21 +4,15 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <zlib.h>
-
 #include "base/byte_order.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "swath/swath_format.h"
 
-#define HEAD_MAX      8192 /* bytes, comments among them */
-#define BMP_HEAD      54   /* bytes that all of Windows' versions have */
-#define LEVELS        256  /* of grey */
-#define SIDE_MAX      ((uint64_t)1 << 31)
-#define PNG_BITS      24 /* place in the header, which comes first */
-#define PNG_COLOURS   25
-#define PNG_PALETTE   3 /* of colours: pixels are numbers of a palette */
-#define NUMBERS_CHUNK "soNu"
+#define HEAD_MAX 8192 /* bytes, comments among them */
+#define BMP_HEAD 54   /* bytes that all of Windows' versions have */
+#define LEVELS   256  /* of grey */
+#define SIDE_MAX ((uint64_t)1 << 31)
 
 struct beginning {
     enum image_kind kind;
@@ -173,45 +167,4 @@ sonject_status pgm_check(struct report *report, const char *name, const char *pa
                              "is no PGM of 8 bits (largest number 255): write it as TIFF");
     return check_file_length(report, name, &head, (uint64_t)(at + 1 - head.text), (uint64_t)rows,
                              (uint64_t)columns);
-}
-
-/* Returns what is behind it. */
-static unsigned char *put_chunk(unsigned char *to, const char *name, const void *content,
-                                size_t count)
-{
-    number_to_bytes(count, to, 4, true);
-    memcpy(to + 4, name, 4);
-    memcpy(to + 8, content, count);
-    number_to_bytes(crc32(0, to + 4, (uInt)(4 + count)), to + 8 + count, 4, true);
-    return to + count + 12;
-}
-
-void png_colour_head(const unsigned char grey[PNG_HEADER_PLACE + PNG_HEADER_BYTES],
-                     const uint8_t palette[PNG_PALETTE_BYTES], unsigned char head[PNG_HEAD_BYTES])
-{
-    unsigned char header[PNG_HEADER_BYTES - 12];
-    memcpy(head, grey, PNG_HEADER_PLACE);
-    memcpy(header, grey + PNG_HEADER_PLACE + 8, sizeof header);
-    header[PNG_COLOURS - PNG_HEADER_PLACE - 8] = PNG_PALETTE;
-    unsigned char *next = put_chunk(head + PNG_HEADER_PLACE, "IHDR", header, sizeof header);
-    next = put_chunk(next, "PLTE", palette, PNG_PALETTE_BYTES);
-    put_chunk(next, NUMBERS_CHUNK, grey + PNG_HEADER_PLACE, PNG_HEADER_BYTES);
-}
-
-sonject_status png_check(struct report *report, const char *name, const char *path,
-                         bool *is_coloured)
-{
-    struct head head;
-    CHECK(read_head(report, name, path, &head));
-    const unsigned char *bytes = (const unsigned char *)head.text;
-    const bool has_palette = bytes[PNG_COLOURS] == PNG_PALETTE;
-    *is_coloured = has_palette && memcmp(bytes + PNG_NUMBERS_PLACE - 4, NUMBERS_CHUNK, 4) == 0;
-    if (has_palette && !*is_coloured)
-        return input_failure(report, name, "has a palette; convert it to one channel first");
-    if (bytes[PNG_BITS] != 8 && bytes[PNG_BITS] != 16)
-        return input_failure(
-            report, name,
-            "has %u-bit pixels; sonject reads PNG with 8 or 16: convert it to one of these",
-            bytes[PNG_BITS]);
-    return SONJECT_OK;
 }

@@ -1,9 +1,9 @@
 /* Libraries of others that read, change and write images, as the decoder (swath/decoder.h) and
- * those that write new images use them: OpenImageIO and libtiff, which are in a module, and HDF5.
+ * those that write new images use them: libtiff and libpng, OpenImageIO, and HDF5.
  *
- * The module is a shared object of its own, which is loaded when the first image needs it, because
- * OpenImageIO brings along some 250 libraries, whose loading takes longer than many a run. Static
- * libraries have it in them. */
+ * Two modules hold those of images: shared objects of their own, each loaded when the first image
+ * needs it, because OpenImageIO brings along some 250 libraries, whose loading takes longer than
+ * many a run. Static libraries have both in them. */
 #ifndef SONJECT_SWATH_IMAGE_LIBRARY_H
 #define SONJECT_SWATH_IMAGE_LIBRARY_H
 
@@ -44,7 +44,7 @@ struct image_library {
 /* Data sets of HDF5 files (swath/hdf5_array.c). Calls come between hdf5_enter and hdf5_leave. */
 extern const struct image_library hdf5_library;
 
-/* TIFF files by libtiff (swath/tiff_file.c, a part of the module). Refused (INPUT) are files that
+/* TIFF files by libtiff (swath/tiff_file.c). Refused (INPUT) are files that
  * are cut short, and those whose pixels are not stored as sonject can read and change them; pixels
  * are not decoded then. Changed tiles or strips that no longer fit in their place go behind the end
  * of the file; all tags, other pages and untouched blocks stay. */
@@ -58,6 +58,7 @@ struct image_encoding {
     struct raster_layout layout;
     const char *description; /* a text that the file keeps; "": none */
     bool is_drawn;           /* a mask or a picture, not an image of measured pixels */
+    const uint8_t *palette;  /* of PNG: PNG_PALETTE_BYTES, colours of 8 bit numbers; NULL: grey */
     /* gives the pixels of rows first...end */
     sonject_status (*give_rows)(void *user, uint64_t first, uint64_t end, void *pixels);
     void *user;
@@ -65,9 +66,6 @@ struct image_encoding {
 
 /* As raster_module's encode, of TIFF. */
 sonject_status tiff_encode(struct report *report, const struct image_encoding *encoding);
-
-/* Rows of a new image that are in memory at a time. */
-uint64_t rows_at_once(const struct raster_layout *layout);
 
 /* By it a library knows a module that was built with it, for both share the structures of the
  * calls. It keeps its place in all versions. */
@@ -82,25 +80,28 @@ struct module_stamp {
             VERSION_TEXT                                                                           \
     }
 
-/* What the module offers. */
+/* What a module offers. */
 struct raster_module {
     struct module_stamp stamp;
-    /* TIFF alone is changed; the others' copies are new images. Refused is what they cannot read,
-     * more than 2^40 pixels, sides of 0, palettes, several channels, and of the others what is not
-     * of 8 or 16 bits. */
-    const struct image_library *tiff, *others;
+    /* By kind; NULL: of the other module. TIFF alone is changed; copies of others are new images.
+     * Refused is what they cannot read, more than 2^40 pixels, sides of 0, palettes but for those
+     * of numbers, more than one channel (TIFF: two), and of others than TIFF what is not of 8 or
+     * 16 bits. */
+    const struct image_library *libraries[IMAGE_KINDS];
     /* Streams in strips of at most about 64 MB. What failed is left to the caller to remove.
      * Errors: STORAGE, MEMORY, those of give_rows. */
     sonject_status (*encode)(struct report *report, const struct image_encoding *encoding);
 };
 
-/* The one thing that the module shows. */
+/* The one thing that each module shows: swath/png_file.c, swath/raster_image.cpp. */
+SONJECT_API extern const struct raster_module raster_module_tiff_png;
 SONJECT_API extern const struct raster_module raster_module_openimageio;
 
-/* The module, which the first call loads; any number of threads may call. It stays until the
- * process ends. path: the image that needs it, for the message. Errors: UNSUPPORTED (there is no
- * module, or one that was not built with this library: says where, and what to do), MEMORY. */
-sonject_status raster_module_find(struct report *report, const char *path,
+/* The module for images of a kind, which the first call loads; any number of threads may call. It
+ * stays until the process ends. path: the image that needs it, for the message. Errors: UNSUPPORTED
+ * (there is no module, or one that was not built with this library: says where, and what to do),
+ * MEMORY. */
+sonject_status raster_module_find(struct report *report, const char *path, enum image_kind kind,
                                   const struct raster_module **module);
 
 #ifdef __cplusplus

@@ -54,12 +54,13 @@ static sonject_status give_rows(void *user, uint64_t first, uint64_t end, void *
 }
 
 static sonject_status encode(struct patched_rows *rows, const char *part, const char *name,
-                             enum image_kind kind, const char *description, bool is_drawn)
+                             enum image_kind kind, const char *description, bool is_drawn,
+                             const uint8_t *palette)
 {
     const struct raster_module *module = NULL;
-    const struct image_encoding encoding = {part,        name,     kind,      rows->layout,
-                                            description, is_drawn, give_rows, rows};
-    CHECK(raster_module_find(rows->report, name, &module));
+    const struct image_encoding encoding = {part,     name,    kind,      rows->layout, description,
+                                            is_drawn, palette, give_rows, rows};
+    CHECK(raster_module_find(rows->report, name, kind, &module));
     return module->encode(rows->report, &encoding);
 }
 
@@ -70,7 +71,7 @@ sonject_status raster_file_copy_with_patch(struct report *report, struct decoded
                                 copy->pixels, copy->progress, copy->user};
     const bool is_png = kind == IMAGE_PNG || kind == IMAGE_JPEG;
     return encode(&rows, copy->part, copy->path, is_png ? IMAGE_PNG : IMAGE_TIFF,
-                  source->description, false);
+                  source->description, false, NULL);
 }
 
 static sonject_status write_npy(struct report *report, const char *path,
@@ -153,24 +154,6 @@ static sonject_status kind_to_write(struct report *report, const char *path,
     return SONJECT_OK;
 }
 
-/* Publishes at path the pixels of an 8 bit grey PNG as numbers of a palette's colours. */
-static sonject_status publish_coloured(struct report *report, const char *grey,
-                                       const uint8_t *palette, const char *path)
-{
-    const size_t header = PNG_HEADER_PLACE + PNG_HEADER_BYTES;
-    unsigned char head[PNG_HEAD_BYTES];
-    char *bytes;
-    size_t count;
-    CHECK(file_read_whole(report, grey, SIZE_MAX / 2, &bytes, &count));
-    if (count >= header)
-        png_colour_head((const unsigned char *)bytes, palette, head);
-    const sonject_status status = count < header ? file_failure(report, path, "write", EIO)
-                                                 : file_write_parts(report, path, head, sizeof head,
-                                                                    bytes + header, count - header);
-    free(bytes);
-    return status;
-}
-
 static sonject_status write_rows(struct patched_rows *rows, const char *path,
                                  const char *description, bool is_drawn, const uint8_t *palette)
 {
@@ -178,9 +161,8 @@ static sonject_status write_rows(struct patched_rows *rows, const char *path,
     CHECK(kind_to_write(rows->report, path, &rows->layout, &kind));
     char *part = file_part_name(path);
     CHECK_MEMORY(rows->report, part, "a file name");
-    sonject_status status = encode(rows, part, path, kind, description, is_drawn);
-    THEN(status, palette ? publish_coloured(rows->report, part, palette, path)
-                         : file_publish(rows->report, part, path));
+    sonject_status status = encode(rows, part, path, kind, description, is_drawn, palette);
+    THEN(status, file_publish(rows->report, part, path));
     file_discard(part);
     free(part);
     return status;

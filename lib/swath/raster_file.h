@@ -1,5 +1,5 @@
-/* New image files, by OpenImageIO, libtiff, HDF5, and as NumPy arrays. What reads them is the
- * decoder (swath/decoder.h). */
+/* New image files, by libtiff, libpng, OpenImageIO, HDF5, and as NumPy arrays. What reads them is
+ * the decoder (swath/decoder.h). */
 #ifndef SONJECT_SWATH_RASTER_FILE_H
 #define SONJECT_SWATH_RASTER_FILE_H
 

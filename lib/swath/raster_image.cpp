@@ -1,6 +1,5 @@
-/* Images by OpenImageIO: PNG, JPEG, BMP and PGM that are read, PNG and JPEG that are written; and
- * the module of these and of TIFF, which is libtiff's. No exception leaves the file.
- */
+/* Images by OpenImageIO: JPEG, BMP and PGM that are read, JPEG that is written; and their module.
+ * No exception leaves the file. */
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -20,7 +19,6 @@ namespace
 {
 
 constexpr uint64_t pixels_max = uint64_t(1) << 40;
-constexpr int png_filter_none = 8; /* of libpng */
 
 /* Coarser coding would show in the noise of every pixel of the swath, not only near the target. */
 constexpr const char *jpeg_quality = "jpeg:98";
@@ -49,8 +47,6 @@ struct raster_image {
     std::string path;
     enum image_kind kind;
     struct raster_layout layout;
-    std::vector<unsigned char> numbers; /* a PNG that stands for the file; none where empty */
-    std::unique_ptr<OIIO::Filesystem::IOProxy> view; /* of these */
     std::unique_ptr<OIIO::ImageInput> input;
     OIIO::ImageSpec spec;
     std::vector<unsigned char> rows;     /* decoded last, for pieces of one strip */
@@ -68,24 +64,6 @@ const char *format_name(enum image_kind kind)
     return names[kind];
 }
 
-/* A coloured PNG as the grey one that it was made of. */
-void restore_numbers(struct raster_image &file)
-{
-    uint64_t bytes = 0;
-    FILE *source = byte_file_open(file.path.c_str(), &bytes);
-    file.numbers.resize(source ? size_t(bytes) : 0);
-    const bool is_read = source && byte_file_read(source, 0, file.numbers.data(), size_t(bytes));
-    if (source)
-        std::fclose(source);
-    if (!is_read || bytes < PNG_HEAD_BYTES)
-        file.numbers.assign(PNG_HEAD_BYTES, 0);
-    const auto start = file.numbers.begin();
-    file.numbers.erase(start + PNG_NUMBERS_PLACE + PNG_HEADER_BYTES, start + PNG_HEAD_BYTES);
-    file.numbers.erase(start + PNG_HEADER_PLACE, start + PNG_NUMBERS_PLACE);
-    file.view =
-        std::make_unique<OIIO::Filesystem::IOMemReader>(file.numbers.data(), file.numbers.size());
-}
-
 sonject_status open_input(struct report *report, struct raster_image &file)
 {
     const char *name = file.name.c_str();
@@ -97,9 +75,6 @@ sonject_status open_input(struct report *report, struct raster_image &file)
     file.input->threads(1);
     /* pixels as they are stored, not multiplied by anything */
     configuration.attribute("oiio:UnassociatedAlpha", 1);
-    OIIO::Filesystem::IOProxy *proxy = file.view.get();
-    if (proxy)
-        configuration.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     const bool is_open = file.input->open(file.path, file.spec, configuration);
     const std::string reason = file.input->geterror(); /* of warnings too */
     return is_open && reason.empty()
@@ -176,20 +151,14 @@ sonject_status open_file(struct report *report, struct raster_image &file)
 {
     const char *name = file.name.c_str();
     const char *path = file.path.c_str();
-    bool is_coloured = false;
-    if (file.kind == IMAGE_PNG)
-        CHECK(png_check(report, name, path, &is_coloured));
     if (file.kind == IMAGE_BMP)
         CHECK(bmp_check(report, name, path));
     if (file.kind == IMAGE_PGM)
         CHECK(pgm_check(report, name, path));
-    if (is_coloured)
-        restore_numbers(file);
     CHECK(open_input(report, file));
     CHECK(take_layout(report, file));
-    /* Of PNG and JPEG the decoder alone tells that they are cut short: at once, not after hours of
-     * work. */
-    if (file.kind == IMAGE_PNG || file.kind == IMAGE_JPEG)
+    /* Of JPEG the decoder alone tells that it is cut short: at once, not after hours of work. */
+    if (file.kind == IMAGE_JPEG)
         CHECK(decode_rows(report, file, file.layout.rows - 1, file.layout.rows));
     return SONJECT_OK;
 }
@@ -305,26 +274,17 @@ struct raster_output {
 
 bool open_encoder(struct raster_output &output, const struct image_encoding &encoding)
 {
-    static const OIIO::TypeDesc types[] = {OIIO::TypeDesc::UINT8, OIIO::TypeDesc::UINT16,
-                                           OIIO::TypeDesc::FLOAT};
     const struct raster_layout &layout = encoding.layout;
     OIIO::ImageSpec spec(int(layout.columns), int(layout.rows), int(layout.channels),
-                         types[layout.type - PIXEL_UINT8]);
+                         OIIO::TypeDesc::UINT8);
     output.sink = std::make_unique<file_sink>(encoding.path);
     if (output.sink->error_so_far() != 0)
         return false;
     OIIO::Filesystem::IOProxy *proxy = output.sink.get();
     spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    if (encoding.kind == IMAGE_JPEG)
-        spec.attribute("Compression", jpeg_quality);
+    spec.attribute("Compression", jpeg_quality);
     if (*encoding.description)
         spec.attribute(description_name, encoding.description);
-    /* few values, or noise by way of a colour map: filters and searching for longer matches cost
-     * much time, and make files no smaller */
-    if (encoding.is_drawn) {
-        spec.attribute("png:filter", png_filter_none);
-        spec.attribute("png:compressionLevel", 1);
-    }
     output.encoder = OIIO::ImageOutput::create(format_name(encoding.kind));
     if (!output.encoder)
         return false;
@@ -351,8 +311,6 @@ sonject_status write_rows(struct report *report, const struct image_encoding &en
     for (uint64_t row = 0; row < layout.rows; row += at_once) {
         const uint64_t end = layout.rows - row < at_once ? layout.rows : row + at_once;
         CHECK(encoding.give_rows(encoding.user, row, end, strip.data()));
-        /* after the first rows: libpng prints a complaint about a PNG that is given up without any
-         */
         if ((!output.encoder && !open_encoder(output, encoding)) ||
             !output.encoder->write_scanlines(int(row), int(end), 0, output.encoder->spec().format,
                                              strip.data()) ||
@@ -366,8 +324,6 @@ sonject_status write_rows(struct report *report, const struct image_encoding &en
 
 sonject_status encode(struct report *report, const struct image_encoding *encoding)
 {
-    if (encoding->kind == IMAGE_TIFF)
-        return tiff_encode(report, encoding);
     return guarded(report, encoding->name, [&] { return write_rows(report, *encoding); });
 }
 
@@ -375,5 +331,5 @@ const struct image_library openimageio = {raster_open, raster_close, raster_read
 
 } // namespace
 
-const struct raster_module raster_module_openimageio = {MODULE_STAMP, &tiff_library, &openimageio,
-                                                        encode};
+const struct raster_module raster_module_openimageio = {
+    MODULE_STAMP, {nullptr, nullptr, &openimageio, &openimageio, &openimageio}, encode};

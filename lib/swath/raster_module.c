@@ -1,23 +1,26 @@
-/* Finds the module of image files: RASTERS_ARE_LINKED where it is part of the program (static
- * libraries, and tests that let its calls fail), else a shared object is loaded; HAS_RASTERS is not
- * defined in builds without OpenImageIO. */
+/* Finds the modules of image files: RASTERS_ARE_LINKED where they are part of the program (static
+ * libraries, and tests that let their calls fail), else a shared object is loaded; HAS_RASTERS is
+ * not defined in builds without OpenImageIO. */
 #include "swath/image_library.h"
 
+#define IS_TIFF_OR_PNG(kind) ((kind) == IMAGE_TIFF || (kind) == IMAGE_PNG)
+
 #if !defined(HAS_RASTERS)
-sonject_status raster_module_find(struct report *report, const char *path,
+sonject_status raster_module_find(struct report *report, const char *path, enum image_kind kind,
                                   const struct raster_module **module)
 {
+    (void)kind;
     *module = NULL;
     return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
                           "%s: this build of sonject has no image files: build it with OpenImageIO",
                           path);
 }
 #elif defined(RASTERS_ARE_LINKED)
-sonject_status raster_module_find(struct report *report, const char *path,
+sonject_status raster_module_find(struct report *report, const char *path, enum image_kind kind,
                                   const struct raster_module **module)
 {
     (void)report, (void)path;
-    *module = &raster_module_openimageio;
+    *module = IS_TIFF_OR_PNG(kind) ? &raster_module_tiff_png : &raster_module_openimageio;
     return SONJECT_OK;
 }
 #else
@@ -32,7 +35,7 @@ sonject_status raster_module_find(struct report *report, const char *path,
 /* Its libraries stay out of sight of the host's others. It is never unloaded: what they keep until
  * the process ends needs their code then. Some of them end the process where memory is short. */
 static sonject_status load(struct report *report, const char *path, const char *module_file,
-                           const struct raster_module **module)
+                           const char *name, const struct raster_module **module)
 {
     static const struct module_stamp own = MODULE_STAMP;
     char excerpt[REPORT_CAPACITY / 4];
@@ -42,7 +45,7 @@ static sonject_status load(struct report *report, const char *path, const char *
                               "allow the process more, a gigabyte at least (ulimit -v)",
                               path, module_file);
     void *handle = dlopen(module_file, RTLD_LAZY | RTLD_LOCAL);
-    const struct raster_module *found = handle ? dlsym(handle, "raster_module_openimageio") : NULL;
+    const struct raster_module *found = handle ? dlsym(handle, name) : NULL;
     const char *fault = found ? "it is of another version of sonject" : dlerror();
     if (found && memcmp(&found->stamp, &own, sizeof own) == 0) {
         *module = found;
@@ -51,25 +54,29 @@ static sonject_status load(struct report *report, const char *path, const char *
     return report_failure(
         report, SONJECT_ERROR_UNSUPPORTED,
         "%s: sonject reads and writes images by %s, which cannot be used: %s: "
-        "install sonject and OpenImageIO anew",
+        "install sonject, and what it needs, anew",
         path, module_file,
         text_excerpt(excerpt, sizeof excerpt, fault ? fault : "it cannot be loaded"));
 }
 
-sonject_status raster_module_find(struct report *report, const char *path,
+sonject_status raster_module_find(struct report *report, const char *path, enum image_kind kind,
                                   const struct raster_module **module)
 {
     static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
-    static const struct raster_module *loaded;
+    static const struct raster_module *loaded[2];
+    const bool is_other = !IS_TIFF_OR_PNG(kind);
     sonject_status status = SONJECT_OK;
     pthread_mutex_lock(&one_at_a_time);
-    if (!loaded) {
-        char *module_file = module_path("openimageio.so");
-        status = module_file ? load(report, path, module_file, &loaded)
-                             : report_out_of_memory(report, "a path");
+    if (!loaded[is_other]) {
+        char *module_file = module_path(is_other ? "openimageio.so" : "tiff_png.so");
+        status = module_file
+                     ? load(report, path, module_file,
+                            is_other ? "raster_module_openimageio" : "raster_module_tiff_png",
+                            &loaded[is_other])
+                     : report_out_of_memory(report, "a path");
         free(module_file);
     }
-    *module = loaded;
+    *module = loaded[is_other];
     pthread_mutex_unlock(&one_at_a_time);
     return status;
 }

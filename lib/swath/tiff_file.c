@@ -14,7 +14,6 @@
 #define BLOCK_BYTES_MAX ((uint64_t)256 << 20)               /* of a tile or strip, decoded */
 #define NEW_STRIP_BYTES ((uint64_t)1 << 18)                 /* of a new image */
 #define CLASSIC_MAX     (UINT32_MAX - ((uint64_t)64 << 20)) /* with some for its directory */
-#define ROWS_BYTES      ((uint64_t)64 << 20)                /* that are written at a time */
 
 /* What libtiff said first of what went wrong; all 0 before. */
 struct fault {
@@ -469,12 +468,6 @@ const struct image_library tiff_library = {open_image, close_image, read_pixels,
 static uint64_t row_bytes(const struct raster_layout *layout)
 {
     return layout->columns * layout->channels * pixel_bytes(layout->type);
-}
-
-uint64_t rows_at_once(const struct raster_layout *layout)
-{
-    const uint64_t rows = ROWS_BYTES / row_bytes(layout);
-    return rows == 0 ? 1 : rows < layout->rows ? rows : layout->rows;
 }
 
 static void set_tags(TIFF *file, const struct image_encoding *encoding)

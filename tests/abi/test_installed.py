@@ -262,7 +262,7 @@ def convert(prefix, tmp_path):
     """Runs the installed command's conversion, with a library of which other files are kept away:
     convert(IN, OUT, module) puts the module, if any, beside it."""
     program = prefix / "bin" / "sonject"
-    installed = list(prefix.rglob("openimageio.so"))
+    installed = list(prefix.rglob("tiff_png.so"))
     if not program.exists() or not installed:
         pytest.skip("built without image files")
     folder = tmp_path / "library"
@@ -272,7 +272,7 @@ def convert(prefix, tmp_path):
 
     def run(name, result, module=None):
         (folder / "sonject").mkdir(exist_ok=True)
-        beside = folder / "sonject" / "openimageio.so"
+        beside = folder / "sonject" / "tiff_png.so"
         beside.unlink(missing_ok=True)
         if module:
             beside.write_bytes(module(installed[0]))
@@ -296,14 +296,14 @@ def of_version(version):
 @pytest.mark.parametrize("module, reason", [
     (None, "No such file"), (lambda _: b"no library", "file too short"),
     (lambda module: (library_folder(module.parents[1]) / "libsonject.so.0").read_bytes(),
-     "raster_module_openimageio"),
+     "raster_module_tiff_png"),
     (of_version(b"0.2.0"), "another version of sonject")],
     ids=["missing", "damaged", "foreign", "of another version"])
 def test_images_need_the_module_of_this_library(convert, tmp_path, module, reason):
     answer = convert("a.npy", "a.png", module)
     (line,) = answer.stderr.splitlines()
     assert answer.returncode == 3 and reason in line
-    assert f"{tmp_path}/library/" in line and "openimageio.so" in line and "anew" in line
+    assert f"{tmp_path}/library/" in line and "tiff_png.so" in line and "anew" in line
     assert not (tmp_path / "a.png").exists()
 
 
@@ -333,16 +333,21 @@ def test_hdf5_files_need_the_decoder_of_this_library(convert, prefix, tmp_path, 
     assert (numpy.load(tmp_path / "b.npy") == numpy.load(tmp_path / "a.npy")).all()
 
 
-def test_the_module_shows_one_name_and_the_library_none_of_it(prefix):
-    installed = list(prefix.rglob("openimageio.so"))
-    if not installed:
+def needed_by(file):
+    return subprocess.run(["readelf", "-d", file], capture_output=True, text=True, check=True).stdout
+
+
+def test_modules_show_one_name_and_the_library_needs_none_of_theirs(prefix):
+    if not list(prefix.rglob("openimageio.so")):
         pytest.skip("built without image files")
-    listing = subprocess.run(["nm", "-D", "--defined-only", installed[0]], capture_output=True,
-                             text=True, check=True).stdout
-    assert [line.split()[-1] for line in listing.splitlines()] == ["raster_module_openimageio"]
-    needed = subprocess.run(["readelf", "-d", library_folder(prefix) / "libsonject.so.0"],
-                            capture_output=True, text=True, check=True).stdout
-    assert "NEEDED" in needed and "OpenImageIO" not in needed and "libstdc++" not in needed
+    for name in ("tiff_png", "openimageio"):
+        (module,) = prefix.rglob(f"{name}.so")
+        listing = subprocess.run(["nm", "-D", "--defined-only", module], capture_output=True,
+                                 text=True, check=True).stdout
+        assert [line.split()[-1] for line in listing.splitlines()] == [f"raster_module_{name}"]
+        assert ("OpenImageIO" in needed_by(module)) == (name == "openimageio")
+    needed = needed_by(library_folder(prefix) / "libsonject.so.0")
+    assert "NEEDED" in needed and not any(each in needed for each in ("tiff", "png", "OpenImageIO", "libstdc++"))
 
 
 def test_a_wheel_with_image_files_has_their_module(tmp_path):
@@ -358,7 +363,8 @@ def test_a_wheel_with_image_files_has_their_module(tmp_path):
     assert settings["install"] == ["--tags=python-runtime"]
     assert {entry["destination"] for entry in entries if entry["tag"] == "python-runtime"} == {
         *(f"{{py_platlib}}/{name}" for name in MODULES), "{py_platlib}/sonject/libsonject.so",
-        "{py_platlib}/sonject/openimageio.so", "{py_platlib}/sonject/sonject-decoder"}
+        "{py_platlib}/sonject/openimageio.so", "{py_platlib}/sonject/tiff_png.so",
+        "{py_platlib}/sonject/sonject-decoder"}
 
 
 

@@ -118,7 +118,7 @@ def test_labels_are_colours_that_read_as_numbers(sonject, folder, tmp_path):
     assert numbers == read_png(folder / "labels.png").astype("u1").tobytes()
     assert set(numbers) == {0, 1, 2, 3}
     at = content.index(b"soNu")
-    (tmp_path / "other.png").write_bytes(content[: at - 4] + content[at + 33 :])
+    (tmp_path / "other.png").write_bytes(content[: at - 4] + content[at + 8 :])
     assert_refused(sonject("convert", "other.png", "other.npy"), 3, "palette")
 
 

@@ -174,7 +174,7 @@ static void png_and_jpeg_that_are_not_for_sonject_are_refused(void **state)
     static const struct {
         unsigned bits, colours;
         const char *part;
-    } cases[] = {{1, 0, "1-bit"}, {4, 0, "4-bit"},       {8, 2, "3 channels"}, {8, 3, "palette"},
+    } cases[] = {{1, 0, "1-bit"}, {4, 0, "4-bit"},       {8, 2, "3 channels"}, {8, 3, "PLTE"},
                  {8, 4, "2 ch"},  {16, 6, "4 channels"}, {8, 1, "IHDR"},       {8, 255, "IHDR"}};
     size_t count;
     for (size_t i = 0; i < COUNT(cases); i++) {
