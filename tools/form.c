@@ -18,8 +18,9 @@ struct form_options {
 static const struct argument arguments[] = {
     {"--output", "-o", "DIR", "folder for the results, made where missing", ARGUMENT_TEXT, true,
      offsetof(struct form_options, stage.output)},
-    {"--set", NULL, "KEY.PATH=VALUE", "another pulse, bandwidth or response; may be repeated",
-     ARGUMENT_TEXTS, false, offsetof(struct form_options, overrides)},
+    {"--set", NULL, "KEY.PATH=VALUE",
+     "another pulse, bandwidth, resolution, response or motion; may be repeated", ARGUMENT_TEXTS, false,
+     offsetof(struct form_options, overrides)},
     {"--allow-user-shapes", NULL, NULL, "runs code of shapes in the scene; only if you trust it",
      ARGUMENT_FLAG, false, offsetof(struct form_options, allows_user_shapes)},
     {"--labels", NULL, "FORMATS", LABELS_HELP, ARGUMENT_TEXT, false,

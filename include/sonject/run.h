@@ -30,9 +30,9 @@ typedef struct sonject_run_params {
 } sonject_run_params;
 
 /* With shard_count K this call traces one of K parts of all rays and leaves its tallies in
- * params->folder/work, no results; other processes, on other machines too, do the other parts in
- * the same folder, in any order, and sonject_merge makes the result of them, byte for byte that of
- * a whole run. *was_finished then stays 0 where the part was there already.
+ * params->folder/work, no results; other processes, also on other machines of the same kind, do the
+ * other parts in the same folder, in any order, and sonject_merge makes the result of them, byte
+ * for byte that of a whole run. *was_finished then stays 0 where the part was there already.
  *
  * A call that is cancelled while it traces, or that stops by itself after exit_after_s (never
  * before it has got a little further), returns CANCELLED and leaves what it traced in the folder

@@ -1,5 +1,5 @@
 /* The two stages of a run apart: tracing, whose sums go to a file, and forming images of them,
- * as often as wanted, also with another bandwidth or cross-range response. */
+ * as often as wanted, also with another pulse, bandwidth or cross-range response. */
 #ifndef SONJECT_STAGES_H
 #define SONJECT_STAGES_H
 
@@ -28,9 +28,9 @@ typedef struct sonject_form_params {
     const char *file;             /* that sonject_trace wrote */
     const char *folder;           /* for the results; made where missing */
     const char *const *overrides; /* of the scene whose text the file keeps, "key.path=value" of
-                                     sonar.bandwidth, sonar.resolution, sonar.response and what is
-                                     below it, and input.path (the same image elsewhere); no other
-                                     key */
+                                     sonar.bandwidth, .pulse, .resolution, .response,
+                                     .measured_response and .motion, what is below these, and
+                                     input.path (the same image elsewhere); no other key */
     uint32_t allows_user_shapes;  /* 1: run code of shapes in that scene, or beside it, as
                                      sonject_scene_read_params has it; 0: refuse it */
     uint32_t labels;              /* as of sonject_run_params */
@@ -38,9 +38,8 @@ typedef struct sonject_form_params {
     uint32_t reserved;            /* 0 */
 } sonject_form_params;
 
-/* Forms the image of the scene that was traced, or of `scene`, which then may differ in the sonar's
- * bandwidth, resolution and response unless the file keeps no text (NULL: the scene of that text),
- * and writes into
+/* Forms the image of the scene that was traced, or of `scene`, which then may differ in the
+ * same keys unless the file keeps no text (NULL: the scene of that text), and writes into
  * params->folder what sonject_run would: with nothing overridden every file is the same byte for
  * byte, but for times and memory in run.json. A bandwidth may be at most the one that was traced
  * and not much below a third of it, a resolution no finer than that one: trace at the largest

@@ -22,7 +22,7 @@
 #define CAMPAIGN_CHIP_MAX    8192 /* rows, columns */
 #define SPLIT_NAME_CAPACITY  33
 
-/* Counted random numbers: a deviate of (0, 1), the middle of one of 2^53 equal parts; streams are
+/* Counted random numbers: a deviate of (0, 1), the middle of one of 2^52 equal parts; streams are
  * independent. */
 double uniform_number(uint64_t seed, uint32_t stream, uint64_t index);
 

@@ -16,7 +16,7 @@
 #define SIDE_MAX              16384.0
 #define SLOPE_MAX             1.75 /* 60 degrees: sand never stands so steep, rocks may */
 
-/* As in lib/image/ripples.c: the wander is relative to the regular train of crests; where the two
+/* As in lib/image/synthetic.c: the wander is relative to the regular train of crests; where the two
  * cancel a crest forks. Lengths are deviations of the blur in wavelengths. */
 #define WANDERS        2
 #define STREAM_WANDERS 0x5eabed60u /* none that the tracer or a synthetic seabed uses */

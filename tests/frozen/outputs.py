@@ -40,7 +40,7 @@ LEFT_OUT_FOR = {
 LEFT_OUT = {name for names in LEFT_OUT_FOR.values() for name in names}
 # Such things in reports for reading.
 LEFT_OUT_OF_HTML = rb"[0-9a-f]{32}|sonject [0-9.]+"
-# Impulses hold times; what `form` and `merge` make of them is compared.
+# Sums name the code that traced them; what `form` and `merge` make of them is compared.
 UNLISTED = ["*.impulses", "*/work/*", "*/times.json"]
 
 

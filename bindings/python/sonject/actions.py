@@ -177,9 +177,9 @@ def form(
 ) -> bool:
     """Forms the image of what trace wrote into file, and writes what run would into folder.
 
-    overrides: as of Scene.read, of bandwidth, resolution and response of the sonar and of
-    input.path; scene: where it was traced from no scene file, or instead of overrides;
-    allows_user_shapes: as of Scene.read; labels and overwrites: as of run.
+    overrides: as of Scene.read, of bandwidth, pulse, resolution, response, measured_response and
+    motion of the sonar, and of input.path; scene: where it was traced from no scene file, or
+    instead of overrides; allows_user_shapes: as of Scene.read; labels and overwrites: as of run.
     False, with nothing done, if folder already held the finished result of the same inputs.
     """
     context = _context_of(scene, context)
