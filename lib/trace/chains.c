@@ -141,12 +141,12 @@ static sonject_status init_seabed_fan(struct chain_fan *fan, struct tracer *trac
 }
 
 static sonject_status init_object_fan(struct chain_fan *fan, struct tracer *tracer,
-                                      const struct line_grid *grid, double central, uint32_t object)
+                                      const struct line_grid *grid, double central, uint32_t part)
 {
     static const double along[3] = {1.0, 0.0, 0.0};
-    const struct placement *placement = &tracer->placements[object];
+    const struct placement *placement = &tracer->placements[part];
     const double grazing = placement_grazing(placement, &tracer->view);
-    const struct elevations edges = elevations_of_object(tracer, object, &tracer->view.water);
+    const struct elevations edges = elevations_of_object(tracer, part, &tracer->view.water);
     const double half_length = placement_half_extent(placement, along);
     const double middle = central - grazing;
     const bool is_specular = material_is_smooth(placement->material);
@@ -157,7 +157,7 @@ static sonject_status init_object_fan(struct chain_fan *fan, struct tracer *trac
         is_specular || !has_reverse || finds_surface ? OBJECT_RAYS_PER_BIN : ROUGH_RAYS_PER_BIN;
     fan->strips = strips_between(tracer, grid, placement->centre[0] - half_length,
                                  placement->centre[0] + half_length);
-    fan->record.only_object = (int32_t)object;
+    fan->record.only_object = (int32_t)part;
     return fan_set_rays(&fan->record, tracer->report, middle + edges.lowest, middle + edges.highest,
                         fan_elevation_step(tracer, grid, grazing, rays_per_bin));
 }

@@ -324,10 +324,10 @@ sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
                              step_to_objects(tracer, (double)fan->strip_width)));
 }
 
-struct elevations elevations_of_object(const struct tracer *tracer, uint32_t object,
+struct elevations elevations_of_object(const struct tracer *tracer, uint32_t part,
                                        const struct ray_path *path)
 {
-    const struct placement *placement = &tracer->placements[object];
+    const struct placement *placement = &tracer->placements[part];
     const double *centre = placement->centre;
     const double grazing = ray_path_grazing(path, centre[1], centre[2]);
     const double upward[3] = {0.0, sin(grazing), cos(grazing)};
@@ -356,12 +356,12 @@ void fan_aim_at_part(struct fan_record *fan, const struct tracer *tracer, uint32
     fan->elevation_step = (float)((edges.highest - edges.lowest) / rays);
 }
 
-sonject_status object_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t object,
+sonject_status object_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t part,
                                const struct ray_path *path, struct ray_table_record *record)
 {
-    const double *centre = tracer->placements[object].centre;
+    const double *centre = tracer->placements[part].centre;
     return ray_table_add(rays, tracer->report, path, centre[1], centre[2],
-                         elevations_of_object(tracer, object, path), record);
+                         elevations_of_object(tracer, part, path), record);
 }
 
 double aspects_sine(const struct tracer *tracer)

@@ -57,17 +57,17 @@ double fan_elevation_step(const struct tracer *tracer, const struct line_grid *g
 sonject_status fan_set_rays(struct fan_record *fan, struct report *report, double lowest,
                             double highest, double step);
 
-/* Elevations that an object fills as seen on a path, from the direction of its centre; a little
+/* Elevations that a part fills as seen on a path, from the direction of its centre; a little
  * more than that. */
-struct elevations elevations_of_object(const struct tracer *tracer, uint32_t object,
+struct elevations elevations_of_object(const struct tracer *tracer, uint32_t part,
                                        const struct ray_path *path);
 
 /* Lays rays over a part as seen on a path, at most cell_m apart on the wavefront. */
 void fan_aim_at_part(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
                      const struct ray_path *path, double cell_m);
 
-/* Appends the rays of a path to an object in the object's frame. Errors: as patch_rays_init. */
-sonject_status object_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t object,
+/* Appends the rays of a path to a part in the part's frame. Errors: as patch_rays_init. */
+sonject_status object_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t part,
                                const struct ray_path *path, struct ray_table_record *record);
 
 /* Sine of the largest angle off broadside; 0: broadside alone. The response's own, wavelength /

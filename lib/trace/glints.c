@@ -17,11 +17,11 @@ double glint_shortest_deviation(const struct line_grid *grid, double column_spac
     return BINS_PER_DEVIATION * column_spacing_m / grid->bins_per_pixel;
 }
 
-void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint32_t number)
+void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint32_t part)
 {
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct patch_view *view = &tracer->view;
-    const struct placement *placement = &tracer->placements[number];
+    const struct placement *placement = &tracer->placements[part];
     grid->strips_per_row =
         (uint32_t)ceil(view->row_spacing_m / (STRIP_WAVELENGTHS * view->wavelength_m) - 1e-9);
     grid->bins_per_pixel = (uint32_t)ceil(
@@ -31,14 +31,14 @@ void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint
         strips_between(tracer, grid, placement->centre[0] - extent, placement->centre[0] + extent);
 }
 
-void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t number,
+void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
                     const struct ray_path *path, double finer)
 {
     const double cell = GLINT_CELL_WAVELENGTHS * tracer->view.wavelength_m /
                         sqrt(tracer->scene->injection.ray_scale) / finer;
-    fan_aim_at_part(fan, tracer, number, path, cell);
+    fan_aim_at_part(fan, tracer, part, path, cell);
     fan->strata = (uint32_t)ceil(fan->strip_width / cell - 1e-6);
-    fan->only_object = (int32_t)number;
+    fan->only_object = (int32_t)part;
 }
 
 static void choose_quanta(struct smooth_trace *trace, const struct tracer *tracer)
@@ -54,19 +54,18 @@ static void choose_quanta(struct smooth_trace *trace, const struct tracer *trace
 
 /* Of the parts, those in the way go to the device; the frame is centred on the one aimed at.
  * sources: NULL for the straight pair. */
-static sonject_status begin_launch(struct smooth_trace *trace, struct tracer *tracer,
-                                   uint32_t number, const struct image_pair_record *sources)
+static sonject_status begin_launch(struct smooth_trace *trace, struct tracer *tracer, uint32_t part,
+                                   const struct image_pair_record *sources)
 {
     const int32_t most = sources ? IMAGE_STRIPS : INT32_MAX;
     const int32_t strips = trace->grid.strips.count < most ? trace->grid.strips.count : most;
     struct launch *launch = &trace->launch;
     struct part_list parts;
-    sonject_status status = parts_in_way(&parts, tracer, number, &trace->grid, !sources);
+    sonject_status status = parts_in_way(&parts, tracer, part, &trace->grid, !sources);
     THEN(status,
          launch_begin(launch, tracer, sources ? PROGRAM_TRACE_SMOOTH_IMAGES : PROGRAM_TRACE_SMOOTH,
                       sources ? "trace_smooth_images" : "trace_smooth"));
-    THEN(status,
-         launch_add_objects(launch, tracer, &parts, tracer->placements[number].centre, NULL));
+    THEN(status, launch_add_objects(launch, tracer, &parts, tracer->placements[part].centre, NULL));
     THEN(status, launch_add_tallies(launch, tracer, strips, 2 * (size_t)trace->grid.bins.count,
                                     &trace->chunk));
     if (sources)
@@ -76,8 +75,8 @@ static sonject_status begin_launch(struct smooth_trace *trace, struct tracer *tr
     return status;
 }
 
-sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer,
-                                  uint32_t number, const struct image_pair *pair)
+sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer, uint32_t part,
+                                  const struct image_pair *pair)
 {
     const struct sound_source sonar = {tracer->view.water, 0, BOUNDARY_SEABED};
     const struct image_pair straight = {&sonar, &sonar, 0};
@@ -85,26 +84,26 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
     struct image_pair_record sources;
     sonject_status status = SONJECT_OK;
     memset(trace, 0, sizeof *trace);
-    if (!material_is_smooth(tracer->placements[number].material))
+    if (!material_is_smooth(tracer->placements[part].material))
         return SONJECT_OK;
-    glint_strips_init(&trace->grid, tracer, number);
-    trace->grid.bins = pair ? image_pair_bins_in_patch(tracer, number, pair, &trace->grid)
-                            : image_pair_bins(tracer, number, &straight, &trace->grid);
+    glint_strips_init(&trace->grid, tracer, part);
+    trace->grid.bins = pair ? image_pair_bins_in_patch(tracer, part, pair, &trace->grid)
+                            : image_pair_bins(tracer, part, &straight, &trace->grid);
     if (trace->grid.bins.count == 0)
         return SONJECT_OK;
     if (pair) {
         status =
-            image_pair_aim(fan, &sources, &trace->launch.rays, tracer, number, pair, &trace->grid);
-        fan->stream = STREAM_IMAGE_RAYS + STREAMS_OF_PAIR * pair->number + number;
+            image_pair_aim(fan, &sources, &trace->launch.rays, tracer, part, pair, &trace->grid);
+        fan->stream = STREAM_IMAGE_RAYS + STREAMS_OF_PAIR * pair->number + part;
     } else {
         /* the frame is centred on the object: phases then keep their digits */
-        fan_record_init(fan, tracer, tracer->placements[number].centre, &trace->grid);
-        fan->stream = STREAM_SMOOTH_RAYS + number;
-        status = object_rays_add(&trace->launch.rays, tracer, number, &sonar.path, &fan->table);
+        fan_record_init(fan, tracer, tracer->placements[part].centre, &trace->grid);
+        fan->stream = STREAM_SMOOTH_RAYS + part;
+        status = object_rays_add(&trace->launch.rays, tracer, part, &sonar.path, &fan->table);
     }
-    glint_fan_init(fan, tracer, number, pair ? &pair->outgoing->path : &sonar.path, 1.0);
+    glint_fan_init(fan, tracer, part, pair ? &pair->outgoing->path : &sonar.path, 1.0);
     choose_quanta(trace, tracer);
-    THEN(status, begin_launch(trace, tracer, number, pair ? &sources : NULL));
+    THEN(status, begin_launch(trace, tracer, part, pair ? &sources : NULL));
     if (status != SONJECT_OK)
         smooth_trace_end(trace);
     return status;
@@ -128,34 +127,34 @@ sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tr
                         (float *const[]){real_part, imaginary_part});
 }
 
-static sonject_status begin_images(struct glints *glints, struct tracer *tracer, uint32_t object)
+static sonject_status begin_images(struct glints *glints, struct tracer *tracer, uint32_t part)
 {
     struct image_pairs pairs;
     struct image_pair pair;
-    image_pairs_begin(&pairs, tracer, object, false, 1);
+    image_pairs_begin(&pairs, tracer, part, false, 1);
     while (image_pairs_next(&pairs, &pair)) {
         struct smooth_trace *trace = &glints->traces[glints->count];
-        CHECK(smooth_trace_begin(trace, tracer, object, &pair));
+        CHECK(smooth_trace_begin(trace, tracer, part, &pair));
         glints->grid.bins = span_join(glints->grid.bins, trace->grid.bins);
         glints->count += trace->grid.bins.count > 0;
     }
     return SONJECT_OK;
 }
 
-sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32_t object)
+sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32_t part)
 {
     memset(glints, 0, sizeof *glints);
     glints->traces =
         allocate_array(1 + (size_t)SOURCES_MAX * (SOURCES_MAX + 1) / 2, sizeof *glints->traces);
     CHECK_MEMORY(tracer->report, glints->traces, "glints");
-    sonject_status status = smooth_trace_begin(&glints->traces[0], tracer, object, NULL);
+    sonject_status status = smooth_trace_begin(&glints->traces[0], tracer, part, NULL);
     if (status == SONJECT_OK) {
         glints->count = 1;
         glints->grid = glints->traces[0].grid;
         if (glints->grid.strips.count > 0)
-            status = begin_images(glints, tracer, object);
+            status = begin_images(glints, tracer, part);
     }
-    THEN(status, multibounce_begin(&glints->multibounce, tracer, object));
+    THEN(status, multibounce_begin(&glints->multibounce, tracer, part));
     if (status == SONJECT_OK) {
         glints->grid.strips = span_join(glints->grid.strips, glints->multibounce.grid.strips);
         glints->grid.bins = span_join(glints->grid.bins, glints->multibounce.grid.bins);

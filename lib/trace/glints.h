@@ -34,12 +34,12 @@ void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint
 void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
                     const struct ray_path *path, double finer);
 
-/* Prepares a trace of one object's glints, straight there and back (pair NULL) or by way of
- * boundaries; as rough_trace_begin. An object without a smooth part has grid.strips.count 0 and
+/* Prepares a trace of one part's glints, straight there and back (pair NULL) or by way of
+ * boundaries; as rough_trace_begin. A part without a smooth part has grid.strips.count 0 and
  * nothing to trace; grid.bins.count is 0, and there is nothing to trace, where no echo of a pair
  * can reach the patch. */
-sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer,
-                                  uint32_t object, const struct image_pair *pair);
+sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer, uint32_t part,
+                                  const struct image_pair *pair);
 void smooth_trace_end(struct smooth_trace *trace);
 
 /* Traces strips.count <= chunk sub-strips: complex amplitudes in m, strips.count x bins, in two
@@ -139,10 +139,10 @@ struct glints {
     float *real_part, *imaginary_part; /* owned; a chunk of one trace */
 };
 
-/* Prepares the traces of one object. On success to be given to glints_end, also after later
- * failures; on failure nothing is held. An object without a smooth part has grid.strips.count 0 and
+/* Prepares the traces of one part. On success to be given to glints_end, also after later
+ * failures; on failure nothing is held. A part without a smooth part has grid.strips.count 0 and
  * nothing to trace. Errors: DEVICE, MEMORY. */
-sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32_t object);
+sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32_t part);
 void glints_end(struct glints *glints);
 
 /* Traces strips.count <= chunk sub-strips: complex amplitudes in m, strips.count x grid.bins.count,

@@ -107,20 +107,20 @@ struct span bins_of_ranges(const struct tracer *tracer, const struct line_grid *
     return bins;
 }
 
-struct span image_pair_bins(const struct tracer *tracer, uint32_t object,
+struct span image_pair_bins(const struct tracer *tracer, uint32_t part,
                             const struct image_pair *pair, const struct line_grid *grid)
 {
-    const struct placement *placement = &tracer->placements[object];
+    const struct placement *placement = &tracer->placements[part];
     const double range = half_path(pair, placement);
     const double reach =
         0.5 * (reach_from(pair->outgoing, placement) + reach_from(pair->returning, placement));
     return bins_of_ranges(tracer, grid, range - reach, range + reach);
 }
 
-struct span image_pair_bins_in_patch(const struct tracer *tracer, uint32_t object,
+struct span image_pair_bins_in_patch(const struct tracer *tracer, uint32_t part,
                                      const struct image_pair *pair, const struct line_grid *grid)
 {
-    return bins_in_patch(tracer, grid, image_pair_bins(tracer, object, pair, grid));
+    return bins_in_patch(tracer, grid, image_pair_bins(tracer, part, pair, grid));
 }
 
 struct span bins_in_patch(const struct tracer *tracer, const struct line_grid *grid,
@@ -165,11 +165,11 @@ static double roughness_exponent(const struct tracer *tracer, const struct sound
     return exponent;
 }
 
-void image_pairs_begin(struct image_pairs *pairs, const struct tracer *tracer, uint32_t object,
+void image_pairs_begin(struct image_pairs *pairs, const struct tracer *tracer, uint32_t part,
                        bool has_straight, uint32_t object_hits)
 {
     pairs->tracer = tracer;
-    pairs->placement = &tracer->placements[object];
+    pairs->placement = &tracer->placements[part];
     pairs->count = sources_list(tracer->scene, tracer->view.water.water,
                                 tracer->scene->injection.interactions - 1, pairs->sources);
     pairs->object_hits = object_hits;
@@ -222,15 +222,15 @@ struct span span_overlap(struct span one, struct span other)
     return both;
 }
 
-struct span image_source_bins(const struct tracer *tracer, uint32_t object,
+struct span image_source_bins(const struct tracer *tracer, uint32_t part,
                               const struct line_grid *grid)
 {
     struct image_pairs pairs;
     struct image_pair pair;
     struct span bins = {0, 0};
-    image_pairs_begin(&pairs, tracer, object, false, 1);
+    image_pairs_begin(&pairs, tracer, part, false, 1);
     while (image_pairs_next(&pairs, &pair))
-        bins = span_join(bins, image_pair_bins_in_patch(tracer, object, &pair, grid));
+        bins = span_join(bins, image_pair_bins_in_patch(tracer, part, &pair, grid));
     return bins;
 }
 
@@ -269,11 +269,11 @@ static void image_pair_record_init(struct image_pair_record *record, const struc
 }
 
 sonject_status image_pair_aim(struct fan_record *fan, struct image_pair_record *record,
-                              struct ray_table *rays, const struct tracer *tracer, uint32_t object,
+                              struct ray_table *rays, const struct tracer *tracer, uint32_t part,
                               const struct image_pair *pair, const struct line_grid *grid)
 {
     const struct patch_view *view = &tracer->view;
-    const struct placement *placement = &tracer->placements[object];
+    const struct placement *placement = &tracer->placements[part];
     const double range = half_path(pair, placement);
     const double cycles = 2.0 * range / view->wavelength_m;
     image_pair_record_init(record, tracer, placement, pair);
@@ -286,9 +286,9 @@ sonject_status image_pair_aim(struct fan_record *fan, struct image_pair_record *
                                         grid->bins_per_pixel / view->column_spacing_m -
                                     grid->bins.first);
     sonject_status status =
-        object_rays_add(rays, tracer, object, &pair->outgoing->path, &record->outgoing.table);
+        object_rays_add(rays, tracer, part, &pair->outgoing->path, &record->outgoing.table);
     THEN(status,
-         object_rays_add(rays, tracer, object, &pair->returning->path, &record->returning.table));
+         object_rays_add(rays, tracer, part, &pair->returning->path, &record->returning.table));
     fan->table = record->outgoing.table;
     return status;
 }

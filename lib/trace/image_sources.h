@@ -42,7 +42,7 @@ struct image_pairs {
 
 /* All pairs by image sources, or (has_straight) the straight one before them. The tracer is
  * borrowed. */
-void image_pairs_begin(struct image_pairs *pairs, const struct tracer *tracer, uint32_t object,
+void image_pairs_begin(struct image_pairs *pairs, const struct tracer *tracer, uint32_t part,
                        bool has_straight, uint32_t object_hits);
 
 /* Finds the next pair (which points into *pairs) within the limit of interactions whose boundaries
@@ -53,22 +53,22 @@ bool image_pairs_next(struct image_pairs *pairs, struct image_pair *pair);
 struct span bins_of_ranges(const struct tracer *tracer, const struct line_grid *grid,
                            double nearest_m, double farthest_m);
 
-/* Bins of half the path out from one source to the object and back to the other. Of the grid only
+/* Bins of half the path out from one source to the part and back to the other. Of the grid only
  * the size of its bins is used. */
-struct span image_pair_bins(const struct tracer *tracer, uint32_t object,
+struct span image_pair_bins(const struct tracer *tracer, uint32_t part,
                             const struct image_pair *pair, const struct line_grid *grid);
 
 /* Of these, the bins whose pulse reaches the patch; count 0 if there is none. */
-struct span image_pair_bins_in_patch(const struct tracer *tracer, uint32_t object,
+struct span image_pair_bins_in_patch(const struct tracer *tracer, uint32_t part,
                                      const struct image_pair *pair, const struct line_grid *grid);
 
 /* What of some bins, of the grid's size, has a pulse that reaches the patch. */
 struct span bins_in_patch(const struct tracer *tracer, const struct line_grid *grid,
                           struct span bins);
 
-/* The bins in the patch of all the object's pairs but the straight one; count 0 if there is none.
+/* The bins in the patch of all the part's pairs but the straight one; count 0 if there is none.
  */
-struct span image_source_bins(const struct tracer *tracer, uint32_t object,
+struct span image_source_bins(const struct tracer *tracer, uint32_t part,
                               const struct line_grid *grid);
 
 /* The smallest span that holds both; a span of count 0 holds nothing. */
@@ -78,10 +78,10 @@ struct span span_join(struct span one, struct span other);
 struct span span_overlap(struct span one, struct span other);
 
 /* Fills in the pair's record, and a fan from the outgoing source, in a frame centred on the
- * object. The fan as fan_record_init, its bins and phases those of half the path. Appends the rays
+ * part. The fan as fan_record_init, its bins and phases those of half the path. Appends the rays
  * of both paths. Errors: as patch_rays_init. */
 sonject_status image_pair_aim(struct fan_record *fan, struct image_pair_record *record,
-                              struct ray_table *rays, const struct tracer *tracer, uint32_t object,
+                              struct ray_table *rays, const struct tracer *tracer, uint32_t part,
                               const struct image_pair *pair, const struct line_grid *grid);
 
 #endif

@@ -29,7 +29,7 @@ enum scene_flag {
     ROUGH_AT_8 = 2048, /* at width 8 too: programs take long to compile */
     ROUGH_AT_1 = 4096,
     GLINTS = 8192,
-    MIRRORS = 16384,
+    IMAGES = 16384,
     CHAINS = 32768,
     TILES = 65536 /* of the rough part by all ways, at the least and the most lanes */
 };
@@ -50,14 +50,14 @@ static const struct scene_case {
     double source_side; /* m; not 0: visibility is tested */
     uint32_t interactions;
 } scenes[] = {
-    {"plain", FOUR_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | GLINTS | MIRRORS | TILES, 0.0, 1},
+    {"plain", FOUR_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | GLINTS | IMAGES | TILES, 0.0, 1},
     {"wide source", FOUR_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1, 0.2, 1},
     {"map", FOUR_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | WITH_MAP, 0.2, 1},
     {"seabed alone", NO_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1, 0.0, 1},
     {"more shapes", MORE_SHAPES, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | GLINTS, 0.2, 1},
-    {"layers", FOUR_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | GLINTS | MIRRORS | TILES | IN_LAYERS,
+    {"layers", FOUR_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | GLINTS | IMAGES | TILES | IN_LAYERS,
      0.0, 1},
-    {"relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | GLINTS | MIRRORS | TILES | ON_RELIEF, 0.0, 1},
+    {"relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | GLINTS | IMAGES | TILES | ON_RELIEF, 0.0, 1},
     {"crowd over relief", CROWD, TILES | ON_RELIEF, 0.0, 1},
     {"wide source over relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | ON_RELIEF | WITH_MAP, 0.2, 1},
     {"aspects", FOUR_OBJECTS, ROUGH | WITH_ASPECTS, 0.0, 1},
@@ -242,7 +242,7 @@ struct subject {
     enum scene_flag part; /* ROUGH, GLINTS or CHAINS */
     const float *map;
     uint32_t object;               /* whose glints */
-    const struct image_pair *pair; /* by way of mirrors; NULL: straight */
+    const struct image_pair *pair; /* by image sources; NULL: straight */
 };
 
 /* The trace of a subject; only its part's is used. */
@@ -579,8 +579,8 @@ static void test_smooth_tallies(void **state)
 }
 
 /* A rough surface over a fluid seabed, and pairs of the sonar and its images in both; over relief
- * the sea surface alone is a mirror. */
-static void compare_mirrored(struct bench *bench, const struct scene_case *scene)
+ * the sea surface alone reflects. */
+static void compare_images(struct bench *bench, const struct scene_case *scene)
 {
     static const size_t numbers[][2] = {{0, 1}, {1, 1}, {0, 2}, {1, 4}, {2, 4}};
     const size_t pairs = scene->flags & ON_RELIEF ? 2 : COUNT(numbers);
@@ -604,12 +604,12 @@ static void compare_mirrored(struct bench *bench, const struct scene_case *scene
     assert_true(alive >= 3 * pairs);
 }
 
-static void test_mirrored_tallies(void **state)
+static void test_image_tallies(void **state)
 {
-    on_scenes_with(MIRRORS, compare_mirrored);
+    on_scenes_with(IMAGES, compare_images);
 }
 
-/* Tiles of the rough part, straight and by way of mirrors, on a fresh trace. */
+/* Tiles of the rough part, straight and by image sources, on a fresh trace. */
 static int64_t *all_tiles(struct bench *bench, size_t *elements)
 {
     static struct rough_trace trace;
@@ -698,7 +698,7 @@ static void test_one_core(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(test_rough_tallies),     TEST(test_smooth_tallies), TEST(test_mirrored_tallies),
+        TEST(test_rough_tallies),     TEST(test_smooth_tallies), TEST(test_image_tallies),
         TEST(test_tiles_by_all_ways), TEST(test_chain_tallies),  TEST(test_one_core),
     };
     return bench_run_on_devices(tests, COUNT(tests));

@@ -147,7 +147,7 @@ static double complex exact_reflection(const struct surface_record *surface, dou
 }
 
 /* |R|^2 and what roughness takes from it. */
-static double exact_mirror(const struct surface_record *surface, double cosine, double *scattered)
+static double exact_specular(const struct surface_record *surface, double cosine, double *scattered)
 {
     const double modulus = cabs(exact_reflection(surface, cosine));
     const double phase = (double)surface->roughness_phase * cosine;
@@ -362,7 +362,7 @@ static void test_directions(void **state)
 /* ---- Energy ---- */
 
 /* Integral of f cos(out) over the hemisphere for sound that came at an angle. Turns are dense about
- * the mirror direction, where the cone is narrow at grazing incidence. */
+ * the specular direction, where the cone is narrow at grazing incidence. */
 static double albedo(const struct surface_record *surface, double angle)
 {
     const struct vector3 back = direction_at(angle, PI);
@@ -419,12 +419,12 @@ static void test_furnace_over_smooth_part(void **state)
             for (size_t i = 0; i < COUNT(furnace_angles); i += 2) {
                 const double angle = degrees(furnace_angles[i]);
                 double scattered;
-                const double mirrored = exact_mirror(&surface, cos(angle), &scattered);
+                const double specular = exact_specular(&surface, cos(angle), &scattered);
                 const double found = albedo(&surface, angle);
                 most = fmax(most, found / scattered);
-                most_of_all = fmax(most_of_all, found + mirrored);
+                most_of_all = fmax(most_of_all, found + specular);
                 assert_true(found < scattered * (1.0 + QUADRATURE) + 1e-6);
-                assert_true(found + mirrored < 1.0 + 1e-6);
+                assert_true(found + specular < 1.0 + 1e-6);
             }
         }
         print_message(
@@ -575,7 +575,7 @@ static void test_grazing_limit(void **state)
         }
 }
 
-static void test_mirror_part(void **state)
+static void test_specular_part(void **state)
 {
     const struct surface_record none = rough_kind(0);
     for (int smooth = 0; smooth < SMOOTH_KINDS; smooth++) {
@@ -594,7 +594,7 @@ static void test_mirror_part(void **state)
             const double complex found = (double)real_part + (double)imaginary_part * I;
             worst = fmax(worst, cabs(found - exact) / error);
             double scattered;
-            const double energy = exact_mirror(&surface, (double)cosine, &scattered);
+            const double energy = exact_specular(&surface, (double)cosine, &scattered);
             const double energy_found = (double)specular_energy(&surface, cosine);
             worst = fmax(worst, fabs(energy_found - energy) / (2.0 * error));
             const double part = (double)scattered_fraction(&surface, cosine);
@@ -607,7 +607,7 @@ static void test_mirror_part(void **state)
     }
 }
 
-/* A sediment's rough part is its own, at every angle, and the mirror gives way to it. */
+/* A sediment's rough part is its own, at every angle, and the specular part gives way to it. */
 static void test_rough_part_apart(void **state)
 {
     const struct surface_record rough_part = rough(0.05, 1.0, 0.0, 0.1);
@@ -619,8 +619,8 @@ static void test_rough_part_apart(void **state)
             const double angle = furnace_angles[i] * PI / 180.0;
             const double cosine = (double)(float)cos(angle);
             double scattered;
-            const double mirror = exact_mirror(&surface, cosine, &scattered);
-            const double left = mirror * (1.0 - PI * 0.05);
+            const double specular = exact_specular(&surface, cosine, &scattered);
+            const double left = specular * (1.0 - PI * 0.05);
             const double found = (double)specular_energy(&surface, (float)cosine);
             const double returned = albedo(&surface, angle);
             /* the errors of R near the critical angle, and those of the quadrature */
@@ -634,4 +634,4 @@ static void test_rough_part_apart(void **state)
 TEST_PROGRAM(NULL, NULL, TEST(test_formulas), TEST(test_directions), TEST(test_rough_furnace),
              TEST(test_furnace_over_smooth_part), TEST(test_reciprocity),
              TEST(test_fluid_reflection), TEST(test_critical_angle), TEST(test_intromission_angle),
-             TEST(test_grazing_limit), TEST(test_mirror_part), TEST(test_rough_part_apart))
+             TEST(test_grazing_limit), TEST(test_specular_part), TEST(test_rough_part_apart))
