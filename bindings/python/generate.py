@@ -235,7 +235,6 @@ def classes(header):
     bases = sorted({base for _, base in CLASSES.values()})
     yield '"""The classes of structures, their fields as include/sonject declares them."""\n'
     yield "from dataclasses import dataclass\n"
-    yield "from . import _interface as s"
     yield f"from ._parameters import {', '.join(bases)}"
     for structure, (kind, base) in CLASSES.items():
         found = list(fields_of(header, structure))
@@ -243,7 +242,6 @@ def classes(header):
         yield f"class {kind}({base}):"
         yield from documentation(header, header.titles[structure],
                                  [(name, comment) for name, _, comment in found])
-        yield f"    _structure = s.{structure}\n"
         yield from (f"    {name}: {kind_of}" for name, kind_of, _ in found)
 
 

@@ -6,7 +6,6 @@
 #include <sonject/version.h>
 
 #include "base/file.h"
-#include "base/memory.h"
 #include "dataset/run.h"
 #include "inject/checkpoints.h"
 #include "schema/scene_file.h"

@@ -11,10 +11,8 @@
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "base/report.h"
-#include "inject/checkpoints.h"
 #include "inject/impulses.h"
 #include "inject/scene_hash.h"
-#include "inject/swath.h"
 #include "schema/scene_file.h"
 
 /* Shares of a run's progress. */

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <sonject/scene.h>
+
 #include "base/memory.h"
 #include "base/report.h"
 

@@ -9,8 +9,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "scene/params.h"
-
 #include "base/report.h"
 
 #define WATER_LAYERS_MAX 4096

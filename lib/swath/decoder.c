@@ -13,7 +13,6 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "base/memory.h"
 
 #define WAITS_PER_SECOND 10
 

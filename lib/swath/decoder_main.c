@@ -1,7 +1,6 @@
 /* The program sonject-decoder: answers what the library asks, over the socket that is its standard
  * input, until that ends. */
 #define _POSIX_C_SOURCE 200809L
-#include <errno.h>
 #include <poll.h>
 #include <pthread.h>
 #include <stdio.h>

@@ -431,7 +431,6 @@ static const struct key_case {
      .other = "objects[0].material={fluid: {density: 8, speed: 4}}"},
 #define A_PART(keys) "objects[0]={parts: [{" keys "}]}"
 #define A_SPHERE     "shape: sphere, diameter: 1"
-#define A_CYLINDER   "shape: cylinder, length: 1, diameter: 0.5"
     {"objects[].target", SOURCE_ROOT "/tools/targets/oil_drum.yaml", O(U32, shape),
      .number = SHAPE_PARTS, .other = "objects[0]={}"},
     {"objects[].parts[].name", "left ear", P(TEXT, shape.name), .text = "left ear",
@@ -440,9 +439,8 @@ static const struct key_case {
      .other = A_PART("diameter: 1")},
     {"objects[].parts[].diameter", "30 cm", P(DOUBLE, shape.diameter_m), .number = 0.3,
      .other = A_PART("shape: sphere")},
-#define SOLID       SOURCE_ROOT "/tests/unit/tetrahedron.obj"
-#define A_MESH      "objects[0]={shape: mesh, mesh: {file: '" SOLID "'}}"
-#define A_MESH_PART A_PART("shape: mesh, mesh: {file: '" SOLID "'}")
+#define SOLID  SOURCE_ROOT "/tests/unit/tetrahedron.obj"
+#define A_MESH "objects[0]={shape: mesh, mesh: {file: '" SOLID "'}}"
     {"objects[].mesh", SOLID, M(PATH, name), .text = SOLID, .other = "objects[0]={shape: mesh}"},
     {"objects[].mesh.file", SOLID, M(PATH, name), .text = SOLID,
      .other = "objects[0]={shape: mesh}"},

@@ -2,7 +2,7 @@
 
 import ctypes
 from dataclasses import fields
-from typing import Any, ClassVar, Type, TypeVar
+from typing import Any, Type, TypeVar
 
 import numpy
 import numpy.typing
@@ -24,8 +24,6 @@ def _from_c(kind: Any, value: Any) -> Any:
 
 class Answer:
     """What the library tells in a C structure; fields have the names of the structure's."""
-
-    _structure: ClassVar[Type[ctypes.Structure]]
 
     @classmethod
     def from_structure(cls: Type[Self], structure: Any) -> Self:
