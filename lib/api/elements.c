@@ -28,8 +28,7 @@ sonject_status sonject_elements_describe(sonject_context *context, const sonject
     struct report *report = &context->report;
     const struct scene *scene;
     CHECK(scene_use(report, handle, &scene));
-    const uint64_t limit = (uint64_t)1 << 31;
-    if (rows > limit || columns > limit || rows * columns > limit)
+    if (rows > SWATH_PIXELS_MAX || columns > SWATH_PIXELS_MAX || rows * columns > SWATH_PIXELS_MAX)
         return report_failure(report, SONJECT_ERROR_INPUT, "a patch has at most 2^31 pixels");
     struct injection_input input;
     memset(&input, 0, sizeof input);

@@ -17,9 +17,8 @@ sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
         return report_failure(report, SONJECT_ERROR_ARGUMENT,
                               "pixels need struct_size, data, a known kind and a row stride that "
                               "is a multiple of 4");
-    const uint64_t limit = (uint64_t)1 << 31;
-    if (pixels->rows == 0 || pixels->columns == 0 || pixels->rows > limit ||
-        pixels->columns > limit || pixels->rows * pixels->columns > limit)
+    if (pixels->rows == 0 || pixels->columns == 0 || pixels->rows > SWATH_PIXELS_MAX ||
+        pixels->columns > SWATH_PIXELS_MAX || pixels->rows * pixels->columns > SWATH_PIXELS_MAX)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the patch of %llu x %llu pixels is empty or has more than 2^31",
                               (unsigned long long)pixels->rows,

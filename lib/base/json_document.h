@@ -32,6 +32,16 @@ struct json_member {
 json_t *json_object_of(const struct json_member *members);
 #define JSON_OBJECT(...) json_object_of((const struct json_member[]){__VA_ARGS__, {NULL, NULL}})
 
+/* Members of JSON that are members of a structure. */
+#define JSON_NUMBER(structure, member)                                                             \
+    {                                                                                              \
+#member, json_number((structure)->member)                                                  \
+    }
+#define JSON_COUNT(structure, member)                                                              \
+    {                                                                                              \
+#member, json_count((structure)->member)                                                   \
+    }
+
 /* An array of numbers. */
 json_t *json_counts(const uint64_t *values, size_t count);
 

@@ -11,6 +11,9 @@
 extern "C" {
 #endif
 
+/* Elements of an array. */
+#define COUNT(list) (sizeof(list) / sizeof(list)[0])
+
 /* *product = a * b; false if that overflows (then *product is unchanged). */
 bool size_multiply(size_t a, size_t b, size_t *product);
 

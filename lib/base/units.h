@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#define DEGREES_PER_RADIAN 57.29577951308232
+
 enum quantity {
     QUANTITY_NUMBER,      /* no unit allowed */
     QUANTITY_LENGTH,      /* m (bare numbers too); km, cm, mm */

@@ -21,19 +21,14 @@
 #define SERIES_FILE "series.npy"
 #define DOCUMENT    "elements.json"
 
-#define NUMBER(structure, member)                                                                  \
-    {                                                                                              \
-#member, json_number((structure)->member)                                                  \
-    }
-
 static json_t *array_document(const sonject_elements_params *elements)
 {
-    return JSON_OBJECT({"pings", json_count(elements->pings)}, NUMBER(elements, first_ping_m),
-                       NUMBER(elements, ping_spacing_m), NUMBER(elements, transmitter_offset_m),
-                       NUMBER(elements, transmitter_length_m),
-                       {"hydrophones", json_count(elements->hydrophones)},
-                       NUMBER(elements, first_hydrophone_m), NUMBER(elements, hydrophone_spacing_m),
-                       NUMBER(elements, hydrophone_length_m), NUMBER(elements, aspect_limit_rad));
+    return JSON_OBJECT(
+        JSON_COUNT(elements, pings), JSON_NUMBER(elements, first_ping_m),
+        JSON_NUMBER(elements, ping_spacing_m), JSON_NUMBER(elements, transmitter_offset_m),
+        JSON_NUMBER(elements, transmitter_length_m), JSON_COUNT(elements, hydrophones),
+        JSON_NUMBER(elements, first_hydrophone_m), JSON_NUMBER(elements, hydrophone_spacing_m),
+        JSON_NUMBER(elements, hydrophone_length_m), JSON_NUMBER(elements, aspect_limit_rad));
 }
 
 /* Where the scene's image lies, for those who want to see the same. */
@@ -73,10 +68,10 @@ static json_t *series_document(const struct scene *scene, const struct injection
                          : "pressure over that of the source at 1 m, without absorption")},
         {"source_level_db", is_pressure ? json_number(elements->source_level_db) : json_null()},
         {"heard", json_string(resynthesises ? "targets and seabed" : "targets")},
-        {"samples", json_count(layout->samples)}, NUMBER(elements, sampling_rate_hz),
-        NUMBER(elements, first_time_s), NUMBER(layout, sound_speed_mps),
-        NUMBER(layout, centre_frequency_hz), NUMBER(layout, bandwidth_hz),
-        NUMBER(layout, along_track_resolution_m),
+        {"samples", json_count(layout->samples)}, JSON_NUMBER(elements, sampling_rate_hz),
+        JSON_NUMBER(elements, first_time_s), JSON_NUMBER(layout, sound_speed_mps),
+        JSON_NUMBER(layout, centre_frequency_hz), JSON_NUMBER(layout, bandwidth_hz),
+        JSON_NUMBER(layout, along_track_resolution_m),
         {"altitude_m", json_number(scene->sonar.altitude_m)},
         {"side",
          json_string(scene->geometry.side == SONJECT_SIDE_STARBOARD ? "starboard" : "port")},

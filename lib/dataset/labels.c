@@ -12,8 +12,7 @@
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "base/text.h"
-
-#define DEGREES_PER_RADIAN 57.29577951308232
+#include "base/units.h"
 
 sonject_status class_names_take(struct class_names *classes, struct report *report,
                                 const char *name, uint32_t *number)

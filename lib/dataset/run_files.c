@@ -13,24 +13,12 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
+#include "base/units.h"
 #include "dataset/labels.h"
 #include "image/plot.h"
 #include "swath/geometry_notes.h"
 #include "swath/image_head.h"
 #include "swath/raster_file.h"
-
-#define DEGREES_PER_RADIAN 57.29577951308232
-#define COUNT(array)       (sizeof(array) / sizeof(array)[0])
-
-/* Members of JSON that are members of a structure. */
-#define NUMBER(structure, member)                                                                  \
-    {                                                                                              \
-#member, json_number((structure)->member)                                                  \
-    }
-#define WHOLE(structure, member)                                                                   \
-    {                                                                                              \
-#member, json_count((structure)->member)                                                   \
-    }
 
 /* Horizontal range of a level seabed at a slant range; NaN before the first return. */
 static double level_ground_range(const struct run_facts *facts, double slant_range_m)
@@ -55,8 +43,8 @@ static json_t *swath_box_document(const struct run_facts *facts, const sonject_b
     const double width = (double)box->columns * geometry->column_spacing_m;
     const double ground = level_ground_range(facts, near);
     return JSON_OBJECT(
-        {"row", json_count(row)}, {"column", json_count(column)}, WHOLE(box, rows),
-        WHOLE(box, columns), {"along_track_m", json_number(along)},
+        {"row", json_count(row)}, {"column", json_count(column)}, JSON_COUNT(box, rows),
+        JSON_COUNT(box, columns), {"along_track_m", json_number(along)},
         {"slant_range_m", json_number(near)}, {"ground_range_m", json_number(ground)},
         {"length_m", json_number((double)box->rows * geometry->row_spacing_m)},
         {"width_m", json_number(width)},
@@ -72,7 +60,7 @@ static json_t *level_document(const sonject_object_params *object,
     return JSON_OBJECT({"set_by", json_string(kinds[truth->level_kind])},
                        {"asked_db", is_physical ? json_null() : json_number(object->level_db)},
                        {"gain_db", json_number(truth->level_gain_db)},
-                       NUMBER(truth, over_seabed_db), NUMBER(truth, seabed_strength_db));
+                       JSON_NUMBER(truth, over_seabed_db), JSON_NUMBER(truth, seabed_strength_db));
 }
 
 /* Which edge a box of the patch touches: "swath", where the swath goes on "patch", or null. */
@@ -126,29 +114,31 @@ static json_t *object_document(const struct run_facts *facts, uint32_t index)
         {"class", json_text(object->class_name)}, {"shape", json_string(shape_name(object->shape))},
         {"length_m", size_document(object->length_m, truth->overall_length_m)},
         {"width_m", size_document(object->width_m, truth->overall_width_m)},
-        NUMBER(object, diameter_m),
+        JSON_NUMBER(object, diameter_m),
         {"body_height_m", size_document(object->height_m, truth->overall_height_m)},
-        NUMBER(object, top_diameter_m), NUMBER(object, front_height_m),
-        {"cuts", json_count(object->cut_count)}, {"pose", pose}, NUMBER(truth, burial_m),
-        NUMBER(truth, along_track_m), NUMBER(truth, slant_range_m), NUMBER(truth, ground_range_m),
-        NUMBER(truth, height_m),
+        JSON_NUMBER(object, top_diameter_m), JSON_NUMBER(object, front_height_m),
+        {"cuts", json_count(object->cut_count)}, {"pose", pose}, JSON_NUMBER(truth, burial_m),
+        JSON_NUMBER(truth, along_track_m), JSON_NUMBER(truth, slant_range_m),
+        JSON_NUMBER(truth, ground_range_m), JSON_NUMBER(truth, height_m),
         {"grazing_deg", json_number(truth->grazing_rad * DEGREES_PER_RADIAN)},
-        NUMBER(truth, transmission_loss_db), {"row", json_number(row)},
+        JSON_NUMBER(truth, transmission_loss_db), {"row", json_number(row)},
         {"column", json_number(column)}, {"visible", json_boolean(truth->is_visible)},
         {"highlight_cut", json_boolean(truth->highlight_is_cut)},
         {"shadow_cut", json_boolean(truth->shadow_is_cut)},
         {"highlight_cut_by", cut_document(facts, truth->highlight_is_cut, &truth->highlight)},
         {"shadow_cut_by", cut_document(facts, truth->shadow_is_cut, &truth->shadow)},
-        NUMBER(truth, highlight_visible), NUMBER(truth, shadow_visible), {"dimensions", dimensions},
+        JSON_NUMBER(truth, highlight_visible), JSON_NUMBER(truth, shadow_visible),
+        {"dimensions", dimensions},
         {"position", position_document(facts, row, truth->ground_range_m)},
         {"highlight", swath_box_document(facts, &truth->highlight)},
         {"shadow", swath_box_document(facts, &truth->shadow)},
-        {"box", swath_box_document(facts, &truth->both)}, WHOLE(truth, highlight_pixels),
-        WHOLE(truth, shadow_pixels), NUMBER(truth, target_strength_db),
-        NUMBER(truth, highlight_contrast_db), NUMBER(truth, shadow_contrast_db),
-        NUMBER(truth, highlight_along_m), NUMBER(truth, highlight_range_m),
-        NUMBER(truth, shadow_along_m), NUMBER(truth, shadow_range_m), NUMBER(truth, gap_range_m),
-        NUMBER(truth, dim_range_m), {"level", level_document(object, truth)});
+        {"box", swath_box_document(facts, &truth->both)}, JSON_COUNT(truth, highlight_pixels),
+        JSON_COUNT(truth, shadow_pixels), JSON_NUMBER(truth, target_strength_db),
+        JSON_NUMBER(truth, highlight_contrast_db), JSON_NUMBER(truth, shadow_contrast_db),
+        JSON_NUMBER(truth, highlight_along_m), JSON_NUMBER(truth, highlight_range_m),
+        JSON_NUMBER(truth, shadow_along_m), JSON_NUMBER(truth, shadow_range_m),
+        JSON_NUMBER(truth, gap_range_m), JSON_NUMBER(truth, dim_range_m),
+        {"level", level_document(object, truth)});
 }
 
 /* The measured image around the objects, and what was put in with it. */
@@ -160,10 +150,10 @@ static json_t *blending_document(const sonject_statistics *statistics)
                     {"k_shape", json_number(statistics->seabed_shape)},
                     {"row_correlation", json_number(statistics->seabed_row_correlation)},
                     {"column_correlation", json_number(statistics->seabed_column_correlation)});
-    return JSON_OBJECT({"seabed_estimated", seabed}, NUMBER(statistics, along_track_resolution_m),
-                       NUMBER(statistics, range_resolution_m), NUMBER(statistics, looks),
-                       NUMBER(statistics, noise_floor_db),
-                       NUMBER(statistics, saturation_amplitude));
+    return JSON_OBJECT(
+        {"seabed_estimated", seabed}, JSON_NUMBER(statistics, along_track_resolution_m),
+        JSON_NUMBER(statistics, range_resolution_m), JSON_NUMBER(statistics, looks),
+        JSON_NUMBER(statistics, noise_floor_db), JSON_NUMBER(statistics, saturation_amplitude));
 }
 
 /* Where the patch's corners lie on the map: first row near and far, last row far and near; null
@@ -189,9 +179,9 @@ static json_t *corners_document(const struct run_facts *facts)
 sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path)
 {
     const struct region *patch = &facts->swath->patch;
-    json_t *place = JSON_OBJECT({"row", json_count(patch->first_row)},
-                                {"column", json_count(patch->first_column)}, WHOLE(patch, rows),
-                                WHOLE(patch, columns), {"corners", corners_document(facts)});
+    json_t *place = JSON_OBJECT(
+        {"row", json_count(patch->first_row)}, {"column", json_count(patch->first_column)},
+        JSON_COUNT(patch, rows), JSON_COUNT(patch, columns), {"corners", corners_document(facts)});
     json_t *objects = json_array();
     for (uint32_t i = 0; i < facts->result->object_count; i++)
         json_append(&objects, object_document(facts, i));
@@ -213,13 +203,13 @@ static json_t *options_document(const struct scene *scene)
         {"mode", json_string(resynthesises ? "resynthesise" : "composite")},
         {"columns",
          json_string(scene->injection.column_rule == SONJECT_COLUMNS_PAPER ? "paper" : "focused")},
-        NUMBER(injection, ray_scale), NUMBER(injection, influence_db),
+        JSON_NUMBER(injection, ray_scale), JSON_NUMBER(injection, influence_db),
         {"match_response", json_string(matches_response ? "image" : "nominal")},
         {"match_looks", injection->match_looks == 0.0 ? json_string("image")
                                                       : json_number(injection->match_looks)},
         {"match_saturation", json_string(matches_saturation ? "image" : "full_scale")},
         {"seabed_lambert_db", json_number(10.0 * log10(scene->seabed.lambert))},
-        WHOLE(injection, interactions),
+        JSON_COUNT(injection, interactions),
         {"estimator", json_string(is_brute ? "brute_force" : "connect")});
 }
 
@@ -279,12 +269,12 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
         {"form", json_number(statistics->form_s)}, {"inject", json_number(statistics->inject_s)},
         {"write", json_number(facts->write_s)}, {"total", json_number(facts->total_s)});
     const bool resynthesises = facts->scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
-    json_t *comparison =
-        resynthesises
-            ? JSON_OBJECT(NUMBER(statistics, level_change_db), NUMBER(statistics, input_contrast),
-                          NUMBER(statistics, output_contrast),
-                          NUMBER(statistics, histogram_distance), NUMBER(statistics, correlation))
-            : json_null();
+    json_t *comparison = resynthesises ? JSON_OBJECT(JSON_NUMBER(statistics, level_change_db),
+                                                     JSON_NUMBER(statistics, input_contrast),
+                                                     JSON_NUMBER(statistics, output_contrast),
+                                                     JSON_NUMBER(statistics, histogram_distance),
+                                                     JSON_NUMBER(statistics, correlation))
+                                       : json_null();
     const char *band = facts->scene->band;
     json_t *document = JSON_OBJECT(
         {"sonject", json_string(sonject_version())}, {"scene_hash", json_string(facts->scene_hash)},
@@ -293,13 +283,13 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
         {"band", band ? json_text(band) : json_null()},
         {"bands", band ? bands_document(facts->scene) : json_null()},
         {"image", json_text(facts->image_name)}, {"labels", labels_document(facts->label_formats)},
-        {"times_s", times}, WHOLE(statistics, pings), WHOLE(statistics, rays),
-        WHOLE(statistics, ray_queries), WHOLE(statistics, impulses),
+        {"times_s", times}, JSON_COUNT(statistics, pings), JSON_COUNT(statistics, rays),
+        JSON_COUNT(statistics, ray_queries), JSON_COUNT(statistics, impulses),
         {"peak_memory_bytes", json_count((uint64_t)kilobytes * 1024)},
-        NUMBER(statistics, noise_floor_db), {"blending", blending_document(statistics)},
+        JSON_NUMBER(statistics, noise_floor_db), {"blending", blending_document(statistics)},
         {"input_clipped_pixels", json_count(statistics->input_clipped)},
         {"output_clipped_pixels", json_count(statistics->output_clipped)},
-        WHOLE(statistics, changed_pixels), {"seabed_comparison", comparison});
+        JSON_COUNT(statistics, changed_pixels), {"seabed_comparison", comparison});
     if (!band) {
         json_object_del(document, "band");
         json_object_del(document, "bands");

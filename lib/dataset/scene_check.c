@@ -6,14 +6,14 @@
 
 #include "base/memory.h"
 #include "base/text.h"
+#include "base/units.h"
 #include "inject/injection.h"
 #include "inject/swath.h"
 #include "scene/placement.h"
 #include "user/shape_check.h"
 
-#define DEGREES_PER_RADIAN 57.29577951308232
-#define MAP_ROWS           20
-#define MAP_COLUMNS        64
+#define MAP_ROWS    20
+#define MAP_COLUMNS 64
 
 static double grazing_degrees(const struct patch_view *view, double processor_range)
 {

@@ -21,6 +21,7 @@
 #define SCENE_SHAPES_MAX       1024 /* parts and objects of one shape: STREAMS_OF_PAIR */
 #define SCENE_MESHES_MAX       64
 #define SCENE_INTERACTIONS_MAX 8
+#define SWATH_PIXELS_MAX       (UINT64_C(1) << 31)
 
 /* Shapes that users wrote: code that several share is kept once. */
 #define USER_SNIPPETS_MAX 64

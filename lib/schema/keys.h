@@ -9,6 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/memory.h"
 #include "base/units.h"
 #include "scene/scene.h"
 #include "schema/tables.h"
@@ -92,7 +93,6 @@ struct section {
 
 /* ---- How rows are written; STRUCTURE is the type of their section's structure. */
 
-#define COUNT(list) (sizeof(list) / sizeof(list)[0])
 #define ROWS(table) .fields = (table), .count = COUNT(table) /* of a section */
 
 #define MEMBER(its)             .offset = offsetof(STRUCTURE, its)

@@ -8,9 +8,8 @@
 #include "swath/geometry_notes.h"
 #include "swath/xtf_file.h"
 
-#define SIDE_MAX         (UINT32_C(1) << 20)
-#define SWATH_PIXELS_MAX (UINT64_C(1) << 31)
-#define SWATH_INDEX_MAX  (UINT64_C(1) << 40)
+#define SIDE_MAX        (UINT32_C(1) << 20)
+#define SWATH_INDEX_MAX (UINT64_C(1) << 40)
 
 /* ---- The image. */
 

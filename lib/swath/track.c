@@ -6,14 +6,14 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/units.h"
 
-#define PI                 3.14159265358979323846
-#define METRES_PER_DEGREE  (1852.0 * 60.0)
-#define EQUATOR_RADIUS_M   6378137.0
-#define ECCENTRICITY_2     6.69437999014e-3 /* of the WGS 84 ellipsoid, squared */
-#define HIGHEST_LATITUDE   89.9             /* beyond, east and west mean nothing */
-#define COURSE_ROWS        25.0             /* to either side, of which the course is the mean */
-#define DEGREES_PER_RADIAN (180.0 / PI)
+#define PI                3.14159265358979323846
+#define METRES_PER_DEGREE (1852.0 * 60.0)
+#define EQUATOR_RADIUS_M  6378137.0
+#define ECCENTRICITY_2    6.69437999014e-3 /* of the WGS 84 ellipsoid, squared */
+#define HIGHEST_LATITUDE  89.9             /* beyond, east and west mean nothing */
+#define COURSE_ROWS       25.0             /* to either side, of which the course is the mean */
 
 bool xtf_ping_has_position(const struct xtf_ping *ping)
 {

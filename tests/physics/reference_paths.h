@@ -91,7 +91,7 @@ struct reference_request {
     struct ranges ranges; /* of half the path length; at most REFERENCE_BINS */
     bool is_focused; /* columns in the middle between first and last hit, receiver broadside of it:
                         that lengthens the first leg, whose angles stay those of its own column */
-    uint64_t rays, seed;
+    uint64_t rays;
 };
 
 /* Energies in m^2 over the whole track by number of the path and range, of 32 batches. */
