@@ -167,11 +167,8 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
         step.direction = hit->back;
         step.weight = SPLAT(0.0f);
     }
-    struct vector3 reflected;
-    reflected.x = 2.0f * cosine * hit->normal.x - hit->back.x;
-    reflected.y = 2.0f * cosine * hit->normal.y - hit->back.y;
-    reflected.z = 2.0f * cosine * hit->normal.z - hit->back.z;
-    step.direction = choose3(is_specular, reflected, step.direction);
+    step.direction =
+        choose3(is_specular, reflected3(reversed3(hit->back), hit->normal), step.direction);
     step.weight = SELECT(is_specular, energy / probability, step.weight / left);
     step.is_specular = is_specular;
     return step;

@@ -42,11 +42,6 @@ FUNCTION void transfer_tube(struct tube *tube, vfloat distance)
     transfer_side(&tube->across, distance);
 }
 
-FUNCTION struct vector3 reflected3(struct vector3 v, struct vector3 normal)
-{
-    return along3(v, normal, -2.0f * dot3(v, normal));
-}
-
 /* d' = d - 2 (d.n) n, varied in d and n. direction: of the ray that comes; cosine: -(d.n);
  * normal_change: of the surface where the ray beside meets it. */
 FUNCTION void reflect_side(struct tube_side *side, struct vector3 direction, struct vector3 normal,

@@ -258,12 +258,9 @@ static sonject_status form_rough(struct echoes *echoes, struct tracer *tracer,
 static bool has_rough_part(const struct tracer *tracer, uint32_t number)
 {
     const struct placed_object *object = &tracer->objects[number];
-    for (uint32_t i = 0; i < object->part_count; i++) {
-        const sonject_material_params *material =
-            tracer->placements[object->first_part + i].material;
-        if (material->lambert != 0.0 || material->glossy_albedo != 0.0)
+    for (uint32_t i = 0; i < object->part_count; i++)
+        if (material_is_rough(tracer->placements[object->first_part + i].material))
             return true;
-    }
     return false;
 }
 
