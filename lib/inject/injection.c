@@ -62,11 +62,6 @@ static sonject_status check_combination(struct report *report, const struct scen
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the coherent seabed map needs a complex image: use map: intensity "
                               "or despeckled");
-    if (scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
-        (scene->injection.mode != SONJECT_MODE_RESYNTHESISE || scene->sonar.transducer_side_m <= 0))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the brute force estimator needs mode: resynthesise and a transducer "
-                              "that rays can hit: give its side");
     for (uint32_t i = 0; i < scene->object_count; i++)
         if (scene->objects[i].level_kind != SONJECT_LEVEL_PHYSICAL &&
             scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE)

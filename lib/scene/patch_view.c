@@ -40,12 +40,6 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
     const double reference = scene_reference_speed(scene);
     if (rows == 0 || columns == 0)
         return report_failure(report, SONJECT_ERROR_INPUT, "the patch has no pixels");
-    if (scene->surface.water_depth_m > 0.0 &&
-        !(scene->surface.water_depth_m > scene->sonar.altitude_m))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the sea surface, %.3f m over the seabed, is not above the sonar at "
-                              "%.3f m: correct the surface's depth or the altitude",
-                              scene->surface.water_depth_m, scene->sonar.altitude_m);
     view->rows = rows;
     view->columns = columns;
     view->row_spacing_m = geometry->row_spacing_m;

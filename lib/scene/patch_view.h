@@ -35,8 +35,8 @@ double scene_reference_speed(const struct scene *scene);
 
 /* The scene's geometry shifted to the region that starts at first_row, first_column of the swath.
  * water is borrowed. The patch may begin in the water column where water and seabed are level and
- * plain. Errors: INPUT (patch not beyond the altitude, no pixels, sea surface not above
- * the sonar, sonar not above the straight water's targets). */
+ * plain. Errors: INPUT (patch not beyond the altitude, no pixels, sonar not above the
+ * straight water's targets). */
 sonject_status patch_view_init(struct patch_view *view, struct report *report,
                                const struct scene *scene, const struct water *water,
                                double first_row, double first_column, size_t rows, size_t columns);
