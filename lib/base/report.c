@@ -74,14 +74,6 @@ static void fail(struct check *check, const char *key, const char *others, const
     check->status = SONJECT_ERROR_INPUT;
 }
 
-void check_failure(struct check *check, const char *key, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    fail(check, key, "", format, arguments);
-    va_end(arguments);
-}
-
 void check_relation(struct check *check, const char *key, const char *others, const char *format,
                     ...)
 {
@@ -96,7 +88,7 @@ void check_within(struct check *check, const char *key, double value, double min
                   double maximum, const char *unit)
 {
     if (!(value >= minimum && value <= maximum))
-        check_failure(check, key, "must be %g...%g%s, not %g", minimum, maximum, unit, value);
+        check_relation(check, key, "", "must be %g...%g%s, not %g", minimum, maximum, unit, value);
 }
 
 void check_positive_length(struct check *check, const char *key, double value_m)

@@ -111,10 +111,8 @@ struct check {
     sonject_status status;
 };
 
-/* The message "<key> <what>"; check->status becomes INPUT. */
-void check_failure(struct check *check, const char *key, const char *format, ...) REPORT_FORMAT(3);
-
-/* The same where the value is wrong only beside those of others. */
+/* The message "<key> <what>"; check->status becomes INPUT. others: as hear is told, "" for
+ * none. */
 void check_relation(struct check *check, const char *key, const char *others, const char *format,
                     ...) REPORT_FORMAT(4);
 

@@ -229,7 +229,7 @@ static sonject_status read_box(struct reader *reader, const struct tree_node *no
 static sonject_status read_avoid(struct reader *reader, const struct tree_node *node,
                                  void *structure)
 {
-    static const struct list boxes = {BOXES_MAX, " of {row: , column: , rows: , columns: }",
+    static const struct list boxes = {0, BOXES_MAX, " of {row: , column: , rows: , columns: }",
                                       read_box};
     return read_list(reader, node, &boxes, structure);
 }
@@ -274,7 +274,7 @@ static sonject_status read_swath(struct reader *reader, const struct tree_node *
 static sonject_status read_swaths(struct reader *reader, const struct tree_node *node,
                                   void *structure)
 {
-    static const struct list swaths = {SWATHS_MAX, "", read_swath};
+    static const struct list swaths = {0, SWATHS_MAX, "", read_swath};
     if (node->kind != TREE_LIST || node->count == 0 || node->count > SWATHS_MAX)
         return refuse_value(reader, node, "must be a list of 1 to %d entries", SWATHS_MAX);
     return read_list(reader, node, &swaths, structure);
@@ -369,7 +369,7 @@ static sonject_status read_output(struct reader *reader, const struct tree_node 
 static sonject_status read_outputs(struct reader *reader, const struct tree_node *node,
                                    void *structure)
 {
-    static const struct list words = {SIZE_MAX, "", read_output};
+    static const struct list words = {0, SIZE_MAX, "", read_output};
     struct campaign *campaign = structure;
     if (strcmp(reader->path.text, "outputs") == 0)
         campaign->outputs &= OUTPUT_ALWAYS | OUTPUT_BIT(OUTPUT_YOLO) | OUTPUT_BIT(OUTPUT_VOC);

@@ -223,12 +223,12 @@ typedef struct sonject_material_params {
                     54.6 * loss dB a wavelength */
 } sonject_material_params;
 
-/* Fills in a named material of schema/materials.c ('_' and '-' do for a blank). Errors: ARGUMENT
- * (NULL, unknown name; *material is unchanged). */
-sonject_status sonject_material_named(const char *name, sonject_material_params *material);
+/* Fills in a named material of schema/materials.c ('_' and '-' do for a blank); false for
+ * an unknown name: *material is unchanged. */
+bool material_named(const char *name, sonject_material_params *material);
 
-/* Name number index of all that sonject_material_named knows, NULL beyond the last. Static. */
-const char *sonject_material_name(uint32_t index);
+/* Name number index of all that material_named knows, NULL beyond the last. Static. */
+const char *material_name(uint32_t index);
 
 /* The seabed, whose reflectivity comes from the measured image: the plane z = 0, or a relief about
  * it. */

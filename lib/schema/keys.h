@@ -211,9 +211,10 @@ sonject_status read_section(struct reader *reader, const struct section *section
 /* Whether a status is one after which nothing more is read. */
 bool reading_ends(sonject_status status);
 
-/* Reads each entry of a list of at most so many. how: is said of what is no list. */
+/* Reads each entry of a list of at least and at most so many. how: is said of what is no list, or
+ * has fewer. */
 struct list {
-    size_t most;
+    size_t least, most;
     const char *how; /* behind "must be a list" */
     sonject_status (*read)(struct reader *reader, const struct tree_node *node, void *structure);
 };

@@ -45,13 +45,11 @@ static bool is_same_name(const char *given, const char *name)
     return *given == 0;
 }
 
-sonject_status sonject_material_named(const char *name, sonject_material_params *material)
+bool material_named(const char *name, sonject_material_params *material)
 {
-    if (!name || !material)
-        return SONJECT_ERROR_ARGUMENT;
     if (is_same_name(name, "steel")) {
         section_defaults(&material_section, material, NULL);
-        return SONJECT_OK;
+        return true;
     }
     for (size_t i = 0; i < COUNT(materials); i++) {
         const struct named_material *named = &materials[i];
@@ -64,12 +62,12 @@ sonject_status sonject_material_named(const char *name, sonject_material_params 
         material->loss = named->loss;
         material->roughness_m = named->roughness_m;
         material->lambert = named->lambert;
-        return SONJECT_OK;
+        return true;
     }
-    return SONJECT_ERROR_ARGUMENT;
+    return false;
 }
 
-const char *sonject_material_name(uint32_t index)
+const char *material_name(uint32_t index)
 {
     return index == 0 ? "steel" : index <= COUNT(materials) ? materials[index - 1].name : NULL;
 }
@@ -82,10 +80,10 @@ sonject_status read_material_name(struct reader *reader, const struct tree_node 
     const char *name = read_text(reader, node);
     if (!name)
         return SONJECT_ERROR_INPUT;
-    if (sonject_material_named(name, structure) == SONJECT_OK)
+    if (material_named(name, structure))
         return SONJECT_OK;
-    while (sonject_material_name((uint32_t)list.count)) {
-        names[list.count] = sonject_material_name((uint32_t)list.count);
+    while (material_name((uint32_t)list.count)) {
+        names[list.count] = material_name((uint32_t)list.count);
         list_word(&list, names[list.count]);
     }
     return refuse_word(reader, node, name, &list, nearest_word(name, names, list.count));

@@ -6,18 +6,6 @@
 #include "schema/keys.h"
 #include "schema/tables.h"
 
-/* That the node is a list of 1...WATER_LAYERS_MAX entries. example: for the message. */
-static sonject_status check_list(struct reader *reader, const struct tree_node *node,
-                                 const char *example)
-{
-    if (node->kind != TREE_LIST || node->count == 0)
-        return refuse_value(reader, node, "must be a list, such as %s", example);
-    if (node->count > WATER_LAYERS_MAX)
-        return refuse_value(reader, node, "has %zu entries; at most %d are possible", node->count,
-                            WATER_LAYERS_MAX);
-    return SONJECT_OK;
-}
-
 static void replace_layers(struct scene *scene, struct water_layer *layers, size_t count)
 {
     free(scene->water_layers);
@@ -30,6 +18,7 @@ static void replace_layers(struct scene *scene, struct water_layer *layers, size
 struct numbers {
     double *values; /* owned; NULL: not given */
     size_t count;
+    enum quantity quantity;
 };
 
 struct profile_text {
@@ -37,35 +26,33 @@ struct profile_text {
     struct numbers heights, depths, speeds;
 };
 
-static sonject_status read_numbers(struct reader *reader, const struct tree_node *node,
-                                   enum quantity quantity, const char *example,
-                                   struct numbers *numbers)
+static sonject_status read_number(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
 {
-    CHECK(check_list(reader, node, example));
-    numbers->values = allocate_array(node->count, sizeof *numbers->values);
-    CHECK_MEMORY(reader->report, numbers->values, "a sound-speed profile");
-    numbers->count = node->count;
-    sonject_status status = SONJECT_OK;
-    for (size_t i = 0; i < node->count; i++) {
-        const size_t before = key_path_add_index(&reader->path, i);
-        if (read_quantity(reader, &node->entries[i].value, quantity, &numbers->values[i]) !=
-            SONJECT_OK)
-            status = SONJECT_ERROR_INPUT;
-        key_path_shorten(&reader->path, before);
-    }
-    return status;
+    struct numbers *numbers = structure;
+    return read_quantity(reader, node, numbers->quantity, &numbers->values[numbers->count++]);
 }
 
-#define NUMBERS_READER(name, member, quantity, example)                                            \
+static sonject_status read_numbers(struct reader *reader, const struct tree_node *node,
+                                   enum quantity quantity, const char *how, struct numbers *numbers)
+{
+    const struct list list = {1, WATER_LAYERS_MAX, how, read_number};
+    numbers->quantity = quantity;
+    numbers->values = allocate_array(node->count, sizeof *numbers->values);
+    CHECK_MEMORY(reader->report, numbers->values, "a sound-speed profile");
+    return read_list(reader, node, &list, numbers);
+}
+
+#define NUMBERS_READER(name, member, quantity, how)                                                \
     static sonject_status name(struct reader *reader, const struct tree_node *node,                \
                                void *structure)                                                    \
     {                                                                                              \
         struct profile_text *text = structure;                                                     \
-        return read_numbers(reader, node, quantity, example, &text->member);                       \
+        return read_numbers(reader, node, quantity, how, &text->member);                           \
     }
-NUMBERS_READER(read_heights, heights, QUANTITY_LENGTH, "[0 m, 12 m, 15 m]")
-NUMBERS_READER(read_depths, depths, QUANTITY_LENGTH, "[0 m, 12 m, 15 m]")
-NUMBERS_READER(read_speeds, speeds, QUANTITY_SPEED, "[1490 m/s, 1500 m/s]")
+NUMBERS_READER(read_heights, heights, QUANTITY_LENGTH, ", such as [0 m, 12 m, 15 m]")
+NUMBERS_READER(read_depths, depths, QUANTITY_LENGTH, ", such as [0 m, 12 m, 15 m]")
+NUMBERS_READER(read_speeds, speeds, QUANTITY_SPEED, ", such as [1490 m/s, 1500 m/s]")
 
 /* The message about entry `index` of the list that is the section's `key`. */
 static sonject_status refuse_entry(struct reader *reader, const struct tree_node *node,
@@ -230,9 +217,10 @@ static sonject_status read_layer(struct reader *reader, const struct tree_node *
 static sonject_status read_layers(struct reader *reader, const struct tree_node *node,
                                   void *structure)
 {
-    static const struct list list = {WATER_LAYERS_MAX, "", read_layer};
+    static const struct list list = {
+        1, WATER_LAYERS_MAX,
+        ", such as [{bottom: 0 m, sound_speed: 1490 m/s}, {bottom: 12 m, ...}]", read_layer};
     (void)structure;
-    CHECK(check_list(reader, node, "[{bottom: 0 m, sound_speed: 1490 m/s}, {bottom: 12 m, ...}]"));
     struct water_layer *layers = allocate_array(node->count, sizeof *layers);
     CHECK_MEMORY(reader->report, layers, "layers of water");
     replace_layers(reader->scene, layers, 0);

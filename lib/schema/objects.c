@@ -229,7 +229,7 @@ static sonject_status read_part(struct reader *reader, const struct tree_node *n
 static sonject_status read_part_list(struct reader *reader, const struct tree_node *node,
                                      struct part_list list)
 {
-    static const struct list parts = {SIZE_MAX, "; start each part with '- '", read_part};
+    static const struct list parts = {0, SIZE_MAX, "; start each part with '- '", read_part};
     if (list.level > LEVELS_MAX)
         return refuse_value(reader, node, "nested too deeply; parts may be %d levels deep",
                             LEVELS_MAX);
@@ -467,7 +467,7 @@ static sonject_status read_object(struct reader *reader, const struct tree_node 
 
 sonject_status read_objects(struct reader *reader, const struct tree_node *node, void *structure)
 {
-    static const struct list objects = {SCENE_OBJECTS_MAX, "; start each object with '- '",
+    static const struct list objects = {0, SCENE_OBJECTS_MAX, "; start each object with '- '",
                                         read_object};
     return tree_is_null(node) ? SONJECT_OK : read_list(reader, node, &objects, structure);
 }

@@ -226,7 +226,7 @@ static sonject_status read_entries(struct reader *reader, const struct field *fi
                                    const struct tree_node *node, void *structure)
 {
     char how[60];
-    const struct list list = {field->maximum, how, read_entry};
+    const struct list list = {0, field->maximum, how, read_entry};
     struct entries entries = {field, (char *)structure + field->offset,
                               (uint32_t *)(void *)((char *)structure + field->count_offset)};
     snprintf(how, sizeof how, "; start each %s with '- '", field->unit);
@@ -417,7 +417,7 @@ sonject_status read_list(struct reader *reader, const struct tree_node *node,
                          const struct list *list, void *structure)
 {
     sonject_status status = SONJECT_OK;
-    if (node->kind != TREE_LIST)
+    if (node->kind != TREE_LIST || node->count < list->least)
         return refuse_value(reader, node, "must be a list%s", list->how);
     if (node->count > list->most)
         return refuse_value(reader, node, "has %zu entries; at most %zu are possible", node->count,

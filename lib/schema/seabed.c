@@ -241,7 +241,7 @@ static sonject_status read_feature(struct reader *reader, const struct tree_node
 static sonject_status read_relief(struct reader *reader, const struct tree_node *node,
                                   void *structure)
 {
-    static const struct list relief = {RELIEF_FEATURES_MAX, "; start each feature with '- '",
+    static const struct list relief = {0, RELIEF_FEATURES_MAX, "; start each feature with '- '",
                                        read_feature};
     return tree_is_null(node) ? SONJECT_OK : read_list(reader, node, &relief, structure);
 }

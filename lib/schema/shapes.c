@@ -204,7 +204,7 @@ static sonject_status read_parameter(struct reader *reader, const struct tree_no
 static sonject_status read_parameters(struct reader *reader, const struct tree_node *node,
                                       void *structure)
 {
-    static const struct list parameters = {SONJECT_USER_PARAMETERS_CAPACITY,
+    static const struct list parameters = {0, SONJECT_USER_PARAMETERS_CAPACITY,
                                            " of numbers, [1, 0.5]", read_parameter};
     return read_list(reader, node, &parameters, structure);
 }

@@ -36,7 +36,6 @@ static sonject_status read_response_file(struct reader *reader, const struct tre
                                          struct response_table *response)
 {
     const struct table_format format = {.names = {position_m, time_s, "real", "imaginary"},
-                                        .required = 1,
                                         .samples_max = RESPONSE_SAMPLES_MAX,
                                         .bytes_max = TABLE_BYTES_MAX,
                                         .samples_min = 4,
@@ -68,7 +67,6 @@ static sonject_status read_motion_file(struct reader *reader, const struct tree_
                                        const char *column, double most, struct motion_table *motion)
 {
     const struct table_format format = {.names = {"along_track_m", NULL, column},
-                                        .required = 1,
                                         .samples_max = MOTION_SAMPLES_MAX,
                                         .bytes_max = TABLE_BYTES_MAX,
                                         .samples_min = 2,

@@ -75,11 +75,8 @@ static size_t split(char *line, char separator, char *fields[COLUMNS_MAX])
 /* "height_m or depth_m, and sound_speed_mps" */
 static void list_names(const struct table_format *format, char *text, size_t capacity)
 {
-    size_t length =
-        (size_t)snprintf(text, capacity, "%s%s%s", format->names[0], format->names[1] ? " or " : "",
-                         format->names[1] ? format->names[1] : "");
-    for (size_t i = 2; i < 2 + format->required && length < capacity; i++)
-        length += (size_t)snprintf(text + length, capacity - length, ", and %s", format->names[i]);
+    snprintf(text, capacity, "%s%s%s, and %s", format->names[0], format->names[1] ? " or " : "",
+             format->names[1] ? format->names[1] : "", format->names[2]);
 }
 
 static sonject_status check_names(const struct table_reader *reader)
@@ -88,13 +85,10 @@ static sonject_status check_names(const struct table_reader *reader)
     char names[120];
     const bool has_first = reader->place[0] != COLUMNS_MAX;
     const bool has_second = reader->place[1] != COLUMNS_MAX;
-    bool is_complete = has_first || has_second;
     if (has_first && has_second)
         return refuse_line(reader, "", "both %s and %s are there; rename one", format->names[0],
                            format->names[1]);
-    for (size_t i = 2; i < 2 + format->required; i++)
-        is_complete = is_complete && reader->place[i] != COLUMNS_MAX;
-    if (is_complete)
+    if ((has_first || has_second) && reader->place[2] != COLUMNS_MAX)
         return SONJECT_OK;
     list_names(format, names, sizeof names);
     return refuse_line(reader, "", "this line must name the columns, among them %s", names);
@@ -309,7 +303,6 @@ enum {
 
 static const struct table_format profile_format = {
     .names = {"height_m", "depth_m", "sound_speed_mps"},
-    .required = 1,
     .samples_max = PROFILE_SAMPLES_MAX,
     .bytes_max = PROFILE_BYTES_MAX};
 

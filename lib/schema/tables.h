@@ -11,10 +11,9 @@
 #define TABLE_COLUMNS_MAX 4
 
 /* The columns that a table is read for, by name: one of the first two (the second may be NULL),
- * `required` of those after them, from the third on, and the others if they are there. */
+ * the third, and the fourth if it is there. */
 struct table_format {
     const char *names[TABLE_COLUMNS_MAX]; /* NULL where there are fewer */
-    size_t required;
     size_t samples_max, bytes_max;
     /* What is asked of all samples alike: how many at least, the magnitude of each column's numbers
      * at most (0: any), and whether those of the first column rise. */

@@ -119,10 +119,8 @@ static void fuzz_snippet(const struct fuzzer *fuzzer, const uint8_t *bytes, size
 
 static void fuzz_table(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
 {
-    static const struct table_format format = {.names = {"depth", "time", "speed", "other"},
-                                               .required = 1,
-                                               .samples_max = 100,
-                                               .bytes_max = 4000};
+    static const struct table_format format = {
+        .names = {"depth", "time", "speed", "other"}, .samples_max = 100, .bytes_max = 4000};
     struct report report = {{0}, NULL, NULL};
     struct number_table table;
     (void)fuzzer;

@@ -174,7 +174,7 @@ CLAIM(the_change_is_that_of_the_second_interaction)
         const struct injection_result *result[2];
         sonject_object_params *object = sea_add(sea, SHAPE_CAPSULE, 2.3, 0.0, 0.3);
         object->burial_m = 0.1;
-        assert_int_equal(sonject_material_named("steel", &object->material), SONJECT_OK);
+        assert_true(material_named("steel", &object->material));
         sea_ready(sea);
         sea->injection->seed = seed + 1;
         sea->injection->order_energies = true;

@@ -128,10 +128,10 @@ static void test_named_materials(void **state)
     write_scene(folder, small, strlen(small));
     if (read_scene(folder, overrides, COUNT(overrides)) != SONJECT_OK)
         fail_msg("%s", folder->report.message);
-    assert_int_equal(sonject_material_named("concrete", &expected), SONJECT_OK);
+    assert_true(material_named("concrete", &expected));
     expected.roughness_m = 0.007;
     assert_memory_equal(&folder->scene.objects[0].material, &expected, sizeof expected);
-    assert_int_equal(sonject_material_named("medium sand", &expected), SONJECT_OK);
+    assert_true(material_named("medium sand", &expected));
     material = &folder->scene.seabed.forward;
     assert_true(isnan(material->lambert) && material->roughness_m == 0.005);
     assert_true(material->density_ratio == expected.density_ratio);
@@ -142,7 +142,7 @@ static void test_named_materials(void **state)
     material = &folder->scene.objects[0].material;
     assert_int_equal(material->reflection_kind, SONJECT_REFLECTION_CONSTANT);
     assert_true(material->reflection == 0.75);
-    assert_int_equal(sonject_material_named("silt", &expected), SONJECT_OK);
+    assert_true(material_named("silt", &expected));
     material = &folder->scene.seabed.forward;
     assert_true(material->lambert == 0.0625 && material->loss == 0.03125);
     assert_true(material->density_ratio == expected.density_ratio);
