@@ -128,17 +128,18 @@ sonject_status json_document_write(struct report *report, json_t *document, size
     return status;
 }
 
-/* Where memory is out jansson may find fault with the text: it is asked twice, and memory is. */
+/* Where memory is out jansson may find fault with the text, or leave out a byte of it and tell
+ * nothing: it is asked twice, and memory is. */
 static json_t *load_json(const char *text, size_t bytes, bool *lacks_memory)
 {
     json_t *document = json_loadb(text, bytes, 0, NULL);
-    *lacks_memory = false;
-    if (document)
-        return document;
-    document = json_loadb(text, bytes, 0, NULL);
-    void *room = document ? NULL : allocate_array(bytes + 1, 2);
-    *lacks_memory = !document && !room;
+    json_t *again = json_loadb(text, bytes, 0, NULL);
+    void *room = allocate_array(bytes + 1, 2);
+    *lacks_memory = !room || ((document || again) && !json_equal(document, again));
     free(room);
+    json_decref(again);
+    if (*lacks_memory)
+        give_up(&document);
     return document;
 }
 

@@ -67,13 +67,13 @@ static bool place_line(struct tree *tree, const struct image_plan *plan, const c
     for (size_t i = 0; i < plan->key_count; i++) {
         const char *text = plan->keys[i].text;
         const size_t length = strcspn(text, "=");
-        if (plan->keys[i].place.line == 0 || strncmp(line, text, length) != 0 ||
+        if (plan->keys[i].place.line == 0 || strncmp(line, text, length) != 0 || !line[length] ||
             !strchr(":.[", line[length]))
             continue;
         char key[256];
         const size_t end = strcspn(line, ":");
         snprintf(key, sizeof key, "%.*s", (int)end, line);
-        tree_failure(tree, plan->keys[i].place, key, "%s", line + end + (line[end] == ':') + 1);
+        tree_failure(tree, plan->keys[i].place, key, "%s", line[end] ? line + end + 2 : line + end);
         return true;
     }
     return false;

@@ -231,7 +231,7 @@ static bool read_head(struct data_set *set)
     }
     set->rows = json_integer_value(json_object_get(set->head, "rows"));
     set->columns = json_integer_value(json_object_get(set->head, "columns"));
-    return json_integer_value(json_object_get(set->head, "sonject_campaign")) == FORMAT_VERSION &&
+    return json_is_integer(json_object_get(set->head, "sonject_campaign")) &&
            has_plain(set->head, "sonject") && has_plain(set->head, "hash") && is_side(set->rows) &&
            is_side(set->columns) && json_is_array(outputs) &&
            are_swaths(json_object_get(set->head, "swaths")) &&
@@ -250,6 +250,11 @@ sonject_status data_set_open(struct data_set *set, struct report *report, const 
     if (!file_exists(path))
         return input_failure(report, folder, "holds no campaign: there is no campaign.json");
     CHECK(json_document_read(report, path, &set->head));
+    const json_t *version = json_object_get(set->head, "sonject_campaign");
+    if (json_is_integer(version) && json_integer_value(version) != FORMAT_VERSION)
+        return report_failure(
+            report, SONJECT_ERROR_ARGUMENT,
+            "%s: is of another version of sonject: choose another folder, or remove it", folder);
     return read_head(set)
                ? SONJECT_OK
                : input_failure(report, path, "damaged; remove it and run the campaign again");
@@ -352,6 +357,14 @@ static sonject_status add_image(struct coco_file *coco, uint64_t id, bool has_an
                                             (uint64_t)set->columns));
     for (size_t i = 0; status == SONJECT_OK && i < json_array_size(list); i++) {
         json_t *annotation = json_incref(json_array_get(list, i));
+        if (!json_is_object(annotation)) {
+            json_decref(annotation);
+            status = input_failure(set->report, set->folder,
+                                   "the record of image %" PRIu64
+                                   " is damaged; remove it and run the campaign again",
+                                   id);
+            break;
+        }
         json_add(&annotation, "id", json_count(coco->entries + 1));
         json_add(&annotation, "image_id", json_count(id));
         status = add_entry(coco, annotation);
