@@ -5,7 +5,7 @@
 #include "reference_solids.h"
 #include "scene/shapes/shape.h"
 
-#define RAYS 16000
+#define RAYS 16000 /* 20 at each of 800 solids: what fails for one in a hundred is met 8 times */
 
 /* Positions carry single precision's 6e-8 of a few metres, some of which add up. Whoever passes an
  * outline closer than this may err. */

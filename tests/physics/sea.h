@@ -231,8 +231,8 @@ struct energies sea_changed_chains(struct sea *sea, const struct ranges *ranges,
                                    uint64_t first_seed, int seeds,
                                    void (*change)(struct bench *bench, struct chain_trace *trace));
 
-/* Compares an order's energies with those expected, where these are a fiftieth of the most; errors
- * of so many of them at least must be below a share of them. */
+/* Compares an order's energies with those expected, where these are a fiftieth of the most, range by
+ * range and their sum; errors of so many of them at least must be below a share of them. */
 void expect_energies(const char *what, const struct energies *measured, int order,
                      const struct estimate *expected, int count, double systematic, double resolved,
                      int least);

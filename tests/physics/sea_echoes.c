@@ -204,7 +204,8 @@ void expect_energies(const char *what, const struct energies *measured, int orde
                      int least)
 {
     int compared = 0;
-    double most = 0.0;
+    double most = 0.0, expected_sum = 0.0;
+    struct estimate sum = {0.0, 0.0};
     for (int range = 0; range < count; range++)
         most = fmax(most, expected[range].mean);
     for (int range = 0; range < count; range++) {
@@ -216,6 +217,10 @@ void expect_energies(const char *what, const struct energies *measured, int orde
         expect_estimate("energy, m2", energy, expected[range].mean,
                         systematic * expected[range].mean);
         compared += energy.error < resolved * expected[range].mean;
+        sum = (struct estimate){sum.mean + energy.mean, hypot(sum.error, energy.error)};
+        expected_sum += expected[range].mean;
     }
+    print_message("%s, order %d, these ranges: ", what, order + 1);
+    expect_estimate("energy, m2", sum, expected_sum, systematic * expected_sum);
     assert_true(most > 0.0 && compared >= least);
 }

@@ -202,7 +202,7 @@ CLAIM(the_seabeds_level_over_aspects)
  * too. */
 CLAIM(a_highlight_stays_where_it_is)
 {
-    static const double heights[] = {0.5, 1.5};
+    static const double heights[] = {0.0, 1.5};
     static const double rows[] = {MIDDLE_ROW, 1.0};
     for (size_t i = 0; i < 2; i++) {
         struct tile_sums sums[2];

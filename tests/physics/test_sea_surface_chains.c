@@ -10,7 +10,7 @@
 #define ROWS     160
 #define COLUMNS  480
 #define DEPTH_M  15.0
-#define RAYS     600000 /* of each fan of the reference */
+#define RAYS     300000 /* of each fan of the reference */
 
 static const struct ranges ranges = {RANGES, MIDDLE_M - 0.5 * RANGES, 1.0};
 
@@ -198,7 +198,8 @@ static void find_expected(struct sea *sea, enum convention convention,
 
 /* The surface's rough part and its mirror at once: 1 - exp(-P^2) at right angles is 0.92. Where the
  * library gives a path's reverse its column, it keeps the angles at the far end: 3 %; a bin of
- * 3 mm, shared at either end of a range, is 1 %. Brute force is the paper's own estimator. */
+ * 3 mm, shared at either end of a range, is 1 %. Brute force is the paper's own estimator: few
+ * of its paths meet the source, so that five times the rays know three ranges to 13 %. */
 CLAIM(every_path_has_its_energy)
 {
     static const struct {
