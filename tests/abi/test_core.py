@@ -1,13 +1,16 @@
-"""The core alone: a library that loads no C++ runtime, and the Python package that pip makes of it."""
+"""The core alone: a library that loads no C++ runtime, and the Python package that pip makes of it;
+and what a package of the whole would hold."""
+import json
 import os
 import pathlib
 import shutil
 import subprocess
+import tomllib
 import zipfile
 
 import pytest
 
-from test_installed import MODULES
+from test_installed import BUILD, MODULES
 from test_interface import LIBRARY, SOURCE, exported_symbols
 
 READERS = os.environ.get("SONJECT_READERS")
@@ -96,3 +99,20 @@ print(sonject.version(), scene.object_count, pathlib.Path(_library.load()._name)
                             check=False, env={**variables, "PYTHONPATH": str(installed)})
     assert answer.returncode == 0, answer.stderr
     assert answer.stdout.split() == ["0.1.0", "1", str(installed / "sonject")]
+
+
+def test_a_wheel_with_image_files_has_their_module(tmp_path):
+    """By what meson would install; building it all again would show no more."""
+    if not (BUILD / "lib" / "openimageio.so").exists():
+        pytest.skip("built without image files")
+    project = tomllib.loads((SOURCE / "pyproject.toml").read_text(encoding="utf-8"))
+    settings = project["tool"]["meson-python"]["args"]
+    subprocess.run(["meson", "setup", tmp_path, SOURCE, *settings["setup"]], check=True,
+                   capture_output=True)
+    plan = json.loads((tmp_path / "meson-info" / "intro-install_plan.json").read_text())
+    entries = [entry for kind in plan.values() for entry in kind.values()]
+    assert settings["install"] == ["--tags=python-runtime"]
+    assert {entry["destination"] for entry in entries if entry["tag"] == "python-runtime"} == {
+        *(f"{{py_platlib}}/{name}" for name in MODULES), "{py_platlib}/sonject/libsonject.so",
+        "{py_platlib}/sonject/openimageio.so", "{py_platlib}/sonject/tiff_png.so",
+        "{py_platlib}/sonject/sonject-decoder"}

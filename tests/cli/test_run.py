@@ -33,7 +33,6 @@ RESULTS = {
     "run.json",
 }
 DEMO = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "tools" / "scenes" / "demo.yaml"
-LARGE = ["--set", "input.synthetic.rows=1200"]  # 2.3 MB of pixels
 # So many rays that signals arrive while it traces.
 SLOW = ["--set", "injection.rays=512"]
 
@@ -230,14 +229,17 @@ def limit_file_size():
     resource.setrlimit(resource.RLIMIT_FSIZE, (2**21, 2**21))
 
 
-def test_a_limit_on_file_sizes_leaves_nothing_half(sonject, tmp_path):
+def test_a_limit_on_file_sizes_leaves_nothing_half(sonject, scene, tmp_path):
+    uniform = f"uniform: {{rows: 5000, columns: {COLUMNS}}}"  # 2.6 MB of pixels
+    patch = f"patch: {{row: 2000, column: 0, rows: {ROWS}, columns: {COLUMNS}}}\n"
+    scene.write_text(scene.read_text().replace("path: swath.tif", uniform) + patch)
     # The first run fills the driver's cache, which is not what this is about.
-    sonject.done("run", DEMO, *LARGE, "-o", "first")
-    answer = sonject("run", DEMO, *LARGE, "-o", "result", preexec_fn=limit_file_size)
+    sonject.done("run", scene, "-o", "first")
+    answer = sonject("run", scene, "-o", "result", preexec_fn=limit_file_size)
     assert_refused(answer, 5, "result")
     assert not (tmp_path / "result" / "run.json").exists()
     assert {path.name for path in files_below(tmp_path / "result")} <= RESULTS
-    sonject.done("run", DEMO, *LARGE, "-o", "result")
+    sonject.done("run", scene, "-o", "result")
     assert contents(tmp_path / "result") == contents(tmp_path / "first")
 
 
@@ -302,7 +304,9 @@ def test_a_signal_while_the_driver_compiles_stops_a_run(scene, tmp_path, environ
     cold = {**environment, "XDG_CACHE_HOME": str(tmp_path), "POCL_CACHE_DIR": str(tmp_path / "pocl")}
     process = subprocess.Popen([COMMAND, "run", scene, "-o", "result"], cwd=tmp_path, env=cold,
                                text=True, stderr=subprocess.PIPE)
-    time.sleep(0.5)
+    while process.poll() is None and not (tmp_path / "pocl").exists():
+        time.sleep(0.01)
+    time.sleep(0.3)
     process.send_signal(signal.SIGTERM)
     said = process.communicate()[1]
     assert process.returncode == 85, said

@@ -14,7 +14,7 @@ from test_run import RESULTS, contents, read_rest, start_and_wait_for_the_bar
 from test_stages import command
 
 # So many that a launch is cut in slices, between which a run stops.
-MANY_RAYS = ["--set", "injection.rays=256"]
+MANY_RAYS = ["--set", "injection.rays=128"]
 
 
 def checkpoints(folder):
@@ -83,7 +83,7 @@ def test_what_is_not_a_shard_of_the_run_is_refused(sonject, scene, tmp_path, who
     sound = first.read_bytes()
     changed = bytearray(sound)
     changed[len(sound) // 2] ^= 1
-    for bad in (b"", sound[:-1], sound + b"\0", sound[: len(sound) // 2], bytes(changed)):
+    for bad in (sound[: len(sound) // 2], bytes(changed)):  # others in tests/unit/test_sums_file.c
         first.write_bytes(bad)
         assert_refused(sonject("merge", "result"), 3, first.name, "damaged, or cut short")
         assert second.exists() and not (tmp_path / "result" / "run.json").exists()

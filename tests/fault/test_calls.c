@@ -14,7 +14,7 @@
 #include "work.h"
 
 #ifndef POINTS
-#define POINTS 24
+#define POINTS 12
 #endif
 
 /* What an OpenCL call may say; a device that is lost stays so. */

@@ -15,7 +15,7 @@
 #define THREADS  4
 #define CONTEXTS 100
 #ifndef RUNS
-#define RUNS 20 /* processes; a slow checker may be compiled with fewer */
+#define RUNS 8 /* processes; a slow checker may be compiled with fewer */
 #endif
 #define SECONDS     300             /* after which a child that waits for ever is ended */
 #define IMAGES      (2 * RUNS + 10) /* of each of two threads */
