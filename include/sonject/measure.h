@@ -156,6 +156,12 @@ typedef struct sonject_contact_measures {
     double gap_range_error_pixels;
     double dim_range_error_pixels;
     sonject_box box; /* that was measured */
+    /* Whether somebody who labels images sees it: its brightest mean of 3 x 3 pixels over the
+     * 99.5 % quantile of equal means of the seabed within 24 pixels; and its darkest of 3 rows and
+     * 7 columns over the 0.5 % quantile, below 0 if it is darker than all but the darkest seabed.
+     * NaN: no such part, or hardly any seabed about it. */
+    double highlight_visibility_db;
+    double shadow_visibility_db;
 } sonject_contact_measures;
 
 /* Measures a contact in pixels in memory, linear. box: pixels of the image, around highlight and

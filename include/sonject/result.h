@@ -147,6 +147,9 @@ typedef struct sonject_object_truth {
     double shadow_range_m;
     double gap_range_m;
     double dim_range_m;
+    double highlight_visibility_db; /* as in sonject_contact_measures, but of the image itself, with
+                                       its speckle: what somebody who labels it sees */
+    double shadow_visibility_db;
 } sonject_object_truth;
 
 /* Truth of object number index. truth->struct_size must be set. Errors: ARGUMENT. */

@@ -140,6 +140,8 @@ static sonject_status add_object(struct statistics_page *page, size_t split, con
                   {"target strength of objects", "dB", "target_strength_db"},
                   {"contrast of highlights", "dB", "highlight_contrast_db"},
                   {"contrast of shadows", "dB", "shadow_contrast_db"},
+                  {"visibility of highlights", "dB", "highlight_visibility_db"},
+                  {"visibility of shadows", "dB", "shadow_visibility_db"},
                   {"pixels of highlights", "", "highlight_pixels"},
                   {"pixels of shadows", "", "shadow_pixels"}};
     size_t i;

@@ -138,6 +138,7 @@ static json_t *object_document(const struct run_facts *facts, uint32_t index)
         JSON_NUMBER(truth, highlight_along_m), JSON_NUMBER(truth, highlight_range_m),
         JSON_NUMBER(truth, shadow_along_m), JSON_NUMBER(truth, shadow_range_m),
         JSON_NUMBER(truth, gap_range_m), JSON_NUMBER(truth, dim_range_m),
+        JSON_NUMBER(truth, highlight_visibility_db), JSON_NUMBER(truth, shadow_visibility_db),
         {"level", level_document(object, truth)});
 }
 

@@ -233,6 +233,54 @@ static sonject_status measure_object(const struct tracer *tracer, const struct p
     return status;
 }
 
+static float intensity_at(const struct injection_result *result, size_t i)
+{
+    const float *image = result->image;
+    if (!result->is_complex)
+        return image[i] * image[i];
+    return image[2 * i] * image[2 * i] + image[2 * i + 1] * image[2 * i + 1];
+}
+
+/* The part of a box within another, counted from there. */
+static struct window_box box_within(const sonject_box *box, const struct window_box *wide)
+{
+    return (struct window_box){(size_t)box->first_row - wide->first_row,
+                               (size_t)box->first_column - wide->first_column, (size_t)box->rows,
+                               (size_t)box->columns};
+}
+
+/* How the object shows amid the image's own speckle. */
+static sonject_status see_object(struct report *report, const struct injection_result *result,
+                                 sonject_object_truth *truth)
+{
+    const struct window_box box = {truth->both.first_row, truth->both.first_column,
+                                   truth->both.rows, truth->both.columns};
+    const struct window_box wide =
+        box_with_margin(&box, SEABED_MARGIN, result->rows, result->columns);
+    const struct window_box highlight = box_within(&truth->highlight, &wide);
+    const struct window_box shadow = box_within(&truth->shadow, &wide);
+    struct contact_visibility visibility;
+    struct contact_image image;
+    float *intensity = allocate_array(wide.rows, wide.columns * sizeof *intensity);
+    CHECK_MEMORY(report, intensity, "an object's measures");
+    for (size_t i = 0; i < wide.rows * wide.columns; i++)
+        intensity[i] = intensity_at(result, (wide.first_row + i / wide.columns) * result->columns +
+                                                wide.first_column + i % wide.columns);
+    sonject_status status =
+        contact_image_create(&image, report, intensity, wide.rows, wide.columns);
+    for (size_t i = 0; status == SONJECT_OK && i < wide.rows * wide.columns; i++)
+        image.taken[i] = result->labels[(wide.first_row + i / wide.columns) * result->columns +
+                                        wide.first_column + i % wide.columns];
+    THEN(status, measure_visibility(&image, report, &highlight, &shadow, &visibility));
+    if (status == SONJECT_OK) {
+        truth->highlight_visibility_db = visibility.highlight_db;
+        truth->shadow_visibility_db = visibility.shadow_db;
+    }
+    contact_image_clear(&image);
+    free(intensity);
+    return status;
+}
+
 static sonject_status measure_objects(const struct tracer *tracer, const struct patch_level *level,
                                       const struct speckle_statistics *speckle,
                                       const struct echoes *echoes, struct injection_result *result)
@@ -244,8 +292,11 @@ static sonject_status measure_objects(const struct tracer *tracer, const struct 
         truth->highlight_along_m = truth->highlight_range_m = NAN;
         truth->shadow_along_m = truth->shadow_range_m = NAN;
         truth->gap_range_m = truth->dim_range_m = NAN;
-        if (truth->is_visible)
-            status = measure_object(tracer, level, speckle, echoes, i, truth);
+        truth->highlight_visibility_db = truth->shadow_visibility_db = NAN;
+        if (!truth->is_visible)
+            continue;
+        status = measure_object(tracer, level, speckle, echoes, i, truth);
+        THEN(status, see_object(tracer->report, result, truth));
     }
     return status;
 }

@@ -47,7 +47,9 @@ const struct contact_number contact_numbers[CONTACT_NUMBERS] = {
     NUMBER(shadow_along_error_pixels),
     NUMBER(shadow_range_error_pixels),
     NUMBER(gap_range_error_pixels),
-    NUMBER(dim_range_error_pixels)};
+    NUMBER(dim_range_error_pixels),
+    NUMBER(highlight_visibility_db),
+    NUMBER(shadow_visibility_db)};
 
 static sonject_box public_box(const struct window_box *box)
 {
@@ -197,6 +199,29 @@ static sonject_status contact_measure(struct report *report, struct contact_imag
     return SONJECT_OK;
 }
 
+static struct window_box inner_box(const sonject_box *box)
+{
+    return (struct window_box){(size_t)box->first_row, (size_t)box->first_column, (size_t)box->rows,
+                               (size_t)box->columns};
+}
+
+/* How well each of so many contacts is seen, when all are known: none is another's seabed. Errors:
+ * MEMORY. */
+static sonject_status contacts_add_visibility(struct report *report,
+                                              const struct contact_image *image,
+                                              sonject_contact_measures *measures, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        struct contact_visibility visibility;
+        const struct window_box highlight = inner_box(&measures[i].highlight);
+        const struct window_box shadow = inner_box(&measures[i].shadow);
+        CHECK(measure_visibility(image, report, &highlight, &shadow, &visibility));
+        measures[i].highlight_visibility_db = visibility.highlight_db;
+        measures[i].shadow_visibility_db = visibility.shadow_db;
+    }
+    return SONJECT_OK;
+}
+
 /* The seabed's speckle in all that no contact was found in so far, for so many contacts. Errors:
  * MEMORY. */
 static sonject_status contacts_add_seabed(struct report *report, const struct contact_image *image,
@@ -226,6 +251,7 @@ sonject_status measure_one_contact(struct report *report, const float *intensity
     place.is_near = !box;
     sonject_status status = contact_image_create(&image, report, intensity, rows, columns);
     THEN(status, contact_measure(report, &image, &place, row_spacing_m, column_spacing_m, found));
+    THEN(status, contacts_add_visibility(report, &image, found, 1));
     THEN(status, contacts_add_seabed(report, &image, found, 1));
     contact_image_clear(&image);
     return status;
@@ -421,6 +447,7 @@ sonject_status measure_listed_contacts(struct report *report, const sonject_meas
     THEN(status, looks ? find_contacts(report, &list, pow(10.0, 0.1 * params->find_contrast_db),
                                        &image, count, measures, &count, &left_off)
                        : measure_list(report, &list, &image, measures));
+    THEN(status, contacts_add_visibility(report, &image, measures, count));
     THEN(status, contacts_add_seabed(report, &image, measures, count));
     THEN(status,
          write_list(report, params->image ? params->image : "", measures, count, left_off, text));

@@ -114,6 +114,20 @@ sonject_status measure_contact_sizes(struct contact_image *image, struct report 
                                      const struct contact_place *place,
                                      struct contact_sizes *sizes);
 
+/* dB; NaN: no such part, or too little seabed about it. */
+struct contact_visibility {
+    double highlight_db; /* its brightest mean of 3 x 3 pixels over the 99.5 % quantile of equal
+                            means of seabed */
+    double shadow_db;    /* its darkest mean of 3 rows and 7 columns over the 0.5 % quantile */
+};
+
+/* How well the parts in these boxes (rows 0: there is none) can be seen amid the seabed within
+ * SEABED_MARGIN of them, which is what is not taken. Errors: MEMORY. */
+sonject_status measure_visibility(const struct contact_image *image, struct report *report,
+                                  const struct window_box *highlight,
+                                  const struct window_box *shadow,
+                                  struct contact_visibility *visibility);
+
 /* A connected area that is HIGHLIGHT_OVER_SEABED and more over the seabed around it. */
 struct bright_area {
     struct window_box box;

@@ -79,7 +79,7 @@ struct contact_number {
     size_t offset;
 };
 
-#define CONTACT_NUMBERS  30
+#define CONTACT_NUMBERS  32
 #define COMPARED_NUMBERS 24 /* the first ones: the others are standard errors */
 
 extern const struct contact_number contact_numbers[CONTACT_NUMBERS];
