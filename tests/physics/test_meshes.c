@@ -457,6 +457,7 @@ static size_t lay_rings(struct sea *sea, bool is_shared)
     struct rough_trace trace;
     size_t bytes = 0;
     sea->injection->interactions = 2;
+    sea->injection->ray_scale = 0.2;
     for (uint32_t i = 0; i < RINGS; i++) {
         struct mesh_sample sample;
         sonject_object_params *object = sea_add(sea, SHAPE_MESH, 0.0, 0.0, 0.0);
