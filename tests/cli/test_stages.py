@@ -95,8 +95,11 @@ def test_the_stages_of_other_sonars_seas_and_images(sonject, scene, tmp_path, sw
     if "input.complex=true" in chosen:
         pixels = numpy.stack([swath, swath[::-1]], axis=2)
         (tmp_path / "swath.tif").write_bytes(images.tiff_bytes(pixels))
+    has_shards = "seabed.relief" in chosen[0] or "injection.columns=paper" in chosen
+    if has_shards:
+        scene.write_text(scene.read_text() + PARTS)
     compare_with_run(sonject, tmp_path, scene, *options_of(chosen))
-    if "seabed.relief" in chosen[0] or "injection.columns=paper" in chosen:
+    if has_shards:
         compare_shards_with_run(sonject, tmp_path, scene, *options_of(chosen))
     told = json.loads((tmp_path / "run" / "run.json").read_text())["options"]["columns"]
     assert told == ("paper" if "injection.columns=paper" in chosen else "focused")
