@@ -519,12 +519,8 @@ static void on_scenes_with(unsigned flags, body *run)
     struct bench bench;
     width_count = bench_widths(widths);
     bench_open(&bench, ROWS, COLUMNS, 18.0);
-    sonject_context_params params;
-    memset(&params, 0, sizeof params);
-    params.struct_size = sizeof params;
-    params.device_name = bench_device;
     for (size_t w = 0; w < width_count; w++) {
-        EXPECT_OK(&bench.report, device_open(&bench.report, &params, &devices[w]));
+        devices[w] = bench_open_device(&bench);
         devices[w]->width = widths[w];
     }
     for (size_t i = 0; i < COUNT(scenes); i++)

@@ -110,29 +110,43 @@ static void expect_same(const struct multibounce_sums *a, const struct multiboun
     }
 }
 
-/* Echoes of one pair; compares them in launches as they come and in small ones. */
+/* At the ends of the row of widths: programs take long to compile (see test_bits.c). */
+static struct device *devices[2];
+static size_t device_count;
+
+/* Echoes of one pair; compares them in launches as they come and, where told to, in small ones. */
 static uint64_t compare_pair(struct bench *bench, const struct multibounce *multibounce,
-                             uint32_t part, const struct image_pair *pair)
+                             uint32_t part, const struct image_pair *pair, bool has_small_ones)
 {
-    static const int32_t chunks[] = {1 << 20, 37};
-    struct multibounce_launch of_pair;
-    struct line_grid grid;
+    struct device *own = bench->tracer.device;
     struct multibounce_sums expected, measured;
-    EXPECT_OK(&bench->report,
-              multibounce_launch_begin(&of_pair, &grid, multibounce, &bench->tracer, part, pair));
-    if (grid.bins.count == 0)
-        return 0;
-    assert_true(multibounce_sums_init(&expected, &grid));
-    const uint64_t impulses = add_as_c(bench, multibounce, &of_pair, &expected);
-    for (size_t i = 0; i < COUNT(chunks); i++) {
-        assert_true(multibounce_sums_init(&measured, &grid));
-        assert_int_equal(add_on_device(bench, multibounce, &of_pair, chunks[i], &measured),
-                         impulses);
-        expect_same(&measured, &expected);
-        multibounce_sums_clear(&measured);
+    uint64_t impulses = 0;
+    size_t d = 0;
+    for (; d < device_count; d++) {
+        struct multibounce_launch of_pair;
+        struct line_grid grid;
+        bench->tracer.device = devices[d];
+        EXPECT_OK(&bench->report, multibounce_launch_begin(&of_pair, &grid, multibounce,
+                                                           &bench->tracer, part, pair));
+        if (grid.bins.count == 0)
+            break;
+        if (d == 0) {
+            assert_true(multibounce_sums_init(&expected, &grid));
+            impulses = add_as_c(bench, multibounce, &of_pair, &expected);
+        }
+        for (int is_small = 0; is_small <= has_small_ones; is_small++) {
+            assert_true(multibounce_sums_init(&measured, &grid));
+            assert_int_equal(
+                add_on_device(bench, multibounce, &of_pair, is_small ? 37 : 1 << 20, &measured),
+                impulses);
+            expect_same(&measured, &expected);
+            multibounce_sums_clear(&measured);
+        }
+        multibounce_launch_end(&of_pair);
     }
-    multibounce_sums_clear(&expected);
-    multibounce_launch_end(&of_pair);
+    bench->tracer.device = own;
+    if (d > 0)
+        multibounce_sums_clear(&expected);
     return impulses;
 }
 
@@ -149,7 +163,7 @@ static void compare_variant(struct bench *bench, const struct variant *variant)
         multibounce_init(&multibounce, &bench->tracer, part);
         image_pairs_begin(&all, &bench->tracer, part, true, 2);
         for (; image_pairs_next(&all, &pair); pairs++)
-            impulses += compare_pair(bench, &multibounce, part, &pair);
+            impulses += compare_pair(bench, &multibounce, part, &pair, impulses == 0);
     }
     print_message("%s: %zu pairs, %llu echoes\n", variant->name, pairs,
                   (unsigned long long)impulses);
@@ -157,25 +171,26 @@ static void compare_variant(struct bench *bench, const struct variant *variant)
     assert_true(impulses > 2000);
 }
 
-/* At the ends of the row of widths: programs take long to compile (see test_bits.c). */
 static void test_multibounce_tallies(void **state)
 {
     uint32_t widths[2];
-    const size_t count = bench_end_widths(widths);
-    for (size_t w = 0; w < count; w++) {
-        struct bench bench;
-        bench_open(&bench, ROWS, COLUMNS, 18.0);
-        bench_set_width(&bench, widths[w]);
-        print_message("width %u\n", (unsigned)widths[w]);
-        for (size_t i = 0; i < COUNT(variants); i++) {
-            scene_clear(&bench.scene);
-            scene_init(&bench.scene);
-            bench_set_layers(&bench, NULL, 0);
-            bench_move(&bench, 18.0);
-            compare_variant(&bench, &variants[i]);
-        }
-        bench_close(&bench);
+    struct bench bench;
+    device_count = bench_end_widths(widths);
+    bench_open(&bench, ROWS, COLUMNS, 18.0);
+    for (size_t d = 0; d < device_count; d++) {
+        devices[d] = bench_open_device(&bench);
+        devices[d]->width = widths[d];
     }
+    for (size_t i = 0; i < COUNT(variants); i++) {
+        scene_clear(&bench.scene);
+        scene_init(&bench.scene);
+        bench_set_layers(&bench, NULL, 0);
+        bench_move(&bench, 18.0);
+        compare_variant(&bench, &variants[i]);
+    }
+    for (size_t d = 0; d < device_count; d++)
+        device_close(&devices[d]);
+    bench_close(&bench);
 }
 
 int main(void)

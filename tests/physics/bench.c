@@ -15,13 +15,15 @@ const char *bench_device;
 /* The one of bench_device that a bench gave back, with its programs. */
 static struct device *free_device;
 
-static void open_device(struct bench *bench)
+struct device *bench_open_device(struct bench *bench)
 {
+    struct device *device = NULL;
     sonject_context_params context;
     memset(&context, 0, sizeof context);
     context.struct_size = sizeof context;
     context.device_name = bench_device;
-    expect_ok(bench, device_open(&bench->report, &context, &bench->tracer.device));
+    expect_ok(bench, device_open(&bench->report, &context, &device));
+    return device;
 }
 
 static void take_device(struct bench *bench)
@@ -30,7 +32,7 @@ static void take_device(struct bench *bench)
         bench->tracer.device = free_device;
         free_device = NULL;
     } else {
-        open_device(bench);
+        bench->tracer.device = bench_open_device(bench);
     }
     bench->device = bench->tracer.device;
     bench->device_width = bench->device->width;
@@ -78,7 +80,7 @@ void bench_set_width(struct bench *bench, uint32_t width)
         take_device(bench);
         return;
     }
-    open_device(bench);
+    bench->tracer.device = bench_open_device(bench);
     bench->tracer.device->width = width;
 }
 

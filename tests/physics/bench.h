@@ -30,6 +30,9 @@ struct bench {
 void bench_open(struct bench *bench, size_t rows, size_t columns, double middle_range_m);
 void bench_close(struct bench *bench);
 
+/* The bench's device once more, without programs, to be closed by device_close. */
+struct device *bench_open_device(struct bench *bench);
+
 /* Gives the bench's device another number of lanes, and none of the programs of before. */
 void bench_set_width(struct bench *bench, uint32_t width);
 
