@@ -109,6 +109,36 @@ static void print_shape_keys(FILE *out)
     fputs(".\n", out);
 }
 
+/* Of a constant reflection there is no fluid. */
+static void print_material(FILE *out, const char *name)
+{
+    sonject_material_params material;
+    assert_true(material_named(name, &material));
+    const bool is_fluid = material.reflection_kind == SONJECT_REFLECTION_FLUID;
+    const double impedance = material.density_ratio * material.speed_ratio;
+    fprintf(out, "| %s |", name);
+    if (is_fluid)
+        fprintf(out, " %g | %g | %g |", material.density_ratio, material.speed_ratio,
+                material.loss);
+    else
+        fputs(" – | – | – |", out);
+    fprintf(out, " %.2f | %g | %.1f |\n",
+            is_fluid ? (impedance - 1.0) / (impedance + 1.0) : material.reflection,
+            1e3 * material.roughness_m, 10.0 * log10(material.lambert));
+}
+
+static void print_materials(FILE *out)
+{
+    fputs("\n## Materials by name\n\nDensity and speed of sound are ratios to the water's. "
+          "Reflection is the share of the amplitude that a smooth surface returns square on; "
+          "roughness lessens it. Lambert is what the rough part returns square on.\n\n"
+          "| name | density | speed | loss | reflection | roughness, mm | lambert, dB |\n"
+          "|---|---|---|---|---|---|---|\n",
+          out);
+    for (uint32_t i = 0; material_name(i); i++)
+        print_material(out, material_name(i));
+}
+
 static void print_reference(FILE *out, const json_t *keys)
 {
     const char *before = "";
@@ -134,6 +164,7 @@ static void print_reference(FILE *out, const json_t *keys)
     }
     fputs(".\n", out);
     print_shape_keys(out);
+    print_materials(out);
 }
 
 /* The whole reference, for free(). */
