@@ -53,15 +53,17 @@ typedef struct sonject_campaign_image {
 SONJECT_API sonject_status sonject_campaign_describe(const sonject_campaign *campaign, uint64_t id,
                                                      sonject_campaign_image *image);
 
-/* The scene of an image, whose input is the swath's file and whose patch is the image. On success
- * *scene is the caller's, for sonject_scene_release; on failure NULL. Errors: ARGUMENT, INPUT,
- * STORAGE, UNSUPPORTED, MEMORY. */
+/* The scene of an image, whose input is the swath's file and whose patch is the image: of the first
+ * draw whose values go with each other. Where its objects do not fit, sonject_campaign_inject draws
+ * anew. On success *scene is the caller's, for sonject_scene_release; on failure NULL. Errors:
+ * ARGUMENT, INPUT, STORAGE, UNSUPPORTED, MEMORY. */
 SONJECT_API sonject_status sonject_campaign_scene(sonject_context *context,
                                                   sonject_campaign *campaign, uint64_t id,
                                                   sonject_scene **scene);
 
-/* Makes an image in memory: sonject_inject of that scene into the image's part of the swath; no
- * file is written. Truth of objects counts the image's pixels. On success *result is the caller's,
+/* Makes an image in memory: sonject_inject of that scene into the image's part of the swath, with
+ * values and places of objects drawn anew, up to 64 times, where they do not fit; no file is
+ * written. Truth of objects counts the image's pixels. On success *result is the caller's,
  * for sonject_result_release; on failure NULL. Errors: ARGUMENT, INPUT, DEVICE, STORAGE, MEMORY,
  * CANCELLED. */
 SONJECT_API sonject_status sonject_campaign_inject(sonject_context *context,

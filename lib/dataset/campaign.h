@@ -240,17 +240,20 @@ struct image_plan {
     size_t key_count;
 };
 
-/* The plan of image id, below campaign->images. plan: for image_plan_clear, also on failure.
+#define ATTEMPTS_MAX 64 /* to draw what goes together */
+
+/* The plan of image id, below campaign->images. attempt: 0, and more where values and places of
+ * objects are drawn anew; all else of it stays. plan: for image_plan_clear, also on failure.
  * Errors: MEMORY. */
 sonject_status image_plan_make(struct report *report, const struct campaign *campaign, uint64_t id,
-                               struct image_plan *plan);
+                               uint32_t attempt, struct image_plan *plan);
 
 /* A plan that tries the ends of all distributions: one with an object of a category (and of
  * clutter number item), in the first place of a swath. step 0: low ends, 1: high ends, and of
- * choices the step-th. */
+ * choices the step-th. attempt above 0: anything between the ends. */
 sonject_status image_plan_try(struct report *report, const struct campaign *campaign,
                               uint32_t swath, uint32_t category, uint32_t item, uint32_t step,
-                              struct image_plan *plan);
+                              uint32_t attempt, struct image_plan *plan);
 void image_plan_clear(struct image_plan *plan);
 
 /* How many steps image_plan_try has use for: two, or as many as the longest choice has entries,
@@ -280,9 +283,19 @@ struct sonject_campaign {
 };
 
 /* Reads the scene that a plan describes. scene: initialised and empty; on failure it is left empty.
- * Errors: as sonject_scene_read, with the place in the campaign file where that says it. */
+ * are_relations: as in struct scene_source. Errors: as sonject_scene_read, with the place in the
+ * campaign file where that says it. */
 sonject_status campaign_read_scene(struct sonject_campaign *campaign, const struct image_plan *plan,
-                                   struct scene *scene);
+                                   struct scene *scene, bool *are_relations);
+
+/* Plans image id and reads its scene, from an attempt on until its values go together: *attempt is
+ * then the one that did. reason: why the first that did not was given up, where there is one; a
+ * line. plan, scene: as of image_plan_make and campaign_read_scene. Errors: as
+ * campaign_read_scene. */
+#define REASON_CAPACITY 240
+sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t id,
+                                   uint32_t *attempt, char reason[REASON_CAPACITY],
+                                   struct image_plan *plan, struct scene *scene);
 
 /* Opens and measures the swaths, splits them, tries scenes with all that may be drawn, and makes
  * the campaign's hash. Errors: INPUT, STORAGE, UNSUPPORTED, MEMORY. */
@@ -297,9 +310,12 @@ struct campaign_image {
     struct scene scene;
     struct swath swath;
     struct injection_result result;
+    uint32_t attempts;            /* that were given up, since values did not go together */
+    char reason[REASON_CAPACITY]; /* of the first */
 };
 
-/* Plans the image, reads its scene and its part of the swath, and injects. Errors: as
+/* Plans the image, reads its scene and its part of the swath, and injects; draws anew, up to
+ * ATTEMPTS_MAX times, what does not go together or does not fit. Errors: as
  * sonject_campaign_inject; the message names the image. */
 sonject_status campaign_image_make(struct device *device, struct sonject_campaign *campaign,
                                    uint64_t id, sonject_progress_function progress, void *user,

@@ -18,15 +18,16 @@ struct trial {
     struct scene scene;
 };
 
-/* trial: for trial_clear, also on failure. */
+/* trial: for trial_clear, also on failure. are_relations: as of campaign_read_scene. */
 static sonject_status trial_read(struct trial *trial, struct sonject_campaign *campaign,
-                                 uint32_t swath, uint32_t category, uint32_t item, uint32_t step)
+                                 uint32_t swath, uint32_t category, uint32_t item, uint32_t step,
+                                 uint32_t attempt, bool *are_relations)
 {
     scene_init(&trial->scene);
     trial->scene.mesh_store = &campaign->meshes;
     CHECK(image_plan_try(campaign->report, &campaign->campaign, swath, category, item, step,
-                         &trial->plan));
-    return campaign_read_scene(campaign, &trial->plan, &trial->scene);
+                         attempt, &trial->plan));
+    return campaign_read_scene(campaign, &trial->plan, &trial->scene, are_relations);
 }
 
 static void trial_clear(struct trial *trial)
@@ -57,7 +58,7 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
     if (status != SONJECT_OK)
         return tree_failure(&campaign->campaign.tree, swath->place, "swaths",
                             "there is no %s that can be read; check its name", swath->path);
-    status = trial_read(&trial, campaign, number, CATEGORY_EMPTY, 0, 0);
+    status = trial_read(&trial, campaign, number, CATEGORY_EMPTY, 0, 0, 0, NULL);
     THEN(status, swath_file_open_array(campaign->report, swath->path, trial.scene.channel,
                                        trial.scene.array, &file));
     if (status == SONJECT_OK) {
@@ -72,11 +73,13 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
 }
 
 static sonject_status try_scene(struct sonject_campaign *campaign, struct hash *hash,
-                                uint32_t swath, uint32_t category, uint32_t item, uint32_t step)
+                                uint32_t swath, uint32_t category, uint32_t item, uint32_t step,
+                                uint32_t attempt, bool *are_relations)
 {
     struct trial trial;
     char text[HASH_TEXT_CAPACITY];
-    sonject_status status = trial_read(&trial, campaign, swath, category, item, step);
+    sonject_status status =
+        trial_read(&trial, campaign, swath, category, item, step, attempt, are_relations);
     THEN(status, scene_hash(campaign->report, &trial.scene, NULL, text));
     if (status == SONJECT_OK)
         hash_add_text(hash, text);
@@ -85,12 +88,29 @@ static sonject_status try_scene(struct sonject_campaign *campaign, struct hash *
     return status;
 }
 
+/* Where the ends do not go together, values between them may: such draws are made anew. *is_made:
+ * whether some do. */
+static sonject_status try_step(struct sonject_campaign *campaign, struct hash *hash,
+                               uint32_t category, uint32_t item, uint32_t step, bool *is_made)
+{
+    sonject_status status = SONJECT_ERROR_INPUT;
+    bool are_relations = true;
+    for (uint32_t attempt = 0;
+         status == SONJECT_ERROR_INPUT && are_relations && attempt < ATTEMPTS_MAX; attempt++) {
+        are_relations = false;
+        status = try_scene(campaign, hash, 0, category, item, step, attempt, &are_relations);
+    }
+    *is_made = *is_made || status == SONJECT_OK;
+    return status == SONJECT_ERROR_INPUT && are_relations ? SONJECT_OK : status;
+}
+
 /* Each step of what is drawn of an item, or of the scene alone. */
 static sonject_status try_steps(struct sonject_campaign *campaign, struct hash *hash,
                                 uint32_t category, uint32_t number, const struct item *item,
                                 uint64_t *trials)
 {
     const uint32_t steps = image_plan_steps(&campaign->campaign, item);
+    bool is_made = false;
     *trials += steps;
     if (*trials > TRIALS_MAX)
         return report_failure(campaign->report, SONJECT_ERROR_INPUT,
@@ -98,8 +118,11 @@ static sonject_status try_steps(struct sonject_campaign *campaign, struct hash *
                               "checked; make several campaigns of it",
                               campaign->campaign.path, TRIALS_MAX);
     for (uint32_t step = 0; step < steps; step++)
-        CHECK(try_scene(campaign, hash, 0, category, number, step));
-    return SONJECT_OK;
+        CHECK(try_step(campaign, hash, category, number, step, &is_made));
+    if (is_made)
+        return SONJECT_OK;
+    /* says again why */
+    return try_scene(campaign, hash, 0, category, number, 0, 0, NULL);
 }
 
 /* Tries each swath, and each object with the ends and all choices of what is drawn of it. Files
@@ -109,7 +132,7 @@ static sonject_status try_scenes(struct sonject_campaign *campaign, struct hash 
     const struct campaign *plan = &campaign->campaign;
     uint64_t trials = 0;
     for (uint32_t i = 0; i < plan->swath_count; i++)
-        CHECK(try_scene(campaign, hash, i, CATEGORY_EMPTY, 0, 1));
+        CHECK(try_scene(campaign, hash, i, CATEGORY_EMPTY, 0, 1, 0, NULL));
     CHECK(try_steps(campaign, hash, CATEGORY_EMPTY, 0, NULL, &trials));
     for (uint32_t i = 0; i < plan->target_count; i++)
         CHECK(try_steps(campaign, hash, CATEGORY_TARGET + i, 0, &plan->targets[i], &trials));

@@ -503,7 +503,7 @@ sonject_status campaign_read(struct report *report, const char *path, const char
     if (!file_exists(path))
         return input_failure(report, path, "there is no such campaign file; check its name");
     CHECK(file_read_whole(report, path, TREE_BYTES_MAX, &text, &bytes));
-    struct mistakes mistakes = {NULL, 0, 0, 0};
+    struct mistakes mistakes = {0};
     struct tree *tree = &campaign->tree;
     tree_init(tree, report, campaign->path);
     tree->mistakes = &mistakes;

@@ -83,7 +83,7 @@ static void place_message(struct sonject_campaign *campaign, const struct image_
 {
     static const struct tree_place behind = {NULL, SIZE_MAX, 1};
     char message[REPORT_CAPACITY];
-    struct mistakes mistakes = {NULL, 0, 0, 0};
+    struct mistakes mistakes = {0};
     struct tree *tree = &campaign->campaign.tree;
     memcpy(message, campaign->report->message, sizeof message);
     tree->mistakes = &mistakes;
@@ -100,7 +100,7 @@ static void place_message(struct sonject_campaign *campaign, const struct image_
 }
 
 sonject_status campaign_read_scene(struct sonject_campaign *campaign, const struct image_plan *plan,
-                                   struct scene *scene)
+                                   struct scene *scene, bool *are_relations)
 {
     const struct swath_plan *swath = &campaign->campaign.swaths[plan->swath];
     const struct tree_node path = {.kind = TREE_TEXT, .is_quoted = true, .text = swath->path};
@@ -122,7 +122,8 @@ sonject_status campaign_read_scene(struct sonject_campaign *campaign, const stru
                                             .override_count = plan->key_count + 1,
                                             .moved_folder = campaign->campaign.folder,
                                             .moved_overrides = plan->key_count,
-                                            .allows_user_shapes = campaign->allows_user_shapes};
+                                            .allows_user_shapes = campaign->allows_user_shapes,
+                                            .are_relations = are_relations};
         status = scene_source_read(&source, campaign->report, scene);
         if (status != SONJECT_OK)
             place_message(campaign, plan);
@@ -132,27 +133,72 @@ sonject_status campaign_read_scene(struct sonject_campaign *campaign, const stru
     return status;
 }
 
+/* Keeps the first line of the report's message. */
+static void keep_reason(const struct report *report, char reason[REASON_CAPACITY])
+{
+    if (!*reason)
+        snprintf(reason, REASON_CAPACITY, "%.*s", (int)strcspn(report->message, "\n"),
+                 report->message);
+}
+
+sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t id,
+                                   uint32_t *attempt, char reason[REASON_CAPACITY],
+                                   struct image_plan *plan, struct scene *scene)
+{
+    struct mesh_store *const store = scene->mesh_store;
+    for (;; ++*attempt) {
+        bool are_relations = false;
+        sonject_status status =
+            image_plan_make(campaign->report, &campaign->campaign, id, *attempt, plan);
+        THEN(status, campaign_read_scene(campaign, plan, scene, &are_relations));
+        if (status != SONJECT_ERROR_INPUT || !are_relations || *attempt + 1 >= ATTEMPTS_MAX)
+            return status;
+        keep_reason(campaign->report, reason);
+        image_plan_clear(plan);
+        scene_init(scene);
+        scene->mesh_store = store;
+    }
+}
+
+/* *is_drawn: whether it failed for what was drawn. */
+static sonject_status make_attempt(struct device *device, struct sonject_campaign *campaign,
+                                   sonject_progress_function progress, void *user,
+                                   struct campaign_image *image, bool *is_drawn)
+{
+    CHECK(swath_open_stored(campaign->report, &image->scene, &campaign->store, &image->swath));
+    const struct injection_input input = swath_input(&image->swath);
+    const sonject_status status = injection_run(campaign->report, device, &image->scene, &input,
+                                                progress, user, &image->result);
+    *is_drawn = status == SONJECT_ERROR_INPUT;
+    if (*is_drawn)
+        place_message(campaign, &image->plan);
+    else if (status == SONJECT_OK)
+        image->result.statistics.input_clipped = image->swath.clipped;
+    return status;
+}
+
 sonject_status campaign_image_make(struct device *device, struct sonject_campaign *campaign,
                                    uint64_t id, sonject_progress_function progress, void *user,
                                    struct campaign_image *image)
 {
-    scene_init(&image->scene);
-    image->scene.mesh_store = &campaign->meshes;
-    sonject_status status =
-        image_plan_make(campaign->report, &campaign->campaign, id, &image->plan);
-    THEN(status, campaign_read_scene(campaign, &image->plan, &image->scene));
-    if (status == SONJECT_OK) {
-        status =
-            swath_open_stored(campaign->report, &image->scene, &campaign->store, &image->swath);
-        const struct injection_input input = swath_input(&image->swath);
-        THEN(status, injection_run(campaign->report, device, &image->scene, &input, progress, user,
-                                   &image->result));
-        if (status == SONJECT_ERROR_INPUT)
-            place_message(campaign, &image->plan);
+    uint32_t attempt = 0;
+    char reason[REASON_CAPACITY] = "";
+    for (;; attempt++) {
+        bool is_drawn = false;
+        scene_init(&image->scene);
+        image->scene.mesh_store = &campaign->meshes;
+        sonject_status status =
+            campaign_draw_scene(campaign, id, &attempt, reason, &image->plan, &image->scene);
+        THEN(status, make_attempt(device, campaign, progress, user, image, &is_drawn));
+        if (!is_drawn || attempt + 1 >= ATTEMPTS_MAX) {
+            image->attempts = attempt;
+            strcpy(image->reason, reason);
+            return name_image(campaign->report, id, status);
+        }
+        keep_reason(campaign->report, reason);
+        campaign_image_clear(image);
+        memset(image, 0, sizeof *image);
     }
-    if (status == SONJECT_OK)
-        image->result.statistics.input_clipped = image->swath.clipped;
-    return name_image(campaign->report, id, status);
 }
 
 /* Rows of the track become those of the image. */
@@ -253,6 +299,10 @@ static sonject_status write_record(struct sonject_campaign *campaign,
                                                        parts->extension, name),
                                        false));
     json_t *record = record_of(campaign, image, parts, hash, list);
+    if (image->attempts > 0)
+        json_add(&record, "drawn_anew",
+                 JSON_OBJECT({"times", json_count(image->attempts)},
+                             {"because", json_text(image->reason)}));
     THEN(status, json_document_hash(campaign->report, record, JSON_COMPACT, hash));
     json_add(&record, "xxh3", json_string(hash));
     if (status == SONJECT_OK)

@@ -16,8 +16,9 @@
 #define BOTTOM 160
 #define TOP    34
 
-#define SERIES_MAX 64    /* of more names, the later ones are left out of the page */
-#define IMAGES_MAX 20000 /* whose values are kept; of more, every second, third, ... is taken */
+#define SERIES_MAX  64    /* of more names, the later ones are left out of the page */
+#define REASONS_MAX 10    /* that are shown */
+#define IMAGES_MAX  20000 /* whose values are kept; of more, every second, third, ... is taken */
 
 /* Values under one name, in one unit. */
 struct series {
@@ -34,6 +35,8 @@ struct statistics_page {
     uint64_t empty[CAMPAIGN_SPLITS_MAX];
     const json_t *classes;
     uint64_t every; /* image that is taken */
+    uint64_t drawn_anew;
+    struct growing_text reasons; /* of the first of these, as items of a list; owned */
 };
 
 static void add_escaped(struct growing_text *text, const char *raw)
@@ -159,6 +162,17 @@ static sonject_status add_object(struct statistics_page *page, size_t split, con
     return SONJECT_OK;
 }
 
+/* Why the image's first draw was given up, if it was. */
+static void add_reason(struct statistics_page *page, uint64_t id, const json_t *record)
+{
+    const json_t *anew = json_object_get(record, "drawn_anew");
+    if (!anew || page->drawn_anew++ >= REASONS_MAX)
+        return;
+    growing_text_add(&page->reasons, "<li>image %llu: ", (unsigned long long)id);
+    add_escaped(&page->reasons, member_text(anew, "because"));
+    growing_text_add(&page->reasons, "</li>\n");
+}
+
 static sonject_status add_image(struct statistics_page *page, size_t split, uint64_t id)
 {
     const struct data_set *set = page->set;
@@ -177,6 +191,7 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
         if (is_taken && json_is_string(entry))
             THEN(status, add_set_value(page, json_string_value(entry)));
     }
+    add_reason(page, id, record);
     const json_t *objects = json_object_get(truth, "objects");
     page->empty[split] += json_array_size(objects) == 0;
     json_array_foreach(objects, i, entry)
@@ -237,7 +252,14 @@ static void write_page(const struct statistics_page *page, struct growing_text *
         add_escaped(text, member_text(swath, "split"));
         growing_text_add(text, "</td></tr>\n");
     }
-    growing_text_add(text, "</table>\n<h2>Distributions</h2>\n<div>\n");
+    growing_text_add(text, "</table>\n");
+    if (page->drawn_anew > 0)
+        growing_text_add(text,
+                         "<h2>Drawn anew</h2>\n<p>Of %llu images values were drawn anew, since "
+                         "they did not go with each other, or an object did not fit.</p>\n<ul>%s"
+                         "</ul>\n",
+                         (unsigned long long)page->drawn_anew, page->reasons.characters);
+    growing_text_add(text, "<h2>Distributions</h2>\n<div>\n");
     for (i = 0; i < page->series_count; i++)
         write_histogram(text, &page->series[i]);
     growing_text_add(text, "</div>\n<h2>Images</h2>\n<p><img src=\"contact_sheet.png\" "
@@ -260,6 +282,8 @@ sonject_status write_report_page(const struct data_set *set)
     for (size_t i = 0; status == SONJECT_OK && i < set->split_count; i++)
         for (uint64_t k = 0; status == SONJECT_OK && k < set->split_images[i]; k++)
             status = add_image(page, i, set->split_first[i] + k);
+    if (status == SONJECT_OK && page->reasons.failed)
+        status = report_out_of_memory(set->report, "the report");
     THEN(status, path_in(set->report, path, set->folder, "report.html"));
     if (status == SONJECT_OK) {
         write_page(page, &text);
@@ -267,6 +291,7 @@ sonject_status write_report_page(const struct data_set *set)
     }
     for (size_t i = 0; i < page->series_count; i++)
         free(page->series[i].values);
+    free(growing_text_end(&page->reasons));
     free(page->counts);
     free(page);
     return status;

@@ -31,6 +31,7 @@ struct drawing {
     const struct campaign *campaign;
     struct image_plan *plan;
     uint32_t trial;        /* step of a trial */
+    uint32_t attempt;      /* 0: the first */
     uint64_t index, count; /* of the image among those of its category */
     uint64_t cell;         /* of the grid, what is left of it */
     double rows[OBJECTS_OF_IMAGE], columns[OBJECTS_OF_IMAGE]; /* where objects lie */
@@ -39,7 +40,8 @@ struct drawing {
 
 /* Begins an empty plan, for image_plan_clear. trial: its step, or NO_TRIAL. */
 static void drawing_init(struct drawing *drawing, struct report *report,
-                         const struct campaign *campaign, uint32_t trial, struct image_plan *plan)
+                         const struct campaign *campaign, uint32_t trial, uint32_t attempt,
+                         struct image_plan *plan)
 {
     memset(plan, 0, sizeof *plan);
     plan->chip.rows = campaign->chip_rows;
@@ -49,12 +51,19 @@ static void drawing_init(struct drawing *drawing, struct report *report,
     drawing->campaign = campaign;
     drawing->plan = plan;
     drawing->trial = trial;
+    drawing->attempt = attempt;
 }
 
 /* A seed for each category, so that they do not draw alike. */
 static uint64_t category_seed(const struct campaign *campaign, uint32_t category)
 {
     return campaign->seed ^ (UINT64_C(0x9E3779B97F4A7C15) * (category + 1));
+}
+
+/* Of what is drawn anew the numbers are others. */
+static uint64_t attempt_seed(const struct drawing *drawing, uint64_t seed)
+{
+    return seed ^ (UINT64_C(0xD1342543DE82EF95) * drawing->attempt);
 }
 
 /* Adds a key to the plan; text is given up, and NULL counts as memory that was out. */
@@ -94,17 +103,21 @@ static const char *draw_value(struct drawing *drawing, const struct distribution
 {
     const struct campaign *campaign = drawing->campaign;
     const uint32_t steps = distribution_steps(distribution);
-    if (drawing->trial != NO_TRIAL)
+    const bool is_trial = drawing->trial != NO_TRIAL;
+    if (is_trial && (drawing->attempt == 0 || distribution->count > 0))
         return trial_value(distribution, drawing->trial, text);
-    if (campaign->design == DESIGN_GRID && steps > 0) {
+    if (campaign->design == DESIGN_GRID && steps > 0 && drawing->attempt == 0) {
         const uint32_t step = (uint32_t)(drawing->cell % steps);
         drawing->cell /= steps;
         return distribution_step(distribution, step, text);
     }
-    const double u = campaign->design == DESIGN_STRATIFIED
+    const double u = campaign->design == DESIGN_STRATIFIED && drawing->attempt == 0
                          ? stratified_number(seed, distribution->stream, index, count)
-                         : uniform_number(seed, distribution->stream, drawing->plan->id);
-    return distribution_value(distribution, u, text);
+                         : uniform_number(attempt_seed(drawing, seed), distribution->stream,
+                                          is_trial ? drawing->trial : drawing->plan->id);
+    return campaign->design == DESIGN_GRID && steps > 0
+               ? distribution_step(distribution, (uint32_t)(u * steps), text)
+               : distribution_value(distribution, u, text);
 }
 
 static bool draws_have_key(const struct draws *draws, const char *key)
@@ -179,6 +192,7 @@ static void draw_object(struct drawing *drawing, const struct item *item, uint32
     const uint64_t place = drawing->plan->id * OBJECTS_OF_IMAGE + number;
     const uint64_t seed =
         category_seed(campaign, is_clutter ? UINT32_MAX - 1 : drawing->plan->category);
+    const uint64_t own_seed = attempt_seed(drawing, seed);
     char prefix[32];
     snprintf(prefix, sizeof prefix, "objects[%u].", (unsigned)number);
     for (int k = 0; k < 2; k++)
@@ -189,8 +203,8 @@ static void draw_object(struct drawing *drawing, const struct item *item, uint32
                 continue;
             const char *value =
                 is_clutter && drawing->trial == NO_TRIAL
-                    ? distribution_value(distribution,
-                                         uniform_number(seed, distribution->stream, place), text)
+                    ? distribution_value(
+                          distribution, uniform_number(own_seed, distribution->stream, place), text)
                     : draw_value(drawing, distribution, seed, drawing->index, drawing->count, text);
             add_value(drawing, distribution->place, prefix, distribution->key, value);
         }
@@ -203,11 +217,12 @@ static void place_object(struct drawing *drawing)
     const struct campaign *campaign = drawing->campaign;
     const struct region *chip = &drawing->plan->chip;
     const uint32_t number = drawing->objects;
+    const uint64_t seed = attempt_seed(drawing, campaign->seed);
     double farthest = -1.0;
     for (uint32_t i = 0; i < (number > 0 ? CANDIDATES : 1u); i++) {
         const uint64_t index = (drawing->plan->id * OBJECTS_OF_IMAGE + number) * CANDIDATES + i;
-        const double u = uniform_number(campaign->seed, STREAM_OBJECT_ROW, index) - 0.5;
-        const double v = uniform_number(campaign->seed, STREAM_OBJECT_COLUMN, index) - 0.5;
+        const double u = uniform_number(seed, STREAM_OBJECT_ROW, index) - 0.5;
+        const double v = uniform_number(seed, STREAM_OBJECT_COLUMN, index) - 0.5;
         const double row =
             0.5 * (double)(chip->rows - 1) + campaign->spread * (double)(chip->rows - 1) * u;
         const double column =
@@ -335,10 +350,10 @@ static sonject_status fill_plan(struct drawing *drawing, const struct item *tria
 }
 
 sonject_status image_plan_make(struct report *report, const struct campaign *campaign, uint64_t id,
-                               struct image_plan *plan)
+                               uint32_t attempt, struct image_plan *plan)
 {
     struct drawing drawing;
-    drawing_init(&drawing, report, campaign, NO_TRIAL, plan);
+    drawing_init(&drawing, report, campaign, NO_TRIAL, attempt, plan);
     plan->id = id;
     plan->seed = (uint64_t)(uniform_number(campaign->seed, STREAM_SEED, id) * 0x1p52);
     plan->split = image_split(campaign, id);
@@ -350,10 +365,10 @@ sonject_status image_plan_make(struct report *report, const struct campaign *cam
 
 sonject_status image_plan_try(struct report *report, const struct campaign *campaign,
                               uint32_t swath, uint32_t category, uint32_t item, uint32_t step,
-                              struct image_plan *plan)
+                              uint32_t attempt, struct image_plan *plan)
 {
     struct drawing drawing;
-    drawing_init(&drawing, report, campaign, step, plan);
+    drawing_init(&drawing, report, campaign, step, attempt, plan);
     plan->swath = swath;
     plan->category = category;
     if (campaign->swaths[swath].room.places > 0)

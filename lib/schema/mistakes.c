@@ -129,6 +129,14 @@ static void join(const struct mistakes *mistakes, struct report *report)
         sprintf(report->message + length, "%sand %zu more", told ? "\n" : "", untold);
 }
 
+bool mistakes_are_relations(const struct mistakes *mistakes)
+{
+    size_t told = mistakes->uncounted;
+    for (size_t i = 0; i < mistakes->count; i++)
+        told += mistakes->list[i].line != NULL;
+    return told > 0 && told == mistakes->relations;
+}
+
 sonject_status mistakes_tell(struct mistakes *mistakes, struct report *report,
                              sonject_status status)
 {
@@ -232,6 +240,8 @@ static sonject_status refuse_of(struct reader *reader, const struct tree_node *n
     const size_t before = key_path_add(&reader->path, key);
     const sonject_status status = refuse_at(reader, place_of_key(node, key), format, arguments);
     key_path_shorten(&reader->path, before);
+    if (*others && reader->tree->mistakes)
+        reader->tree->mistakes->relations++;
     return status;
 }
 

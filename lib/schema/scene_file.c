@@ -234,7 +234,7 @@ sonject_status scene_source_read(const struct scene_source *source, struct repor
                                  struct scene *scene)
 {
     struct tree tree;
-    struct mistakes mistakes = {NULL, 0, 0, 0};
+    struct mistakes mistakes = {0};
     struct mesh_store *const store = scene->mesh_store;
     scene_init(scene);
     scene->mesh_store = store;
@@ -243,6 +243,8 @@ sonject_status scene_source_read(const struct scene_source *source, struct repor
     report->message[0] = 0;
     sonject_status status = tree_parse(&tree, source->text, strlen(source->text));
     THEN(status, fill_scene(&tree, source, scene));
+    if (source->are_relations)
+        *source->are_relations = status == SONJECT_ERROR_INPUT && mistakes_are_relations(&mistakes);
     status = mistakes_tell(&mistakes, report, status);
     struct key_path path = {"", 0};
     THEN(status, write_down(&tree, &tree.root, &path, scene));

@@ -127,6 +127,7 @@ struct mistakes {
     struct mistake *list;
     size_t count, capacity;
     size_t uncounted; /* that there was no room for */
+    size_t relations; /* of those that are told: values of which each would do by itself */
 };
 
 /* Keeps a mistake about the key at path. The first about a key is the one that is told: what comes
@@ -137,6 +138,9 @@ void mistakes_add(struct mistakes *mistakes, const struct tree *tree,
 
 /* Whether the key at path, one below it, or a section that it is in is wrong. */
 bool mistakes_concern(const struct mistakes *mistakes, const struct tree *tree, const char *path);
+
+/* Whether there are some, and all are values that do not go with each other. */
+bool mistakes_are_relations(const struct mistakes *mistakes);
 
 /* Ends the reading that had this status. Where there are mistakes they become the report's message,
  * one a line, and the status INPUT unless a failure other than INPUT ended the reading. */

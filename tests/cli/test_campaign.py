@@ -443,6 +443,40 @@ def test_records_with_a_hash_of_their_own_do_no_harm(command, damaged):
         assert "<script" not in (damaged / "report.html").read_text()
 
 
+RING = ('targets=[{class: ring, object: {shape: torus}, draw: {diameter: {uniform: [0.4 m, 1 m]}, '
+        'height: {uniform: [0.1 m, %s]}}}]')
+
+
+def test_values_that_do_not_go_together_are_drawn_anew(ground, command):
+    """A torus must be more than twice as wide as it is high: of these a third is not. Both ends of
+    the draws do not go together, nor do those that a design has."""
+    settings = ["--set", RING % "0.5 m", "--set", "empty=0", "--set", "images=12"]
+    done = command("campaign", "campaign.yaml", "-o", "anew", *settings)
+    assert done.returncode == 0, done.stderr
+    found = records(ground / "anew")
+    anew = [record for record in found if "drawn_anew" in record]
+    assert len(found) == 12 and 1 <= len(anew) <= 10
+    for record in found:
+        drawn = dict(entry.split("=", 1) for entry in record["set"])
+        diameter, height = (float(drawn[f"objects[0].{key}"].split()[0]) for key in ("diameter", "height"))
+        assert diameter > 2 * height
+    for record in anew:
+        assert record["drawn_anew"]["times"] >= 1
+        assert "or there is no hole" in record["drawn_anew"]["because"]
+    page = (ground / "anew" / "report.html").read_text()
+    assert f"Of {len(anew)} images values were drawn anew" in page and "no hole" in page
+    only = command("campaign", "campaign.yaml", "-o", "one", "--only", anew[0]["id"], *settings)
+    assert only.returncode == 0, only.stderr
+    name = of_image(anew[0], "records", ".json")
+    assert (ground / "one" / name).read_bytes() == (ground / "anew" / name).read_bytes()
+
+
+def test_what_can_never_be_drawn_is_refused_before_the_first_image(command, ground):
+    answer = command("campaign", "campaign.yaml", "-o", "never", "--set", RING.replace("0.1 m", "0.6 m") % "0.8 m")
+    assert_refused(answer, 3, "diameter", "or there is no hole")
+    assert not list((ground / "never").rglob("*.png")) if (ground / "never").exists() else True
+
+
 def test_two_campaigns_in_one_folder_make_one_data_set(ground, environment, whole):
     arguments = [COMMAND, "campaign", "campaign.yaml", "-o", "twice", "--quiet"]
     both = [subprocess.Popen(arguments, cwd=ground, env=environment, stderr=subprocess.PIPE)
