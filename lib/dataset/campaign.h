@@ -153,6 +153,12 @@ enum design {
     DESIGN_GRID
 };
 
+/* What becomes of a target that is seen less than it is to be. */
+enum faint {
+    FAINT_REDRAW, /* its values are drawn anew; if that does not help it is difficult */
+    FAINT_DIFFICULT
+};
+
 /* The files of an image, each kind in a folder of its own; all images have the first two and the
  * last. */
 enum output {
@@ -184,7 +190,9 @@ struct campaign {
     double spread;            /* of the chip's sides, where objects may lie */
     double nearest_range_m, farthest_range_m;
     double empty, clutter_alone;
-    uint32_t outputs; /* bits of enum output */
+    double visible_highlight_db, visible_shadow_db; /* of targets: at least, at most; NaN: any */
+    uint32_t faint;                                 /* enum faint */
+    uint32_t outputs;                               /* bits of enum output */
     struct draws draws, object_draws;
     struct item targets[CAMPAIGN_ITEMS_MAX], clutter[CAMPAIGN_ITEMS_MAX];
     uint32_t target_count, clutter_count;
@@ -310,13 +318,14 @@ struct campaign_image {
     struct scene scene;
     struct swath swath;
     struct injection_result result;
-    uint32_t attempts;            /* that were given up, since values did not go together */
+    uint32_t attempts;            /* that were given up */
     char reason[REASON_CAPACITY]; /* of the first */
+    bool is_faint;                /* the target is seen less than it is to be */
 };
 
 /* Plans the image, reads its scene and its part of the swath, and injects; draws anew, up to
- * ATTEMPTS_MAX times, what does not go together or does not fit. Errors: as
- * sonject_campaign_inject; the message names the image. */
+ * ATTEMPTS_MAX times, what does not go together, does not fit, or is not seen as it is to be.
+ * Errors: as sonject_campaign_inject; the message names the image. */
 sonject_status campaign_image_make(struct device *device, struct sonject_campaign *campaign,
                                    uint64_t id, sonject_progress_function progress, void *user,
                                    struct campaign_image *image);

@@ -403,6 +403,25 @@ static const struct field chip_fields[] = {
 };
 static const struct section chip_section = {ROWS(chip_fields)};
 
+static sonject_status finish_visible(struct reader *reader, const struct tree_node *node,
+                                     void *structure)
+{
+    const struct campaign *campaign = structure;
+    if (isnan(campaign->visible_highlight_db) && isnan(campaign->visible_shadow_db))
+        refuse_key(reader, node, "highlight", "is missing, and so is shadow; give one of them");
+    return SONJECT_OK;
+}
+
+static const struct field visible_fields[] = {
+    {"highlight", "least visibility of targets' highlights, as truth tells it",
+     QUANTITY(visible_highlight_db, DECIBEL), WITHIN(-100.0, 100.0), NONE_IF_NAN},
+    {"shadow", "most that of their shadows may be", QUANTITY(visible_shadow_db, DECIBEL),
+     WITHIN(-100.0, 100.0), NONE_IF_NAN},
+    {"otherwise", "what becomes of a target that is seen less",
+     WORD(faint) = {[FAINT_REDRAW] = "redraw", [FAINT_DIFFICULT] = "difficult"}},
+};
+static const struct section visible_section = {ROWS(visible_fields), .finish = finish_visible};
+
 static sonject_status finish_clutter(struct reader *reader, const struct tree_node *node,
                                      void *structure)
 {
@@ -452,6 +471,7 @@ static const struct field campaign_fields[] = {
     {"labels", "beside COCO: yolo, voc", .kind = FIELD_SPECIAL, .read = read_outputs,
      .unit = "list of words"},
     {"empty", "fraction of images without any object", QUANTITY(empty, NUMBER), WITHIN(0.0, 1.0)},
+    {"visible", "how well targets must be seen", SAME(visible_section)},
     {"splits", "names and fractions, such as {train: 0.8, test: 0.2}", .kind = FIELD_SPECIAL,
      .read = read_splits, .unit = "section"},
     {"swaths", "list of the images that objects are put into", .kind = FIELD_SPECIAL,
@@ -488,6 +508,7 @@ sonject_status campaign_read(struct report *report, const char *path, const char
     campaign->seed = 1;
     campaign->design = DESIGN_STRATIFIED;
     campaign->spread = 0.5;
+    campaign->visible_highlight_db = campaign->visible_shadow_db = NAN;
     campaign->outputs = OUTPUT_ALWAYS | OUTPUT_BIT(OUTPUT_HIGHLIGHT) | OUTPUT_BIT(OUTPUT_SHADOW) |
                         OUTPUT_BIT(OUTPUT_MASKS);
     campaign->splits[0].fraction = 1.0;

@@ -1,6 +1,7 @@
 /* One image of a campaign: made and written, and whether its files are as they were written: what a
  * record says is believed where its own hash holds. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -177,6 +178,25 @@ static sonject_status make_attempt(struct device *device, struct sonject_campaig
     return status;
 }
 
+/* Whether the target, if there is one, is seen as well as it is to be. */
+static bool target_is_seen(const struct campaign *campaign, const struct campaign_image *image)
+{
+    const sonject_object_truth *truth = image->result.objects;
+    return image->plan.category < CATEGORY_TARGET ||
+           ((isnan(campaign->visible_highlight_db) ||
+             truth->highlight_visibility_db >= campaign->visible_highlight_db) &&
+            (isnan(campaign->visible_shadow_db) ||
+             truth->shadow_visibility_db <= campaign->visible_shadow_db));
+}
+
+/* Says so in the report, whose message becomes the reason to draw anew. */
+static void tell_faint(struct report *report, const sonject_object_truth *truth)
+{
+    report_failure(report, SONJECT_ERROR_INPUT,
+                   "the target is seen too little: highlight %.1f dB, shadow %.1f dB",
+                   truth->highlight_visibility_db, truth->shadow_visibility_db);
+}
+
 sonject_status campaign_image_make(struct device *device, struct sonject_campaign *campaign,
                                    uint64_t id, sonject_progress_function progress, void *user,
                                    struct campaign_image *image)
@@ -190,8 +210,15 @@ sonject_status campaign_image_make(struct device *device, struct sonject_campaig
         sonject_status status =
             campaign_draw_scene(campaign, id, &attempt, reason, &image->plan, &image->scene);
         THEN(status, make_attempt(device, campaign, progress, user, image, &is_drawn));
-        if (!is_drawn || attempt + 1 >= ATTEMPTS_MAX) {
+        const bool is_last = attempt + 1 >= ATTEMPTS_MAX;
+        const bool is_faint = status == SONJECT_OK && !target_is_seen(&campaign->campaign, image);
+        if (is_faint && campaign->campaign.faint == FAINT_REDRAW && !is_last) {
+            tell_faint(campaign->report, image->result.objects);
+            is_drawn = true;
+        }
+        if (!is_drawn || is_last) {
             image->attempts = attempt;
+            image->is_faint = is_faint;
             strcpy(image->reason, reason);
             return name_image(campaign->report, id, status);
         }
@@ -365,6 +392,8 @@ sonject_status campaign_image_write(struct sonject_campaign *campaign, struct ca
         parts.swath.patch,
         &parts.swath.track};
     CHECK(image_labels_find(&parts.labels, report, &request, &campaign->classes));
+    if (image->is_faint)
+        parts.labels.contacts[0].is_difficult = true;
     sonject_status status = SONJECT_OK;
     for (int i = 0; status == SONJECT_OK && i < OUTPUT_KINDS; i++)
         if (campaign->campaign.outputs & OUTPUT_BIT(i)) {

@@ -35,7 +35,7 @@ struct statistics_page {
     uint64_t empty[CAMPAIGN_SPLITS_MAX];
     const json_t *classes;
     uint64_t every; /* image that is taken */
-    uint64_t drawn_anew;
+    uint64_t drawn_anew, difficult;
     struct growing_text reasons; /* of the first of these, as items of a list; owned */
 };
 
@@ -192,6 +192,10 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
             THEN(status, add_set_value(page, json_string_value(entry)));
     }
     add_reason(page, id, record);
+    json_array_foreach(json_object_get(record, "annotations"), i, entry)
+    {
+        page->difficult += json_is_true(json_object_get(entry, "difficult"));
+    }
     const json_t *objects = json_object_get(truth, "objects");
     page->empty[split] += json_array_size(objects) == 0;
     json_array_foreach(objects, i, entry)
@@ -256,9 +260,15 @@ static void write_page(const struct statistics_page *page, struct growing_text *
     if (page->drawn_anew > 0)
         growing_text_add(text,
                          "<h2>Drawn anew</h2>\n<p>Of %llu images values were drawn anew, since "
-                         "they did not go with each other, or an object did not fit.</p>\n<ul>%s"
+                         "they did not go with each other, or an object did not fit or was not "
+                         "seen.</p>\n<ul>%s"
                          "</ul>\n",
                          (unsigned long long)page->drawn_anew, page->reasons.characters);
+    if (page->difficult > 0)
+        growing_text_add(text,
+                         "<p>%llu targets are seen less than they are to be, and marked "
+                         "difficult.</p>\n",
+                         (unsigned long long)page->difficult);
     growing_text_add(text, "<h2>Distributions</h2>\n<div>\n");
     for (i = 0; i < page->series_count; i++)
         write_histogram(text, &page->series[i]);

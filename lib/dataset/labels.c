@@ -218,15 +218,17 @@ json_t *coco_annotations(const struct image_labels *labels)
             continue;
         json_t *runs = JSON_OBJECT({"size", json_counts(size, 2)},
                                    {"counts", json_counts(contact->runs, contact->run_count)});
-        json_append(&annotations,
-                    JSON_OBJECT({"id", json_count(++number)}, {"image_id", json_count(1)},
-                                {"category_id", json_count((uint64_t)contact->class_number + 1)},
-                                {"bbox", json_counts(sides, 4)},
-                                {"area", json_count(contact->pixels)}, {"segmentation", runs},
-                                {"iscrowd", json_count(0)},
-                                {"object_id", json_count(contact->number)},
-                                {"truncated", json_boolean(contact->is_truncated)},
-                                {"occluded", json_boolean(contact->is_occluded)}));
+        json_t *annotation =
+            JSON_OBJECT({"id", json_count(++number)}, {"image_id", json_count(1)},
+                        {"category_id", json_count((uint64_t)contact->class_number + 1)},
+                        {"bbox", json_counts(sides, 4)}, {"area", json_count(contact->pixels)},
+                        {"segmentation", runs}, {"iscrowd", json_count(0)},
+                        {"object_id", json_count(contact->number)},
+                        {"truncated", json_boolean(contact->is_truncated)},
+                        {"occluded", json_boolean(contact->is_occluded)});
+        if (contact->is_difficult)
+            json_add(&annotation, "difficult", json_boolean(true));
+        json_append(&annotations, annotation);
     }
     return annotations;
 }
@@ -332,12 +334,12 @@ static void add_object(struct growing_text *xml, const struct contact *contact)
     add_xml(xml, contact->object->class_name);
     growing_text_add(xml,
                      "</name>\n    <pose>Unspecified</pose>\n    <truncated>%d</truncated>\n"
-                     "    <occluded>%d</occluded>\n    <difficult>0</difficult>\n"
+                     "    <occluded>%d</occluded>\n    <difficult>%d</difficult>\n"
                      "    <bndbox>\n      <xmin>%" PRIu64 "</xmin>\n      <ymin>%" PRIu64
                      "</ymin>\n      <xmax>%" PRIu64 "</xmax>\n      <ymax>%" PRIu64
                      "</ymax>\n    </bndbox>\n  </object>\n",
-                     contact->is_truncated, contact->is_occluded, box->first_column + 1,
-                     box->first_row + 1, box->first_column + box->columns,
+                     contact->is_truncated, contact->is_occluded, contact->is_difficult,
+                     box->first_column + 1, box->first_row + 1, box->first_column + box->columns,
                      box->first_row + box->rows);
 }
 

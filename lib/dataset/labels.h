@@ -38,6 +38,7 @@ struct contact {
     size_t run_count;
     bool is_truncated; /* highlight or shadow reaches the edge of what was injected into */
     bool is_occluded;  /* other objects take some of its pixels */
+    bool is_difficult; /* it is seen less than a campaign's targets are to be */
 };
 
 struct image_labels {

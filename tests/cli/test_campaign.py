@@ -477,6 +477,37 @@ def test_what_can_never_be_drawn_is_refused_before_the_first_image(command, grou
     assert not list((ground / "never").rglob("*.png")) if (ground / "never").exists() else True
 
 
+FAINT = ["--set", "targets=[{class: ball, object: {shape: sphere, diameter: 0.3 m}, "
+         "draw: {level.over_seabed: {uniform: [0 dB, 30 dB]}}}]", "--set", "empty=0", "--set", "images=12",
+         "--set", "clutter={objects: [{class: stone, object: {shape: sphere, diameter: 0.2 m}}], number: 0}"]
+
+
+@pytest.mark.parametrize("otherwise", ["difficult", "redraw"])
+def test_targets_are_seen_as_they_are_to_be(ground, command, otherwise):
+    """Or are marked difficult, which says so of no other."""
+    visible = f"visible={{highlight: 6 dB, shadow: -1 dB, otherwise: {otherwise}}}"
+    done = command("campaign", "campaign.yaml", "-o", otherwise, "--set", visible, *FAINT)
+    assert done.returncode == 0, done.stderr
+    found = records(ground / otherwise)
+    faint = []
+    for record in found:
+        (truth,) = json.loads((ground / otherwise / of_image(record, "truth", ".json")).read_text())["objects"]
+        is_seen = ((truth["highlight_visibility_db"] or -99) >= 6
+                   and (truth["shadow_visibility_db"] or 99) <= -1)
+        for annotation in record["annotations"]:
+            assert annotation.get("difficult", False) == (not is_seen)
+        text = (ground / otherwise / of_image(record, "voc", ".xml")).read_text()
+        assert ("<difficult>1</difficult>" in text) == (not is_seen and bool(record["annotations"]))
+        faint += [record["id"]] * (not is_seen)
+    anew = [record["drawn_anew"]["because"] for record in found if "drawn_anew" in record]
+    page = (ground / otherwise / "report.html").read_text()
+    if otherwise == "difficult":
+        assert 1 <= len(faint) < 12 and not anew and "marked difficult" in page
+    else:
+        assert not faint and 1 <= len(anew) < 12 and all("seen too little" in each for each in anew)
+        assert f"Of {len(anew)} images" in page and "marked difficult" not in page
+
+
 def test_two_campaigns_in_one_folder_make_one_data_set(ground, environment, whole):
     arguments = [COMMAND, "campaign", "campaign.yaml", "-o", "twice", "--quiet"]
     both = [subprocess.Popen(arguments, cwd=ground, env=environment, stderr=subprocess.PIPE)
