@@ -50,6 +50,7 @@ enum distribution_kind {
 struct distribution {
     enum distribution_kind kind;
     char *key; /* of the scene or of an object; owned */
+    char *of;  /* key whose value, drawn before, this one is a ratio of; NULL: of none; owned */
     struct tree_place place;
     double low, high; /* in the unit as it is written */
     double mean, deviation;
@@ -65,9 +66,9 @@ struct distribution {
 
 /* Reads what the node says: a single value, a list, or a section {uniform: [low, high]},
  * {log_uniform: [low, high]}, {normal: {mean, deviation, minimum, maximum}}, {choice: [...],
- * weights: [...]}, {fixed: value}; the first two also with steps. The reader's path is the
- * value's. distribution: all zeros; on failure as well it is for distribution_clear. Errors: INPUT,
- * MEMORY. */
+ * weights: [...]}, {fixed: value}; the first two also with steps, the first three with of: KEY. The
+ * reader's path is the value's. distribution: all zeros; on failure as well it is for
+ * distribution_clear. Errors: INPUT, MEMORY. */
 sonject_status distribution_read(struct reader *reader, const struct tree_node *node,
                                  const char *key, struct distribution *distribution);
 void distribution_clear(struct distribution *distribution);

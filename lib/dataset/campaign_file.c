@@ -76,7 +76,13 @@ static sonject_status read_draw(struct reader *reader, struct campaign *campaign
     struct distribution *distribution = &draws->list[draws->count++];
     distribution->stream = ++campaign->streams;
     const size_t before = key_path_add(&reader->path, entry->key);
-    const sonject_status status = distribution_read(reader, &entry->value, key, distribution);
+    sonject_status status = distribution_read(reader, &entry->value, key, distribution);
+    bool is_drawn = !distribution->of;
+    for (size_t i = 0; i + 1 < draws->count; i++)
+        is_drawn = is_drawn || strcmp(draws->list[i].key, distribution->of) == 0;
+    if (status == SONJECT_OK && !is_drawn)
+        status = refuse_value(reader, &entry->value,
+                              "is a ratio of '%s', which is not drawn before it", distribution->of);
     key_path_shorten(&reader->path, before);
     return status;
 }

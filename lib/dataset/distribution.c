@@ -360,6 +360,19 @@ static sonject_status read_steps(struct reader *reader, const struct tree_node *
     return SONJECT_OK;
 }
 
+static sonject_status read_of(struct reader *reader, const struct tree_node *node,
+                              struct distribution *distribution)
+{
+    const char *text = read_text(reader, node);
+    if (!text)
+        return SONJECT_ERROR_INPUT;
+    if (*distribution->unit)
+        return refuse_value(reader, node, "makes ratios of the numbers, which have no unit then");
+    distribution->of = copy_text(text);
+    CHECK_MEMORY(reader->report, distribution->of, "the campaign");
+    return SONJECT_OK;
+}
+
 typedef sonject_status read_function(struct reader *reader, const struct tree_node *node,
                                      struct distribution *distribution);
 
@@ -403,6 +416,8 @@ static sonject_status read_keys(struct reader *reader, const struct tree_node *n
             status = kinds[kind].read(reader, &entry->value, distribution);
         else if (kinds[kind].beside && strcmp(entry->key, kinds[kind].beside) == 0)
             status = kinds[kind].read_beside(reader, &entry->value, distribution);
+        else if (kind <= DISTRIBUTION_NORMAL && strcmp(entry->key, "of") == 0)
+            status = read_of(reader, &entry->value, distribution);
         else
             status = refuse_value(reader, &entry->value, "does not belong here; remove it");
         key_path_shorten(&reader->path, before);
@@ -438,5 +453,6 @@ void distribution_clear(struct distribution *distribution)
     free(distribution->texts);
     free(distribution->cumulative);
     free(distribution->key);
+    free(distribution->of);
     memset(distribution, 0, sizeof *distribution);
 }

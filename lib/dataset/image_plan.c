@@ -120,6 +120,31 @@ static const char *draw_value(struct drawing *drawing, const struct distribution
                : distribution_value(distribution, u, text);
 }
 
+/* The value that a ratio stands for: of the key that it is of, in whose unit it comes. */
+static const char *value_of_ratio(struct drawing *drawing, const char *prefix,
+                                  const struct distribution *distribution, const char *ratio,
+                                  char text[DISTRIBUTION_TEXT_CAPACITY])
+{
+    const struct image_plan *plan = drawing->plan;
+    char key[256], digits[32];
+    double share = 1.0, number = 0.0;
+    const char *rest = "";
+    const int length = snprintf(key, sizeof key, "%s%s=", prefix, distribution->of);
+    size_t i = plan->key_count;
+    while (i > 0 && strncmp(plan->keys[i - 1].text, key, (size_t)length) != 0)
+        i--;
+    if (drawing->status == SONJECT_OK &&
+        (i == 0 || !text_to_number(plan->keys[i - 1].text + length, &number, &rest)))
+        drawing->status = report_failure(drawing->report, SONJECT_ERROR_INPUT,
+                                         "%s%s is a ratio of %s, of which no number is drawn "
+                                         "before it",
+                                         prefix, distribution->key, distribution->of);
+    text_to_number(ratio, &share, &ratio);
+    text_of_number(digits, sizeof digits, share * number, 9);
+    snprintf(text, DISTRIBUTION_TEXT_CAPACITY, "%s%.15s", digits, rest);
+    return text;
+}
+
 static bool draws_have_key(const struct draws *draws, const char *key)
 {
     for (size_t i = 0; i < draws->count; i++)
@@ -197,7 +222,7 @@ static void draw_object(struct drawing *drawing, const struct item *item, uint32
     snprintf(prefix, sizeof prefix, "objects[%u].", (unsigned)number);
     for (int k = 0; k < 2; k++)
         for (size_t i = 0; i < both[k]->count; i++) {
-            char text[DISTRIBUTION_TEXT_CAPACITY];
+            char text[DISTRIBUTION_TEXT_CAPACITY], ratio[DISTRIBUTION_TEXT_CAPACITY];
             const struct distribution *distribution = &both[k]->list[i];
             if (k == 0 && draws_have_key(&item->draws, distribution->key))
                 continue;
@@ -206,6 +231,8 @@ static void draw_object(struct drawing *drawing, const struct item *item, uint32
                     ? distribution_value(
                           distribution, uniform_number(own_seed, distribution->stream, place), text)
                     : draw_value(drawing, distribution, seed, drawing->index, drawing->count, text);
+            if (distribution->of)
+                value = value_of_ratio(drawing, prefix, distribution, value, ratio);
             add_value(drawing, distribution->place, prefix, distribution->key, value);
         }
 }
@@ -340,9 +367,12 @@ static sonject_status fill_plan(struct drawing *drawing, const struct item *tria
     snprintf(text, sizeof text, "%llu", (unsigned long long)drawing->plan->seed);
     add_value(drawing, nowhere, "", "injection.seed", text);
     for (size_t i = 0; i < campaign->draws.count; i++) {
+        char ratio[DISTRIBUTION_TEXT_CAPACITY];
         const struct distribution *distribution = &campaign->draws.list[i];
         const char *value = draw_value(drawing, distribution, campaign->seed, drawing->plan->id,
                                        campaign->images, text);
+        if (distribution->of)
+            value = value_of_ratio(drawing, "", distribution, value, ratio);
         add_value(drawing, distribution->place, "", distribution->key, value);
     }
     draw_objects(drawing, trial_clutter);

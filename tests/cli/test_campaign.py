@@ -508,6 +508,20 @@ def test_targets_are_seen_as_they_are_to_be(ground, command, otherwise):
         assert f"Of {len(anew)} images" in page and "marked difficult" not in page
 
 
+def test_a_value_may_be_a_ratio_of_another(ground, command):
+    """In the unit of that one; a ratio may be of a ratio."""
+    body = ("targets=[{class: box, object: {shape: box}, draw: {length: {uniform: [40 cm, 80 cm]}, "
+            "width: {of: length, uniform: [0.3, 0.6]}, height: {of: width, log_uniform: [0.5, 1]}}}]")
+    done = command("campaign", "campaign.yaml", "-o", "ratio", "--set", body, "--set", "empty=0")
+    assert done.returncode == 0, done.stderr
+    for record in records(ground / "ratio"):
+        drawn = dict(entry.split("=", 1) for entry in record["set"])
+        length, width, height = (drawn[f"objects[0].{key}"].split() for key in ("length", "width", "height"))
+        assert length[1] == width[1] == height[1] == "cm"
+        assert 0.3 <= float(width[0]) / float(length[0]) <= 0.6
+        assert 0.5 <= float(height[0]) / float(width[0]) <= 1
+
+
 def test_two_campaigns_in_one_folder_make_one_data_set(ground, environment, whole):
     arguments = [COMMAND, "campaign", "campaign.yaml", "-o", "twice", "--quiet"]
     both = [subprocess.Popen(arguments, cwd=ground, env=environment, stderr=subprocess.PIPE)
