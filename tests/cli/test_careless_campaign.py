@@ -1,0 +1,59 @@
+"""A campaign of 10,000 draws over all shapes, with ranges that nobody thought about: it never stops,
+and tells what it drew anew and why. Two minutes; a share of the draws by SONJECT_CARELESS_IMAGES."""
+
+import json
+import os
+import re
+import subprocess
+
+import numpy
+
+import images
+from conftest import COMMAND
+
+IMAGES = int(os.environ.get("SONJECT_CARELESS_IMAGES", "10000"))
+SIZES = {"plane": "length width", "disc": "diameter", "sphere": "diameter", "ellipsoid": "length width height",
+         "cylinder": "length diameter", "capsule": "length diameter", "box": "length width height",
+         "wedge": "length width height front_height", "cone": "diameter height",
+         "truncated_cone": "diameter height top_diameter", "torus": "diameter height"}
+
+SCENE = """\
+sonject: 1
+input:
+  geometry: {row_spacing: 2.5 cm, column_spacing: 2.5 cm, first_slant_range: 25 m}
+sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}
+"""
+CAMPAIGN = f"""\
+sonject_campaign: 1
+scene: scene.yaml
+images: {IMAGES}
+seed: 7
+chip: {{rows: 48, columns: 48, spread: 0.9}}
+swaths: [{{path: swath.png}}]
+outputs: []
+draw:
+  objects[].heading: {{uniform: [0 deg, 360 deg]}}
+  objects[].pitch: {{uniform: [-90 deg, 90 deg]}}
+  objects[].roll: {{uniform: [-90 deg, 90 deg]}}
+  objects[].burial: {{uniform: [-1 m, 2 m]}}
+targets:
+"""
+TARGET = "  - {{class: {shape}, object: {{shape: {shape}}}, draw: {{{sizes}}}}}\n"
+
+
+def test_a_careless_campaign_never_stops(tmp_path):
+    amplitudes = numpy.random.default_rng(1).rayleigh(30, (300, 300)).clip(1, 255)
+    (tmp_path / "swath.png").write_bytes(images.png_bytes(amplitudes))
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    (tmp_path / "campaign.yaml").write_text(CAMPAIGN + "".join(
+        TARGET.format(shape=shape, sizes=", ".join(f"{key}: {{log_uniform: [0.005 m, 3 m]}}" for key in keys.split()))
+        for shape, keys in SIZES.items()))
+    subprocess.run([COMMAND, "campaign", "campaign.yaml", "-o", "out", "--quiet"], check=True, cwd=tmp_path)
+    records = [json.loads(path.read_text()) for path in (tmp_path / "out").glob("*/records/*.json")]
+    anew = [record["drawn_anew"] for record in records if "drawn_anew" in record]
+    assert len(records) == IMAGES
+    print(f"{len(anew)} of {IMAGES} images drawn anew, {max(each['times'] for each in anew)} times at most")
+    # a torus has a hole in half of the draws, and what is above 1.2 m is larger than the chip
+    assert 0.2 * IMAGES < len(anew) < 0.6 * IMAGES
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert re.search(rf"Of {len(anew)} images values were drawn anew", page)
