@@ -203,7 +203,7 @@ FRAGMENTS = {
     "aperture: none": ("sonar.", [], []),
 }
 # A campaign's, and what ends where a value would begin.
-OTHER_FRAGMENTS = {"labels: [yolo, voc]", "target:"}
+OTHER_FRAGMENTS = {"labels: [yolo, voc]", "target:", "visible: {highlight: 1.2 dB, shadow: -2.3 dB}"}
 
 
 def test_fragments_of_scene_files_are_read(project):
