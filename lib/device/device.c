@@ -328,8 +328,12 @@ static sonject_status check_abilities(struct report *report, struct device *devi
 {
     cl_ulong limit = 0;
     cl_device_fp_config precision = 0;
-    clGetDeviceInfo(device->id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof limit, &limit, NULL);
-    clGetDeviceInfo(device->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof precision, &precision, NULL);
+    cl_int error =
+        clGetDeviceInfo(device->id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof limit, &limit, NULL);
+    CHECK(opencl_answer(report, device, "clGetDeviceInfo", error));
+    error =
+        clGetDeviceInfo(device->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof precision, &precision, NULL);
+    CHECK(opencl_answer(report, device, "clGetDeviceInfo", error));
     device->allocation_limit = limit > SIZE_MAX ? SIZE_MAX : (size_t)limit;
     if (!(precision & CL_FP_INF_NAN) || !(precision & CL_FP_ROUND_TO_NEAREST))
         return report_failure(report, SONJECT_ERROR_DEVICE,
