@@ -54,6 +54,25 @@ static void tell_clipped(struct report *report, const sonject_statistics *statis
                    (unsigned long long)statistics->output_clipped);
 }
 
+/* Objects that nobody would find who labels the image. */
+static void tell_unseen(struct report *report, const struct scene *scene,
+                        const struct injection_result *result)
+{
+    for (uint32_t i = 0; i < result->object_count; i++) {
+        const sonject_object_truth *truth = &result->objects[i];
+        const double highlight_db = truth->highlight_visibility_db;
+        const double shadow_db = truth->shadow_visibility_db;
+        if (!truth->is_visible)
+            report_log(report, "note: nothing of '%s' is in view", scene->objects[i].name);
+        else if (!(isnan(highlight_db) && isnan(shadow_db)) && !(highlight_db > 0.0) &&
+                 !(shadow_db < 0.0))
+            report_log(report,
+                       "note: '%s' drowns in the seabed: neither its highlight nor its shadow "
+                       "stands out; see objects[].level and seabed.lambert",
+                       scene->objects[i].name);
+    }
+}
+
 static sonject_status write_documents(struct report *report, struct run_facts *facts,
                                       const char *folder, double run_start, double write_start)
 {
@@ -118,6 +137,7 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
     if (status != SONJECT_OK || !is_formed)
         return status;
     tell_noise_floor(report, scene, &result.statistics);
+    tell_unseen(report, scene, &result);
     result.statistics.input_clipped = swath->clipped;
     facts->result = &result;
     facts->device = device;

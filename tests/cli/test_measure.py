@@ -292,3 +292,18 @@ def test_two_sets_of_contacts(sonject, tmp_path):
     (tmp_path / "none.json").write_text("{}")
     assert_refused(sonject("measure", "a.json", "--compare", "none.json"), 3, "none.json")
     assert_refused(sonject("measure", "a.json", "--compare", "absent.json"), 3, "absent.json")
+
+
+@pytest.mark.parametrize("change, note", [
+    ("{diameter: 10 cm, burial: 8 cm, level: {over_seabed: 1 dB}", "drowns in the seabed"),
+    ("{diameter: 30 cm, burial: 40 cm", "nothing of 'ball' is in view"), ("{diameter: 30 cm", None)])
+def test_a_run_notes_what_nobody_would_see(sonject, tmp_path, change, note):
+    (tmp_path / "scene.yaml").write_text(
+        "sonject: 1\ninput: {synthetic: {rows: 128, columns: 128, seed: 3}, geometry: {row_spacing: 2.5 cm, "
+        "column_spacing: 2.5 cm, first_slant_range: 30 m}}\n"
+        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
+        f"objects: [{change}, name: ball, shape: sphere, position: {{row: 64, column: 64}}}}]\n")
+    answer = sonject("run", "scene.yaml", "-o", "out")
+    assert answer.returncode == 0, answer.stderr
+    notes = [line for line in answer.stderr.splitlines() if "note: " in line]
+    assert len(notes) == (note is not None) and all(note in line for line in notes)
