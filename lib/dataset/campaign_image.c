@@ -146,7 +146,6 @@ sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t i
                                    uint32_t *attempt, char reason[REASON_CAPACITY],
                                    struct image_plan *plan, struct scene *scene)
 {
-    struct mesh_store *const store = scene->mesh_store;
     for (;; ++*attempt) {
         bool are_relations = false;
         sonject_status status =
@@ -156,8 +155,6 @@ sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t i
             return status;
         keep_reason(campaign->report, reason);
         image_plan_clear(plan);
-        scene_init(scene);
-        scene->mesh_store = store;
     }
 }
 

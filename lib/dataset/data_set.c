@@ -356,18 +356,18 @@ static sonject_status add_image(struct coco_file *coco, uint64_t id, bool has_an
         status = add_entry(coco, coco_image(id, member_text(record, "image"), (uint64_t)set->rows,
                                             (uint64_t)set->columns));
     for (size_t i = 0; status == SONJECT_OK && i < json_array_size(list); i++) {
-        json_t *annotation = json_incref(json_array_get(list, i));
-        if (!json_is_object(annotation)) {
-            json_decref(annotation);
+        json_t *annotation = json_array_get(list, i);
+        if (json_is_object(annotation)) {
+            json_incref(annotation);
+            json_add(&annotation, "id", json_count(coco->entries + 1));
+            json_add(&annotation, "image_id", json_count(id));
+            status = add_entry(coco, annotation);
+        } else {
             status = input_failure(set->report, set->folder,
                                    "the record of image %" PRIu64
                                    " is damaged; remove it and run the campaign again",
                                    id);
-            break;
         }
-        json_add(&annotation, "id", json_count(coco->entries + 1));
-        json_add(&annotation, "image_id", json_count(id));
-        status = add_entry(coco, annotation);
     }
     json_decref(record);
     return status;

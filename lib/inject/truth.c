@@ -195,8 +195,7 @@ static sonject_status measure_object(const struct tracer *tracer, const struct p
                                      const struct echoes *echoes, uint32_t number,
                                      sonject_object_truth *truth)
 {
-    const struct window_box box = {truth->both.first_row, truth->both.first_column,
-                                   truth->both.rows, truth->both.columns};
+    const struct window_box box = window_box_of(&truth->both);
     const struct window_box wide =
         box_with_margin(&box, CONTACT_MARGIN + SEABED_MARGIN, echoes->rows, echoes->columns);
     struct contact_place place;
@@ -241,41 +240,46 @@ static float intensity_at(const struct injection_result *result, size_t i)
     return image[2 * i] * image[2 * i] + image[2 * i + 1] * image[2 * i + 1];
 }
 
-/* The part of a box within another, counted from there. */
+/* A box within another, counted from there. */
 static struct window_box box_within(const sonject_box *box, const struct window_box *wide)
 {
-    return (struct window_box){(size_t)box->first_row - wide->first_row,
-                               (size_t)box->first_column - wide->first_column, (size_t)box->rows,
-                               (size_t)box->columns};
+    struct window_box inner = window_box_of(box);
+    inner.first_row -= wide->first_row;
+    inner.first_column -= wide->first_column;
+    return inner;
 }
 
-/* How the object shows amid the image's own speckle. */
+/* How the object shows amid the image's own speckle, behind so many columns of water. */
 static sonject_status see_object(struct report *report, const struct injection_result *result,
-                                 sonject_object_truth *truth)
+                                 size_t water_columns, sonject_object_truth *truth)
 {
-    const struct window_box box = {truth->both.first_row, truth->both.first_column,
-                                   truth->both.rows, truth->both.columns};
+    const struct window_box box = window_box_of(&truth->both);
     const struct window_box wide =
         box_with_margin(&box, SEABED_MARGIN, result->rows, result->columns);
     const struct window_box highlight = box_within(&truth->highlight, &wide);
     const struct window_box shadow = box_within(&truth->shadow, &wide);
-    struct contact_visibility visibility;
-    struct contact_image image;
+    struct contact_visibility visibility = {NAN, NAN};
     float *intensity = allocate_array(wide.rows, wide.columns * sizeof *intensity);
-    CHECK_MEMORY(report, intensity, "an object's measures");
-    for (size_t i = 0; i < wide.rows * wide.columns; i++)
-        intensity[i] = intensity_at(result, (wide.first_row + i / wide.columns) * result->columns +
-                                                wide.first_column + i % wide.columns);
-    sonject_status status =
-        contact_image_create(&image, report, intensity, wide.rows, wide.columns);
-    for (size_t i = 0; status == SONJECT_OK && i < wide.rows * wide.columns; i++)
-        image.taken[i] = result->labels[(wide.first_row + i / wide.columns) * result->columns +
-                                        wide.first_column + i % wide.columns];
-    THEN(status, measure_visibility(&image, report, &highlight, &shadow, &visibility));
-    if (status == SONJECT_OK) {
-        truth->highlight_visibility_db = visibility.highlight_db;
-        truth->shadow_visibility_db = visibility.shadow_db;
+    struct contact_image image = {.intensity = intensity,
+                                  .rows = wide.rows,
+                                  .columns = wide.columns,
+                                  .taken = allocate_array(wide.rows, wide.columns),
+                                  .seabed_columns =
+                                      allocate_array(wide.rows, sizeof *image.seabed_columns)};
+    sonject_status status = intensity && image.taken && image.seabed_columns
+                                ? SONJECT_OK
+                                : report_out_of_memory(report, "an object's measures");
+    for (size_t row = 0; status == SONJECT_OK && row < wide.rows; row++) {
+        const size_t first = (wide.first_row + row) * result->columns + wide.first_column;
+        if (water_columns > wide.first_column)
+            image.seabed_columns[row] = water_columns - wide.first_column;
+        memcpy(image.taken + row * wide.columns, result->labels + first, wide.columns);
+        for (size_t column = 0; column < wide.columns; column++)
+            intensity[row * wide.columns + column] = intensity_at(result, first + column);
     }
+    THEN(status, measure_visibility(&image, report, &highlight, &shadow, &visibility));
+    truth->highlight_visibility_db = visibility.highlight_db;
+    truth->shadow_visibility_db = visibility.shadow_db;
     contact_image_clear(&image);
     free(intensity);
     return status;
@@ -296,7 +300,7 @@ static sonject_status measure_objects(const struct tracer *tracer, const struct 
         if (!truth->is_visible)
             continue;
         status = measure_object(tracer, level, speckle, echoes, i, truth);
-        THEN(status, see_object(tracer->report, result, truth));
+        THEN(status, see_object(tracer->report, result, view_water_columns(&tracer->view), truth));
     }
     return status;
 }

@@ -286,6 +286,12 @@ void contact_image_clear(struct contact_image *image)
     memset(image, 0, sizeof *image);
 }
 
+struct window_box window_box_of(const sonject_box *box)
+{
+    return (struct window_box){(size_t)box->first_row, (size_t)box->first_column, (size_t)box->rows,
+                               (size_t)box->columns};
+}
+
 int compare_floats(const void *a, const void *b)
 {
     const float x = *(const float *)a;

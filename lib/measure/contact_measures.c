@@ -173,10 +173,7 @@ static sonject_status place_in_box(struct report *report, const sonject_box *box
             (unsigned long long)box->first_row, (unsigned long long)box->first_column,
             (unsigned long long)box->rows, (unsigned long long)box->columns, rows, columns);
     memset(place, 0, sizeof *place);
-    place->box.first_row = (size_t)box->first_row;
-    place->box.first_column = (size_t)box->first_column;
-    place->box.rows = (size_t)box->rows;
-    place->box.columns = (size_t)box->columns;
+    place->box = window_box_of(box);
     place->bright = place->box;
     return SONJECT_OK;
 }
@@ -199,12 +196,6 @@ static sonject_status contact_measure(struct report *report, struct contact_imag
     return SONJECT_OK;
 }
 
-static struct window_box inner_box(const sonject_box *box)
-{
-    return (struct window_box){(size_t)box->first_row, (size_t)box->first_column, (size_t)box->rows,
-                               (size_t)box->columns};
-}
-
 /* How well each of so many contacts is seen, when all are known: none is another's seabed. Errors:
  * MEMORY. */
 static sonject_status contacts_add_visibility(struct report *report,
@@ -213,8 +204,8 @@ static sonject_status contacts_add_visibility(struct report *report,
 {
     for (size_t i = 0; i < count; i++) {
         struct contact_visibility visibility;
-        const struct window_box highlight = inner_box(&measures[i].highlight);
-        const struct window_box shadow = inner_box(&measures[i].shadow);
+        const struct window_box highlight = window_box_of(&measures[i].highlight);
+        const struct window_box shadow = window_box_of(&measures[i].shadow);
         CHECK(measure_visibility(image, report, &highlight, &shadow, &visibility));
         measures[i].highlight_visibility_db = visibility.highlight_db;
         measures[i].shadow_visibility_db = visibility.shadow_db;

@@ -8,6 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <sonject/result.h>
+
 #include "base/report.h"
 #include "image/statistics.h"
 
@@ -29,6 +31,8 @@ enum contact_part {
 struct window_box {
     size_t first_row, first_column, rows, columns;
 };
+
+struct window_box window_box_of(const sonject_box *box);
 
 /* For qsort: the smallest first. */
 int compare_floats(const void *a, const void *b);

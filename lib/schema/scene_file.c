@@ -249,8 +249,10 @@ sonject_status scene_source_read(const struct scene_source *source, struct repor
     struct key_path path = {"", 0};
     THEN(status, write_down(&tree, &tree.root, &path, scene));
     tree_clear(&tree);
-    if (status != SONJECT_OK)
+    if (status != SONJECT_OK) {
         scene_clear(scene);
+        scene->mesh_store = store;
+    }
     return status;
 }
 

@@ -53,7 +53,8 @@ sonject_status scene_source_set(struct scene_source *source, struct report *repo
 sonject_status scene_source_set_array(struct scene_source *source, struct report *report,
                                       const struct number_array *array);
 
-/* Reads it all. Of the scene only mesh_store counts before; on failure it is left empty. Errors:
+/* Reads it all. Of the scene only mesh_store counts before; on failure it is left empty but for
+ * that. Errors:
  * INPUT, STORAGE, UNSUPPORTED (a mesh's format), MEMORY. */
 sonject_status scene_source_read(const struct scene_source *source, struct report *report,
                                  struct scene *scene);

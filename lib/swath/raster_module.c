@@ -63,20 +63,21 @@ sonject_status raster_module_find(struct report *report, const char *path, enum 
                                   const struct raster_module **module)
 {
     static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
-    static const struct raster_module *loaded[2];
-    const bool is_other = !IS_TIFF_OR_PNG(kind);
+    static struct module {
+        const char *file, *name;
+        const struct raster_module *loaded;
+    } modules[] = {{"tiff_png.so", "raster_module_tiff_png", NULL},
+                   {"openimageio.so", "raster_module_openimageio", NULL}};
+    struct module *wanted = &modules[IS_TIFF_OR_PNG(kind) ? 0 : 1];
     sonject_status status = SONJECT_OK;
     pthread_mutex_lock(&one_at_a_time);
-    if (!loaded[is_other]) {
-        char *module_file = module_path(is_other ? "openimageio.so" : "tiff_png.so");
-        status = module_file
-                     ? load(report, path, module_file,
-                            is_other ? "raster_module_openimageio" : "raster_module_tiff_png",
-                            &loaded[is_other])
-                     : report_out_of_memory(report, "a path");
+    if (!wanted->loaded) {
+        char *module_file = module_path(wanted->file);
+        status = module_file ? load(report, path, module_file, wanted->name, &wanted->loaded)
+                             : report_out_of_memory(report, "a path");
         free(module_file);
     }
-    *module = loaded[is_other];
+    *module = wanted->loaded;
     pthread_mutex_unlock(&one_at_a_time);
     return status;
 }

@@ -10,6 +10,7 @@ import numpy
 
 import images
 from conftest import COMMAND
+from test_campaign import SCENE
 
 IMAGES = int(os.environ.get("SONJECT_CARELESS_IMAGES", "10000"))
 SIZES = {"plane": "length width", "disc": "diameter", "sphere": "diameter", "ellipsoid": "length width height",
@@ -17,12 +18,6 @@ SIZES = {"plane": "length width", "disc": "diameter", "sphere": "diameter", "ell
          "wedge": "length width height front_height", "cone": "diameter height",
          "truncated_cone": "diameter height top_diameter", "torus": "diameter height"}
 
-SCENE = """\
-sonject: 1
-input:
-  geometry: {row_spacing: 2.5 cm, column_spacing: 2.5 cm, first_slant_range: 25 m}
-sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}
-"""
 CAMPAIGN = f"""\
 sonject_campaign: 1
 scene: scene.yaml

@@ -2,6 +2,7 @@
 
 import os
 import struct
+import zlib
 
 import numpy
 import pytest
@@ -25,6 +26,32 @@ def line(tmp_path, sides):
     """line.xtf: port and starboard of 30 m, 10 cm a ping, 6 m up."""
     (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides))
     return tmp_path / "line.xtf"
+
+
+def interlaced_png(pixels):
+    """Adam7, of 16 bits, with a description as other programs write it."""
+    rows = len(pixels)
+    passes = [(0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4), (1, 0, 2, 2), (0, 1, 1, 2)]
+    lines = [pixels[row, x::across].astype(">u2").tobytes()
+             for x, y, across, down in passes for row in range(y, rows, down) if x < pixels.shape[1]]
+
+    def chunk(name, content):
+        return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
+
+    head = struct.pack(">IIBBBBB", pixels.shape[1], rows, 16, 0, 0, 0, 1)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"tEXt", b"Description\0sonject:altitude_m=6")
+            + chunk(b"IDAT", zlib.compress(b"".join(b"\0" + line for line in lines))) + chunk(b"IEND", b""))
+
+
+def test_interlaced_pngs_are_read(sonject, tmp_path):
+    pixels = numpy.random.default_rng(3).integers(0, 65536, (13, 21), "u2")
+    (tmp_path / "a.png").write_bytes(interlaced_png(pixels))
+    sonject.done("convert", "a.png", "b.tif")
+    assert numpy.array_equal(images.read_tiff(tmp_path / "b.tif"), pixels)
+    assert b"sonject:altitude_m=6" in (tmp_path / "b.tif").read_bytes()
+    (tmp_path / "a.png").write_bytes((tmp_path / "a.png").read_bytes()[:-60])
+    assert_refused(sonject("convert", "a.png", "c.tif"), 3, "cut short")
+    assert not (tmp_path / "c.tif").exists()
 
 
 def test_a_recording_goes_through_rasters_and_back(sonject, tmp_path, line, sides):

@@ -307,3 +307,18 @@ def test_a_run_notes_what_nobody_would_see(sonject, tmp_path, change, note):
     assert answer.returncode == 0, answer.stderr
     notes = [line for line in answer.stderr.splitlines() if "note: " in line]
     assert len(notes) == (note is not None) and all(note in line for line in notes)
+
+
+def test_the_water_column_is_nobodys_seabed(sonject, tmp_path):
+    """Its darkness, within 24 pixels of the target, would drown every shadow. First return: column 40."""
+    swath = numpy.random.default_rng(5).rayleigh(30, (128, 160))
+    swath[:, :40] = 1
+    write(tmp_path / "swath.tif", swath.astype(numpy.float32))
+    (tmp_path / "scene.yaml").write_text(
+        "sonject: 1\ninput: {path: swath.tif, geometry: {row_spacing: 2.5 cm, column_spacing: 2.5 cm, "
+        "first_slant_range: 9 m}}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
+        "injection: {noise_floor: -25 dB}\n"
+        "objects: [{name: ball, shape: sphere, diameter: 60 cm, position: {row: 64, column: 60}}]\n")
+    sonject.done("run", "scene.yaml", "-o", "out")
+    (ball,) = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"]
+    assert ball["shadow"]["column"] < 40 + 24 and ball["shadow_visibility_db"] < -6
