@@ -31,6 +31,7 @@ void benchmark_begin(struct benchmark_scene *set, size_t pixels)
     memset(set, 0, sizeof *set);
     scene_init(&set->scene);
     set->scene.sonar.aperture_rad = 0.0;
+    set->scene.sonar.response_window = SONJECT_WINDOW_RECTANGULAR;
     set->scene.geometry.first_slant_range_m = 50.0 - 0.0125 * (double)pixels;
     set->tracer.report = &set->report;
     set->tracer.scene = &set->scene;

@@ -23,7 +23,7 @@ input:
   path: swath.tif
   geometry: {row_spacing: 5 cm, column_spacing: 2.5 cm, first_slant_range: 24 m}
 patch: {row: 4, column: 8, rows: 80, columns: 112}
-sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}
+sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m, response: rectangular}
 objects:
   - {name: 'a "b", <c> & d', class: 'x<&>y, "q"', shape: box, length: 1.6 m, width: 0.2 m,
      height: 0.3 m, heading: 0.1, position: {row: 60, column: 60}}

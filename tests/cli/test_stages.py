@@ -39,6 +39,8 @@ def traced(tmp_path_factory, environment):
     """A folder with a scene, its impulses and what a run makes of it."""
     folder = tmp_path_factory.mktemp("traced")
     write_scene(folder, make_swath())
+    scene = folder / "scene.yaml"  # a sinc reaches farther than other responses
+    scene.write_text(scene.read_text().replace("sonar:\n", "sonar:\n  response: rectangular\n"))
     for arguments in (["trace", "scene.yaml", "-o", "impulses.sums"], ["run", "scene.yaml", "-o", "run"]):
         subprocess.run([COMMAND, *arguments, "--quiet", *NOMINAL], cwd=folder, env=environment, check=True)
     return folder

@@ -184,6 +184,7 @@ static void test_multibounce_tallies(void **state)
     for (size_t i = 0; i < COUNT(variants); i++) {
         scene_clear(&bench.scene);
         scene_init(&bench.scene);
+        bench.scene.sonar.response_window = SONJECT_WINDOW_RECTANGULAR;
         bench_set_layers(&bench, NULL, 0);
         bench_move(&bench, 18.0);
         compare_variant(&bench, &variants[i]);

@@ -55,6 +55,7 @@ void bench_open(struct bench *bench, size_t rows, size_t columns, double middle_
     memset(bench, 0, sizeof *bench);
     scene_init(&bench->scene);
     bench->scene.sonar.aperture_rad = 0.0; /* closed forms are of one aspect */
+    bench->scene.sonar.response_window = SONJECT_WINDOW_RECTANGULAR; /* and of a sinc */
     bench->rows = rows;
     bench->columns = columns;
     bench->tracer.report = &bench->report;

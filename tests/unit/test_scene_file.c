@@ -91,6 +91,9 @@ static void test_defaults_stay_where_nothing_is_said(void **state)
     assert_int_equal(folder->scene.object_count, 1);
     assert_true(folder->scene.objects[0].material.reflection == 0.9);
     assert_true(folder->scene.objects[0].length_m == 0.0);
+    assert_int_equal(folder->scene.sonar.response_window, SONJECT_WINDOW_TAYLOR);
+    assert_true(folder->scene.sonar.taylor_sidelobe_db == 35.0);
+    assert_int_equal(folder->scene.sonar.taylor_terms, 5);
 }
 
 static void test_words_and_forms(void **state)

@@ -32,7 +32,8 @@ def scene_of(context, material, *, elements, side="port", lambert=1e-9, medium=N
     geometry = dict(row_spacing=SPACING, column_spacing=SPACING, first_slant_range=FIRST_RANGE,
                     side=side)
     return sonject.Scene(
-        sonar={"frequency": 100e3, "bandwidth": 30e3, "altitude": 10},
+        sonar={"frequency": 100e3, "bandwidth": 30e3, "altitude": 10,
+               "response": "rectangular"},  # the beamformer weights aspects evenly
         input={"geometry": geometry},
         seabed={"lambert": lambert},
         medium=medium or {},
