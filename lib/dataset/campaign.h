@@ -14,6 +14,7 @@
 #include "inject/injection.h"
 #include "inject/swath.h"
 #include "schema/keys.h"
+#include "schema/tables.h"
 
 #define CAMPAIGN_IMAGES_MAX  10000000 /* ids have eight digits */
 #define CAMPAIGN_ITEMS_MAX   250      /* targets and clutter, of each */
@@ -46,6 +47,21 @@ enum distribution_kind {
     DISTRIBUTION_FIXED        /* the only text */
 };
 
+/* A value of a row, as --set takes it, and where it is written. */
+struct body_cell {
+    char *text; /* owned; NULL: the row does not say it */
+    struct tree_place place;
+};
+
+/* Bodies that were measured, one a row. */
+struct body_table {
+    char *path;                   /* to open; owned */
+    char *keys[TABLE_FIELDS_MAX]; /* of objects; owned */
+    size_t key_count;
+    struct body_cell **cells;      /* of each row, one a key; owned */
+    char hash[HASH_TEXT_CAPACITY]; /* of the file */
+};
+
 /* What a value of a scene is drawn from. */
 struct distribution {
     enum distribution_kind kind;
@@ -54,12 +70,13 @@ struct distribution {
     struct tree_place place;
     double low, high; /* in the unit as it is written */
     double mean, deviation;
-    char unit[16];      /* " kHz", "" for none */
-    char **texts;       /* values as --set takes them; owned */
-    double *cumulative; /* weights of the texts, added up, the last 1; owned */
-    size_t count;       /* of texts */
-    uint32_t steps;     /* of a grid's axis; 0: none */
-    uint32_t stream;    /* of random numbers */
+    char unit[16];            /* " kHz", "" for none */
+    char **texts;             /* values as --set takes them; owned */
+    double *cumulative;       /* weights of the texts, added up, the last 1; owned */
+    size_t count;             /* of texts */
+    uint32_t steps;           /* of a grid's axis; 0: none */
+    uint32_t stream;          /* of random numbers */
+    struct body_table *table; /* whose rows' numbers the texts are; NULL: none; owned */
 };
 
 #define DISTRIBUTION_TEXT_CAPACITY 48
@@ -72,6 +89,15 @@ struct distribution {
 sonject_status distribution_read(struct reader *reader, const struct tree_node *node,
                                  const char *key, struct distribution *distribution);
 void distribution_clear(struct distribution *distribution);
+
+/* Reads what `table` says: a file's name, or {file: name, weight: column}. distribution: as of
+ * distribution_read; a choice of rows. Errors: INPUT, STORAGE, MEMORY. */
+sonject_status body_table_read(struct reader *reader, const struct tree_node *node,
+                               struct distribution *distribution);
+void body_table_clear(struct body_table *table, size_t rows);
+
+/* The cells of the row that a drawn text stands for. */
+const struct body_cell *body_table_row(const struct distribution *distribution, const char *text);
 
 /* The value that a share of u, 0...1, lies below, as a text for --set; text: where numbers are
  * written, to nine digits. */
@@ -107,6 +133,9 @@ struct draws {
     struct distribution *list; /* owned */
     size_t count;
 };
+
+/* Whether a key is drawn, by itself or with a table's row. */
+bool draws_have_key(const struct draws *draws, const char *key);
 
 /* Something that is put into images: a target or clutter. */
 struct item {
@@ -213,6 +242,11 @@ sonject_status campaign_read(struct report *report, const char *path, const char
                              size_t count, struct campaign *campaign);
 void campaign_clear(struct campaign *campaign);
 
+/* Whether key, which is at place and path, is one of the scene (or of an object) that a campaign
+ * may set. Errors: INPUT. */
+sonject_status campaign_check_key(const struct tree *tree, struct tree_place place,
+                                  const char *path, const char *key, bool is_object);
+
 /* Gives *list, of count elements of size bytes, room for one more, which becomes all zeros. Errors:
  * MEMORY. */
 sonject_status grow_list(struct report *report, void *list, size_t count, size_t size);
@@ -231,10 +265,11 @@ sonject_status campaign_split(struct report *report, struct campaign *campaign,
 sonject_status campaign_measure(struct report *report, struct campaign *campaign, size_t swath,
                                 const sonject_geometry_params *geometry, double altitude_m);
 
-/* "key=value" for the scene, and where the campaign file says so. */
+/* "key=value" for the scene, and where the campaign file says so, or a table that it names. */
 struct plan_key {
     char *text;
     struct tree_place place; /* line 0: nowhere */
+    const char *table;       /* the campaign's; NULL: none */
 };
 
 /* One image: which swath, where, and what of the scene is drawn how. */

@@ -159,6 +159,19 @@ static void add_key(struct sonject_campaign *campaign, struct hash *hash,
     free(value);
 }
 
+static void add_tables(struct sonject_campaign *campaign, const char *list,
+                       const struct item *items, uint32_t count)
+{
+    char name[64];
+    for (uint32_t i = 0; i < count; i++)
+        for (size_t k = 0; k < items[i].draws.count; k++) {
+            const struct body_table *table = items[i].draws.list[k].table;
+            snprintf(name, sizeof name, "the table of %s[%u]", list, (unsigned)i);
+            if (table)
+                json_add(&campaign->inputs, name, json_string(table->hash));
+        }
+}
+
 static sonject_status make_inputs(struct sonject_campaign *campaign, struct hash *hash,
                                   const char *code, const char *trials)
 {
@@ -177,6 +190,8 @@ static sonject_status make_inputs(struct sonject_campaign *campaign, struct hash
         snprintf(name, sizeof name, "the file of swaths[%lu]", (unsigned long)i);
         json_add(&campaign->inputs, name, json_string(campaign->swath_hashes[i]));
     }
+    add_tables(campaign, "targets", plan->targets, plan->target_count);
+    add_tables(campaign, "clutter.objects", plan->clutter, plan->clutter_count);
     json_add(&campaign->inputs, "files that scene or targets name", json_string(trials));
     return json_document_hash(campaign->report, campaign->inputs, JSON_COMPACT | JSON_SORT_KEYS,
                               campaign->hash);

@@ -41,29 +41,32 @@ static bool is_taken(const char *key, bool is_object)
     return false;
 }
 
-/* Whether key, which entry's text is or ends with, is one of the scene (or of an object) that a
- * campaign may set. Errors: INPUT. */
-static sonject_status check_scene_key(struct reader *reader, const struct tree_entry *entry,
-                                      const char *key, bool is_object)
+sonject_status campaign_check_key(const struct tree *tree, struct tree_place place,
+                                  const char *path, const char *key, bool is_object)
 {
     const char *near;
     const struct section *section;
     struct word_list list = {{0}, 0};
-    sonject_status status = SONJECT_OK;
+    if (is_taken(key, is_object))
+        return tree_failure(tree, place, path, "the campaign itself sets %s; remove it", key);
+    if (scene_key_find(is_object ? &object_section : &scene_section, key, &near, &section))
+        return SONJECT_OK;
+    for (size_t i = 0; i < section->count; i++)
+        if (!section->fields[i].is_hidden)
+            list_word(&list, section->fields[i].key);
+    return tree_failure(tree, place, path,
+                        near ? "scenes have no such key; did you mean '%s'?"
+                             : "scenes have no such key; there are %s",
+                        near ? near : list.text);
+}
+
+/* key: entry's text is it or ends with it. */
+static sonject_status check_scene_key(struct reader *reader, const struct tree_entry *entry,
+                                      const char *key, bool is_object)
+{
     const size_t before = key_path_add(&reader->path, entry->key);
-    if (is_taken(key, is_object)) {
-        status = tree_failure(reader->tree, entry->place, reader->path.text,
-                              "the campaign itself sets %s; remove it", key);
-    } else if (!scene_key_find(is_object ? &object_section : &scene_section, key, &near,
-                               &section)) {
-        for (size_t i = 0; i < section->count; i++)
-            if (!section->fields[i].is_hidden)
-                list_word(&list, section->fields[i].key);
-        status = tree_failure(reader->tree, entry->place, reader->path.text,
-                              near ? "scenes have no such key; did you mean '%s'?"
-                                   : "scenes have no such key; there are %s",
-                              near ? near : list.text);
-    }
+    const sonject_status status =
+        campaign_check_key(reader->tree, entry->place, reader->path.text, key, is_object);
     key_path_shorten(&reader->path, before);
     return status;
 }
@@ -75,14 +78,20 @@ static sonject_status read_draw(struct reader *reader, struct campaign *campaign
     CHECK(grow_list(reader->report, &draws->list, draws->count, sizeof *draws->list));
     struct distribution *distribution = &draws->list[draws->count++];
     distribution->stream = ++campaign->streams;
+    const struct draws others = {draws->list, draws->count - 1};
+    const bool is_table = strcmp(key, "table") == 0;
     const size_t before = key_path_add(&reader->path, entry->key);
-    sonject_status status = distribution_read(reader, &entry->value, key, distribution);
-    bool is_drawn = !distribution->of;
-    for (size_t i = 0; i + 1 < draws->count; i++)
-        is_drawn = is_drawn || strcmp(draws->list[i].key, distribution->of) == 0;
-    if (status == SONJECT_OK && !is_drawn)
+    sonject_status status = is_table ? body_table_read(reader, &entry->value, distribution)
+                                     : distribution_read(reader, &entry->value, key, distribution);
+    if (status == SONJECT_OK && distribution->of && !draws_have_key(&others, distribution->of))
         status = refuse_value(reader, &entry->value,
                               "is a ratio of '%s', which is not drawn before it", distribution->of);
+    for (size_t i = 0; is_table && status == SONJECT_OK && i < distribution->table->key_count; i++)
+        if (draws_have_key(&others, distribution->table->keys[i]))
+            status = refuse_value(reader, &entry->value, "draws %s, which is drawn already",
+                                  distribution->table->keys[i]);
+    if (status == SONJECT_OK && !is_table && draws_have_key(&others, key))
+        status = refuse_value(reader, &entry->value, "is a column of the table, too; remove one");
     key_path_shorten(&reader->path, before);
     return status;
 }
@@ -100,11 +109,14 @@ static sonject_status read_draws(struct reader *reader, const struct tree_node *
         const struct tree_entry *entry = &node->entries[i];
         const bool is_of_all = !item && strncmp(entry->key, OBJECT_PREFIX, prefix) == 0;
         const char *key = entry->key + (is_of_all ? prefix : 0);
-        if (check_scene_key(reader, entry, key, item || is_of_all) == SONJECT_OK)
+        const bool is_table = item && strcmp(key, "table") == 0;
+        if (is_table || check_scene_key(reader, entry, key, item || is_of_all) == SONJECT_OK)
             status = read_draw(reader, campaign, entry, key,
                                item        ? &item->draws
                                : is_of_all ? &campaign->object_draws
                                            : &campaign->draws);
+        if (is_table && status != SONJECT_OK)
+            return status; /* others may be ratios of its columns */
     }
     return status;
 }
@@ -151,8 +163,8 @@ static const struct field item_fields[] = {
      WITHIN(0.0, 1e9)},
     {"object", "keys of an object that are not drawn", .kind = FIELD_SPECIAL, .read = read_object,
      REQUIRED},
-    {"draw", "what other keys of the object are drawn from", .kind = FIELD_SPECIAL,
-     .read = read_item_draws},
+    {"draw", "what other keys of the object are drawn from; table: rows of a file",
+     .kind = FIELD_SPECIAL, .read = read_item_draws},
 };
 static const struct section item_section = {ROWS(item_fields), .finish = finish_item};
 #undef STRUCTURE

@@ -73,8 +73,13 @@ static bool place_line(struct tree *tree, const struct image_plan *plan, const c
             continue;
         char key[256];
         const size_t end = strcspn(line, ":");
+        struct tree table = {.report = tree->report,
+                             .mistakes = tree->mistakes,
+                             .file = plan->keys[i].table,
+                             .named_at = {NULL, 1, 1}};
         snprintf(key, sizeof key, "%.*s", (int)end, line);
-        tree_failure(tree, plan->keys[i].place, key, "%s", line[end] ? line + end + 2 : line + end);
+        tree_failure(table.file ? &table : tree, plan->keys[i].place, key, "%s",
+                     line[end] ? line + end + 2 : line + end);
         return true;
     }
     return false;

@@ -452,6 +452,8 @@ void distribution_clear(struct distribution *distribution)
         free(distribution->texts[i]);
     free(distribution->texts);
     free(distribution->cumulative);
+    if (distribution->table)
+        body_table_clear(distribution->table, distribution->count);
     free(distribution->key);
     free(distribution->of);
     memset(distribution, 0, sizeof *distribution);

@@ -66,8 +66,10 @@ static uint64_t attempt_seed(const struct drawing *drawing, uint64_t seed)
     return seed ^ (UINT64_C(0xD1342543DE82EF95) * drawing->attempt);
 }
 
-/* Adds a key to the plan; text is given up, and NULL counts as memory that was out. */
-static void add_key(struct drawing *drawing, struct tree_place place, char *text)
+/* Adds a key to the plan; text is given up, and NULL counts as memory that was out. table: as of
+ * plan_key. */
+static void add_key_of(struct drawing *drawing, struct tree_place place, const char *table,
+                       char *text)
 {
     struct image_plan *plan = drawing->plan;
     if (drawing->status == SONJECT_OK && !text)
@@ -75,9 +77,14 @@ static void add_key(struct drawing *drawing, struct tree_place place, char *text
     THEN(drawing->status,
          grow_list(drawing->report, &plan->keys, plan->key_count, sizeof *plan->keys));
     if (drawing->status == SONJECT_OK)
-        plan->keys[plan->key_count++] = (struct plan_key){text, place};
+        plan->keys[plan->key_count++] = (struct plan_key){text, place, table};
     else
         free(text);
+}
+
+static void add_key(struct drawing *drawing, struct tree_place place, char *text)
+{
+    add_key_of(drawing, place, NULL, text);
 }
 
 static void add_value(struct drawing *drawing, struct tree_place place, const char *prefix,
@@ -86,6 +93,21 @@ static void add_value(struct drawing *drawing, struct tree_place place, const ch
     struct growing_text text = {NULL, 0, 0, false};
     growing_text_add(&text, "%s%s=%s", prefix, key, value);
     add_key(drawing, place, growing_text_end(&text));
+}
+
+/* All that a table's row says. */
+static void add_row(struct drawing *drawing, const struct distribution *distribution,
+                    const char *prefix, const char *value)
+{
+    const struct body_table *table = distribution->table;
+    const struct body_cell *cells = body_table_row(distribution, value);
+    for (size_t i = 0; i < table->key_count; i++) {
+        struct growing_text text = {NULL, 0, 0, false};
+        if (!cells[i].text)
+            continue;
+        growing_text_add(&text, "%s%s=%s", prefix, table->keys[i], cells[i].text);
+        add_key_of(drawing, cells[i].place, table->path, growing_text_end(&text));
+    }
 }
 
 static const char *trial_value(const struct distribution *distribution, uint32_t step,
@@ -145,11 +167,16 @@ static const char *value_of_ratio(struct drawing *drawing, const char *prefix,
     return text;
 }
 
-static bool draws_have_key(const struct draws *draws, const char *key)
+bool draws_have_key(const struct draws *draws, const char *key)
 {
-    for (size_t i = 0; i < draws->count; i++)
+    for (size_t i = 0; i < draws->count; i++) {
+        const struct body_table *table = draws->list[i].table;
+        for (size_t k = 0; table && k < table->key_count; k++)
+            if (strcmp(table->keys[k], key) == 0)
+                return true;
         if (strcmp(draws->list[i].key, key) == 0)
             return true;
+    }
     return false;
 }
 
@@ -233,7 +260,10 @@ static void draw_object(struct drawing *drawing, const struct item *item, uint32
                     : draw_value(drawing, distribution, seed, drawing->index, drawing->count, text);
             if (distribution->of)
                 value = value_of_ratio(drawing, prefix, distribution, value, ratio);
-            add_value(drawing, distribution->place, prefix, distribution->key, value);
+            if (distribution->table)
+                add_row(drawing, distribution, prefix, value);
+            else
+                add_value(drawing, distribution->place, prefix, distribution->key, value);
         }
 }
 

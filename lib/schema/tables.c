@@ -12,34 +12,20 @@
 #include "base/report.h"
 #include "base/text.h"
 
-#define COLUMNS_MAX 64
-
-/* A file on its way into a table. */
-struct table_reader {
+/* A file on its way into rows of fields. */
+struct row_reader {
     struct report *report;
-    struct number_table *table;
-    char separator;
-    size_t column_count;             /* 0: the names are still to come */
-    size_t place[TABLE_COLUMNS_MAX]; /* of each known column; COLUMNS_MAX: not there */
+    const char *file;    /* for messages */
+    const char *choices; /* of separators */
+    char separator;      /* 0: all of a line is one field */
+    size_t column_count; /* 0: the names are still to come */
+    table_row_function *take;
+    void *user;
 };
 
 static bool is_blank(char c)
 {
     return c == ' ' || c == '\t' || c == '\r';
-}
-
-/* "file:line: column: what"; column "": the line as a whole. */
-static sonject_status REPORT_FORMAT(3)
-    refuse_line(const struct table_reader *reader, const char *column, const char *format, ...)
-{
-    char what[240];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
-    va_end(arguments);
-    return report_failure(reader->report, SONJECT_ERROR_INPUT, "%s:%zu: %s%s%s",
-                          reader->table->file, reader->table->last_line, column,
-                          *column ? ": " : "", what);
 }
 
 /* Takes the blanks off both ends. */
@@ -53,120 +39,41 @@ static char *trim(char *text)
     return text;
 }
 
-/* Cuts a trimmed line into fields, whose number may exceed COLUMNS_MAX. */
-static size_t split(char *line, char separator, char *fields[COLUMNS_MAX])
+/* Cuts a trimmed line into fields, whose number may exceed TABLE_FIELDS_MAX. */
+static size_t split(char *line, char separator, char *fields[TABLE_FIELDS_MAX])
 {
     size_t count = 0;
     for (char *end = line; end; count++) {
         char *start = line;
-        end = separator == ' ' ? strpbrk(line, " \t") : strchr(line, separator);
+        end = separator == ' ' ? strpbrk(line, " \t") : separator ? strchr(line, separator) : NULL;
         if (end) {
             *end = '\0';
             line = end + 1;
             while (separator == ' ' && is_blank(*line))
                 line++;
         }
-        if (count < COLUMNS_MAX)
+        if (count < TABLE_FIELDS_MAX)
             fields[count] = trim(start);
     }
     return count;
 }
 
-/* "height_m or depth_m, and sound_speed_mps" */
-static void list_names(const struct table_format *format, char *text, size_t capacity)
+/* The first of the choices that the line has; a blank serves in any case, 0 where none does. */
+static char choose_separator(const char *line, const char *choices)
 {
-    snprintf(text, capacity, "%s%s%s, and %s", format->names[0], format->names[1] ? " or " : "",
-             format->names[1] ? format->names[1] : "", format->names[2]);
-}
-
-static sonject_status check_names(const struct table_reader *reader)
-{
-    const struct table_format *format = reader->table->format;
-    char names[120];
-    const bool has_first = reader->place[0] != COLUMNS_MAX;
-    const bool has_second = reader->place[1] != COLUMNS_MAX;
-    if (has_first && has_second)
-        return refuse_line(reader, "", "both %s and %s are there; rename one", format->names[0],
-                           format->names[1]);
-    if ((has_first || has_second) && reader->place[2] != COLUMNS_MAX)
-        return SONJECT_OK;
-    list_names(format, names, sizeof names);
-    return refuse_line(reader, "", "this line must name the columns, among them %s", names);
-}
-
-static sonject_status make_columns(struct table_reader *reader)
-{
-    struct number_table *table = reader->table;
-    for (int i = 0; i < TABLE_COLUMNS_MAX; i++) {
-        if (reader->place[i] == COLUMNS_MAX)
-            continue;
-        table->values[i] = allocate_array(table->format->samples_max, sizeof *table->values[i]);
-        CHECK_MEMORY(reader->report, table->values[i], "a table");
-    }
-    return SONJECT_OK;
-}
-
-static sonject_status take_names(struct table_reader *reader, char *line)
-{
-    const struct table_format *format = reader->table->format;
-    char *fields[COLUMNS_MAX];
-    reader->separator = strchr(line, ';') ? ';' : strchr(line, ',') ? ',' : ' ';
-    reader->column_count = split(line, reader->separator, fields);
-    if (reader->column_count > COLUMNS_MAX)
-        return refuse_line(reader, "", "more than 64 columns; remove those that are not needed");
-    for (int i = 0; i < TABLE_COLUMNS_MAX; i++) {
-        reader->place[i] = COLUMNS_MAX;
-        for (size_t j = 0; format->names[i] && j < reader->column_count; j++) {
-            if (strcmp(fields[j], format->names[i]) != 0)
-                continue;
-            if (reader->place[i] != COLUMNS_MAX)
-                return refuse_line(reader, format->names[i],
-                                   "two columns of this name; rename one");
-            reader->place[i] = j;
-        }
-    }
-    CHECK(check_names(reader));
-    return make_columns(reader);
-}
-
-static sonject_status take_number(struct table_reader *reader, int column,
-                                  char *const fields[COLUMNS_MAX], double *number)
-{
-    char excerpt[40];
-    const char *text = fields[reader->place[column]];
-    const char *rest;
-    if (text_to_number(text, number, &rest) && *rest == '\0')
-        return SONJECT_OK;
-    return refuse_line(reader, reader->table->format->names[column], "'%s' is not a number",
-                       text_excerpt(excerpt, sizeof excerpt, text));
-}
-
-static sonject_status take_sample(struct table_reader *reader, char *line)
-{
-    struct number_table *table = reader->table;
-    char *fields[COLUMNS_MAX];
-    const size_t count = split(line, reader->separator, fields);
-    if (count != reader->column_count)
-        return refuse_line(reader, "", "has %zu column%s, but %zu have names", count,
-                           count == 1 ? "" : "s", reader->column_count);
-    if (table->count == table->format->samples_max)
-        return refuse_line(reader, "", "more than %zu samples; thin them out",
-                           table->format->samples_max);
-    sonject_status status = SONJECT_OK;
-    for (int i = 0; status == SONJECT_OK && i < TABLE_COLUMNS_MAX; i++)
-        if (table->values[i])
-            status = take_number(reader, i, fields, &table->values[i][table->count]);
-    table->lines[table->count++] = table->last_line;
-    return status;
+    while (*choices && *choices != ' ' && !strchr(line, *choices))
+        choices++;
+    return *choices;
 }
 
 /* line: ended by 0, length bytes before that. */
-static sonject_status take_line(struct table_reader *reader, char *line, size_t length)
+static sonject_status take_line(struct row_reader *reader, char *line, size_t length, size_t number)
 {
     static const char not_text[] = "not UTF-8 text; is this a table?";
-    reader->table->last_line++;
+    char *fields[TABLE_FIELDS_MAX];
+    const char *start = line;
     if (strlen(line) != length)
-        return refuse_line(reader, "", "%s", not_text);
+        return table_refuse(reader->report, reader->file, number, "", "%s", not_text);
     line[strcspn(line, "#")] = '\0';
     line = trim(line);
     if (!*line)
@@ -175,25 +82,145 @@ static sonject_status take_line(struct table_reader *reader, char *line, size_t 
         if (*c == '\t')
             *c = ' ';
     if (!text_is_printable(line))
-        return refuse_line(reader, "", "%s", not_text);
-    return reader->column_count == 0 ? take_names(reader, line) : take_sample(reader, line);
+        return table_refuse(reader->report, reader->file, number, "", "%s", not_text);
+    if (reader->column_count == 0)
+        reader->separator = choose_separator(line, reader->choices);
+    const size_t count = split(line, reader->separator, fields);
+    if (count > TABLE_FIELDS_MAX)
+        return table_refuse(reader->report, reader->file, number, "",
+                            "more than %d columns; remove those that are not needed",
+                            TABLE_FIELDS_MAX);
+    if (reader->column_count > 0 && count != reader->column_count)
+        return table_refuse(reader->report, reader->file, number, "",
+                            "has %zu column%s, but %zu have names", count, count == 1 ? "" : "s",
+                            reader->column_count);
+    const struct table_row row = {number, reader->column_count == 0, start, fields, count};
+    reader->column_count = count;
+    return reader->take(reader->user, &row);
 }
 
-static sonject_status take_text(struct table_reader *reader, char *text, size_t bytes)
+sonject_status table_rows_read(struct report *report, const char *path, size_t bytes_max,
+                               const char *separators, table_row_function *take, void *user)
 {
+    char file[TABLE_FILE_CAPACITY];
+    char *text = NULL;
+    size_t bytes, number = 0;
+    struct row_reader reader = {
+        report, text_excerpt(file, sizeof file, path), separators, 0, 0, take, user};
+    CHECK(file_read_whole(report, path, bytes_max, &text, &bytes));
     sonject_status status = SONJECT_OK;
+    char *line = text;
     char *const end = text + bytes;
     if (bytes >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0)
-        text += 3;
-    while (status == SONJECT_OK && text < end) {
-        char *line_end = memchr(text, '\n', (size_t)(end - text));
+        line += 3;
+    while (status == SONJECT_OK && line < end) {
+        char *line_end = memchr(line, '\n', (size_t)(end - line));
         if (!line_end)
             line_end = end;
         *line_end = '\0';
-        status = take_line(reader, text, (size_t)(line_end - text));
-        text = line_end + 1;
+        status = take_line(&reader, line, (size_t)(line_end - line), ++number);
+        line = line_end + 1;
     }
+    if (status == SONJECT_OK && reader.column_count == 0)
+        status = input_failure(report, file, "there is nothing in it");
+    free(text);
     return status;
+}
+
+sonject_status table_refuse(struct report *report, const char *file, size_t line,
+                            const char *column, const char *format, ...)
+{
+    char what[240];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    return report_failure(report, SONJECT_ERROR_INPUT, "%s:%zu: %s%s%s", file, line, column,
+                          *column ? ": " : "", what);
+}
+
+/* ---- Tables of numbers. */
+
+#define NUMBER_SEPARATORS ";, "
+
+/* Rows on their way into a table. */
+struct table_reader {
+    struct report *report;
+    struct number_table *table;
+    size_t place[TABLE_COLUMNS_MAX]; /* of each known column; TABLE_FIELDS_MAX: not there */
+};
+
+/* "height_m or depth_m, and sound_speed_mps" */
+static void list_names(const struct table_format *format, char *text, size_t capacity)
+{
+    snprintf(text, capacity, "%s%s%s, and %s", format->names[0], format->names[1] ? " or " : "",
+             format->names[1] ? format->names[1] : "", format->names[2]);
+}
+
+static sonject_status check_names(const struct table_reader *reader, size_t line)
+{
+    const struct table_format *format = reader->table->format;
+    const char *file = reader->table->file;
+    char names[120];
+    const bool has_first = reader->place[0] != TABLE_FIELDS_MAX;
+    const bool has_second = reader->place[1] != TABLE_FIELDS_MAX;
+    if (has_first && has_second)
+        return table_refuse(reader->report, file, line, "", "both %s and %s are there; rename one",
+                            format->names[0], format->names[1]);
+    if ((has_first || has_second) && reader->place[2] != TABLE_FIELDS_MAX)
+        return SONJECT_OK;
+    list_names(format, names, sizeof names);
+    return table_refuse(reader->report, file, line, "",
+                        "this line must name the columns, among them %s", names);
+}
+
+static sonject_status take_names(struct table_reader *reader, size_t line, char *const *fields,
+                                 size_t count)
+{
+    struct number_table *table = reader->table;
+    const struct table_format *format = table->format;
+    for (int i = 0; i < TABLE_COLUMNS_MAX; i++) {
+        reader->place[i] = TABLE_FIELDS_MAX;
+        for (size_t j = 0; format->names[i] && j < count; j++) {
+            if (strcmp(fields[j], format->names[i]) != 0)
+                continue;
+            if (reader->place[i] != TABLE_FIELDS_MAX)
+                return table_refuse(reader->report, table->file, line, format->names[i],
+                                    "two columns of this name; rename one");
+            reader->place[i] = j;
+        }
+    }
+    CHECK(check_names(reader, line));
+    for (int i = 0; i < TABLE_COLUMNS_MAX; i++) {
+        if (reader->place[i] == TABLE_FIELDS_MAX)
+            continue;
+        table->values[i] = allocate_array(format->samples_max, sizeof *table->values[i]);
+        CHECK_MEMORY(reader->report, table->values[i], "a table");
+    }
+    return SONJECT_OK;
+}
+
+static sonject_status take_row(void *user, const struct table_row *row)
+{
+    struct table_reader *reader = user;
+    struct number_table *table = reader->table;
+    table->last_line = row->line;
+    if (row->has_names)
+        return take_names(reader, row->line, row->fields, row->count);
+    if (table->count == table->format->samples_max)
+        return table_refuse(reader->report, table->file, row->line, "",
+                            "more than %zu samples; thin them out", table->format->samples_max);
+    for (int i = 0; i < TABLE_COLUMNS_MAX; i++) {
+        char excerpt[40];
+        const char *rest;
+        const char *text = table->values[i] ? row->fields[reader->place[i]] : NULL;
+        if (text && (!text_to_number(text, &table->values[i][table->count], &rest) || *rest))
+            return table_refuse(reader->report, table->file, row->line, table->format->names[i],
+                                "'%s' is not a number",
+                                text_excerpt(excerpt, sizeof excerpt, text));
+    }
+    table->lines[table->count++] = row->line;
+    return SONJECT_OK;
 }
 
 sonject_status number_table_refuse(const struct number_table *table, struct report *report,
@@ -232,31 +259,23 @@ static sonject_status check_samples(const struct number_table *table, struct rep
     return SONJECT_OK;
 }
 
-static sonject_status take_file(struct table_reader *reader, const char *path)
-{
-    char *text = NULL;
-    size_t bytes;
-    sonject_status status =
-        file_read_whole(reader->report, path, reader->table->format->bytes_max, &text, &bytes);
-    THEN(status, take_text(reader, text, bytes));
-    if (status == SONJECT_OK && reader->column_count == 0)
-        status = input_failure(reader->report, reader->table->file, "there is nothing in it");
-    free(text);
-    return status;
-}
-
 static sonject_status take_array(struct table_reader *reader, const struct number_array *array)
 {
     struct number_table *table = reader->table;
+    char *fields[TABLE_FIELDS_MAX];
     char *names = copy_text(array->columns);
     CHECK_MEMORY(reader->report, names, "a table");
-    const sonject_status status = take_names(reader, trim(names));
+    char *line = trim(names);
+    const size_t count = split(line, choose_separator(line, NUMBER_SEPARATORS), fields);
+    sonject_status status = SONJECT_OK;
+    if (count != array->column_count || count > TABLE_FIELDS_MAX)
+        status = table_refuse(reader->report, table->file, 0, "",
+                              "as many names as columns are needed, up to %d", TABLE_FIELDS_MAX);
+    THEN(status, take_names(reader, 0, fields, count));
     free(names);
     CHECK(status);
-    if (reader->column_count != array->column_count)
-        return refuse_line(reader, "", "as many names as columns are needed");
     if (array->rows > table->format->samples_max)
-        return refuse_line(reader, "", "too many samples; thin them out");
+        return table_refuse(reader->report, table->file, 0, "", "too many samples; thin them out");
     for (size_t row = 0; row < array->rows; row++) {
         const double *values = array->values + row * array->column_count;
         for (int i = 0; i < TABLE_COLUMNS_MAX; i++)
@@ -272,13 +291,15 @@ sonject_status number_table_read(struct report *report, const char *path,
                                  const struct number_array *array,
                                  const struct table_format *format, struct number_table *table)
 {
-    struct table_reader reader = {report, table, ' ', 0, {0}};
+    struct table_reader reader = {report, table, {0}};
     memset(table, 0, sizeof *table);
     table->format = format;
     text_excerpt(table->file, sizeof table->file, array ? array->name : path);
     table->lines = allocate_array(format->samples_max, sizeof *table->lines);
     CHECK_MEMORY(report, table->lines, "a table");
-    sonject_status status = array ? take_array(&reader, array) : take_file(&reader, path);
+    sonject_status status = array ? take_array(&reader, array)
+                                  : table_rows_read(report, path, format->bytes_max,
+                                                    NUMBER_SEPARATORS, take_row, &reader);
     THEN(status, check_samples(table, report));
     if (status != SONJECT_OK)
         number_table_clear(table);

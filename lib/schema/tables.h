@@ -8,6 +8,32 @@
 #include "base/report.h"
 #include "medium/water.h"
 
+#define TABLE_FIELDS_MAX    64
+#define TABLE_FILE_CAPACITY 400
+
+/* A line of a table that is neither empty nor a comment. Fields are ended by 0, without the blanks
+ * around them, and lie in the line, which is gone after the call. */
+struct table_row {
+    size_t line;    /* of the file, from 1 */
+    bool has_names; /* the first, which names the columns; all others have as many fields */
+    const char *start;
+    char *const *fields;
+    size_t count; /* TABLE_FIELDS_MAX at most */
+};
+
+typedef sonject_status table_row_function(void *user, const struct table_row *row);
+
+/* Reads a text file row by row, as far as take returns OK. separators: of which the first one that
+ * the first row has separates all fields; a blank stands for any white space; if it has none, a row
+ * is one field. What follows a # is a comment. Errors: STORAGE, INPUT, MEMORY, or what take
+ * returned. */
+sonject_status table_rows_read(struct report *report, const char *path, size_t bytes_max,
+                               const char *separators, table_row_function *take, void *user);
+
+/* The message "file:line: column: what"; column "": the row as a whole. Returns INPUT. */
+sonject_status table_refuse(struct report *report, const char *file, size_t line,
+                            const char *column, const char *format, ...) REPORT_FORMAT(5);
+
 #define TABLE_COLUMNS_MAX 4
 
 /* The columns that a table is read for, by name: one of the first two (the second may be NULL),
@@ -39,7 +65,7 @@ struct number_table {
     size_t *lines;                     /* of the samples; owned */
     size_t count;
     size_t last_line;
-    char file[400]; /* for messages */
+    char file[TABLE_FILE_CAPACITY]; /* for messages */
 };
 
 /* Reads a file, or where array is not NULL takes that, whose rows are the samples, counted from 1

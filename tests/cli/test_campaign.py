@@ -523,6 +523,63 @@ def test_a_value_may_be_a_ratio_of_another(ground, command):
         assert 0.5 <= float(height[0]) / float(width[0]) <= 1
 
 
+BODIES = """\
+# three bodies
+shape,length [m],width,height [cm],heading,count
+box,0.6,40 cm,30,,1
+ellipsoid,0.5,0.3 m,20,30 deg,2
+wedge,0.8,0.5 m,,,1 # its height is the object's
+"""
+TABLE = ["--set", "targets=[{class: body, object: {height: 25 cm}, draw: {table: {file: bodies.csv, weight: count}, "
+         "burial: {of: length, uniform: [0.01, 0.05]}}}]", "--set", "empty=0", "--set", "clutter.alone=0",
+         "--set", "images=8", "--set", "splits={all: 1}", "--set", "clutter.number=0", "--set", "outputs=[]"]
+
+
+def test_a_row_of_a_table_is_drawn_whole(ground, command):
+    """As often as its weight says; what it leaves out is the object's, and common draws give way to its columns."""
+    (ground / "bodies.csv").write_text(BODIES)
+    common = ["--set", 'draw={"objects[].heading": 77 deg}']
+    done = command("campaign", "campaign.yaml", "-o", "bodies", *TABLE, *common)
+    assert done.returncode == 0, done.stderr
+    rows = {"box": {"shape": "box", "length": "0.6 m", "width": "40 cm", "height": "30 cm"},
+            "ellipsoid": {"shape": "ellipsoid", "length": "0.5 m", "width": "0.3 m", "height": "20 cm",
+                          "heading": "30 deg"},
+            "wedge": {"shape": "wedge", "length": "0.8 m", "width": "0.5 m"}}
+    shapes = []
+    for record in records(ground / "bodies"):
+        drawn = dict(entry.split("=", 1) for entry in record["set"])
+        mine = {key[11:]: value for key, value in drawn.items() if key.startswith("objects[0].")}
+        burial = mine.pop("burial").split()
+        assert mine == rows[mine["shape"]]
+        assert burial[1] == "m" and 0.01 <= float(burial[0]) / float(mine["length"].split()[0]) <= 0.05
+        shapes.append(mine["shape"])
+    assert {shape: shapes.count(shape) for shape in rows} == {"box": 2, "ellipsoid": 4, "wedge": 2}
+    (ground / "bodies.csv").write_text(BODIES.replace("0.8", "0.9"))
+    answer = command("campaign", "campaign.yaml", "-o", "bodies", *TABLE, *common)
+    assert_refused(answer, 2, "differs in the table of targets[0]")
+
+
+@pytest.mark.parametrize("old, new, where, what", [
+    ("20,", "20 stone,", "bodies.csv:4:21: objects[0].height", "'stone cm' is not one of"),
+    ("width,", "widht,", "bodies.csv:2:18: widht", "did you mean 'width'?"),
+    ("width,", "length,", "bodies.csv:2:18: length", "two columns"),
+    ("heading,", "class,", "bodies.csv:2:36: class", "the campaign itself sets class"),
+    ("heading,", "burial,", "targets[0].draw.burial", "is a column of the table, too"),
+    ("[cm]", "[cm", "bodies.csv:2:24: height", "no ]"),
+    ("30 deg,2", "30 deg,-2", "bodies.csv:4:31: count", "'-2' is no number"),
+    ("count", "name", "bodies.csv:2:1: count", "no column has this name"),
+    (",1 #", " #", "bodies.csv:5: ", "has 5 columns, but 6"),
+    (BODIES, "length\n", "bodies.csv", "there are no rows"),
+    (BODIES, "", "bodies.csv", "there is nothing in it"),
+])
+def test_mistakes_of_tables_have_a_place(ground, command, old, new, where, what):
+    assert BODIES.count(old) == 1
+    (ground / "bodies.csv").write_text(BODIES.replace(old, new))
+    settings = [text.replace(", weight: count", "") if new == "length\n" else text for text in TABLE]
+    assert_refused(command("campaign", "campaign.yaml", "-o", "hostile", *settings), 3, where, what)
+    assert not (ground / "hostile").exists()
+
+
 def test_two_campaigns_in_one_folder_make_one_data_set(ground, environment, whole):
     arguments = [COMMAND, "campaign", "campaign.yaml", "-o", "twice", "--quiet"]
     both = [subprocess.Popen(arguments, cwd=ground, env=environment, stderr=subprocess.PIPE)

@@ -155,6 +155,7 @@ def tables(_):
         "commas": b"depth,speed\n0,1500\n10,1490.5\n",
         "spaces": b"# a\ntime speed other\n0 1e3 2\n1\t-2 3 # b\n",
         "semicolons": b"depth;speed;note\r\n0;1500;x\r\n",
+        "bodies": b"shape,length [m],width\nbox,0.6,40 cm\nsphere,,\n",
         "many": b"depth,speed\n" + b"0,1\n" * 101,
     }
 

@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "dataset/campaign.h"
 #include "image/raster.h"
 #include "mesh/mesh.h"
 #include "mesh/mesh_reader.h"
@@ -117,6 +118,24 @@ static void fuzz_snippet(const struct fuzzer *fuzzer, const uint8_t *bytes, size
     free(code);
 }
 
+/* The same file as a campaign's table of bodies. */
+static void read_bodies(void)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct distribution bodies;
+    struct tree tree;
+    const struct tree_node name = {.kind = TREE_TEXT, .text = (char *)"fuzz.csv"};
+    tree_init(&tree, &report, "fuzz.yaml");
+    struct reader reader = {.report = &report, .tree = &tree};
+    memset(&bodies, 0, sizeof bodies);
+    const sonject_status status = body_table_read(&reader, &name, &bodies);
+    expect(status, &report, false);
+    for (size_t i = 0; status == SONJECT_OK && i < bodies.count; i++)
+        if (!body_table_row(&bodies, bodies.texts[i]))
+            abort();
+    distribution_clear(&bodies);
+}
+
 static void fuzz_table(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
 {
     static const struct table_format format = {
@@ -125,6 +144,7 @@ static void fuzz_table(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t
     struct number_table table;
     (void)fuzzer;
     put_file("fuzz.csv", bytes, count);
+    read_bodies();
     const sonject_status status = number_table_read(&report, "fuzz.csv", NULL, &format, &table);
     expect(status, &report, false);
     if (status != SONJECT_OK)
