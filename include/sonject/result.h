@@ -150,6 +150,8 @@ typedef struct sonject_object_truth {
     double highlight_visibility_db; /* as in sonject_contact_measures, but of the image itself, with
                                        its speckle: what somebody who labels it sees */
     double shadow_visibility_db;
+    double highlight_clipped; /* share, 0...1, of its highlight's pixels that are as bright as the
+                                 image, or what its file stores, can be; NaN where it has none */
 } sonject_object_truth;
 
 /* Truth of object number index. truth->struct_size must be set. Errors: ARGUMENT. */

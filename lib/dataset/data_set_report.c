@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "dataset/data_set.h"
+#include "dataset/run.h"
 
 #define BINS   24
 #define BAR    12 /* pixels of the picture, as all below */
@@ -35,7 +36,7 @@ struct statistics_page {
     uint64_t empty[CAMPAIGN_SPLITS_MAX];
     const json_t *classes;
     uint64_t every; /* image that is taken */
-    uint64_t drawn_anew, difficult;
+    uint64_t drawn_anew, difficult, clipped;
     struct growing_text reasons; /* of the first of these, as items of a list; owned */
 };
 
@@ -145,6 +146,7 @@ static sonject_status add_object(struct statistics_page *page, size_t split, con
                   {"contrast of shadows", "dB", "shadow_contrast_db"},
                   {"visibility of highlights", "dB", "highlight_visibility_db"},
                   {"visibility of shadows", "dB", "shadow_visibility_db"},
+                  {"clipped share of highlights", "", "highlight_clipped"},
                   {"pixels of highlights", "", "highlight_pixels"},
                   {"pixels of shadows", "", "shadow_pixels"}};
     size_t i;
@@ -154,6 +156,7 @@ static sonject_status add_object(struct statistics_page *page, size_t split, con
         if (strcmp(json_string_value(name), member_text(object, "class")) == 0)
             page->counts[split * json_array_size(page->classes) + i]++;
     }
+    page->clipped += json_number_value(json_object_get(object, "highlight_clipped")) > CLIPPED_MUCH;
     for (i = 0; is_taken && i < COUNT(values); i++) {
         const json_t *value = json_object_get(object, values[i].key);
         if (json_is_number(value))
@@ -269,6 +272,12 @@ static void write_page(const struct statistics_page *page, struct growing_text *
                          "<p>%llu targets are seen less than they are to be, and marked "
                          "difficult.</p>\n",
                          (unsigned long long)page->difficult);
+    if (page->clipped > 0)
+        growing_text_add(
+            text,
+            "<p>%llu objects have more than a tenth of their highlights' pixels at the "
+            "image's ceiling.</p>\n",
+            (unsigned long long)page->clipped);
     growing_text_add(text, "<h2>Distributions</h2>\n<div>\n");
     for (i = 0; i < page->series_count; i++)
         write_histogram(text, &page->series[i]);

@@ -54,9 +54,10 @@ static void tell_clipped(struct report *report, const sonject_statistics *statis
                    (unsigned long long)statistics->output_clipped);
 }
 
-/* Objects that nobody would find who labels the image. */
-static void tell_unseen(struct report *report, const struct scene *scene,
-                        const struct injection_result *result)
+/* Objects that nobody would find who labels the image, and those of which little but white is left.
+ */
+static void tell_seen(struct report *report, const struct scene *scene,
+                      const struct injection_result *result)
 {
     for (uint32_t i = 0; i < result->object_count; i++) {
         const sonject_object_truth *truth = &result->objects[i];
@@ -70,6 +71,11 @@ static void tell_unseen(struct report *report, const struct scene *scene,
                        "note: '%s' drowns in the seabed: neither its highlight nor its shadow "
                        "stands out; see objects[].level and seabed.lambert",
                        scene->objects[i].name);
+        if (truth->highlight_clipped > CLIPPED_MUCH)
+            report_log(report,
+                       "note: %.0f %% of the highlight of '%s' is cut at the image's ceiling; see "
+                       "objects[].level and seabed.lambert",
+                       100.0 * truth->highlight_clipped, scene->objects[i].name);
     }
 }
 
@@ -137,7 +143,7 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
     if (status != SONJECT_OK || !is_formed)
         return status;
     tell_noise_floor(report, scene, &result.statistics);
-    tell_unseen(report, scene, &result);
+    tell_seen(report, scene, &result);
     result.statistics.input_clipped = swath->clipped;
     facts->result = &result;
     facts->device = device;

@@ -12,6 +12,9 @@
 #include "inject/checkpoints.h"
 #include "inject/swath.h"
 
+/* Share of a highlight's pixels at the image's ceiling above which that is told. */
+#define CLIPPED_MUCH 0.1
+
 #define LABEL_FORMATS ((uint32_t)(SONJECT_LABELS_YOLO | SONJECT_LABELS_VOC))
 
 /* Injects and writes the folder's files: sonject_run. was_finished may be NULL. */

@@ -190,6 +190,15 @@ void transfer_to_stored(const sonject_transfer_params *transfer, enum pixel_type
     }
 }
 
+double transfer_ceiling(const sonject_transfer_params *transfer, enum pixel_type type,
+                        bool is_whole)
+{
+    const double full_scale = transfer_full_scale(transfer, type);
+    return type == PIXEL_FLOAT32 && !is_whole
+               ? INFINITY
+               : amplitude_of(transfer, full_scale, full_scale - 0.5);
+}
+
 uint32_t quantisation_step(enum pixel_type type, const void *stored, size_t count)
 {
     uint32_t step = 0;

@@ -68,6 +68,11 @@ void transfer_to_stored(const sonject_transfer_params *transfer, enum pixel_type
                         uint32_t step, const float *amplitude, size_t count, void *stored,
                         uint64_t *clipped);
 
+/* Amplitude from which on a pixel holds its largest number; INFINITY for floats that are no whole
+ * numbers. */
+double transfer_ceiling(const sonject_transfer_params *transfer, enum pixel_type type,
+                        bool is_whole);
+
 /* The step of count stored integers: the largest whole number that divides them all; 0 for floats,
  * 1 where that leaves fewer than 16 levels; 8 bit pictures kept in 16 bits have 256 or 257. */
 uint32_t quantisation_step(enum pixel_type type, const void *stored, size_t count);

@@ -64,6 +64,7 @@ struct image_match {
     struct speckle_statistics seabed; /* measured around the objects */
     double looks;                     /* of speckle that is put in; 1: single-look */
     double saturation;                /* amplitude that cuts highlights, or INFINITY */
+    double ceiling; /* of the image and its file: the lesser of that and what is stored */
 };
 
 /* Measures the patch's pixels (in the view's row order, otherwise as the input says) around the
@@ -115,9 +116,9 @@ sonject_status compose_looks(struct tracer *tracer, double looks, const struct p
                              const struct window *window, struct injection_result *result);
 
 /* Masks, boxes and levels of every object: fills result's masks and objects (allocated), in the
- * view's row order. speckle: the measured patch's. Errors: MEMORY. */
+ * view's row order. Errors: MEMORY. */
 sonject_status find_truth(const struct tracer *tracer, const struct patch_level *level,
-                          const struct speckle_statistics *speckle, const struct echoes *echoes,
+                          const struct image_match *match, const struct echoes *echoes,
                           struct injection_result *result);
 
 #endif

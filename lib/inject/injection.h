@@ -22,6 +22,8 @@ struct injection_input {
     bool is_complex;
     bool is_made;        /* by sonject, so that it is what the sonar's parameters say */
     const float *pixels; /* rows x columns amplitudes, or pairs of real and imaginary part */
+    double ceiling; /* amplitude from which on the image's file stores its largest number; 0: not
+                       known */
     struct checkpoint *checkpoint; /* how tracing is cut; NULL: not at all */
     const struct scene *traced;    /* NULL, or the scene of another response that is traced: its
                                       grids must be fine and wide enough */

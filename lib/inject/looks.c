@@ -150,6 +150,7 @@ sonject_status match_image(struct tracer *tracer, const float *pixels,
     memset(match, 0, sizeof *match);
     match->looks = 1.0;
     match->saturation = INFINITY;
+    match->ceiling = input->ceiling > 0.0 ? input->ceiling : INFINITY;
     const sonject_status status = measure_around(tracer, pixels, input->is_complex, &match->seabed);
     if (status != SONJECT_OK || input->is_complex || input->is_made ||
         asked->mode != SONJECT_MODE_COMPOSITE)
@@ -166,6 +167,7 @@ sonject_status match_image(struct tracer *tracer, const float *pixels,
     }
     if (asked->match_saturation == SONJECT_MATCH_IMAGE)
         match->saturation = find_saturation(pixels, tracer->view.rows * tracer->view.columns);
+    match->ceiling = fmin(match->ceiling, match->saturation);
     return SONJECT_OK;
 }
 

@@ -303,6 +303,8 @@ struct injection_input swath_input(const struct swath *swath)
     input.is_complex = swath->is_complex;
     input.is_made = swath->is_made;
     input.pixels = swath->pixels;
+    if (!swath->is_made && !swath->is_complex)
+        input.ceiling = transfer_ceiling(&swath->transfer, swath->layout.type, swath->is_whole);
     return input;
 }
 

@@ -61,12 +61,23 @@ static struct pixel_levels levels_at(const struct patch_level *level, const stru
     return levels;
 }
 
-static void find_object(const struct patch_level *level, const struct echoes *echoes,
-                        uint32_t number, struct injection_result *result)
+static float intensity_at(const struct injection_result *result, size_t i)
+{
+    const float *image = result->image;
+    if (!result->is_complex)
+        return image[i] * image[i];
+    return image[2 * i] * image[2 * i] + image[2 * i + 1] * image[2 * i + 1];
+}
+
+static void find_object(const struct patch_level *level, double ceiling,
+                        const struct echoes *echoes, uint32_t number,
+                        struct injection_result *result)
 {
     const struct object_echo *echo = &echoes->objects[number];
     sonject_object_truth *truth = &result->objects[number];
     const uint8_t label = (uint8_t)(number + 1);
+    const float most = (float)ceiling * (float)ceiling;
+    uint64_t clipped = 0;
     double energy = 0.0;
     double dominant = 0.0;
     for (size_t row = 0; echo->energy && row < echoes->rows; row++)
@@ -82,6 +93,7 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
                 result->labels[i] = label;
                 box_include(&truth->highlight, row, column);
                 truth->highlight_pixels++;
+                clipped += intensity_at(result, i) >= most;
             } else if (levels.hidden_share > 0.5) {
                 result->labels[i] = result->labels[i] ? result->labels[i] : label;
                 result->shadow[i] = 255;
@@ -96,6 +108,8 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
     truth->highlight_is_cut = box_is_cut(&truth->highlight, echoes);
     truth->shadow_is_cut = box_is_cut(&truth->shadow, echoes);
     truth->highlight_visible = energy > 0.0 ? dominant / energy : NAN;
+    truth->highlight_clipped =
+        truth->highlight_pixels > 0 ? (double)clipped / (double)truth->highlight_pixels : NAN;
     truth->target_strength_db = decibels(echo->peak_energy);
 }
 
@@ -232,14 +246,6 @@ static sonject_status measure_object(const struct tracer *tracer, const struct p
     return status;
 }
 
-static float intensity_at(const struct injection_result *result, size_t i)
-{
-    const float *image = result->image;
-    if (!result->is_complex)
-        return image[i] * image[i];
-    return image[2 * i] * image[2 * i] + image[2 * i + 1] * image[2 * i + 1];
-}
-
 /* A box within another, counted from there. */
 static struct window_box box_within(const sonject_box *box, const struct window_box *wide)
 {
@@ -306,12 +312,12 @@ static sonject_status measure_objects(const struct tracer *tracer, const struct 
 }
 
 sonject_status find_truth(const struct tracer *tracer, const struct patch_level *level,
-                          const struct speckle_statistics *speckle, const struct echoes *echoes,
+                          const struct image_match *match, const struct echoes *echoes,
                           struct injection_result *result)
 {
     for (uint32_t i = 0; i < echoes->object_count; i++) {
         locate(tracer, i, &result->objects[i]);
-        find_object(level, echoes, i, result);
+        find_object(level, match->ceiling, echoes, i, result);
     }
     /* a pixel where another object's echo stands in the shadow is a highlight */
     for (size_t i = 0; i < echoes->rows * echoes->columns; i++)
@@ -319,5 +325,5 @@ sonject_status find_truth(const struct tracer *tracer, const struct patch_level 
             result->shadow[i] = 0;
     for (uint32_t i = 0; i < echoes->object_count; i++)
         find_visible_shadow(level, echoes, i, result);
-    return measure_objects(tracer, level, speckle, echoes, result);
+    return measure_objects(tracer, level, &match->seabed, echoes, result);
 }

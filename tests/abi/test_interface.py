@@ -78,7 +78,7 @@ SIZES = {
     "sonject_measure_params": 136,
     "sonject_measurement": 112,
     "sonject_merge_params": 24,
-    "sonject_object_truth": 360,
+    "sonject_object_truth": 368,
     "sonject_pixels": 40,
     "sonject_quicklook_params": 80,
     "sonject_run_params": 48,

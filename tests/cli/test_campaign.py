@@ -491,8 +491,10 @@ def test_targets_are_seen_as_they_are_to_be(ground, command, otherwise):
     assert done.returncode == 0, done.stderr
     found = records(ground / otherwise)
     faint = []
+    clipped = 0
     for record in found:
         (truth,) = json.loads((ground / otherwise / of_image(record, "truth", ".json")).read_text())["objects"]
+        clipped += (truth["highlight_clipped"] or 0) > 0.1
         is_seen = ((truth["highlight_visibility_db"] or -99) >= 6
                    and (truth["shadow_visibility_db"] or 99) <= -1)
         for annotation in record["annotations"]:
@@ -502,6 +504,7 @@ def test_targets_are_seen_as_they_are_to_be(ground, command, otherwise):
         faint += [record["id"]] * (not is_seen)
     anew = [record["drawn_anew"]["because"] for record in found if "drawn_anew" in record]
     page = (ground / otherwise / "report.html").read_text()
+    assert clipped > 0 and f"{clipped} objects have more than a tenth of their highlights" in page
     if otherwise == "difficult":
         assert 1 <= len(faint) < 12 and not anew and "marked difficult" in page
     else:

@@ -7,7 +7,8 @@ import pytest
 
 import recordings
 from conftest import assert_refused
-from images import png_bytes, tiff_bytes
+from images import png_bytes, read_tiff, tiff_bytes
+from measured_images import read_png
 
 ROWS, COLUMNS = 256, 320
 
@@ -307,6 +308,31 @@ def test_a_run_notes_what_nobody_would_see(sonject, tmp_path, change, note):
     assert answer.returncode == 0, answer.stderr
     notes = [line for line in answer.stderr.splitlines() if "note: " in line]
     assert len(notes) == (note is not None) and all(note in line for line in notes)
+
+
+@pytest.mark.parametrize("level, ceiling, stored", [
+    (24, 255, numpy.uint8), (24, 200, numpy.uint8), (24, 15, numpy.uint8), (10, 255, numpy.uint8),
+    (24, None, numpy.float32)])
+def test_highlights_at_the_ceiling_are_told(sonject, tmp_path, level, ceiling, stored):
+    """Of the file's numbers, or of the picture that keeps below them; float numbers have none."""
+    swath = numpy.random.default_rng(6).rayleigh(2 if ceiling == 15 else 30, (128, 128))
+    full_scale = f"transfer: {{full_scale: {ceiling}}}, " if ceiling == 15 else ""
+    if ceiling == 200:
+        swath[:40, :40] = 200
+    write(tmp_path / "swath.tif", numpy.minimum(swath, ceiling or swath).astype(stored))
+    (tmp_path / "scene.yaml").write_text(
+        f"sonject: 1\ninput: {{path: swath.tif, {full_scale}geometry: {{row_spacing: 2.5 cm, "
+        "column_spacing: 2.5 cm, first_slant_range: 30 m}}\n"
+        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
+        f"objects: [{{level: {{over_seabed: {level} dB}}, name: ball, shape: sphere, diameter: 60 cm, "
+        "material: {reflection: 0, lambert: 0.1}, position: {row: 80, column: 80}}]\n")
+    notes = sonject.done("run", "scene.yaml", "-o", "out").stderr
+    (ball,) = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"]
+    image = read_tiff(tmp_path / "out" / "image.tif")
+    highlight = read_png(tmp_path / "out" / "highlight.png") > 0
+    share = (image[highlight] == (ceiling or numpy.inf)).mean()
+    assert ball["highlight_clipped"] == pytest.approx(share, abs=1e-9)
+    assert (share > 0.1) == (level == 24 and ceiling is not None) == ("at the image's ceiling" in notes)
 
 
 def test_the_water_column_is_nobodys_seabed(sonject, tmp_path):

@@ -179,7 +179,8 @@ def test_verbose_tells_what_happens_to_an_8_bit_swath(sonject, scene, tmp_path):
     (tmp_path / "swath.png").write_bytes(images.png_bytes(swath))
     chosen = ["--set", "input.path=swath.png"]
     usual = sonject.done("run", scene, "-o", "usual", *chosen)
-    note, result = usual.stderr.splitlines()
+    cut, note, result = usual.stderr.splitlines()
+    assert "the highlight of 'ball' is cut at the image's ceiling" in cut
     assert note.startswith("sonject: note: image.png is written anew")
     assert result == "sonject: the result is in usual"
     header = (tmp_path / "usual" / "image.png").read_bytes()[16:26]
