@@ -47,8 +47,6 @@ static sonject_status read_name(struct body_reader *reader, const struct table_r
         name[length - 1] = 0;
         *unit = 0;
         name[strcspn(name, " ")] = 0;
-        reader->units[table->key_count] = copy_text(unit + 1);
-        CHECK_MEMORY(reader->report, reader->units[table->key_count], "a table");
     }
     if (reader->weight && strcmp(name, reader->weight) == 0) {
         reader->weight_place = field;
@@ -59,10 +57,12 @@ static sonject_status read_name(struct body_reader *reader, const struct table_r
     for (size_t i = 0; i < table->key_count; i++)
         if (strcmp(table->keys[i], name) == 0)
             return tree_failure(&reader->file, place, name, "two columns of this name; remove one");
-    reader->place[table->key_count] = field;
-    table->keys[table->key_count] = copy_text(name);
-    CHECK_MEMORY(reader->report, table->keys[table->key_count], "a table");
-    table->key_count++;
+    const size_t number = table->key_count++;
+    reader->place[number] = field;
+    table->keys[number] = copy_text(name);
+    reader->units[number] = unit ? copy_text(unit + 1) : NULL;
+    CHECK_MEMORY(reader->report, table->keys[number] && (!unit || reader->units[number]),
+                 "a table");
     return SONJECT_OK;
 }
 

@@ -451,8 +451,8 @@ static sonject_status finish_clutter(struct reader *reader, const struct tree_no
 static const struct field clutter_fields[] = {
     {"objects", "list of what clutter may be, as targets are",
      ENTRIES(clutter, clutter_count, "object", item_section), REQUIRED},
-    {"number", "of clutter objects in an image with a target", .kind = FIELD_SPECIAL,
-     .unit = "whole number, or a distribution", .read = read_clutter_number},
+    {"number", "of clutter objects in an image; where they are alone one at least",
+     .kind = FIELD_SPECIAL, .unit = "whole number, or a distribution", .read = read_clutter_number},
     {"alone", "fraction of images with clutter and no target", QUANTITY(clutter_alone, NUMBER),
      WITHIN(0.0, 1.0)},
 };

@@ -21,8 +21,21 @@
 #define HEAD_FILE      "campaign.json"
 #define LAST_FILE      "dataset.json"
 
-/* The documents that are the same for every folder. */
-static const char *const documents[] = {"classes.txt", "contact_sheet.png", "report.html"};
+#define DOCUMENTS 5
+
+/* The names of the documents of the whole, besides campaign.json and the last, croissant.json
+ * behind those that it lists; returns how many. */
+static size_t name_documents(uint32_t outputs, const char *names[DOCUMENTS])
+{
+    size_t count = 0;
+    names[count++] = "classes.txt";
+    names[count++] = "contact_sheet.png";
+    names[count++] = "report.html";
+    if (outputs & OUTPUT_BIT(OUTPUT_YOLO))
+        names[count++] = "data.yaml";
+    names[count++] = "croissant.json";
+    return count;
+}
 
 /* Calls on each folder of a split. */
 static sonject_status each_folder(struct report *report, const char *folder, const char *split,
@@ -74,8 +87,10 @@ static void remove_all(const struct data_set *set)
 {
     struct report ignored = {{0}, NULL, NULL};
     char path[PATH_CAPACITY];
+    const char *documents[DOCUMENTS];
     discard(set->folder, LAST_FILE);
-    for (size_t i = 0; i < COUNT(documents); i++)
+    const size_t count = name_documents(UINT32_MAX, documents);
+    for (size_t i = 0; i < count; i++)
         discard(set->folder, documents[i]);
     discard(set->folder, "times.json");
     for (size_t i = 0; i < set->split_count; i++) {
@@ -112,13 +127,14 @@ static json_t *head_of(const struct sonject_campaign *campaign, const struct dev
                                 {"hash", json_string(campaign->swath_hashes[i])},
                                 {"split", json_string(plan->splits[swath->split_number].name)}));
     }
-    return JSON_OBJECT({"sonject_campaign", json_integer(FORMAT_VERSION)},
-                       {"sonject", json_string(sonject_version())},
-                       {"hash", json_string(campaign->hash)}, {"inputs", json_incref(inputs)},
-                       {"device", device ? device_document(device) : json_null()},
-                       {"images", json_count(plan->images)}, {"rows", json_count(plan->chip_rows)},
-                       {"columns", json_count(plan->chip_columns)}, {"splits", splits},
-                       {"classes", classes}, {"outputs", outputs}, {"swaths", swaths});
+    return JSON_OBJECT(
+        {"sonject_campaign", json_integer(FORMAT_VERSION)},
+        {"sonject", json_string(sonject_version())}, {"hash", json_string(campaign->hash)},
+        {"inputs", json_incref(inputs)}, {"device", device ? device_document(device) : json_null()},
+        {"images", json_count(plan->images)}, {"empty", json_number(plan->empty)},
+        {"clutter_alone", json_number(plan->clutter_alone)}, {"rows", json_count(plan->chip_rows)},
+        {"columns", json_count(plan->chip_columns)}, {"splits", splits}, {"classes", classes},
+        {"outputs", outputs}, {"swaths", swaths});
 }
 
 /* Whose images the folder holds; those of another campaign are removed where they may be. */
@@ -236,6 +252,8 @@ static bool read_head(struct data_set *set)
            is_side(set->columns) && json_is_array(outputs) &&
            are_swaths(json_object_get(set->head, "swaths")) &&
            (json_is_null(device) || json_is_object(device)) &&
+           json_is_number(json_object_get(set->head, "empty")) &&
+           json_is_number(json_object_get(set->head, "clutter_alone")) &&
            are_classes(json_object_get(set->head, "classes")) &&
            take_splits(set, json_object_get(set->head, "splits")) &&
            json_integer_value(json_object_get(set->head, "images")) == (json_int_t)set->images;
@@ -269,13 +287,15 @@ void data_set_clear(struct data_set *set)
 sonject_status data_set_is_finished(const struct data_set *set, bool *is_finished)
 {
     const char *changed = NULL;
+    const char *documents[DOCUMENTS];
     json_t *document;
     sonject_status status = earlier_document(set->report, set->folder, LAST_FILE, &document);
     const json_t *files = json_object_get(document, "files");
     THEN(status, file_list_check(files, set->report, set->folder, true, &changed));
-    *is_finished = status == SONJECT_OK && !changed &&
-                   json_array_size(files) == COUNT(documents) + set->split_count &&
-                   strcmp(member_text(document, "hash"), member_text(set->head, "hash")) == 0;
+    *is_finished =
+        status == SONJECT_OK && !changed &&
+        json_array_size(files) == name_documents(set->outputs, documents) + set->split_count &&
+        strcmp(member_text(document, "hash"), member_text(set->head, "hash")) == 0;
     json_decref(document);
     return status;
 }
@@ -449,6 +469,8 @@ static sonject_status write_last(const struct data_set *set)
                                        "columns", "splits", "classes", "outputs", "swaths"};
     char name[SPLIT_NAME_CAPACITY + 16];
     char path[PATH_CAPACITY];
+    const char *documents[DOCUMENTS];
+    const size_t count = name_documents(set->outputs, documents);
     json_t *files = json_array();
     json_t *document = json_object();
     sonject_status status = path_in(set->report, path, set->folder, LAST_FILE);
@@ -456,7 +478,7 @@ static sonject_status write_last(const struct data_set *set)
         snprintf(name, sizeof name, "%s/coco.json", set->split_names[i]);
         THEN(status, file_list_add(&files, set->report, set->folder, name, false));
     }
-    for (size_t i = 0; i < COUNT(documents); i++)
+    for (size_t i = 0; i < count; i++)
         THEN(status, file_list_add(&files, set->report, set->folder, documents[i], false));
     for (size_t i = 0; i < COUNT(kept); i++)
         json_add(&document, kept[i], json_incref(json_object_get(set->head, kept[i])));
@@ -477,6 +499,11 @@ sonject_status data_set_finish(struct data_set *set)
     CHECK(write_classes(set));
     CHECK(write_contact_sheet(set));
     CHECK(write_report_page(set));
+    if (set->outputs & OUTPUT_BIT(OUTPUT_YOLO))
+        CHECK(write_yolo_card(set));
+    const char *documents[DOCUMENTS];
+    const size_t count = name_documents(set->outputs, documents);
+    CHECK(write_croissant(set, documents, count - 1));
     CHECK(write_last(set));
     for (size_t i = 0; i < set->split_count; i++) {
         each_folder(&silent, set->folder, set->split_names[i], set->outputs, tidy);

@@ -68,4 +68,9 @@ sonject_status data_set_has_image(const struct data_set *set, size_t split, uint
 sonject_status write_contact_sheet(const struct data_set *set);
 sonject_status write_report_page(const struct data_set *set);
 
+/* Write data.yaml, and croissant.json, which lists the named documents of the whole, those of
+ * splits and folders. Errors: STORAGE, MEMORY, INPUT. */
+sonject_status write_yolo_card(const struct data_set *set);
+sonject_status write_croissant(const struct data_set *set, const char *const *names, size_t count);
+
 #endif

@@ -33,7 +33,7 @@ struct statistics_page {
     struct series series[SERIES_MAX];
     size_t series_count;
     uint64_t *counts; /* of objects: splits x classes */
-    uint64_t empty[CAMPAIGN_SPLITS_MAX];
+    uint64_t empty[CAMPAIGN_SPLITS_MAX], clutter_alone[CAMPAIGN_SPLITS_MAX];
     const json_t *classes;
     uint64_t every; /* image that is taken */
     uint64_t drawn_anew, difficult, clipped;
@@ -200,7 +200,10 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
         page->difficult += json_is_true(json_object_get(entry, "difficult"));
     }
     const json_t *objects = json_object_get(truth, "objects");
-    page->empty[split] += json_array_size(objects) == 0;
+    if (json_array_size(objects) == 0)
+        page->empty[split]++;
+    else if (json_is_null(json_object_get(record, "target")))
+        page->clutter_alone[split]++;
     json_array_foreach(objects, i, entry)
     {
         THEN(status, add_object(page, split, entry, is_taken));
@@ -210,11 +213,28 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
     return status;
 }
 
+/* ": 12 of 100 images, 0.12; asked 0.1" */
+static void write_share(const struct statistics_page *page, struct growing_text *text,
+                        const char *what, const uint64_t *counts, const char *asked)
+{
+    const struct data_set *set = page->set;
+    uint64_t made = 0;
+    for (size_t i = 0; i < set->split_count; i++)
+        made += counts[i];
+    growing_text_add(text, "<p>%s: %llu of %llu images, a share of %.4g; asked for: %.4g</p>\n",
+                     what, (unsigned long long)made, (unsigned long long)set->images,
+                     (double)made / (double)set->images,
+                     json_number_value(json_object_get(set->head, asked)));
+}
+
 static void write_counts(const struct statistics_page *page, struct growing_text *text)
 {
     const struct data_set *set = page->set;
     const size_t class_count = json_array_size(page->classes);
-    growing_text_add(text, "<table><tr><th>split</th><th>images</th><th>without objects</th>");
+    write_share(page, text, "Without objects", page->empty, "empty");
+    write_share(page, text, "Clutter without a target", page->clutter_alone, "clutter_alone");
+    growing_text_add(text, "<table><tr><th>split</th><th>images</th><th>without objects</th>"
+                           "<th>clutter alone</th>");
     for (size_t j = 0; j < class_count; j++) {
         growing_text_add(text, "<th>");
         add_escaped(text, json_string_value(json_array_get(page->classes, j)));
@@ -222,9 +242,10 @@ static void write_counts(const struct statistics_page *page, struct growing_text
     }
     growing_text_add(text, "</tr>\n");
     for (size_t i = 0; i < set->split_count; i++) {
-        growing_text_add(text, "<tr><td>%s</td><td>%llu</td><td>%llu</td>", set->split_names[i],
-                         (unsigned long long)set->split_images[i],
-                         (unsigned long long)page->empty[i]);
+        growing_text_add(text, "<tr><td>%s</td><td>%llu</td><td>%llu</td><td>%llu</td>",
+                         set->split_names[i], (unsigned long long)set->split_images[i],
+                         (unsigned long long)page->empty[i],
+                         (unsigned long long)page->clutter_alone[i]);
         for (size_t j = 0; j < class_count; j++)
             growing_text_add(text, "<td>%llu</td>",
                              (unsigned long long)page->counts[i * class_count + j]);

@@ -1,6 +1,7 @@
 """Campaigns: what the data set holds, and that it is the same however it came about."""
 
 import ctypes
+import hashlib
 import json
 import pathlib
 import random
@@ -116,7 +117,7 @@ def test_every_image_has_its_files(whole):
     found = records(whole)
     assert sorted(record["id"] for record in found) == list(range(IMAGES))
     expected = {"campaign.json", "dataset.json", "report.html", "contact_sheet.png",
-                "train/coco.json", "test/coco.json", "classes.txt"}
+                "train/coco.json", "test/coco.json", "classes.txt", "data.yaml", "croissant.json"}
     for record in found:
         assert record["image"] == f"images/{record['id']:08d}.png"
         expected |= {of_image(record, kind, ".png")
@@ -206,6 +207,58 @@ def test_the_report_holds_no_markup_of_classes(whole):
     assert page.count("<svg") > 8
     # of one key in two units
     assert [page.count(f">objects[].burial, {unit}<") for unit in ("cm", "mm")] == [1, 1]
+
+
+def test_trainers_of_yolo_find_images_and_labels(whole):
+    """By the rules of Ultralytics: folders are meant from data.yaml's, labels lie where `images` is `labels`."""
+    card = [line.split(": ", 1) for line in (whole / "data.yaml").read_text().splitlines() if line[0] != "#"]
+    folders = dict(card[: [entry[0] for entry in card].index("names:")])
+    # there is no split for validation: that of tests serves
+    assert folders == {"train": "train/images", "val": "test/images", "test": "test/images"}
+    for folder in folders.values():
+        found = sorted((whole / folder).iterdir())
+        assert len(found) == IMAGES // 2
+        assert all((path.parents[1] / "labels" / path.with_suffix(".txt").name).exists() for path in found)
+    names = {int(key): json.loads(value) if value[0] == '"' else value for key, value in card[len(folders) + 1 :]}
+    assert names == dict(enumerate([*TARGETS, "stone"]))
+
+
+def test_croissant_lists_files_and_records(whole):
+    """What mlcroissant asks for besides was tried with it: it finds no error, and reads all records."""
+    card = json.loads((whole / "croissant.json").read_text())
+    assert card["conformsTo"] == "http://mlcommons.org/croissant/1.0"
+    files = {entry["@id"]: entry for entry in card["distribution"] if entry["@type"] == "cr:FileObject"}
+    assert set(files) == {"train/coco.json", "test/coco.json", "classes.txt", "contact_sheet.png",
+                          "report.html", "data.yaml"}
+    for name, entry in files.items():
+        text = (whole / name).read_bytes()
+        assert entry["sha256"] == hashlib.sha256(text).hexdigest()
+        assert entry["contentSize"] == f"{len(text)} B"
+    folders = {entry["includes"]: entry["encodingFormat"] for entry in card["distribution"]
+               if entry["@type"] == "cr:FileSet"}
+    assert folders["test/images/*"] == "image/png" and folders["train/truth/*"] == "application/json"
+    assert {str(path.parent.relative_to(whole)) + "/*" for path in files_below(whole)
+            if len(path.relative_to(whole).parts) == 3} == set(folders)
+    sources = {field["source"][kind]["@id"] for each in card["recordSet"] for field in each["field"]
+               for kind in ("fileObject", "fileSet") if kind in field.get("source", {})}
+    assert sources == {"train/coco.json", "test/coco.json", "train/images", "test/images"}
+    assert [entry["classes/name"] for entry in card["recordSet"][0]["data"]] == [*TARGETS, "stone"]
+
+
+def test_images_without_targets_come_as_often_as_asked(ground, command):
+    """In each split, and the report says so. Clutter that is alone is one object at least."""
+    done = command("campaign", "campaign.yaml", "-o", "shares", "--set", "images=20", "--set", "empty=0.1", "--set",
+                   "clutter.alone=0.3", "--set", "clutter.number=0", "--set", "outputs=[]", "--set", "labels=[]")
+    assert done.returncode == 0, done.stderr
+    for split in ("train", "test"):
+        mine = [record for record in records(ground / "shares") if record["split"] == split]
+        objects = [len(json.loads((ground / "shares" / of_image(record, "truth", ".json")).read_text())["objects"])
+                   for record in mine if record["target"] is None]
+        assert len(mine) == 10 and sorted(objects) == [0, 1, 1, 1]
+    page = (ground / "shares" / "report.html").read_text()
+    assert "Without objects: 2 of 20 images, a share of 0.1; asked for: 0.1<" in page
+    assert "Clutter without a target: 6 of 20 images, a share of 0.3; asked for: 0.3<" in page
+    assert "<td>train</td><td>10</td><td>1</td><td>3</td>" in page
 
 
 def test_a_finished_data_set_is_left_alone(command, whole):
@@ -380,7 +433,7 @@ def test_what_was_changed_is_named_by_merge_and_made_again(command, damaged, who
 
 def test_documents_that_were_changed_are_made_again(command, damaged, whole):
     names = ["train/coco.json", "classes.txt", "contact_sheet.png",
-             "report.html", "dataset.json"]
+             "report.html", "data.yaml", "croissant.json", "dataset.json"]
     for changed in (*[[name] for name in names], names):
         for name in changed:
             harm(damaged / name) if len(changed) == 1 else (damaged / name).unlink()

@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "base/json_document.h"
+#include "base/sha256.h"
 #include "temporary_folder.h"
 
 static void expect_text(char *text, const char *expected)
@@ -303,6 +304,32 @@ static void test_folders_are_made_with_their_parents(void **state)
     expect_message(&report, "file/b", "Not a directory");
 }
 
+/* The examples of FIPS 180-4, and lengths about the end of a block, by another program. */
+static void test_sha256_is_that_of_the_standard(void **state)
+{
+    static const struct {
+        const char *text, *digest;
+    } cases[] = {{"", "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"},
+                 {"abc", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
+                 {"abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq",
+                  "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1"},
+                 {"0123456789012345678901234567890123456789012345678901234",
+                  "f34d5a0f80c0cbf84c8c0b90218c22637abd199965249da736a20143c8c9c9d9"},
+                 {"0123456789012345678901234567890123456789012345678901234567890123",
+                  "9674d9e078535b7cec43284387a6ee39956188e735a85452b0050b55341cda56"}};
+    struct temporary_folder *folder = *state;
+    struct report report = {{0}, NULL, NULL};
+    char digest[SHA256_TEXT_CAPACITY];
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        const char *path = temporary_file(folder, "file");
+        write_bytes(path, cases[i].text, strlen(cases[i].text));
+        assert_int_equal(file_sha256(&report, path, digest), SONJECT_OK);
+        assert_string_equal(digest, cases[i].digest);
+    }
+    assert_int_equal(file_sha256(&report, temporary_file(folder, "absent"), digest),
+                     SONJECT_ERROR_STORAGE);
+}
+
 #define WITH_FOLDER(test)                                                                          \
     cmocka_unit_test_setup_teardown(test, make_temporary_folder, remove_temporary_folder)
 
@@ -313,4 +340,5 @@ TEST_PROGRAM(NULL, NULL, TEST(test_paths), TEST(test_part_names_keep_the_extensi
              WITH_FOLDER(test_only_parts_of_dead_processes_are_tidied_away),
              WITH_FOLDER(test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too),
              WITH_FOLDER(test_a_list_of_files_reaches_nothing_outside_of_its_folder),
-             WITH_FOLDER(test_folders_are_made_with_their_parents))
+             WITH_FOLDER(test_folders_are_made_with_their_parents),
+             WITH_FOLDER(test_sha256_is_that_of_the_standard))
