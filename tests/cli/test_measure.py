@@ -316,7 +316,7 @@ def test_a_run_notes_what_nobody_would_see(sonject, tmp_path, change, note):
 def test_highlights_at_the_ceiling_are_told(sonject, tmp_path, level, ceiling, stored):
     """Of the file's numbers, or of the picture that keeps below them; float numbers have none."""
     swath = numpy.random.default_rng(6).rayleigh(2 if ceiling == 15 else 30, (128, 128))
-    full_scale = f"transfer: {{full_scale: {ceiling}}}, " if ceiling == 15 else ""
+    full_scale = f"transfer: {{kind: amplitude, full_scale: {ceiling}}}, " if ceiling == 15 else ""
     if ceiling == 200:
         swath[:40, :40] = 200
     write(tmp_path / "swath.tif", numpy.minimum(swath, ceiling or swath).astype(stored))
