@@ -356,8 +356,8 @@ static sonject_status read_range(struct reader *reader, const struct tree_node *
 }
 
 /* Of enum output, from the first that a user chooses on; labels begin with yolo. */
-static const char *const output_words[] = {"highlight", "shadow", "masks", "energy",
-                                           "field",     "yolo",   "voc"};
+static const char *const output_words[] = {"highlight", "shadow", "masks", "influence",
+                                           "energy",    "field",  "yolo",  "voc"};
 #define LABEL_WORDS 2
 
 /* One of the list `outputs` or `labels`, as the path says. */
@@ -484,7 +484,8 @@ static const struct field campaign_fields[] = {
      WORD(design) =
          {[DESIGN_RANDOM] = "random", [DESIGN_STRATIFIED] = "stratified", [DESIGN_GRID] = "grid"}},
     {"chip", "size of images, and where in swaths they lie", SAME(chip_section), REQUIRED},
-    {"outputs", "written beside image and truth: highlight, shadow, masks, energy, field",
+    {"outputs",
+     "written beside image and truth: highlight, shadow, masks, influence, energy, field",
      .kind = FIELD_SPECIAL, .read = read_outputs, .unit = "list of words"},
     {"labels", "beside COCO: yolo, voc", .kind = FIELD_SPECIAL, .read = read_outputs,
      .unit = "list of words"},

@@ -19,15 +19,11 @@
 #include "swath/raster_file.h"
 
 const struct output_kind output_kinds[OUTPUT_KINDS] = {
-    [OUTPUT_IMAGE] = {"images", NULL},
-    [OUTPUT_TRUTH] = {"truth", ".json"},
-    [OUTPUT_HIGHLIGHT] = {"highlight", ".png"},
-    [OUTPUT_SHADOW] = {"shadow", ".png"},
-    [OUTPUT_MASKS] = {"masks", ".png"},
-    [OUTPUT_ENERGY] = {"energy", ".tif"},
-    [OUTPUT_FIELD] = {"field", ".tif"},
-    [OUTPUT_YOLO] = {"labels", ".txt"},
-    [OUTPUT_VOC] = {"voc", ".xml"},
+    [OUTPUT_IMAGE] = {"images", NULL},          [OUTPUT_TRUTH] = {"truth", ".json"},
+    [OUTPUT_HIGHLIGHT] = {"highlight", ".png"}, [OUTPUT_SHADOW] = {"shadow", ".png"},
+    [OUTPUT_MASKS] = {"masks", ".png"},         [OUTPUT_INFLUENCE] = {"influence", ".png"},
+    [OUTPUT_ENERGY] = {"energy", ".tif"},       [OUTPUT_FIELD] = {"field", ".tif"},
+    [OUTPUT_YOLO] = {"labels", ".txt"},         [OUTPUT_VOC] = {"voc", ".xml"},
     [OUTPUT_RECORD] = {"records", ".json"},
 };
 
@@ -349,11 +345,10 @@ static sonject_status write_file(struct sonject_campaign *campaign, struct campa
                                     .swath = &parts->swath,
                                     .result = result,
                                     .image_name = parts->labels.file_name};
-    static const enum layer layers[OUTPUT_KINDS] = {[OUTPUT_HIGHLIGHT] = LAYER_HIGHLIGHT,
-                                                    [OUTPUT_SHADOW] = LAYER_SHADOW,
-                                                    [OUTPUT_MASKS] = LAYER_LABELS,
-                                                    [OUTPUT_ENERGY] = LAYER_ENERGY,
-                                                    [OUTPUT_FIELD] = LAYER_FIELD};
+    static const enum layer layers[OUTPUT_KINDS] = {
+        [OUTPUT_HIGHLIGHT] = LAYER_HIGHLIGHT, [OUTPUT_SHADOW] = LAYER_SHADOW,
+        [OUTPUT_MASKS] = LAYER_LABELS,        [OUTPUT_INFLUENCE] = LAYER_INFLUENCE,
+        [OUTPUT_ENERGY] = LAYER_ENERGY,       [OUTPUT_FIELD] = LAYER_FIELD};
     switch (output) {
     case OUTPUT_IMAGE:
         return write_pixels(campaign, &parts->scene, &parts->swath, result, path);

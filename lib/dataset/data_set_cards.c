@@ -41,11 +41,10 @@ sonject_status write_yolo_card(const struct data_set *set)
     growing_text_add(&text, "names:\n");
     json_array_foreach(json_object_get(set->head, "classes"), i, name)
     {
-        const struct tree_node node = {
-            .kind = TREE_TEXT, .is_quoted = true, .text = (char *)json_string_value(name)};
-        growing_text_add(&text, "  %zu: ", i);
-        tree_write_flow(&node, &text);
-        growing_text_add(&text, "\n");
+        char *quoted = json_document_text(name, JSON_ENCODE_ANY); /* YAML's quotes are JSON's */
+        text.failed = text.failed || !quoted;
+        growing_text_add(&text, "  %zu: %s\n", i, quoted ? quoted : "");
+        free(quoted);
     }
     return growing_text_write(set->report, &text, path);
 }

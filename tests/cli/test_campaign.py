@@ -36,6 +36,7 @@ images: {IMAGES}
 seed: 5
 chip: {{rows: {CHIP}, columns: {CHIP}, spread: 0.4, clearance: 2}}
 empty: 0.2
+outputs: [highlight, shadow, masks, influence]
 labels: [yolo, voc]
 splits: {{train: 0.5, test: 0.5}}
 swaths:
@@ -121,7 +122,7 @@ def test_every_image_has_its_files(whole):
     for record in found:
         assert record["image"] == f"images/{record['id']:08d}.png"
         expected |= {of_image(record, kind, ".png")
-                     for kind in ("images", "highlight", "shadow", "masks")}
+                     for kind in ("images", "highlight", "shadow", "masks", "influence")}
         expected |= {of_image(record, kind, ".json") for kind in ("truth", "records")}
         expected |= {of_image(record, "labels", ".txt"), of_image(record, "voc", ".xml")}
     assert set(contents(whole)) == expected
@@ -169,6 +170,20 @@ def test_an_image_without_objects_is_the_swath(whole, ground):
         assert not read_png(whole / of_image(record, "masks", ".png")).any()
         checked += 1
     assert checked == 2
+
+
+def test_the_influence_is_all_that_differs_from_the_swath(whole, ground):
+    """Each changed pixel is in it, and those of the masks are."""
+    for record in records(whole):
+        place = record["swath"]
+        influence = read_png(whole / of_image(record, "influence", ".png")) > 0
+        masks = read_png(whole / of_image(record, "masks", ".png")) > 0
+        chip = read_png(ground / place["path"])[place["row"] : place["row"] + CHIP,
+                                                place["column"] : place["column"] + CHIP]
+        changed = read_png(whole / of_image(record, "images", ".png")) != chip
+        assert not (changed & ~influence).any() and not (masks & ~influence).any()
+        assert changed.sum() >= 0.5 * influence.sum()
+        assert influence.any() == bool(record["annotations"])
 
 
 def test_coco_is_what_truth_and_masks_say(whole):
@@ -242,13 +257,15 @@ def test_croissant_lists_files_and_records(whole):
     sources = {field["source"][kind]["@id"] for each in card["recordSet"] for field in each["field"]
                for kind in ("fileObject", "fileSet") if kind in field.get("source", {})}
     assert sources == {"train/coco.json", "test/coco.json", "train/images", "test/images"}
-    assert [entry["classes/name"] for entry in card["recordSet"][0]["data"]] == [*TARGETS, "stone"]
+    assert [(entry["classes/id"], entry["classes/name"]) for entry in card["recordSet"][0]["data"]] == [
+        *enumerate([*TARGETS, "stone"], 1)]  # as in COCO
 
 
 def test_images_without_targets_come_as_often_as_asked(ground, command):
     """In each split, and the report says so. Clutter that is alone is one object at least."""
     done = command("campaign", "campaign.yaml", "-o", "shares", "--set", "images=20", "--set", "empty=0.1", "--set",
-                   "clutter.alone=0.3", "--set", "clutter.number=0", "--set", "outputs=[]", "--set", "labels=[]")
+                   "clutter.alone=0.3", "--set", "clutter.number=0", "--set", "outputs=[]", "--set", "labels=[yolo]",
+                   "--set", "targets[0].class=155")
     assert done.returncode == 0, done.stderr
     for split in ("train", "test"):
         mine = [record for record in records(ground / "shares") if record["split"] == split]
@@ -259,6 +276,7 @@ def test_images_without_targets_come_as_often_as_asked(ground, command):
     assert "Without objects: 2 of 20 images, a share of 0.1; asked for: 0.1<" in page
     assert "Clutter without a target: 6 of 20 images, a share of 0.3; asked for: 0.3<" in page
     assert "<td>train</td><td>10</td><td>1</td><td>3</td>" in page
+    assert '  0: "155"\n' in (ground / "shares" / "data.yaml").read_text()  # a name, no number
 
 
 def test_a_finished_data_set_is_left_alone(command, whole):
@@ -272,7 +290,7 @@ def test_one_image_alone_is_the_same(command, whole, ground):
     number = next(record["id"] for record in records(whole) if record["target"] == TARGETS[1])
     assert command("campaign", "campaign.yaml", "-o", "alone", "--only", number).returncode == 0
     alone = contents(ground / "alone")
-    assert len(alone) == 9  # its eight files and campaign.json
+    assert len(alone) == 10  # its nine files and campaign.json
     assert alone.items() <= contents(whole).items()
 
 
