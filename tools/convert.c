@@ -24,7 +24,7 @@ struct convert_options {
 static const struct argument arguments[] = {
     {"--into", NULL, "FILE", "make OUT a copy of FILE with IN's samples", ARGUMENT_TEXT, false,
      MEMBER(into)},
-    {"--channel", NULL, "port|starboard|N", "of an XTF file", ARGUMENT_TEXT, false,
+    {"--channel", NULL, "port|starboard|N", "of an XTF or JSF file", ARGUMENT_TEXT, false,
      MEMBER(channel)},
     {"--array", NULL, "NAME", "in an HDF5 or MATLAB file of several", ARGUMENT_TEXT, false,
      MEMBER(array)},
@@ -101,7 +101,7 @@ const struct verb convert_verb = {
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes = "OUT is .tif, .png, .npy or .h5; with --into FILE it is of FILE's format,\n"
-             "XTF and MATLAB too. Samples that a new type cannot hold are refused, never cut.",
+             "XTF, JSF and MATLAB too. Samples that a new type cannot hold are refused, never cut.",
     .options_size = sizeof(struct convert_options),
     .work = work,
 };

@@ -9,7 +9,7 @@ test_packages="cmake doxygen groff-base libcmocka-dev python3-numpy python3-pyte
     python3-h5py python3-scipy python3-venv clang locales"
 # From PyPI: readers by others, which tests hold our files to, and what builds, checks and draws with
 # the Python package.
-readers="pyxtf pycocotools meson-python mypy==1.18.2 matplotlib"
+readers="pyxtf pingverter pycocotools meson-python mypy==1.18.2 matplotlib"
 
 # dpkg calls programs from here, which a plain su leaves out.
 PATH="$PATH:/usr/sbin:/sbin"

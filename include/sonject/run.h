@@ -104,7 +104,7 @@ typedef struct sonject_quicklook_params {
     double maximum_db;
     double altitude_m; /* 0: from the image's metadata */
     /* As in the section input of scenes; each may be NULL. */
-    const char *channel;  /* "port", "starboard" or a number, of an XTF file of several */
+    const char *channel;  /* "port", "starboard" or a number, of an XTF or JSF file of several */
     const char *array;    /* its name in an HDF5 or MATLAB file of several */
     const char *transfer; /* "{kind: decibel, parameter: 0.5}"; NULL: plain amplitude */
     const char *geometry; /* "{row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 40 m}";

@@ -37,11 +37,11 @@ static void trial_clear(struct trial *trial)
 }
 
 /* Over all of the swath, whose pings say it, or as the scene does. */
-static double highest_altitude(const struct scene *scene, const struct xtf_file *xtf)
+static double highest_altitude(const struct scene *scene, const struct recording *recording)
 {
     double highest = scene->sonar.altitude_m;
-    for (uint64_t i = 0; xtf && scene->has_recorded_altitude && i < xtf->rows; i++)
-        highest = fmax(highest, (double)xtf->pings[i].altitude_m);
+    for (uint64_t i = 0; recording && scene->has_recorded_altitude && i < recording->rows; i++)
+        highest = fmax(highest, (double)recording->pings[i].altitude_m);
     return highest;
 }
 
@@ -65,7 +65,7 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
         swath_file_layout(file, &swath->layout);
         status =
             campaign_measure(campaign->report, &campaign->campaign, number, &trial.scene.geometry,
-                             highest_altitude(&trial.scene, swath_file_xtf(file)));
+                             highest_altitude(&trial.scene, swath_file_recording(file)));
     }
     swath_file_close(&file);
     trial_clear(&trial);

@@ -171,8 +171,10 @@ static sonject_status make_attempt(struct device *device, struct sonject_campaig
     *is_drawn = status == SONJECT_ERROR_INPUT;
     if (*is_drawn)
         place_message(campaign, &image->plan);
-    else if (status == SONJECT_OK)
+    else if (status == SONJECT_OK) {
+        swath_leave_empty(&image->swath, &image->result);
         image->result.statistics.input_clipped = image->swath.clipped;
+    }
     return status;
 }
 
@@ -245,6 +247,8 @@ static void take_alone(struct campaign_image *image, struct scene *scene, struct
     const struct region *chip = &image->plan.chip;
     const struct region all = {0, 0, chip->rows, chip->columns};
     shift_track(&image->swath.track, chip->first_row);
+    for (uint64_t i = 0; i < image->swath.empty.count; i++)
+        image->swath.empty.numbers[i] -= chip->first_row;
     *scene = image->scene;
     *swath = image->swath;
     scene->geometry.first_along_track_m += (double)chip->first_row * scene->geometry.row_spacing_m;
@@ -253,6 +257,7 @@ static void take_alone(struct campaign_image *image, struct scene *scene, struct
     swath->layout.rows = chip->rows;
     swath->layout.columns = chip->columns;
     swath->patch = all;
+    swath->skipped.count = 0; /* they are the recording's */
 }
 
 static sonject_status write_pixels(struct sonject_campaign *campaign, const struct scene *scene,

@@ -7,7 +7,7 @@
 #include "base/report.h"
 #include "image/raster.h"
 #include "inject/injection.h"
-#include "swath/xtf_file.h"
+#include "swath/recording.h"
 
 /* The classes of a data set, numbered from 0 in the order in which they are first taken. Starts as
  * all zeros. */

@@ -54,6 +54,17 @@ static void tell_clipped(struct report *report, const sonject_statistics *statis
                    (unsigned long long)statistics->output_clipped);
 }
 
+static void tell_empty(struct report *report, const struct swath *swath)
+{
+    char text[PING_LIST_CAPACITY];
+    if (swath->skipped.count > 0)
+        report_log(report, "note: pings without samples make no row: %s",
+                   ping_list_text(&swath->skipped, text));
+    if (swath->empty.count > 0)
+        report_log(report, "note: empty rows stay as they are: %s",
+                   ping_list_text(&swath->empty, text));
+}
+
 /* Objects that nobody would find who labels the image, and those of which little but white is left.
  */
 static void tell_seen(struct report *report, const struct scene *scene,
@@ -142,6 +153,8 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
     THEN(status, inject_by_checkpoints(&job, &result, &is_formed));
     if (status != SONJECT_OK || !is_formed)
         return status;
+    swath_leave_empty(swath, &result);
+    tell_empty(report, swath);
     tell_noise_floor(report, scene, &result.statistics);
     tell_seen(report, scene, &result);
     result.statistics.input_clipped = swath->clipped;

@@ -177,12 +177,22 @@ static json_t *corners_document(const struct run_facts *facts)
     return corners;
 }
 
+static json_t *pings_document(const struct ping_list *list)
+{
+    json_t *numbers = json_array();
+    for (uint64_t i = 0; i < list->count; i++)
+        json_append(&numbers, json_count(list->numbers[i]));
+    return numbers;
+}
+
 sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path)
 {
     const struct region *patch = &facts->swath->patch;
     json_t *place = JSON_OBJECT(
         {"row", json_count(patch->first_row)}, {"column", json_count(patch->first_column)},
-        JSON_COUNT(patch, rows), JSON_COUNT(patch, columns), {"corners", corners_document(facts)});
+        JSON_COUNT(patch, rows), JSON_COUNT(patch, columns), {"corners", corners_document(facts)},
+        {"empty_rows", pings_document(&facts->swath->empty)},
+        {"skipped_pings", pings_document(&facts->swath->skipped)});
     json_t *objects = json_array();
     for (uint32_t i = 0; i < facts->result->object_count; i++)
         json_append(&objects, object_document(facts, i));

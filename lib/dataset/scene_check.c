@@ -42,6 +42,10 @@ static void describe_patch(struct growing_text *text, const struct scene *scene,
                      (unsigned long long)swath->layout.rows,
                      (unsigned long long)swath->layout.columns, (unsigned)swath->layout.channels,
                      swath->layout.channels == 1 ? "" : "s");
+    char pings[PING_LIST_CAPACITY];
+    if (swath->skipped.count > 0)
+        growing_text_add(text, "           pings without samples make no row: %s\n",
+                         ping_list_text(&swath->skipped, pings));
     growing_text_add(
         text, "patch      %llu x %llu pixels from row %llu, column %llu\n",
         (unsigned long long)swath->patch.rows, (unsigned long long)swath->patch.columns,
@@ -225,5 +229,6 @@ sonject_status describe_scene(struct report *report, struct device_slot *slot,
             free(characters);
     }
     injection_setup_clear(&setup);
+    swath_close(&swath);
     return status;
 }

@@ -1,6 +1,7 @@
 #include "inject/swath.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,10 +41,22 @@ static sonject_status choose_patch(struct report *report, const struct scene *sc
     return SONJECT_OK;
 }
 
+static sonject_status ping_list_copy(struct ping_list *list, struct report *report,
+                                     const struct ping_list *from)
+{
+    if (from->count == 0)
+        return SONJECT_OK;
+    list->numbers = allocate_array((size_t)from->count, sizeof *list->numbers);
+    CHECK_MEMORY(report, list->numbers, "the empty pings");
+    memcpy(list->numbers, from->numbers, (size_t)from->count * sizeof *list->numbers);
+    list->count = from->count;
+    return SONJECT_OK;
+}
+
 static sonject_status describe_file(struct report *report, const struct scene *scene,
                                     const struct swath_file *file, struct swath *swath)
 {
-    const struct xtf_file *recording = swath_file_xtf(file);
+    const struct recording *recording = swath_file_recording(file);
     swath_file_layout(file, &swath->layout);
     swath->new_extension = swath_file_new_extension(file);
     swath->is_complex = swath->layout.channels == 2;
@@ -76,7 +89,10 @@ static sonject_status describe_file(struct report *report, const struct scene *s
     if (swath->is_complex && scene->transfer.kind != SONJECT_TRANSFER_AMPLITUDE)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "a complex image cannot have a transfer function: take transfer out");
-    return recording ? track_of_recording(&swath->track, report, recording) : SONJECT_OK;
+    if (!recording)
+        return SONJECT_OK;
+    CHECK(ping_list_copy(&swath->skipped, report, &recording->empty));
+    return track_of_recording(&swath->track, report, recording);
 }
 
 static void describe_made(const struct scene *scene, struct swath *swath)
@@ -116,7 +132,7 @@ static sonject_status open_and_describe(struct report *report, const struct scen
     THEN(status, scene_locate(scene, report, choose_patch(report, scene, swath), "patch"));
     if (status != SONJECT_OK) {
         swath_file_close(file);
-        track_clear(&swath->track);
+        swath_close(swath);
     }
     return status;
 }
@@ -126,7 +142,6 @@ sonject_status swath_describe(struct report *report, const struct scene *scene, 
     struct swath_file *file;
     const sonject_status status = open_and_describe(report, scene, swath, &file);
     swath_file_close(&file);
-    track_clear(&swath->track);
     return status;
 }
 
@@ -177,6 +192,95 @@ static void cut_patch(const struct swath *swath, const void *whole, void *patch)
         memcpy((unsigned char *)patch + row * bytes, row_in_swath(swath, whole, row), bytes);
 }
 
+static bool is_zero(const unsigned char *bytes, size_t count)
+{
+    size_t i = 0;
+    while (i < count && bytes[i] == 0)
+        i++;
+    return i == count;
+}
+
+/* A row that is dark in the patch alone is a ping all the same. whole: as of read_patch. */
+static sonject_status find_empty_rows(struct report *report, struct swath_file *file,
+                                      const void *whole, struct swath *swath)
+{
+    const size_t pixel = stored_bytes(swath);
+    const size_t patch_bytes = (size_t)swath->patch.columns * pixel;
+    const size_t row_bytes = (size_t)swath->layout.columns * pixel;
+    unsigned char *line = allocate_array(row_bytes, 1);
+    sonject_status status = SONJECT_OK;
+    swath->empty.numbers = allocate_array((size_t)swath->patch.rows, sizeof(uint64_t));
+    if (!line || !swath->empty.numbers)
+        status = report_out_of_memory(report, "the patch");
+    for (size_t i = 0; status == SONJECT_OK && i < swath->patch.rows; i++) {
+        const struct region row = {swath->patch.first_row + i, 0, 1, swath->layout.columns};
+        if (!is_zero((unsigned char *)swath->stored + i * patch_bytes, patch_bytes))
+            continue;
+        if (whole)
+            memcpy(line, (const unsigned char *)whole + (size_t)row.first_row * row_bytes,
+                   row_bytes);
+        else
+            status = swath_file_read(report, file, &row, line);
+        if (status == SONJECT_OK && is_zero(line, row_bytes))
+            swath->empty.numbers[swath->empty.count++] = row.first_row;
+    }
+    free(line);
+    return status;
+}
+
+/* So that neither levels nor floors are measured on rows where nothing was heard. */
+static sonject_status fill_empty_rows(struct report *report, const struct scene *scene,
+                                      const struct swath *swath)
+{
+    const size_t rows = (size_t)swath->patch.rows;
+    const size_t line = (size_t)swath->patch.columns * (swath->is_complex ? 2 : 1);
+    const struct ping_list *empty = &swath->empty;
+    if (empty->count == rows)
+        return scene_locate(scene, report,
+                            report_failure(report, SONJECT_ERROR_INPUT,
+                                           "all rows of the patch are empty (0): choose another"),
+                            "patch");
+    size_t from = 0; /* first row that is not empty */
+    while (from < empty->count && empty->numbers[from] == swath->patch.first_row + from)
+        from++;
+    for (size_t i = 0; i < empty->count; i++) {
+        const size_t row = (size_t)(empty->numbers[i] - swath->patch.first_row);
+        memcpy(swath->pixels + row * line, swath->pixels + (row > from ? row - 1 : from) * line,
+               line * sizeof(float));
+    }
+    return SONJECT_OK;
+}
+
+void swath_leave_empty(const struct swath *swath, struct injection_result *result)
+{
+    const size_t line = result->columns * (result->is_complex ? 2 : 1);
+    for (uint64_t i = 0; i < swath->empty.count; i++) {
+        const size_t row = (size_t)(swath->empty.numbers[i] - swath->patch.first_row);
+        const size_t first = row * result->columns;
+        for (size_t k = 0; k < result->columns; k++)
+            result->statistics.changed_pixels -= result->influence[first + k] != 0;
+        memset(swath->pixels + row * line, 0, line * sizeof(float));
+        memset(result->image + row * line, 0, line * sizeof(float));
+        memset(result->highlight + first, 0, result->columns);
+        memset(result->shadow + first, 0, result->columns);
+        memset(result->labels + first, 0, result->columns);
+        memset(result->influence + first, 0, result->columns);
+    }
+}
+
+const char *ping_list_text(const struct ping_list *list, char text[PING_LIST_CAPACITY])
+{
+    size_t length = 0;
+    uint64_t i = 0;
+    for (*text = '\0'; i < list->count && length < PING_LIST_CAPACITY - 60; i++)
+        length += (size_t)snprintf(text + length, PING_LIST_CAPACITY - length, "%s%llu",
+                                   i > 0 ? ", " : "", (unsigned long long)list->numbers[i]);
+    if (i < list->count)
+        snprintf(text + length, PING_LIST_CAPACITY - length, " and %llu more",
+                 (unsigned long long)(list->count - i));
+    return text;
+}
+
 /* whole: the file's pixels, if they are in memory. */
 static sonject_status read_patch(struct report *report, const struct scene *scene,
                                  struct swath_file *file, const void *whole, struct swath *swath)
@@ -200,7 +304,9 @@ static sonject_status read_patch(struct report *report, const struct scene *scen
     for (size_t i = 0; !swath->is_complex && i < count; i++)
         if (swath->pixels[i] < 0.0f)
             return bad_pixel(report, scene, swath, i, "a negative amplitude");
-    return identify(report, swath, swath->stored, bytes);
+    CHECK(identify(report, swath, swath->stored, bytes));
+    CHECK(find_empty_rows(report, file, whole, swath));
+    return fill_empty_rows(report, scene, swath);
 }
 
 /* Made swaths are made whole, and kept for writing them back; the patch is cut out of them. */
@@ -312,6 +418,8 @@ void swath_close(struct swath *swath)
 {
     free(swath->stored);
     free(swath->pixels);
+    free(swath->skipped.numbers);
+    free(swath->empty.numbers);
     track_clear(&swath->track);
     memset(swath, 0, sizeof *swath);
 }

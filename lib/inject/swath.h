@@ -7,8 +7,10 @@
 #include "image/raster.h"
 #include "inject/injection.h"
 #include "scene/scene.h"
+#include "swath/recording.h"
 #include "swath/swath_file.h"
-#include "swath/xtf_file.h"
+
+#define PING_LIST_CAPACITY 200
 
 /* Owned parts are freed by swath_close. */
 struct swath {
@@ -23,17 +25,20 @@ struct swath {
     bool is_whole; /* numbers that the file limits: integers, also where the layout has floats */
     const char *new_extension; /* of the image; NULL: it is the input's file with other pixels */
     struct track track;        /* of a recording */
+    struct ping_list skipped;  /* of a recording's pings, those that make no row */
+    struct ping_list empty;    /* rows of the swath in the patch that hold nothing but 0; pixels has
+                                  the nearest other row's in their place */
     uint64_t clipped;          /* pixels at full scale */
     char identity[HASH_TEXT_CAPACITY]; /* of the swath's size and the patch's pixels; if made, of
                                           all pixels */
 };
 
-/* Finds layout and patch without reading pixels (a made swath: from its parameters). Errors: INPUT,
- * STORAGE, MEMORY, UNSUPPORTED. */
+/* Finds layout and patch without reading pixels (a made swath: from its parameters). To be given to
+ * swath_close; on failure nothing is held. Errors: INPUT, STORAGE, MEMORY, UNSUPPORTED. */
 sonject_status swath_describe(struct report *report, const struct scene *scene,
                               struct swath *swath);
 
-/* The same, and reads (or makes) the patch. On failure nothing is held. */
+/* The same, and reads (or makes) the patch. */
 sonject_status swath_open(struct report *report, const struct scene *scene, struct swath *swath);
 void swath_close(struct swath *swath);
 
@@ -60,6 +65,12 @@ void *swath_stored_result(const struct swath *swath, const struct injection_resu
 
 /* The patch, as an injection takes it; its pixels stay the swath's. */
 struct injection_input swath_input(const struct swath *swath);
+
+/* Takes the swath's empty rows out of the result's image and masks, and out of the patch. */
+void swath_leave_empty(const struct swath *swath, struct injection_result *result);
+
+/* Pings or rows for messages: "3, 5, 17 and 8 more". */
+const char *ping_list_text(const struct ping_list *list, char text[PING_LIST_CAPACITY]);
 
 /* "image.png" and the like: the input's extension where it is patched, else .tif. To be given to
  * free(); NULL when memory is out. */

@@ -33,7 +33,7 @@ typedef struct sonject_geometry_params {
     double first_slant_range_m; /* NaN: not set */
 } sonject_geometry_params;
 
-/* A channel of an XTF file: a number as the file counts them, or the only one of a side. */
+/* A channel of an XTF or JSF file: a number as the file counts them, or the only one of a side. */
 enum {
     SONJECT_CHANNEL_PORT = -1,
     SONJECT_CHANNEL_STARBOARD = -2,

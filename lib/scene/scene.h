@@ -80,10 +80,10 @@ struct scene {
     char *input_path;           /* owned; NULL unless input_kind is SONJECT_INPUT_FILE */
     bool has_recorded_altitude; /* the input file says it, ping by ping */
     bool input_is_complex;      /* two channels of the file are real and imaginary part */
-    int32_t channel; /* of a file that is XTF: SONJECT_CHANNEL_PORT and the like, or a number */
-    char *array;     /* owned; of several in a file, its name; NULL: the only one */
-    char *band;      /* owned; which of its file's bands it is; NULL: that has none */
-    char *bands;     /* owned; all their names, one a line; NULL likewise */
+    int32_t channel;            /* of a recording: SONJECT_CHANNEL_PORT and the like, or a number */
+    char *array;                /* owned; of several in a file, its name; NULL: the only one */
+    char *band;                 /* owned; which of its file's bands it is; NULL: that has none */
+    char *bands;                /* owned; all their names, one a line; NULL likewise */
     uint32_t uniform_rows, uniform_columns;
     sonject_synthetic_params synthetic;
     sonject_object_params *objects; /* owned */

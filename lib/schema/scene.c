@@ -6,7 +6,7 @@
 #include "schema/keys.h"
 #include "schema/scene_file.h"
 #include "swath/geometry_notes.h"
-#include "swath/xtf_file.h"
+#include "swath/recording.h"
 
 #define SIDE_MAX        (UINT32_C(1) << 20)
 #define SWATH_INDEX_MAX (UINT64_C(1) << 40)
@@ -188,13 +188,13 @@ static sonject_status read_channel(struct reader *reader, const struct tree_node
         scene->channel = SONJECT_CHANNEL_PORT;
     else if (is_word(node, "starboard"))
         scene->channel = SONJECT_CHANNEL_STARBOARD;
-    else if (text_to_count(text, &number) && number <= XTF_CHANNEL_MAX)
+    else if (text_to_count(text, &number) && number <= CHANNEL_NUMBER_MAX)
         scene->channel = (int32_t)number;
     else
         return refuse_value(reader, node,
                             "'%s' is neither port nor starboard nor a channel's "
                             "number, 0 to %d",
-                            text_excerpt(excerpt, sizeof excerpt, text), XTF_CHANNEL_MAX);
+                            text_excerpt(excerpt, sizeof excerpt, text), CHANNEL_NUMBER_MAX);
     return SONJECT_OK;
 }
 
@@ -216,8 +216,8 @@ static const struct field input_fields[] = {
     {"kind", "of the input", HIDDEN, WORD(input_kind) = {"memory", "file", "uniform", "synthetic"}},
     {"path", "image file", .kind = FIELD_PATH, MEMBER(input_path),
      SETS(input_kind, SONJECT_INPUT_FILE)},
-    {"channel", "of an XTF file: port, starboard, or its number there", .kind = FIELD_SPECIAL,
-     MEMBER(channel), .read = read_channel, .unit = "word or whole number"},
+    {"channel", "of an XTF or JSF file: port, starboard, or its number there",
+     .kind = FIELD_SPECIAL, MEMBER(channel), .read = read_channel, .unit = "word or whole number"},
     {"array", "in an HDF5 or MATLAB file of several: its name", TEXT(array)},
     {"complex", "the file's two channels are real and imaginary part", FLAG(input_is_complex)},
     {"uniform", "a swath of unit reflectivity", SAME(uniform_section),

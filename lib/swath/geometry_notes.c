@@ -74,9 +74,9 @@ void geometry_notes_init(struct geometry_notes *notes, const sonject_sonar_param
     geometry_notes_make(notes, &noted);
 }
 
-static void read_recording(const struct xtf_file *xtf, struct noted_geometry *geometry)
+static void read_recording(const struct recording *recording, struct noted_geometry *geometry)
 {
-    const struct xtf_geometry told = xtf_geometry_of(xtf, 0, xtf->rows);
+    const struct recording_geometry told = recording_geometry_of(recording, 0, recording->rows);
     geometry->row_spacing_m = told.row_spacing_m > 0.0 ? told.row_spacing_m : NAN;
     geometry->column_spacing_m = told.column_spacing_m;
     geometry->first_along_track_m = 0.0;
@@ -84,7 +84,7 @@ static void read_recording(const struct xtf_file *xtf, struct noted_geometry *ge
     geometry->altitude_m = told.altitude_m > 0.0 ? told.altitude_m : NAN;
     geometry->frequency_hz = geometry->bandwidth_hz = NAN;
     geometry->knows_side = true;
-    geometry->side = xtf->side == XTF_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
+    geometry->side = recording->side == RECORDED_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
 }
 
 static void read_texts(const struct swath_file *file, struct noted_geometry *geometry)
@@ -108,8 +108,8 @@ static void read_texts(const struct swath_file *file, struct noted_geometry *geo
 void geometry_notes_read(const struct swath_file *file, struct noted_geometry *geometry)
 {
     geometry->axis = swath_file_range_axis(file);
-    if (swath_file_xtf(file))
-        read_recording(swath_file_xtf(file), geometry);
+    if (swath_file_recording(file))
+        read_recording(swath_file_recording(file), geometry);
     else
         read_texts(file, geometry);
 }
@@ -143,9 +143,10 @@ bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_pa
 
 /* The rows of the scene's patch within the file; all zeros mean all rows. */
 static sonject_status patch_rows(struct report *report, const struct scene *scene,
-                                 const struct xtf_file *xtf, uint64_t *first, uint64_t *count)
+                                 const struct recording *recording, uint64_t *first,
+                                 uint64_t *count)
 {
-    const uint64_t rows = xtf->rows;
+    const uint64_t rows = recording->rows;
     *first = scene->patch.first_row;
     *count = scene->patch.rows > 0 ? scene->patch.rows : rows;
     if (*first >= rows || *count > rows - *first) {
@@ -168,12 +169,12 @@ struct wanted {
 };
 
 static sonject_status take_recording(struct report *report, const struct scene *scene,
-                                     const struct xtf_file *xtf, struct wanted *wanted)
+                                     const struct recording *recording, struct wanted *wanted)
 {
     uint64_t first, count;
     *wanted->key = "patch";
-    CHECK(patch_rows(report, scene, xtf, &first, &count));
-    const struct xtf_geometry geometry = xtf_geometry_of(xtf, first, count);
+    CHECK(patch_rows(report, scene, recording, &first, &count));
+    const struct recording_geometry geometry = recording_geometry_of(recording, first, count);
     *wanted->key = "input.geometry";
     if (wanted->geometry && !(geometry.row_spacing_m > 0.0))
         return input_failure(report, scene->input_path,
@@ -190,7 +191,8 @@ static sonject_status take_recording(struct report *report, const struct scene *
     wanted->where.row_spacing_m = geometry.row_spacing_m;
     wanted->where.column_spacing_m = geometry.column_spacing_m;
     wanted->where.first_slant_range_m = geometry.first_slant_range_m;
-    wanted->where.side = xtf->side == XTF_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
+    wanted->where.side =
+        recording->side == RECORDED_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
     wanted->altitude_m = geometry.altitude_m;
     return SONJECT_OK;
 }
@@ -208,7 +210,8 @@ static sonject_status take_notes(struct report *report, const struct scene *scen
     if (wanted->geometry && !geometry_notes_tell(&noted, &wanted->where))
         return input_failure(
             report, scene->input_path,
-            "does not say where its pixels lie, as XTF files do and what sonject convert makes of "
+            "does not say where its pixels lie, as XTF and JSF files do and what sonject convert "
+            "makes of "
             "them: give row_spacing, column_spacing and first_slant_range instead of from_file");
     *wanted->key = "sonar.altitude";
     if (wanted->altitude && !(noted.altitude_m > 0.0))
@@ -254,9 +257,9 @@ sonject_status recording_describe(struct report *report, bool takes_geometry, bo
         swath_file_open_array(report, scene->input_path, scene->channel, scene->array, &file);
     if (status != SONJECT_OK)
         return status;
-    const struct xtf_file *xtf = swath_file_xtf(file);
-    status = xtf ? take_recording(report, scene, xtf, &wanted)
-                 : take_notes(report, scene, file, &wanted);
+    const struct recording *recording = swath_file_recording(file);
+    status = recording ? take_recording(report, scene, recording, &wanted)
+                       : take_notes(report, scene, file, &wanted);
     THEN(status, check_and_set(report, &wanted, scene));
     swath_file_close(&file);
     return status;

@@ -44,7 +44,7 @@ void geometry_notes_read(const struct swath_file *file, struct noted_geometry *g
 bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_params *geometry);
 
 /* Takes the scene's geometry (takes_geometry) and the sonar's altitude (takes_altitude) from its
- * input: an XTF file, of which spacing and altitude are the means over the patch's rows, or an
+ * input: a recording, of which spacing and altitude are the means over the patch's rows, or an
  * image whose notes say them. Errors: INPUT (it does not say them: says
  * what to give instead; ground range; as swath_file_open_array), UNSUPPORTED, STORAGE, MEMORY. On
  * failure the scene is unchanged, and *key is the key of the scene that the message is about. */

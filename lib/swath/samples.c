@@ -71,17 +71,27 @@ static double largest_of(const struct stored_samples *stored, enum stored_type t
     return stored->largest > 0 ? (double)stored->largest : full;
 }
 
+static double scale_of(const struct stored_samples *stored)
+{
+    return stored->scale > 0.0 ? stored->scale : 1.0;
+}
+
 /* False if the file cannot hold the number. One that the file's own is shown as changes nothing. */
 static bool store(const struct stored_samples *stored, enum stored_type type, double number,
                   unsigned char *bytes)
 {
     const double old = stored_number(stored->is_big_endian, type, bytes);
     const double most = is_whole(type) ? largest_of(stored, type) : 0.0;
+    const double least = stored->are_amplitudes ? 0.0 : -most;
     float single;
-    if ((pixel_store(PIXEL_FLOAT32, &single, 0, old) && (double)single == number) ||
+    if ((pixel_store(PIXEL_FLOAT32, &single, 0, scale_of(stored) * old) &&
+         (double)single == number) ||
         (isnan(old) && isnan(number)))
         return !is_whole(type) || old <= most;
-    if (is_whole(type) && !(number >= 0.0 && number <= (double)(float)most))
+    number /= scale_of(stored);
+    if (is_whole(type) && stored->clips)
+        number = fmin(fmax(number, least), most);
+    if (is_whole(type) && !(number >= least && number <= (double)(float)most))
         return false;
     put_number(is_whole(type) ? fmin(floor(number + 0.5), most) : number, type, bytes,
                stored->is_big_endian);
@@ -112,7 +122,7 @@ static bool exchange(const struct stored_samples *stored, uint32_t channel, enum
     }
     if (writes)
         return store(stored, from, pixel_number(type, shown, 0), bytes);
-    const double number = stored_number(stored->is_big_endian, from, bytes);
+    const double number = scale_of(stored) * stored_number(stored->is_big_endian, from, bytes);
     return !(stored->are_amplitudes && is_whole(from) && number < 0.0) &&
            pixel_store(type, shown, 0, number);
 }

@@ -22,7 +22,9 @@ void swath_file_close(struct swath_file **file)
     if ((*file)->stream)
         fclose((*file)->stream);
     free((*file)->lines.places);
-    free((*file)->xtf.pings);
+    free((*file)->lines.scales);
+    free((*file)->recording.pings);
+    free((*file)->recording.empty.numbers);
     mat_array_release(&(*file)->mat);
     decoded_image_close(&(*file)->decoded);
     free((*file)->path);
@@ -60,7 +62,7 @@ static sonject_status open_recognised(struct report *report, struct swath_file *
         array = NULL;
     if (channel != SONJECT_CHANNEL_ONLY && !format->has_channels)
         return input_failure(report, file->path,
-                             "is no XTF file, so it has no channels: take the channel out");
+                             "is neither XTF nor JSF, so it has no channels: take the channel out");
     if (array && !format->has_names)
         return input_failure(
             report, file->path,
@@ -119,8 +121,8 @@ uint32_t swath_file_largest(const struct swath_file *file)
 enum range_axis swath_file_range_axis(const struct swath_file *file)
 {
     char axis[16] = "";
-    if (swath_file_xtf(file))
-        return file->xtf.is_ground_range ? RANGE_GROUND : RANGE_SLANT;
+    if (swath_file_recording(file))
+        return file->recording.is_ground_range ? RANGE_GROUND : RANGE_SLANT;
     if (!swath_file_attribute(file, "sonject:range_axis", axis, sizeof axis))
         return RANGE_UNKNOWN;
     return strcmp(axis, "ground") == 0  ? RANGE_GROUND
@@ -128,9 +130,9 @@ enum range_axis swath_file_range_axis(const struct swath_file *file)
                                         : RANGE_UNKNOWN;
 }
 
-const struct xtf_file *swath_file_xtf(const struct swath_file *file)
+const struct recording *swath_file_recording(const struct swath_file *file)
 {
-    return file->format == &xtf_format ? &file->xtf : NULL;
+    return file->format->has_channels ? &file->recording : NULL;
 }
 
 bool swath_file_attribute(const struct swath_file *file, const char *name, char *value,
@@ -231,14 +233,15 @@ static sonject_status exchange_lines(struct report *report, const struct swath_f
     unsigned char *line = allocate_array(bytes, 1);
     const ptrdiff_t step = (ptrdiff_t)file->layout.channels;
     unsigned char *first = lines->is_reversed && line ? line + bytes - pixel : line;
-    const struct stored_samples stored = {
+    struct stored_samples stored = {
         .bytes = {first, line ? first + sample : NULL},
         .types = {lines->type, lines->type},
         .row_step = step,
         .column_step = lines->is_reversed ? -step : step,
         .is_big_endian = lines->is_big_endian,
-        .are_amplitudes = true,
-        .largest = file->largest,
+        .are_amplitudes = file->layout.channels == 1,
+        .clips = lines->clips,
+        .largest = lines->scales ? 0 : file->largest,
     };
     sonject_status status = line ? SONJECT_OK : report_out_of_memory(report, "a row");
     for (uint64_t i = 0; status == SONJECT_OK && i < count; i++) {
@@ -249,6 +252,7 @@ static sonject_status exchange_lines(struct report *report, const struct swath_f
         const struct region part = {region->first_row + (turned ? 0 : i),
                                     region->first_column + (turned ? i : 0),
                                     turned ? region->rows : 1, turned ? 1 : region->columns};
+        stored.scale = lines->scales ? lines->scales[number] : 1.0;
         if (!byte_file_read(file->stream, place, line, bytes))
             status = input_failure(report, file->path, "is cut short: copy it again");
         else

@@ -1,15 +1,16 @@
-/* Files that hold a swath: images, channels of XTF files, arrays of NumPy, HDF5 and MATLAB files.
+/* Files that hold a swath: images, channels of XTF and JSF files, arrays of NumPy, HDF5 and MATLAB
+ * files.
  */
 #ifndef SONJECT_SWATH_SWATH_FILE_H
 #define SONJECT_SWATH_SWATH_FILE_H
 
 #include "base/report.h"
 #include "image/raster.h"
-#include "swath/xtf_file.h"
+#include "swath/recording.h"
 
 struct swath_file;
 
-/* Opens for reading; the file's first bytes tell what it is. channel: of an XTF file; must be
+/* Opens for reading; the file's first bytes tell what it is. channel: of a recording; must be
  * SONJECT_CHANNEL_ONLY for other files. array: its name in an HDF5 or MATLAB file, NULL for the
  * only one; must be NULL for other files. Errors: INPUT (as decoded_image_open and the formats'
  * files say), UNSUPPORTED, STORAGE, MEMORY. On success *file is the caller's, for swath_file_close;
@@ -40,8 +41,8 @@ enum range_axis {
 };
 enum range_axis swath_file_range_axis(const struct swath_file *file);
 
-/* The XTF file behind it; NULL for other kinds. */
-const struct xtf_file *swath_file_xtf(const struct swath_file *file);
+/* The recording behind it; NULL for other kinds. */
+const struct recording *swath_file_recording(const struct swath_file *file);
 
 /* A text that sonject stored with an image, copied into value; false if it has none of that name or
  * it does not fit. */

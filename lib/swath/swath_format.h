@@ -34,6 +34,8 @@ struct stored_samples {
     ptrdiff_t row_step, column_step; /* in samples */
     bool is_big_endian;
     bool are_amplitudes; /* numbers of whole types must not be negative */
+    bool clips;          /* what a whole type cannot hold is cut; else it is refused */
+    double scale;        /* an image's number over the file's; 0: 1 */
     uint32_t largest;    /* more than this is not written; 0: the type's own */
 };
 
@@ -66,13 +68,15 @@ bool array_list_add(struct array_list *list, const char *name, uint64_t rows, ui
 sonject_status array_list_check(struct report *report, const char *path,
                                 const struct array_list *list);
 
-/* Lines of samples in a file, XTF's and NumPy's: an image's rows, or its columns. */
+/* Lines of samples in a file, recordings' and NumPy's: an image's rows, or its columns. */
 struct sample_lines {
     uint64_t *places; /* owned: of each line's first sample; NULL: line_bytes apart */
+    double *scales;   /* owned: of each line, as of stored_samples; NULL: 1 */
     uint64_t first_place, line_bytes;
     enum stored_type type;
     bool is_transposed; /* they are columns */
     bool is_reversed;   /* column 0 is the last of its line */
+    bool clips;         /* as of stored_samples */
     bool is_big_endian;
 };
 
@@ -85,7 +89,7 @@ struct swath_file {
     struct raster_layout layout;
     uint32_t largest; /* that it may hold, where that is less than its type's; else 0 */
     struct sample_lines lines;
-    struct xtf_file xtf;
+    struct recording recording;
     struct mat_array *mat;
     enum image_kind image;
     struct decoded_image *decoded;
@@ -117,6 +121,7 @@ struct swath_format {
  * They are recognised in this order. */
 #define SWATH_FORMATS(ROW)                                                                         \
     ROW(xtf, "XTF")                                                                                \
+    ROW(jsf, "JSF")                                                                                \
     ROW(npy, "NumPy (.npy)")                                                                       \
     ROW(mat, "MATLAB (.mat)")                                                                      \
     ROW(image, "TIFF, PNG, JPEG, PGM (P5), BMP")                                                   \
@@ -130,6 +135,34 @@ sonject_status sample_lines_read(struct report *report, struct swath_file *file,
                                  const struct region *region, void *pixels);
 sonject_status sample_lines_copy(struct report *report, const struct swath_file *file,
                                  const struct swath_copy *copy);
+
+/* Channels that a recording has, of which one is wanted. */
+struct channel_list {
+    int32_t wanted; /* SONJECT_CHANNEL_... or a number */
+    uint32_t matches, found;
+    char text[400]; /* as messages list them */
+};
+
+/* of: what else tells the channel from others; NULL: nothing. */
+void channel_list_add(struct channel_list *list, uint32_t number, uint32_t side, const char *of);
+
+/* INPUT unless just one channel is wanted: the one found. */
+sonject_status channel_list_check(struct report *report, const char *path,
+                                  const struct channel_list *list);
+
+/* Makes a ping, whose samples begin at place, the image's next row. One without samples is noted
+ * as empty and makes none. Errors: INPUT (other cells than the rows before), MEMORY. */
+sonject_status recording_add(struct report *report, struct swath_file *file,
+                             const struct recorded_ping *ping, uint64_t place, uint64_t samples);
+
+/* Little-endian numbers of a recording: of 1 to 4 bytes, and floats of 4 or 8, 0 where they are not
+ * finite. */
+uint32_t word_at(const unsigned char *bytes, size_t place, size_t size);
+double finite_at(const unsigned char *bytes, size_t place, size_t size);
+
+/* INPUT: what is wrong at a place of the file. */
+sonject_status recording_damaged(struct report *report, const struct swath_file *file,
+                                 uint64_t place, const char *what);
 
 /* Copies bytes first...end of the file to where out stands. */
 sonject_status swath_copy_bytes(struct report *report, const struct swath_file *file,

@@ -1,5 +1,5 @@
 /* What a recording says of where the sonar was: geometry of its rows, and its track. */
-#include "swath/xtf_file.h"
+#include "swath/recording.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,14 +15,14 @@
 #define HIGHEST_LATITUDE  89.9             /* beyond, east and west mean nothing */
 #define COURSE_ROWS       25.0             /* to either side, of which the course is the mean */
 
-bool xtf_ping_has_position(const struct xtf_ping *ping)
+bool ping_has_position(const struct recorded_ping *ping)
 {
     return ping->easting != 0.0 || ping->northing != 0.0;
 }
 
 /* Straight distance between two pings with positions, m. */
-static double distance_between(const struct xtf_file *file, const struct xtf_ping *a,
-                               const struct xtf_ping *b)
+static double distance_between(const struct recording *file, const struct recorded_ping *a,
+                               const struct recorded_ping *b)
 {
     double across = b->easting - a->easting;
     double along = b->northing - a->northing;
@@ -35,7 +35,7 @@ static double distance_between(const struct xtf_file *file, const struct xtf_pin
 }
 
 /* Takes in as many rows on either side; false if all of the file's were there. */
-static bool widen(const struct xtf_file *file, uint64_t *first, uint64_t *end)
+static bool widen(const struct recording *file, uint64_t *first, uint64_t *end)
 {
     const uint64_t rows = file->rows;
     const uint64_t more = *end - *first;
@@ -47,14 +47,14 @@ static bool widen(const struct xtf_file *file, uint64_t *first, uint64_t *end)
 
 /* Between the first and the last position of the rows, and of those around them where two are not
  * there; NaN if they are nowhere. */
-static double mean_spacing(const struct xtf_file *file, uint64_t first, uint64_t end)
+static double mean_spacing(const struct recording *file, uint64_t first, uint64_t end)
 {
     do {
         uint64_t from = first;
         uint64_t to = end - 1;
-        while (from < to && !xtf_ping_has_position(&file->pings[from]))
+        while (from < to && !ping_has_position(&file->pings[from]))
             from++;
-        while (from < to && !xtf_ping_has_position(&file->pings[to]))
+        while (from < to && !ping_has_position(&file->pings[to]))
             to--;
         if (from < to)
             return distance_between(file, &file->pings[from], &file->pings[to]) /
@@ -64,7 +64,7 @@ static double mean_spacing(const struct xtf_file *file, uint64_t first, uint64_t
 }
 
 /* Of the rows' pings that have an altitude, or of those around them; 0 if there are none. */
-static double mean_altitude(const struct xtf_file *file, uint64_t first, uint64_t end)
+static double mean_altitude(const struct recording *file, uint64_t first, uint64_t end)
 {
     do {
         double sum = 0.0;
@@ -80,10 +80,11 @@ static double mean_altitude(const struct xtf_file *file, uint64_t first, uint64_
     return 0.0;
 }
 
-struct xtf_geometry xtf_geometry_of(const struct xtf_file *file, uint64_t first_row, uint64_t count)
+struct recording_geometry recording_geometry_of(const struct recording *file, uint64_t first_row,
+                                                uint64_t count)
 {
-    const struct xtf_ping *first = &file->pings[first_row];
-    struct xtf_geometry geometry;
+    const struct recorded_ping *first = &file->pings[first_row];
+    struct recording_geometry geometry;
     geometry.row_spacing_m = mean_spacing(file, first_row, first_row + count);
     geometry.altitude_m = mean_altitude(file, first_row, first_row + count);
     /* the delay is part of the way to the far edge */
@@ -104,11 +105,11 @@ void track_clear(struct track *track)
 }
 
 /* Whether a ping says where it was, and elsewhere than the fix before. */
-static bool is_new_fix(const struct track *track, const struct xtf_ping *ping)
+static bool is_new_fix(const struct track *track, const struct recorded_ping *ping)
 {
     const struct track_fix *last =
         track->fix_count > 0 ? &track->fixes[track->fix_count - 1] : NULL;
-    if (!xtf_ping_has_position(ping))
+    if (!ping_has_position(ping))
         return false;
     if (track->is_geographic &&
         (fabs(ping->northing) > HIGHEST_LATITUDE || fabs(ping->easting) > 360.0))
@@ -118,7 +119,7 @@ static bool is_new_fix(const struct track *track, const struct xtf_ping *ping)
 }
 
 sonject_status track_of_recording(struct track *track, struct report *report,
-                                  const struct xtf_file *file)
+                                  const struct recording *file)
 {
     const size_t rows = (size_t)file->rows;
     bool has_headings = false;
@@ -134,8 +135,8 @@ sonject_status track_of_recording(struct track *track, struct report *report,
         return report_out_of_memory(report, "the track");
     }
     for (size_t row = 0; row < rows; row++) {
-        const struct xtf_ping *ping = &file->pings[row];
-        const bool is_empty = ping->heading_deg == 0.0f && !xtf_ping_has_position(ping);
+        const struct recorded_ping *ping = &file->pings[row];
+        const bool is_empty = ping->heading_deg == 0.0f && !ping_has_position(ping);
         track->headings_deg[row] =
             is_empty && told < rows ? track->headings_deg[told] : ping->heading_deg;
         for (size_t before = 0; !is_empty && told == rows && before < row; before++)

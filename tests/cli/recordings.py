@@ -46,10 +46,11 @@ def note(text=b"a note of the operator"):
     return struct.pack("<HBBHHHI", 0xFACE, 1, 0, 0, 0, 0, 14 + len(body)) + body
 
 
-def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), altitudes=None, **options):
+def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), altitudes=None, silent=(), **options):
     """Rows x columns of 16 bit samples a side, column 0 next to the track, and a sub-bottom channel
     and notes between them. Port's samples go into the file from far to near, as recorders do. empty:
-    rows whose pings have neither position nor altitude. altitudes: of the rows, where they differ."""
+    rows whose pings have neither position nor altitude. altitudes: of the rows, where they differ.
+    silent: rows whose pings have no samples."""
     data = file_header([SUBBOTTOM, PORT, STARBOARD], units=options.pop("units", 0))
     for row, (left, right) in enumerate(zip(port, starboard)):
         lines = [
@@ -57,6 +58,8 @@ def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), altitudes=None, **opti
             (1, left[::-1].astype("<u2")),
             (2, right.astype("<u2")),
         ]
+        if row in silent:
+            lines = [(channel, samples[:0]) for channel, samples in lines]
         if altitudes is not None:
             options["altitude"] = altitudes[row]
         place = (1000.0 + 0.6 * row_spacing * row, 2000.0 + 0.8 * row_spacing * row)
@@ -66,4 +69,56 @@ def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), altitudes=None, **opti
             data += ping(lines, position=place, number=row, **options)
         if row % 5 == 0:
             data += note()
+    return data
+
+
+def jsf_message(kind, body, subsystem=0, channel=0):
+    """A message of a JSF file, after EdgeTech's published description of the format."""
+    head = bytearray(16)
+    _put(head, 0, "HBBHBBBB", 0x1601, 11, 0, kind, 0, subsystem, channel, 0)
+    _put(head, 12, "I", len(body))
+    return bytes(head) + body
+
+
+def jsf_ping(samples, channel, subsystem=20, number=0, spacing=0.15, speed=1500.0, delay=0, altitude=6.0,
+             position=(0.0, 0.0), units=1, heading=None, weight=3, kind=None, packet=1, valid=0x49):
+    """samples: unsigned 16 bit envelopes, or pairs of signed 16 bits; port's too from near to far.
+    delay: samples before the first. position: in the units' own numbers. valid: position, heading and
+    altitude."""
+    block = bytearray(240)
+    count = len(samples)
+    if kind is None:
+        kind = samples.ndim - 1
+    _put(block, 0, "iII", 1714651200 + number // 10, delay, number)
+    _put(block, 16, "H", (count >> 16) << 8)
+    _put(block, 28, "hH", 1, valid if heading is not None else valid & ~8)
+    _put(block, 34, "h", kind)
+    _put(block, 80, "iih", round(position[0]), round(position[1]), units)
+    _put(block, 114, "HI", count & 0xFFFF, round(2e9 * spacing / speed))
+    _put(block, 126, "HH", 59500, 60500)
+    _put(block, 144, "if", round(1000 * altitude), speed)
+    _put(block, 168, "hh", weight, 1)
+    _put(block, 172, "H", round(100 * (heading or 0.0)))
+    _put(block, 200, "I", 43200000 + 100 * number)
+    _put(block, 220, "H", packet)
+    return jsf_message(80, bytes(block) + samples.tobytes(), subsystem, channel)
+
+
+def jsf_bytes(port, starboard, row_spacing=0.1, subsystems=(20,), empty=(), weights=None, **options):
+    """Rows of both sides, (columns) or (columns, 2), with a sub-bottom profiler's pings and other
+    messages between them. empty: rows whose pings have no samples. weights: of the rows."""
+    kind = "<u2" if port.ndim == 2 else "<i2"
+    data = jsf_message(182, bytes(40))
+    for row in range(len(port)):
+        place = (1e6 + 600 * row_spacing * row, 2e6 + 800 * row_spacing * row)
+        told = {"position": place, "number": row, **options}
+        if weights is not None:
+            told["weight"] = int(weights[row])
+        data += jsf_ping(numpy.arange(7, dtype="<u2"), 0, 0, number=row)
+        for subsystem in subsystems:
+            for channel, side in enumerate((port, starboard)):
+                samples = side[row] + (subsystem - subsystems[0])
+                data += jsf_ping(samples[:0 if row in empty else None].astype(kind), channel, subsystem, **told)
+        if row % 5 == 0:
+            data += jsf_message(2020, bytes(44))
     return data

@@ -258,7 +258,7 @@ def test_a_recording_that_says_ground_range(sonject, tmp_path, line):
 @pytest.mark.parametrize("arguments, code, words", [
     (["plain.npy", "x.tif", "--range-axis", "ground", "--altitude", 6], 3, "where its columns lie"),
     (["plain.npy", "x.npy", "--altitude", 6], 3, "keeps no geometry"),
-    (["plain.npy", "x.tif", "--channel", "port"], 3, "no XTF file"),
+    (["plain.npy", "x.tif", "--channel", "port"], 3, "neither XTF nor JSF"),
     (["plain.npy", "x.tif", "--array", "a"], 3, "neither HDF5 nor MATLAB"),
     (["plain.npy", "x.jpg"], 3, "without loss as .tif, .png, .npy or .h5"),
     (["plain.npy", "x.xtf", "--into", "line.xtf", "--channel", "port"], 3, "must be alike"),

@@ -78,8 +78,8 @@ def test_channels_are_measured_as_images_are(sonject, tmp_path):
         assert image == told(sonject("measure", *seam, earlier, later, "--channel", "starboard"))
     for code, words, arguments in (
             (3, ["after.xtf", "1 (port), 2 (starboard)"], ["after.xtf"]),
-            (3, ["no XTF file"], ["after-port.tif", "--channel", "port"]),
-            (3, ["no XTF file"], [*seam, "before-port.tif", "after-port.tif", "--channel", "port"]),
+            (3, ["neither XTF nor JSF"], ["after-port.tif", "--channel", "port"]),
+            (3, ["neither XTF nor JSF"], [*seam, "before-port.tif", "after-port.tif", "--channel", "port"]),
             (3, ["absent.xtf: "], ["absent.xtf", "--channel", "port"]),
             (2, ["--channel"], ["after.xtf", "--channel", "left"]),
             (2, ["--compare"], ["a.json", "--compare", "b.json", "--channel", "port"])):

@@ -11,7 +11,7 @@ import pytest
 import images
 import recordings
 from conftest import assert_refused
-from measured_images import measured
+from measured_images import measured, read_png
 
 ROWS, COLUMNS = 60, 200
 LINE = "sidescan/scotsman-iver2.xtf"
@@ -286,3 +286,57 @@ targets: [{class: ball, object: {shape: sphere, diameter: 0.4 m}}]
     for path in (tmp_path / "data" / "all" / "records").iterdir():
         first = json.loads(path.read_text())["swath"]["column"]
         assert 0.15 * (first + 0.5) > 9.0
+
+
+@pytest.mark.parametrize("kind", ["xtf", "jsf"])
+def test_pings_without_samples_make_no_row_and_are_named(sonject, tmp_path, sides, kind):
+    """The image has the others' rows, by whose numbers truth and patch go."""
+    gone = {3, 20, 21, 59}
+    make = recordings.xtf_bytes if kind == "xtf" else recordings.jsf_bytes
+    options = {"silent": gone} if kind == "xtf" else {"empty": gone}
+    (tmp_path / f"line.{kind}").write_bytes(make(*sides, **options))
+    sonject.done("convert", f"line.{kind}", "a.npy", "--channel", "port")
+    kept = [row for row in range(ROWS) if row not in gone]
+    assert numpy.array_equal(numpy.load(tmp_path / "a.npy"), sides[0][kept])
+    scene = write_scene(tmp_path, f"line.{kind}", channel="port")
+    assert "pings without samples make no row: 3, 20, 21, 59\n" in sonject.done("check", scene).stdout
+    answer = sonject.done("run", scene, "-o", "out")
+    assert "note: pings without samples make no row: 3, 20, 21, 59\n" in answer.stderr
+    truth = json.loads((tmp_path / "out" / "truth.json").read_text())
+    assert truth["patch"]["skipped_pings"] == sorted(gone) and truth["patch"]["empty_rows"] == []
+    before, after = ((tmp_path / name).read_bytes() for name in (f"line.{kind}", f"out/image.{kind}"))
+    assert len(before) == len(after) and before != after
+
+
+def test_empty_rows_stay_as_they_are_and_are_named(sonject, tmp_path, sides):
+    """Rows that hold nothing but 0, in a recording or any image. A row that is dark in the patch
+    alone is none of them."""
+    pixels = sides[0]
+    pixels[[10, 11, 28, 30, 31, 55]] = 0
+    pixels[29, 60:180] = 0
+    (tmp_path / "line.tif").write_bytes(images.tiff_bytes(pixels))
+    scene = write_scene(tmp_path, "line.tif", geometry=EXPLICIT, altitude="6 m")
+    answer = sonject.done("run", scene, "-o", "out")
+    assert "note: empty rows stay as they are: 10, 11, 28, 30, 31\n" in answer.stderr
+    facts, truth = (json.loads((tmp_path / "out" / name).read_text()) for name in ("run.json", "truth.json"))
+    assert truth["patch"]["empty_rows"] == [10, 11, 28, 30, 31]
+    after = images.read_tiff(tmp_path / "out" / "image.tif")
+    changed = (after != pixels).sum(1)
+    assert changed[29] > 5 and changed[27] > 5 and not changed[[28, 30, 31]].any()
+    assert facts["changed_pixels"] == pytest.approx(changed.sum(), rel=0.1)
+    masks = [read_png(tmp_path / "out" / f"{name}.png")
+             for name in ("highlight", "shadow", "labels", "influence")]
+    assert all(mask[29].any() and not mask[[28, 30, 31]].any() for mask in masks[-2:])
+    assert not any(mask[[28, 30, 31]].any() for mask in masks)
+    # levels and floors are measured where something was heard
+    shown = pixels.copy()
+    shown[10] = shown[11] = pixels[12]
+    shown[28], shown[30], shown[31] = pixels[27], pixels[29], pixels[29]
+    (tmp_path / "line.tif").write_bytes(images.tiff_bytes(shown))
+    sonject.done("run", scene, "-o", "whole")
+    other = json.loads((tmp_path / "whole" / "truth.json").read_text())
+    assert other["blending"] == truth["blending"]
+    pixels[10:50] = 0
+    (tmp_path / "line.tif").write_bytes(images.tiff_bytes(pixels))
+    assert_refused(sonject("run", scene, "-o", "none"), 3, "line.tif.yaml:3:8: patch: ",
+                   "all rows of the patch are empty (0): choose another")

@@ -54,6 +54,19 @@ def recordings(source):
             "empty": writer.file_header([writer.PORT])}
 
 
+def jsf_recordings(source):
+    sys.path.insert(0, str(source / "tests" / "cli"))
+    import recordings as writer
+
+    samples = numpy.arange(24, dtype="<u2").reshape(3, 8)
+    pairs = numpy.arange(48, dtype="<i2").reshape(3, 8, 2)
+    liar = bytearray(writer.jsf_ping(samples[0], 0))
+    struct.pack_into("<H", liar, 16 + 114, 1000)  # samples of a ping that holds 8
+    return {"both": writer.jsf_bytes(samples, samples + 1, heading=5.0), "pairs": writer.jsf_bytes(pairs, pairs),
+            "weights": writer.jsf_bytes(samples, samples, subsystems=(20, 21), weights=(0, 3, -2)),
+            "liar": bytes(liar), "empty": writer.jsf_bytes(samples, samples, empty=(0, 2), units=2)}
+
+
 def arrays(_):
     def array(text, numbers, version=1):
         text = text.encode()
@@ -167,7 +180,7 @@ def snippets(source):
     return {"boulder": code, "short": short, "deep": b"(" * 300}
 
 
-MAKERS = {"scene": scenes, "target": targets, "xtf": recordings, "npy": arrays, "mat": matlab,
+MAKERS = {"scene": scenes, "target": targets, "xtf": recordings, "jsf": jsf_recordings, "npy": arrays, "mat": matlab,
           "stl": stl, "obj": obj, "ply": ply, "image": images, "table": tables,
           "snippet": snippets}
 TEXTS = {"scene", "target", "npy", "stl", "obj", "ply", "table", "snippet"}

@@ -222,8 +222,8 @@ static void read_all(struct swath_file *file)
     void *pixels = size <= BYTES_READ_MAX ? allocate_array(size, 1) : NULL;
     if (pixels)
         expect(file->format->read(&report, file, &whole, pixels), &report, false);
-    if (swath_file_xtf(file))
-        (void)xtf_geometry_of(&file->xtf, 0, file->layout.rows);
+    if (swath_file_recording(file))
+        (void)recording_geometry_of(&file->recording, 0, file->layout.rows);
     free(pixels);
 }
 
@@ -258,11 +258,11 @@ static void fuzz_swath(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t
 
 static const struct fuzzer fuzzers[] = {
     {"scene", fuzz_scene, NULL, NULL},      {"target", fuzz_target, NULL, NULL},
-    {"xtf", fuzz_swath, &xtf_format, NULL}, {"npy", fuzz_swath, &npy_format, NULL},
-    {"mat", fuzz_swath, &mat_format, NULL}, {"stl", fuzz_mesh, NULL, stl_read},
-    {"obj", fuzz_mesh, NULL, obj_read},     {"ply", fuzz_mesh, NULL, ply_read},
-    {"image", fuzz_image, NULL, NULL},      {"table", fuzz_table, NULL, NULL},
-    {"snippet", fuzz_snippet, NULL, NULL}};
+    {"xtf", fuzz_swath, &xtf_format, NULL}, {"jsf", fuzz_swath, &jsf_format, NULL},
+    {"npy", fuzz_swath, &npy_format, NULL}, {"mat", fuzz_swath, &mat_format, NULL},
+    {"stl", fuzz_mesh, NULL, stl_read},     {"obj", fuzz_mesh, NULL, obj_read},
+    {"ply", fuzz_mesh, NULL, ply_read},     {"image", fuzz_image, NULL, NULL},
+    {"table", fuzz_table, NULL, NULL},      {"snippet", fuzz_snippet, NULL, NULL}};
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {

@@ -104,6 +104,33 @@ static inline void make_xtf(struct draft *draft, int how)
     }
 }
 
+/* Port and starboard of 16 bits, or pairs of them (how: PAIRS), each ping a message. */
+static inline void make_jsf(struct draft *draft, int how)
+{
+    const size_t pair = how ? 2 : 1;
+    const size_t bytes = 240 + 2 * pair * COLUMNS;
+    memset(draft, 0, sizeof *draft);
+    draft->count = 2 * ROWS * (16 + bytes);
+    for (size_t i = 0; i < 2 * (size_t)ROWS; i++) {
+        const size_t message = i * (16 + bytes);
+        const size_t ping = message + 16;
+        put(draft, message, 0x1601, 2);
+        put(draft, message + 4, 80, 2);
+        put(draft, message + 7, 20, 1);
+        put(draft, message + 8, i % 2, 1);
+        put(draft, message + 12, bytes, 4);
+        put(draft, ping + 34, pair - 1, 2);
+        put(draft, ping + 114, COLUMNS, 2);
+        put(draft, ping + 116, 20000, 4); /* ns */
+        for (size_t k = 0; k < COLUMNS; k++) {
+            const size_t sample = 1000 * (i % 2) + (size_t)sample_at(true, i / 2, k);
+            put(draft, ping + 240 + 2 * pair * k, sample, 2);
+            if (how)
+                put(draft, ping + 242 + 4 * k, 0x10000 - sample, 2);
+        }
+    }
+}
+
 /* As MATLAB numbers the types of elements. */
 enum {
     MAT_INT8 = 1,

@@ -66,6 +66,8 @@ struct kind {
 static const struct kind kinds[] = {
     {"a.npy", make_npy, 0, NULL, NULL, PIXEL_FLOAT32, false, 4, false, 0},
     {"a.xtf", make_xtf, 0, NULL, NULL, PIXEL_UINT16, true, 2, false, 0},
+    {"a.jsf", make_jsf, 0, NULL, NULL, PIXEL_UINT16, true, 2, false, 0},
+    {"b.jsf", make_jsf, PAIRS, NULL, NULL, PIXEL_FLOAT32, true, 4, false, 0},
     {"a.mat", make_mat, 0, "img", "packed", PIXEL_FLOAT32, false, 8, false, 0},
     {"b.mat", make_mat, 0, "packed", "img", PIXEL_FLOAT32, true, 0, false, 0},
     {"c.mat", make_mat, PAIRS, "img", "packed", PIXEL_FLOAT32, false, 16, false, 0},
@@ -99,12 +101,17 @@ static uint32_t channels_of(const struct kind *kind)
     return kind->how & PAIRS ? 2 : 1;
 }
 
+static bool is_recording(const struct kind *kind)
+{
+    return kind->make == make_xtf || kind->make == make_jsf;
+}
+
 static sonject_status open_kind(struct report *by, const char *path, const struct kind *kind,
                                 struct swath_file **file)
 {
-    const bool is_recording = kind->make == make_xtf;
-    return swath_file_open_array(
-        by, path, is_recording ? SONJECT_CHANNEL_PORT : SONJECT_CHANNEL_ONLY, kind->array, file);
+    return swath_file_open_array(by, path,
+                                 is_recording(kind) ? SONJECT_CHANNEL_PORT : SONJECT_CHANNEL_ONLY,
+                                 kind->array, file);
 }
 
 static void put_sample(enum pixel_type type, void *samples, size_t i, double number)
@@ -127,10 +134,10 @@ static void expected_samples(const struct kind *kind, const struct region *regio
              column++)
             for (uint32_t channel = 0; channel < channels_of(kind); channel++) {
                 const bool is_new = is_patched && row == 2 && column == 3;
-                const double number = is_new           ? 99.25
+                const double number = is_new           ? (kind->make == make_jsf ? 99.0 : 99.25)
                                       : kind->is_whole ? sample_at(true, row, column)
                                                        : sample_at(false, row, column);
-                put_sample(kind->type, samples, i++, channel ? -number : number);
+                put_sample(kind->type, samples, i++, channel ? 0.0 - number : number);
             }
 }
 
@@ -330,7 +337,7 @@ static void damaged_files_end_no_host(void **state)
         if (kind.unguarded > 0)
             continue;
         const bool is_decoded =
-            kind.make != make_npy && kind.make != make_xtf && kind.make != make_mat;
+            kind.make != make_npy && !is_recording(&kind) && kind.make != make_mat;
         const long mutations = is_decoded ? most / HDF5_KINDS + 1 : 10 * most;
         const char *path = file_in(kind.name);
         const char *copy = file_in("copy");
@@ -470,7 +477,7 @@ static void test_files_that_are_not_for_sonject(void **state)
         expect_refused("a.bin", NULL, cases[i].bytes, cases[i].count, cases[i].words);
         if (i >= 4)
             expect_refused("a.bin", NULL, NULL, 0,
-                           "reads XTF, NumPy (.npy), MATLAB (.mat), TIFF, PNG, JPEG, "
+                           "reads XTF, JSF, NumPy (.npy), MATLAB (.mat), TIFF, PNG, JPEG, "
                            "PGM (P5), BMP, HDF5: convert");
     }
     make_bmp(&draft, 0);

@@ -217,7 +217,7 @@ def quicklook(
     array: Optional[str] = None,
     context: Optional[Context] = None,
 ) -> None:
-    """Draws an image file, a channel of an XTF file ("port", "starboard", its number, None for the
+    """Draws an image file, a channel of an XTF or JSF file ("port", "starboard", its number, None for the
     only one), or the array of that name in an HDF5 or MATLAB file, as a PNG.
 
     decibels: ends of the grey scale, None: chosen from the image; altitude_m, geometry: None for

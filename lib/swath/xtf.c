@@ -1,11 +1,7 @@
-#include "swath/xtf_file.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "base/byte_order.h"
+/* Sidescan channels of XTF files (eXtended Triton Format, X41). Little-endian; offsets after
+ * Triton's published format description. Refused: a file that is cut short or damaged, no sidescan
+ * channel, no channel as chosen or several (lists them), samples of other sizes than 1 or 2 bytes,
+ * pings of the channel with different numbers of samples or slant ranges (says where). */
 #include "base/file.h"
 #include "swath/swath_format.h"
 
@@ -19,10 +15,9 @@
 #define PACKET_KIND_SONAR   0
 #define CORRECTED_TO_GROUND 2 /* of a channel's correction flags; 1: slant range */
 #define UNITS_GEOGRAPHIC    3
-#define SAMPLES_MAX         (UINT32_C(1) << 24)
 
 struct xtf_channel {
-    uint32_t kind; /* enum xtf_side, or others */
+    uint32_t kind; /* enum recorded_side, or others */
     uint32_t sample_bytes;
     bool is_signed;
     bool is_ground_range;
@@ -32,26 +27,14 @@ struct xtf_channel {
 struct opening {
     struct report *report;
     struct swath_file *file;
-    struct xtf_channel channels[XTF_CHANNEL_MAX + 1];
+    struct xtf_channel channels[CHANNEL_NUMBER_MAX + 1];
     uint32_t channel_count;
-    uint64_t capacity; /* of pings and places */
 };
 
 static bool is_xtf(struct swath_file *file, const unsigned char *head, size_t count)
 {
     (void)file;
     return count >= 2 && head[0] == FILE_MARK && head[1] > 0;
-}
-
-static uint32_t word_at(const unsigned char *bytes, size_t place, size_t size)
-{
-    return (uint32_t)number_from_bytes(bytes + place, size, false);
-}
-
-static double finite_at(const unsigned char *bytes, size_t place, size_t size)
-{
-    const double number = float_from_bytes(bytes + place, size, false);
-    return isfinite(number) ? number : 0.0;
 }
 
 static float float_at(const unsigned char *bytes, size_t place)
@@ -66,14 +49,12 @@ static double double_at(const unsigned char *bytes, size_t place)
 
 static sonject_status damaged(const struct opening *opening, uint64_t place, const char *what)
 {
-    return input_failure(opening->report, opening->file->path,
-                         "damaged at byte %llu: %s: copy or export it again",
-                         (unsigned long long)place, what);
+    return recording_damaged(opening->report, opening->file, place, what);
 }
 
 static bool is_sidescan(const struct xtf_channel *channel)
 {
-    return channel->kind == XTF_PORT || channel->kind == XTF_STARBOARD;
+    return channel->kind == RECORDED_PORT || channel->kind == RECORDED_STARBOARD;
 }
 
 /* Reads the file's header and the channels' descriptions; *first_packet gets where pings begin. */
@@ -84,10 +65,10 @@ static sonject_status read_header(struct opening *opening, uint64_t *first_packe
     unsigned char info[CHANNEL_BYTES];
     if (!byte_file_read(stream, 0, head, sizeof head))
         return damaged(opening, 0, "its header is cut short");
-    opening->file->xtf.is_geographic = word_at(head, 164, 2) == UNITS_GEOGRAPHIC;
+    opening->file->recording.is_geographic = word_at(head, 164, 2) == UNITS_GEOGRAPHIC;
     opening->channel_count = word_at(head, 166, 2);
     const uint32_t described = opening->channel_count + word_at(head, 168, 2);
-    if (opening->channel_count > XTF_CHANNEL_MAX + 1 || described > 4 * (XTF_CHANNEL_MAX + 1))
+    if (opening->channel_count > CHANNEL_NUMBER_MAX + 1 || described > 4 * (CHANNEL_NUMBER_MAX + 1))
         return damaged(opening, 166, "more channels than such files have");
     for (uint32_t i = 0; i < opening->channel_count; i++) {
         if (!byte_file_read(stream, CHANNELS_PLACE + (uint64_t)i * CHANNEL_BYTES, info,
@@ -106,43 +87,25 @@ static sonject_status read_header(struct opening *opening, uint64_t *first_packe
 
 static sonject_status choose_channel(struct opening *opening, int32_t wanted)
 {
-    char list[256] = "";
-    uint32_t matches = 0;
-    uint32_t found = 0;
-    for (uint32_t i = 0; i < opening->channel_count; i++) {
-        const struct xtf_channel *channel = &opening->channels[i];
-        const size_t length = strlen(list);
-        if (!is_sidescan(channel))
-            continue;
-        snprintf(list + length, sizeof list - length, "%s%u (%s)", length > 0 ? ", " : "", i,
-                 channel->kind == XTF_PORT ? "port" : "starboard");
-        if ((wanted == SONJECT_CHANNEL_PORT && channel->kind != XTF_PORT) ||
-            (wanted == SONJECT_CHANNEL_STARBOARD && channel->kind != XTF_STARBOARD) ||
-            (wanted >= 0 && (uint32_t)wanted != i))
-            continue;
-        matches++;
-        found = i;
-    }
-    if (*list == '\0')
-        return input_failure(opening->report, opening->file->path, "has no sidescan channel");
-    if (matches != 1)
-        return input_failure(opening->report, opening->file->path,
-                             "has %s such sidescan channel: choose one of %s",
-                             matches == 0 ? "no" : "more than one", list);
-    opening->file->xtf.channel = found;
-    opening->file->xtf.side = opening->channels[found].kind;
-    opening->file->xtf.is_ground_range = opening->channels[found].is_ground_range;
+    struct channel_list list = {.wanted = wanted};
+    for (uint32_t i = 0; i < opening->channel_count; i++)
+        if (is_sidescan(&opening->channels[i]))
+            channel_list_add(&list, i, opening->channels[i].kind, NULL);
+    CHECK(channel_list_check(opening->report, opening->file->path, &list));
+    opening->file->recording.channel = list.found;
+    opening->file->recording.side = opening->channels[list.found].kind;
+    opening->file->recording.is_ground_range = opening->channels[list.found].is_ground_range;
     return SONJECT_OK;
 }
 
 static sonject_status set_samples(struct opening *opening)
 {
     struct swath_file *file = opening->file;
-    const struct xtf_channel *channel = &opening->channels[file->xtf.channel];
+    const struct xtf_channel *channel = &opening->channels[file->recording.channel];
     if (channel->sample_bytes != 1 && channel->sample_bytes != 2)
         return input_failure(opening->report, file->path,
                              "channel %u has samples of %u bytes; sonject reads 1 and 2",
-                             file->xtf.channel, channel->sample_bytes);
+                             file->recording.channel, channel->sample_bytes);
     file->layout.type = channel->sample_bytes == 1 ? PIXEL_UINT8 : PIXEL_UINT16;
     file->layout.channels = 1;
     file->lines.type = channel->sample_bytes == 1 ? STORED_UINT8
@@ -150,43 +113,8 @@ static sonject_status set_samples(struct opening *opening)
                                                   : STORED_UINT16;
     file->largest = file->lines.type == STORED_INT16 ? INT16_MAX : 0;
     /* port's samples are stored as a display shows them: from far to near */
-    file->lines.is_reversed = file->xtf.side == XTF_PORT;
+    file->lines.is_reversed = file->recording.side == RECORDED_PORT;
     return SONJECT_OK;
-}
-
-static bool make_room(struct opening *opening)
-{
-    struct swath_file *file = opening->file;
-    if (file->layout.rows < opening->capacity)
-        return true;
-    const uint64_t capacity = opening->capacity > 0 ? 2 * opening->capacity : 256;
-    struct xtf_ping *pings = realloc(file->xtf.pings, (size_t)capacity * sizeof *pings);
-    if (!pings)
-        return false;
-    file->xtf.pings = pings;
-    uint64_t *places = realloc(file->lines.places, (size_t)capacity * sizeof *places);
-    if (!places)
-        return false;
-    file->lines.places = places;
-    opening->capacity = capacity;
-    return true;
-}
-
-/* Every row of an image has the same cells. */
-static sonject_status check_same(struct opening *opening, const struct xtf_ping *ping,
-                                 uint64_t samples)
-{
-    const struct swath_file *file = opening->file;
-    const struct raster_layout *layout = &file->layout;
-    if (layout->rows == 0 || (samples == layout->columns &&
-                              fabsf(ping->slant_range_m - file->xtf.pings[0].slant_range_m) <=
-                                  1e-3f * file->xtf.pings[0].slant_range_m))
-        return SONJECT_OK;
-    return input_failure(
-        opening->report, file->path,
-        "ping %llu has %llu samples to %g m, the pings before it %llu to %g m: cut the file there",
-        (unsigned long long)layout->rows, (unsigned long long)samples, (double)ping->slant_range_m,
-        (unsigned long long)layout->columns, (double)file->xtf.pings[0].slant_range_m);
 }
 
 static sonject_status add_ping(struct opening *opening, const unsigned char *packet,
@@ -196,7 +124,7 @@ static sonject_status add_ping(struct opening *opening, const unsigned char *pac
     const double sensor_x = double_at(packet, 168);
     const double sensor_y = double_at(packet, 160);
     const bool has_sensor = sensor_x != 0.0 || sensor_y != 0.0;
-    struct xtf_ping ping;
+    struct recorded_ping ping = {0};
     ping.easting = has_sensor ? sensor_x : double_at(packet, 136);
     ping.northing = has_sensor ? sensor_y : double_at(packet, 128);
     ping.altitude_m = float_at(packet, 196);
@@ -206,14 +134,7 @@ static sonject_status add_ping(struct opening *opening, const unsigned char *pac
     ping.slant_range_m = float_at(channel, 4);
     ping.delay_s = float_at(channel, 12);
     ping.duration_s = float_at(channel, 16);
-    if (samples == 0 || samples > SAMPLES_MAX || !(ping.slant_range_m > 0.0f))
-        return damaged(opening, place, "a ping without samples or slant range");
-    CHECK(check_same(opening, &ping, samples));
-    CHECK_MEMORY(opening->report, make_room(opening), "the pings");
-    file->layout.columns = samples;
-    file->xtf.pings[file->layout.rows] = ping;
-    file->lines.places[file->layout.rows++] = place;
-    return SONJECT_OK;
+    return recording_add(opening->report, file, &ping, place, samples);
 }
 
 /* Finds the chosen channel in a packet; packets may lack it. */
@@ -235,7 +156,7 @@ static sonject_status read_packet(struct opening *opening, const unsigned char *
         const uint64_t bytes = samples * opening->channels[number].sample_bytes;
         if (bytes > end - place)
             return damaged(opening, place, "more samples than the ping holds");
-        if (number == file->xtf.channel)
+        if (number == file->recording.channel)
             return add_ping(opening, packet, head, place, samples);
         place += bytes;
     }
@@ -275,10 +196,7 @@ static sonject_status open_xtf(struct report *report, struct swath_file *file, i
     CHECK(read_header(&opening, &first_packet));
     CHECK(choose_channel(&opening, channel));
     CHECK(set_samples(&opening));
-    CHECK(read_packets(&opening, first_packet));
-    file->xtf.rows = file->layout.rows;
-    file->xtf.columns = file->layout.columns;
-    return SONJECT_OK;
+    return read_packets(&opening, first_packet);
 }
 
 const struct swath_format xtf_format = {

@@ -1,10 +1,8 @@
-/* Sidescan channels of XTF files (eXtended Triton Format, X41): rows are pings, columns range cells
- * from the track outwards. Little-endian; offsets after Triton's published format description.
- * Refused: a file that is cut short or damaged, no sidescan channel, no channel as chosen or
- * several (lists them), samples of other sizes than 1 or 2 bytes, pings of the channel with
- * different numbers of samples or slant ranges (says where). */
-#ifndef SONJECT_SWATH_XTF_FILE_H
-#define SONJECT_SWATH_XTF_FILE_H
+/* Recordings of a sidescan, XTF and JSF files: what their pings say, and the track that they were
+ * made on. Rows of the image are the pings of a channel, columns range cells from the track
+ * outwards. */
+#ifndef SONJECT_SWATH_RECORDING_H
+#define SONJECT_SWATH_RECORDING_H
 
 #include "scene/params.h"
 
@@ -13,35 +11,43 @@
 
 #include "base/report.h"
 
-#define XTF_CHANNEL_MAX 63 /* highest number */
+#define CHANNEL_NUMBER_MAX 63 /* highest number */
 
-enum xtf_side {
-    XTF_PORT = 1, /* as the format numbers them */
-    XTF_STARBOARD = 2
+enum recorded_side {
+    RECORDED_PORT = 1, /* as XTF numbers them */
+    RECORDED_STARBOARD = 2
 };
 
 /* What the file says of a ping. 0 where it says nothing. */
-struct xtf_ping {
+struct recorded_ping {
     double easting, northing; /* of the sonar, else of the ship, in the file's units */
     float altitude_m;
     float heading_deg;   /* of the sonar, else of the ship; clockwise from north */
     float slant_range_m; /* to the far edge of the last cell */
     float delay_s;       /* until the first cell's near edge */
     float duration_s;    /* of all cells */
+    int32_t weight;      /* its samples stand for so many halvings of their numbers */
+};
+
+/* Pings, counted from 0 among those of the channel in the file. */
+struct ping_list {
+    uint64_t *numbers; /* owned */
+    uint64_t count;
 };
 
 /* What the file says of a channel. */
-struct xtf_file {
-    struct xtf_ping *pings; /* owned; rows of them */
+struct recording {
+    struct recorded_ping *pings; /* owned; rows of them */
     uint64_t rows, columns;
-    uint32_t side;        /* enum xtf_side */
-    uint32_t channel;     /* its number */
-    bool is_ground_range; /* samples are equally spaced on the seabed, as the file says */
-    bool is_geographic;   /* positions are degrees of longitude and latitude, else m */
+    struct ping_list empty; /* those without samples, which make no row */
+    uint32_t side;          /* enum recorded_side */
+    uint32_t channel;       /* its number */
+    bool is_ground_range;   /* samples are equally spaced on the seabed, as the file says */
+    bool is_geographic;     /* positions are degrees of longitude and latitude, else m */
 };
 
 /* Where a channel's pixels lie. */
-struct xtf_geometry {
+struct recording_geometry {
     double row_spacing_m; /* mean; NaN where the file has no positions, 0 where the sonar stood */
     double column_spacing_m;
     double first_slant_range_m; /* of the middle of column 0 */
@@ -49,13 +55,13 @@ struct xtf_geometry {
 };
 
 /* False for a ping that the recorder left empty, or had no navigation for. */
-bool xtf_ping_has_position(const struct xtf_ping *ping);
+bool ping_has_position(const struct recorded_ping *ping);
 
 /* Geometry of the rows first_row... first_row + count - 1 (within the layout): spacing from the
  * straight line between the first and the last position. Pings without a position, or an altitude,
  * are passed over; where too few have one, the pings around the rows stand in. */
-struct xtf_geometry xtf_geometry_of(const struct xtf_file *file, uint64_t first_row,
-                                    uint64_t count);
+struct recording_geometry recording_geometry_of(const struct recording *file, uint64_t first_row,
+                                                uint64_t count);
 
 /* The track that a recording was made on: where the sonar was at each row of the image. */
 
@@ -84,7 +90,7 @@ struct place {
  * has the heading of the one before. Errors: MEMORY. On success to be given to track_clear; on
  * failure nothing is held. */
 sonject_status track_of_recording(struct track *track, struct report *report,
-                                  const struct xtf_file *file);
+                                  const struct recording *file);
 void track_clear(struct track *track);
 
 /* Where something lies at a row, which may be fractional, so far abeam of the track: positions are

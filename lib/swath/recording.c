@@ -1,0 +1,115 @@
+/* What formats of recordings share: channels, of which one is wanted, and pings that become rows.
+ */
+#include "swath/recording.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/byte_order.h"
+#include "base/file.h"
+#include "swath/swath_format.h"
+
+#define SAMPLES_MAX (UINT32_C(1) << 24)
+#define FIRST_ROOM  64 /* elements; then room doubles */
+
+void channel_list_add(struct channel_list *list, uint32_t number, uint32_t side, const char *of)
+{
+    const size_t length = strlen(list->text);
+    snprintf(list->text + length, sizeof list->text - length, "%s%u (%s%s%s)",
+             length > 0 ? ", " : "", number, side == RECORDED_PORT ? "port" : "starboard",
+             of ? ", " : "", of ? of : "");
+    if ((list->wanted == SONJECT_CHANNEL_PORT && side != RECORDED_PORT) ||
+        (list->wanted == SONJECT_CHANNEL_STARBOARD && side != RECORDED_STARBOARD) ||
+        (list->wanted >= 0 && (uint32_t)list->wanted != number))
+        return;
+    list->matches++;
+    list->found = number;
+}
+
+sonject_status channel_list_check(struct report *report, const char *path,
+                                  const struct channel_list *list)
+{
+    if (*list->text == '\0')
+        return input_failure(report, path, "has no sidescan channel");
+    if (list->matches != 1)
+        return input_failure(report, path, "has %s such sidescan channel: choose one of %s",
+                             list->matches == 0 ? "no" : "more than one", list->text);
+    return SONJECT_OK;
+}
+
+uint32_t word_at(const unsigned char *bytes, size_t place, size_t size)
+{
+    return (uint32_t)number_from_bytes(bytes + place, size, false);
+}
+
+double finite_at(const unsigned char *bytes, size_t place, size_t size)
+{
+    const double number = float_from_bytes(bytes + place, size, false);
+    return isfinite(number) ? number : 0.0;
+}
+
+sonject_status recording_damaged(struct report *report, const struct swath_file *file,
+                                 uint64_t place, const char *what)
+{
+    return input_failure(report, file->path, "damaged at byte %llu: %s: copy or export it again",
+                         (unsigned long long)place, what);
+}
+
+/* Room for one more element behind count; false if memory is out. */
+static bool make_room(void *array, uint64_t count, size_t size)
+{
+    void *old, *grown;
+    if (count > 0 && (count < FIRST_ROOM || (count & (count - 1)) != 0))
+        return true;
+    memcpy(&old, array, sizeof old);
+    grown = realloc(old, (size_t)(count > 0 ? 2 * count : FIRST_ROOM) * size);
+    if (grown)
+        memcpy(array, &grown, sizeof grown);
+    return grown != NULL;
+}
+
+/* Every row of an image has the same cells. */
+static sonject_status check_same(struct report *report, const struct swath_file *file,
+                                 const struct recorded_ping *ping, uint64_t samples)
+{
+    const struct raster_layout *layout = &file->layout;
+    const float range = layout->rows > 0 ? file->recording.pings[0].slant_range_m : 0.0f;
+    if (layout->rows == 0 ||
+        (samples == layout->columns && fabsf(ping->slant_range_m - range) <= 1e-3f * range))
+        return SONJECT_OK;
+    return input_failure(
+        report, file->path,
+        "ping %llu has %llu samples to %g m, the pings before it %llu to %g m: cut the file there",
+        (unsigned long long)(layout->rows + file->recording.empty.count),
+        (unsigned long long)samples, (double)ping->slant_range_m,
+        (unsigned long long)layout->columns, (double)range);
+}
+
+sonject_status recording_add(struct report *report, struct swath_file *file,
+                             const struct recorded_ping *ping, uint64_t place, uint64_t samples)
+{
+    struct recording *recording = &file->recording;
+    struct raster_layout *layout = &file->layout;
+    if (samples == 0) {
+        struct ping_list *empty = &recording->empty;
+        CHECK_MEMORY(report, make_room(&empty->numbers, empty->count, sizeof *empty->numbers),
+                     "the pings");
+        empty->numbers[empty->count] = layout->rows + empty->count;
+        empty->count++;
+        return SONJECT_OK;
+    }
+    if (samples > SAMPLES_MAX || !(ping->slant_range_m > 0.0f))
+        return recording_damaged(report, file, place, "a ping without slant range");
+    CHECK(check_same(report, file, ping, samples));
+    CHECK_MEMORY(report,
+                 make_room(&recording->pings, layout->rows, sizeof *recording->pings) &&
+                     make_room(&file->lines.places, layout->rows, sizeof *file->lines.places),
+                 "the pings");
+    recording->pings[layout->rows] = *ping;
+    file->lines.places[layout->rows++] = place;
+    recording->rows = layout->rows;
+    recording->columns = layout->columns = samples;
+    return SONJECT_OK;
+}
