@@ -248,6 +248,16 @@ void campaign_clear(struct campaign *campaign);
 sonject_status campaign_check_key(const struct tree *tree, struct tree_place place,
                                   const char *path, const char *key, bool is_object);
 
+/* The same of an entry's key, which its text is or ends with. */
+sonject_status campaign_check_entry(struct reader *reader, const struct tree_entry *entry,
+                                    const char *key, bool is_object);
+
+/* Read `swaths` and `splits` into a campaign. */
+sonject_status campaign_read_swaths(struct reader *reader, const struct tree_node *node,
+                                    void *structure);
+sonject_status campaign_read_splits(struct reader *reader, const struct tree_node *node,
+                                    void *structure);
+
 /* Gives *list, of count elements of size bytes, room for one more, which becomes all zeros. Errors:
  * MEMORY. */
 sonject_status grow_list(struct report *report, void *list, size_t count, size_t size);

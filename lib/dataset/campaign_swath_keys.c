@@ -1,0 +1,155 @@
+/* Campaign files: swaths with their keys and contacts to avoid, and splits. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "dataset/campaign.h"
+#include "schema/keys.h"
+
+#define SWATHS_MAX 10000
+#define PIXELS_MAX (UINT64_C(1) << 40)
+#define BOXES_MAX  1000 /* in a swath */
+
+/* The name of a file to open, and as it is written. */
+static sonject_status read_swath_path(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    struct swath_plan *swath = structure;
+    swath->written = node->text;
+    return read_path(reader, node, &swath->path);
+}
+
+static sonject_status read_swath_keys(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    struct swath_plan *swath = structure;
+    if (node->kind != TREE_SECTION)
+        return refuse_value(reader, node, "must be a section of 'key: value' lines");
+    for (size_t i = 0; i < node->count; i++) {
+        const struct tree_entry *entry = &node->entries[i];
+        char *value = NULL;
+        struct growing_text pair = {NULL, 0, 0, false};
+        if (campaign_check_entry(reader, entry, entry->key, false) != SONJECT_OK)
+            continue;
+        CHECK(grow_list(reader->report, &swath->keys, swath->key_count, sizeof *swath->keys));
+        CHECK(tree_override_text(reader->report, &entry->value, &value));
+        growing_text_add(&pair, "%s=%s", entry->key, value);
+        free(value);
+        swath->keys[swath->key_count] = growing_text_end(&pair);
+        CHECK_MEMORY(reader->report, swath->keys[swath->key_count], "the campaign");
+        swath->key_count++;
+    }
+    return SONJECT_OK;
+}
+
+#define STRUCTURE struct region
+static const struct field box_fields[] = {
+    {"row", "first row", COUNT64(first_row, 0, PIXELS_MAX), REQUIRED},
+    {"column", "first column", COUNT64(first_column, 0, PIXELS_MAX), REQUIRED},
+    {"rows", "number of rows", COUNT64(rows, 0, PIXELS_MAX), REQUIRED},
+    {"columns", "number of columns", COUNT64(columns, 0, PIXELS_MAX), REQUIRED},
+};
+static const struct section box_section = {ROWS(box_fields)};
+#undef STRUCTURE
+
+static sonject_status read_box(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    struct swath_plan *swath = structure;
+    CHECK(grow_list(reader->report, &swath->avoid, swath->avoid_count, sizeof *swath->avoid));
+    return read_section(reader, &box_section, node, &swath->avoid[swath->avoid_count++]);
+}
+
+static sonject_status read_avoid(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    static const struct list boxes = {0, BOXES_MAX, " of {row: , column: , rows: , columns: }",
+                                      read_box};
+    return read_list(reader, node, &boxes, structure);
+}
+
+#define STRUCTURE struct swath_plan
+static const struct field swath_fields[] = {
+    {"path", "image file", .kind = FIELD_SPECIAL, .read = read_swath_path, REQUIRED},
+    {"split", "that all of its images are in", TEXT(split)},
+    {"set", "keys of the scene for this swath", .kind = FIELD_SPECIAL, .read = read_swath_keys},
+    {"avoid", "boxes of contacts that images are not to show", .kind = FIELD_SPECIAL,
+     .read = read_avoid},
+};
+static const struct section swath_section = {ROWS(swath_fields)};
+#undef STRUCTURE
+
+static sonject_status check_split_name(struct reader *reader, const struct campaign *campaign,
+                                       const struct swath_plan *swath, const struct tree_node *node)
+{
+    struct word_list list = {{0}, 0};
+    for (size_t i = 0; i < campaign->split_count; i++) {
+        if (!swath->split || strcmp(swath->split, campaign->splits[i].name) == 0)
+            return SONJECT_OK;
+        list_word(&list, campaign->splits[i].name);
+    }
+    if (mistakes_concern(reader->tree->mistakes, reader->tree, "splits"))
+        return SONJECT_ERROR_INPUT;
+    return refuse_key(reader, node, "split", "is none of the splits, which are %s", list.text);
+}
+
+static sonject_status read_swath(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    struct campaign *campaign = structure;
+    CHECK(grow_list(reader->report, &campaign->swaths, campaign->swath_count,
+                    sizeof *campaign->swaths));
+    struct swath_plan *swath = &campaign->swaths[campaign->swath_count++];
+    swath->place = node->place;
+    const sonject_status status = read_section(reader, &swath_section, node, swath);
+    return reading_ends(status) ? status : check_split_name(reader, campaign, swath, node);
+}
+
+sonject_status campaign_read_swaths(struct reader *reader, const struct tree_node *node,
+                                    void *structure)
+{
+    static const struct list swaths = {0, SWATHS_MAX, "", read_swath};
+    if (node->kind != TREE_LIST || node->count == 0 || node->count > SWATHS_MAX)
+        return refuse_value(reader, node, "must be a list of 1 to %d entries", SWATHS_MAX);
+    return read_list(reader, node, &swaths, structure);
+}
+
+bool is_split_name(const char *name)
+{
+    static const char signs[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    return *name && *name != '-' && strspn(name, signs) == strlen(name) &&
+           strlen(name) < SPLIT_NAME_CAPACITY;
+}
+
+sonject_status campaign_read_splits(struct reader *reader, const struct tree_node *node,
+                                    void *structure)
+{
+    struct campaign *campaign = structure;
+    double sum = 0.0;
+    sonject_status status = SONJECT_OK;
+    if (node->kind != TREE_SECTION || node->count == 0 || node->count > CAMPAIGN_SPLITS_MAX)
+        return refuse_value(reader, node, "must be a section of 1 to %d 'name: fraction' lines",
+                            CAMPAIGN_SPLITS_MAX);
+    campaign->split_count = 0;
+    for (size_t i = 0; i < node->count; i++) {
+        const struct tree_entry *entry = &node->entries[i];
+        struct split *split = &campaign->splits[campaign->split_count++];
+        memset(split, 0, sizeof *split);
+        const size_t before = key_path_add(&reader->path, entry->key);
+        if (is_split_name(entry->key))
+            strcpy(split->name, entry->key);
+        else
+            status = tree_failure(reader->tree, entry->place, reader->path.text,
+                                  "names a folder: use up to %d letters, digits, _ and -",
+                                  SPLIT_NAME_CAPACITY - 1);
+        if (read_quantity(reader, &entry->value, QUANTITY_NUMBER, &split->fraction) != SONJECT_OK)
+            status = SONJECT_ERROR_INPUT;
+        else if (!(split->fraction > 0.0 && split->fraction <= 1.0))
+            status = refuse_value(reader, &entry->value, "must be above 0 and at most 1");
+        sum += split->fraction;
+        key_path_shorten(&reader->path, before);
+    }
+    if (status == SONJECT_OK && fabs(sum - 1.0) > 1e-6)
+        return refuse_value(reader, node, "add up to %g; make that 1", sum);
+    return status;
+}
