@@ -104,12 +104,14 @@ static void describe_plan(const struct campaign *campaign, const struct image_pl
 sonject_status sonject_campaign_describe(const sonject_campaign *campaign, uint64_t id,
                                          sonject_campaign_image *image)
 {
+    const struct attempts none = {0};
     struct image_plan plan;
     sonject_campaign_image told;
     if (!campaign)
         return SONJECT_ERROR_ARGUMENT;
     CHECK(campaign_check_id(campaign, id));
-    sonject_status status = image_plan_make(campaign->report, &campaign->campaign, id, 0, &plan);
+    sonject_status status =
+        image_plan_make(campaign->report, &campaign->campaign, id, &none, &plan);
     if (status == SONJECT_OK) {
         describe_plan(&campaign->campaign, &plan, &told);
         status = params_give(campaign->report, image, &told, sizeof told, sizeof told,
@@ -123,7 +125,7 @@ sonject_status sonject_campaign_scene(sonject_context *context, sonject_campaign
                                       uint64_t id, sonject_scene **scene)
 {
     struct image_plan plan;
-    uint32_t attempt = 0;
+    struct attempts attempts = {0};
     char reason[REASON_CAPACITY] = "";
     if (!context || !scene)
         return SONJECT_ERROR_ARGUMENT;
@@ -141,7 +143,7 @@ sonject_status sonject_campaign_scene(sonject_context *context, sonject_campaign
     (*scene)->report = &context->report;
     (*scene)->is_read = true;
     scene_init(&(*scene)->scene);
-    status = campaign_draw_scene(campaign, id, &attempt, reason, &plan, &(*scene)->scene);
+    status = campaign_draw_scene(campaign, id, &attempts, reason, &plan, &(*scene)->scene);
     image_plan_clear(&plan);
     if (status != SONJECT_OK)
         sonject_scene_release(scene);

@@ -19,8 +19,10 @@
 #define CAMPAIGN_IMAGES_MAX  10000000 /* ids have eight digits */
 #define CAMPAIGN_ITEMS_MAX   250      /* targets and clutter, of each */
 #define CAMPAIGN_CLUTTER_MAX 50       /* in an image */
+#define CAMPAIGN_TARGETS_MAX 12       /* likewise */
 #define CAMPAIGN_SPLITS_MAX  16
-#define CAMPAIGN_CHIP_MAX    8192 /* rows, columns */
+#define CAMPAIGN_CHIP_MIN    16   /* rows, columns */
+#define CAMPAIGN_CHIP_MAX    8192 /* of those that are not all of a swath */
 #define SPLIT_NAME_CAPACITY  33
 
 /* Counted random numbers: a deviate of (0, 1), the middle of one of 2^52 equal parts; streams are
@@ -157,7 +159,9 @@ struct swath_plan {
     size_t avoid_count;
     struct tree_place place;
     struct raster_layout layout; /* once it is opened */
-    struct crop_places room;     /* once it is measured */
+    struct crop_places room;     /* once it is measured, as all below */
+    uint64_t chip_rows, chip_columns;
+    double first_object_column, last_object_column; /* where objects may lie */
     uint32_t split_number;
 };
 
@@ -215,10 +219,10 @@ struct campaign {
     char *scene_path;          /* owned, as the two above */
     const char *scene_written; /* the tree's */
     uint64_t images, seed;
-    uint32_t design; /* enum design */
-    uint32_t chip_rows, chip_columns;
-    uint32_t edge, clearance; /* pixels kept free at swaths' edges, around contacts */
-    double spread;            /* of the chip's sides, where objects may lie */
+    uint32_t design;                  /* enum design */
+    uint32_t chip_rows, chip_columns; /* 0: all of each swath */
+    uint32_t edge, clearance;         /* pixels kept free at swaths' edges, around contacts */
+    double spread;                    /* of the chip's sides, where objects may lie */
     double nearest_range_m, farthest_range_m;
     double empty, clutter_alone;
     double visible_highlight_db, visible_shadow_db; /* of targets: at least, at most; NaN: any */
@@ -227,7 +231,7 @@ struct campaign {
     struct draws draws, object_draws;
     struct item targets[CAMPAIGN_ITEMS_MAX], clutter[CAMPAIGN_ITEMS_MAX];
     uint32_t target_count, clutter_count;
-    struct distribution clutter_number;
+    struct distribution clutter_number, target_number; /* in an image; count 0: 1 */
     struct swath_plan *swaths;
     size_t swath_count;
     struct split splits[CAMPAIGN_SPLITS_MAX];
@@ -276,6 +280,10 @@ sonject_status campaign_split(struct report *report, struct campaign *campaign,
 sonject_status campaign_measure(struct report *report, struct campaign *campaign, size_t swath,
                                 const sonject_geometry_params *geometry, double altitude_m);
 
+/* Whether images have all rows or columns of swaths, so that contacts to avoid are in them: then
+ * objects keep away from them instead. */
+bool images_show_contacts(const struct campaign *campaign);
+
 /* "key=value" for the scene, and where the campaign file says so, or a table that it names. */
 struct plan_key {
     char *text;
@@ -291,17 +299,24 @@ struct image_plan {
     struct region chip;
     uint64_t seed;
     uint32_t object_count;
+    uint32_t target_count; /* of these, the first */
     struct plan_key *keys; /* owned; names of files in them are meant from the campaign's folder */
     size_t key_count;
 };
 
 #define ATTEMPTS_MAX 64 /* to draw what goes together */
 
-/* The plan of image id, below campaign->images. attempt: 0, and more where values and places of
- * objects are drawn anew; all else of it stays. plan: for image_plan_clear, also on failure.
- * Errors: MEMORY. */
+/* Draws that were given up: of all values and places, and of single targets besides. */
+struct attempts {
+    uint32_t of_all;
+    uint32_t of_targets[CAMPAIGN_TARGETS_MAX];
+};
+
+/* The plan of image id, below campaign->images. Where draws were given up values and places of
+ * objects are others; all else of it stays. plan: for image_plan_clear, also on failure. Errors:
+ * INPUT (no place is left for an object), MEMORY. */
 sonject_status image_plan_make(struct report *report, const struct campaign *campaign, uint64_t id,
-                               uint32_t attempt, struct image_plan *plan);
+                               const struct attempts *attempts, struct image_plan *plan);
 
 /* A plan that tries the ends of all distributions: one with an object of a category (and of
  * clutter number item), in the first place of a swath. step 0: low ends, 1: high ends, and of
@@ -343,13 +358,13 @@ struct sonject_campaign {
 sonject_status campaign_read_scene(struct sonject_campaign *campaign, const struct image_plan *plan,
                                    struct scene *scene, bool *are_relations);
 
-/* Plans image id and reads its scene, from an attempt on until its values go together: *attempt is
- * then the one that did. reason: why the first that did not was given up, where there is one; a
+/* Plans image id and reads its scene, until its values go together: attempts grow by what did not.
+ * reason: why the first that did not was given up, where there is one; a
  * line. plan, scene: as of image_plan_make and campaign_read_scene. Errors: as
  * campaign_read_scene. */
 #define REASON_CAPACITY 240
 sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t id,
-                                   uint32_t *attempt, char reason[REASON_CAPACITY],
+                                   struct attempts *attempts, char reason[REASON_CAPACITY],
                                    struct image_plan *plan, struct scene *scene);
 
 /* Opens and measures the swaths, splits them, tries scenes with all that may be drawn, and makes
@@ -365,9 +380,9 @@ struct campaign_image {
     struct scene scene;
     struct swath swath;
     struct injection_result result;
-    uint32_t attempts;            /* that were given up */
-    char reason[REASON_CAPACITY]; /* of the first */
-    bool is_faint;                /* the target is seen less than it is to be */
+    uint32_t attempts;                   /* that were given up */
+    char reason[REASON_CAPACITY];        /* of the first */
+    bool is_faint[CAMPAIGN_TARGETS_MAX]; /* targets that are seen less than they are to be */
 };
 
 /* Plans the image, reads its scene and its part of the swath, and injects; draws anew, up to

@@ -166,21 +166,34 @@ static const struct section item_section = {ROWS(item_fields), .finish = finish_
 #undef STRUCTURE
 
 /* Whole numbers: fixed, or a choice of such. */
+static sonject_status read_number(struct reader *reader, const struct tree_node *node,
+                                  struct campaign *campaign, uint64_t least, uint64_t most,
+                                  struct distribution *number)
+{
+    uint64_t value;
+    number->stream = ++campaign->streams;
+    CHECK(distribution_read(reader, node, reader->path.text, number));
+    if (number->kind != DISTRIBUTION_FIXED && number->kind != DISTRIBUTION_CHOICE)
+        return refuse_value(reader, node, "must be a whole number or a choice of such");
+    for (size_t i = 0; i < number->count; i++)
+        if (!text_to_count(number->texts[i], &value) || value < least || value > most)
+            return refuse_value(reader, node, "must be whole numbers from %d to %d", (int)least,
+                                (int)most);
+    return SONJECT_OK;
+}
+
 static sonject_status read_clutter_number(struct reader *reader, const struct tree_node *node,
                                           void *structure)
 {
     struct campaign *campaign = structure;
-    struct distribution *number = &campaign->clutter_number;
-    uint64_t value;
-    number->stream = ++campaign->streams;
-    CHECK(distribution_read(reader, node, "clutter.number", number));
-    if (number->kind != DISTRIBUTION_FIXED && number->kind != DISTRIBUTION_CHOICE)
-        return refuse_value(reader, node, "must be a whole number or a choice of such");
-    for (size_t i = 0; i < number->count; i++)
-        if (!text_to_count(number->texts[i], &value) || value > CAMPAIGN_CLUTTER_MAX)
-            return refuse_value(reader, node, "must be whole numbers from 0 to %d",
-                                CAMPAIGN_CLUTTER_MAX);
-    return SONJECT_OK;
+    return read_number(reader, node, campaign, 0, CAMPAIGN_CLUTTER_MAX, &campaign->clutter_number);
+}
+
+static sonject_status read_target_number(struct reader *reader, const struct tree_node *node,
+                                         void *structure)
+{
+    struct campaign *campaign = structure;
+    return read_number(reader, node, campaign, 1, CAMPAIGN_TARGETS_MAX, &campaign->target_number);
 }
 
 static sonject_status read_scene_name(struct reader *reader, const struct tree_node *node,
@@ -206,6 +219,34 @@ static sonject_status read_range(struct reader *reader, const struct tree_node *
         return SONJECT_OK;
     return refuse_value(reader, node, "begins at %g m, which is not below its end, %g m",
                         campaign->nearest_range_m, campaign->farthest_range_m);
+}
+
+static sonject_status read_side(struct reader *reader, const struct tree_node *node, uint32_t *side)
+{
+    uint64_t pixels = 0;
+    const char *text = read_text(reader, node);
+    if (!text)
+        return SONJECT_ERROR_INPUT;
+    if (strcmp(text, "all") != 0 &&
+        (!text_to_count(text, &pixels) || pixels < CAMPAIGN_CHIP_MIN || pixels > CAMPAIGN_CHIP_MAX))
+        return refuse_value(reader, node, "must be all, or a whole number of %d...%d",
+                            CAMPAIGN_CHIP_MIN, CAMPAIGN_CHIP_MAX);
+    *side = (uint32_t)pixels;
+    return SONJECT_OK;
+}
+
+static sonject_status read_rows(struct reader *reader, const struct tree_node *node,
+                                void *structure)
+{
+    struct campaign *campaign = structure;
+    return read_side(reader, node, &campaign->chip_rows);
+}
+
+static sonject_status read_columns(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    struct campaign *campaign = structure;
+    return read_side(reader, node, &campaign->chip_columns);
 }
 
 /* Of enum output, from the first that a user chooses on; labels begin with yolo. */
@@ -262,14 +303,16 @@ static sonject_status check_items(struct reader *reader, const struct tree_node 
 
 #define STRUCTURE struct campaign
 static const struct field chip_fields[] = {
-    {"rows", "of each image", COUNT32(chip_rows, 16, CAMPAIGN_CHIP_MAX), REQUIRED},
-    {"columns", "of each image", COUNT32(chip_columns, 16, CAMPAIGN_CHIP_MAX), REQUIRED},
+    {"rows", "of each image; all: those of its swath", .kind = FIELD_SPECIAL, .read = read_rows,
+     .unit = "whole number, or all", REQUIRED},
+    {"columns", "of each image; all: those of its swath", .kind = FIELD_SPECIAL,
+     .read = read_columns, .unit = "whole number, or all", REQUIRED},
     {"edge", "pixels that images stay away from swaths' edges", COUNT32(edge, 0, UINT32_MAX / 4)},
     {"clearance", "pixels that images stay away from contacts to avoid",
      COUNT32(clearance, 0, UINT32_MAX / 4)},
     {"spread", "part of the sides in which objects lie, about the middle, 0 to 1",
      QUANTITY(spread, NUMBER), WITHIN(0.0, 1.0)},
-    {"slant_range", "[nearest, farthest] that the middle of an image may have",
+    {"slant_range", "[nearest, farthest] of images' middles, or of objects where columns: all",
      .kind = FIELD_SPECIAL, .read = read_range, .unit = "list of two lengths"},
 };
 static const struct section chip_section = {ROWS(chip_fields)};
@@ -353,6 +396,8 @@ static const struct field campaign_fields[] = {
     {"targets", "list of what is to be found",
      ENTRIES(targets, target_count, "target", item_section)},
     {"clutter", "what else lies there", SAME(clutter_section)},
+    {"targets_per_image", "where there are any; all but the first are drawn by weight",
+     .kind = FIELD_SPECIAL, .read = read_target_number, .unit = "whole number, or a distribution"},
 };
 static const struct section campaign_section = {ROWS(campaign_fields), .finish = finish_campaign};
 
@@ -441,6 +486,7 @@ void campaign_clear(struct campaign *campaign)
     clear_items(campaign->targets, campaign->target_count);
     clear_items(campaign->clutter, campaign->clutter_count);
     distribution_clear(&campaign->clutter_number);
+    distribution_clear(&campaign->target_number);
     for (size_t i = 0; i < campaign->swath_count; i++)
         clear_swath(&campaign->swaths[i]);
     free(campaign->swaths);

@@ -144,15 +144,15 @@ static void keep_reason(const struct report *report, char reason[REASON_CAPACITY
 }
 
 sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t id,
-                                   uint32_t *attempt, char reason[REASON_CAPACITY],
+                                   struct attempts *attempts, char reason[REASON_CAPACITY],
                                    struct image_plan *plan, struct scene *scene)
 {
-    for (;; ++*attempt) {
+    for (;; attempts->of_all++) {
         bool are_relations = false;
         sonject_status status =
-            image_plan_make(campaign->report, &campaign->campaign, id, *attempt, plan);
+            image_plan_make(campaign->report, &campaign->campaign, id, attempts, plan);
         THEN(status, campaign_read_scene(campaign, plan, scene, &are_relations));
-        if (status != SONJECT_ERROR_INPUT || !are_relations || *attempt + 1 >= ATTEMPTS_MAX)
+        if (status != SONJECT_ERROR_INPUT || !are_relations || attempts->of_all + 1 >= ATTEMPTS_MAX)
             return status;
         keep_reason(campaign->report, reason);
         image_plan_clear(plan);
@@ -178,50 +178,62 @@ static sonject_status make_attempt(struct device *device, struct sonject_campaig
     return status;
 }
 
-/* Whether the target, if there is one, is seen as well as it is to be. */
-static bool target_is_seen(const struct campaign *campaign, const struct campaign_image *image)
+static bool is_faint(const struct campaign *campaign, const sonject_object_truth *truth)
 {
-    const sonject_object_truth *truth = image->result.objects;
-    return image->plan.category < CATEGORY_TARGET ||
-           ((isnan(campaign->visible_highlight_db) ||
-             truth->highlight_visibility_db >= campaign->visible_highlight_db) &&
-            (isnan(campaign->visible_shadow_db) ||
-             truth->shadow_visibility_db <= campaign->visible_shadow_db));
+    return (!isnan(campaign->visible_highlight_db) &&
+            !(truth->highlight_visibility_db >= campaign->visible_highlight_db)) ||
+           (!isnan(campaign->visible_shadow_db) &&
+            !(truth->shadow_visibility_db <= campaign->visible_shadow_db));
 }
 
-/* Says so in the report, whose message becomes the reason to draw anew. */
-static void tell_faint(struct report *report, const sonject_object_truth *truth)
+/* Finds the targets that are seen less than they are to be. Where some are, the report's message
+ * becomes the reason to draw anew; of several targets those alone are. */
+static bool find_faint(const struct sonject_campaign *campaign, struct campaign_image *image,
+                       struct attempts *next)
 {
-    report_failure(report, SONJECT_ERROR_INPUT,
-                   "the target is seen too little: highlight %.1f dB, shadow %.1f dB",
-                   truth->highlight_visibility_db, truth->shadow_visibility_db);
+    const struct image_plan *plan = &image->plan;
+    bool are_some = false;
+    for (uint32_t i = 0; i < plan->target_count; i++) {
+        const sonject_object_truth *truth = &image->result.objects[i];
+        image->is_faint[i] = is_faint(&campaign->campaign, truth);
+        if (!image->is_faint[i])
+            continue;
+        are_some = true;
+        next->of_targets[i] += plan->target_count > 1;
+        report_failure(campaign->report, SONJECT_ERROR_INPUT,
+                       "the target is seen too little: highlight %.1f dB, shadow %.1f dB",
+                       truth->highlight_visibility_db, truth->shadow_visibility_db);
+    }
+    next->of_all += are_some && plan->target_count == 1;
+    return are_some;
 }
 
 sonject_status campaign_image_make(struct device *device, struct sonject_campaign *campaign,
                                    uint64_t id, sonject_progress_function progress, void *user,
                                    struct campaign_image *image)
 {
-    uint32_t attempt = 0;
+    struct attempts attempts = {0};
+    uint32_t redrawn = 0; /* for targets alone */
     char reason[REASON_CAPACITY] = "";
-    for (;; attempt++) {
+    for (;;) {
         bool is_drawn = false;
         scene_init(&image->scene);
         image->scene.mesh_store = &campaign->meshes;
         sonject_status status =
-            campaign_draw_scene(campaign, id, &attempt, reason, &image->plan, &image->scene);
+            campaign_draw_scene(campaign, id, &attempts, reason, &image->plan, &image->scene);
         THEN(status, make_attempt(device, campaign, progress, user, image, &is_drawn));
-        const bool is_last = attempt + 1 >= ATTEMPTS_MAX;
-        const bool is_faint = status == SONJECT_OK && !target_is_seen(&campaign->campaign, image);
-        if (is_faint && campaign->campaign.faint == FAINT_REDRAW && !is_last) {
-            tell_faint(campaign->report, image->result.objects);
-            is_drawn = true;
-        }
-        if (!is_drawn || is_last) {
-            image->attempts = attempt;
-            image->is_faint = is_faint;
+        const uint32_t given_up = attempts.of_all + redrawn;
+        struct attempts next = attempts;
+        next.of_all += is_drawn;
+        if (status == SONJECT_OK && find_faint(campaign, image, &next))
+            is_drawn = campaign->campaign.faint == FAINT_REDRAW && given_up + 1 < ATTEMPTS_MAX;
+        if (!is_drawn || given_up + 1 >= ATTEMPTS_MAX) {
+            image->attempts = given_up;
             strcpy(image->reason, reason);
             return name_image(campaign->report, id, status);
         }
+        redrawn += next.of_all == attempts.of_all;
+        attempts = next;
         keep_reason(campaign->report, reason);
         campaign_image_clear(image);
         memset(image, 0, sizeof *image);
@@ -306,7 +318,8 @@ static json_t *record_of(const struct sonject_campaign *campaign,
         {"target", has_target
                        ? json_string(drawn->targets[plan->category - CATEGORY_TARGET].class_name)
                        : json_null()},
-        {"swath", place}, {"seed", json_seed(image->scene.injection.seed)},
+        {"targets", json_count(plan->target_count)}, {"swath", place},
+        {"seed", json_seed(image->scene.injection.seed)},
         {"scene", json_string(drawn->scene_written)}, {"set", keys},
         {"scene_hash", json_string(scene_hash_text)},
         {"campaign_hash", json_string(campaign->hash)}, {"sonject", json_string(sonject_version())},
@@ -394,8 +407,8 @@ sonject_status campaign_image_write(struct sonject_campaign *campaign, struct ca
         parts.swath.patch,
         &parts.swath.track};
     CHECK(image_labels_find(&parts.labels, report, &request, &campaign->classes));
-    if (image->is_faint)
-        parts.labels.contacts[0].is_difficult = true;
+    for (uint32_t i = 0; i < image->plan.target_count; i++)
+        parts.labels.contacts[i].is_difficult = image->is_faint[i];
     sonject_status status = SONJECT_OK;
     for (int i = 0; status == SONJECT_OK && i < OUTPUT_KINDS; i++)
         if (campaign->campaign.outputs & OUTPUT_BIT(i)) {

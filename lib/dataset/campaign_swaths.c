@@ -236,24 +236,33 @@ static double column_at(const sonject_geometry_params *geometry, double range_m)
     return (range_m - geometry->first_slant_range_m) / geometry->column_spacing_m;
 }
 
-/* First columns beyond the first return whose chip's middle has a slant range within the limits. */
-static void limit_ranges(const struct campaign *campaign, const sonject_geometry_params *geometry,
-                         double altitude_m, struct region *chips)
+/* First columns beyond the first return whose chip's middle has a slant range within the limits. An
+ * image that has all columns begins where the swath does: there the limits are those of its
+ * objects. False where nothing is left. */
+static bool limit_ranges(const struct campaign *campaign, const sonject_geometry_params *geometry,
+                         double altitude_m, struct swath_plan *plan, struct region *chips)
 {
-    const double half = 0.5 * (double)(campaign->chip_columns - 1);
+    const bool has_all = campaign->chip_columns == 0;
+    const double half = has_all ? 0.0 : 0.5 * (double)(campaign->chip_columns - 1);
+    const double end =
+        (double)chips->first_column + (double)(has_all ? plan->chip_columns : chips->columns) - 1.0;
     double low = fmax((double)chips->first_column, floor(column_at(geometry, altitude_m)) + 1.0);
-    double high = (double)chips->first_column + (double)chips->columns - 1.0;
+    double high = end;
     if (campaign->has_range) {
         low = fmax(low, ceil(column_at(geometry, campaign->nearest_range_m) - half - 1e-9));
         high = fmin(high, floor(column_at(geometry, campaign->farthest_range_m) - half + 1e-9));
     }
-    chips->columns = low <= high ? (uint64_t)(high - low) + 1 : 0;
-    if (chips->columns > 0)
+    plan->first_object_column = has_all ? low : 0.0;
+    plan->last_object_column = has_all ? high : (double)plan->layout.columns;
+    if (!has_all && low <= high) {
+        chips->columns = (uint64_t)(high - low) + 1;
         chips->first_column = (uint64_t)low;
+    }
+    return low <= high;
 }
 
 /* First pixels, along one axis, of chips that would touch a box. */
-static void forbid(const struct campaign *campaign, uint32_t chip, uint64_t first, uint64_t count,
+static void forbid(const struct campaign *campaign, uint64_t chip, uint64_t first, uint64_t count,
                    uint64_t *first_forbidden, uint64_t *forbidden)
 {
     const uint64_t before = (uint64_t)campaign->clearance + chip - 1;
@@ -261,27 +270,41 @@ static void forbid(const struct campaign *campaign, uint32_t chip, uint64_t firs
     *forbidden = first + count + campaign->clearance - *first_forbidden;
 }
 
+bool images_show_contacts(const struct campaign *campaign)
+{
+    return campaign->chip_rows == 0 || campaign->chip_columns == 0;
+}
+
+static uint64_t side_of(uint32_t asked, uint64_t pixels, uint32_t edge)
+{
+    const uint64_t taken = 2 * (uint64_t)edge + CAMPAIGN_CHIP_MIN;
+    return asked > 0 ? asked : CAMPAIGN_CHIP_MIN + (pixels > taken ? pixels - taken : 0);
+}
+
 sonject_status campaign_measure(struct report *report, struct campaign *campaign, size_t swath,
                                 const sonject_geometry_params *geometry, double altitude_m)
 {
     struct swath_plan *plan = &campaign->swaths[swath];
-    const uint64_t rows = (uint64_t)campaign->chip_rows + 2 * (uint64_t)campaign->edge;
-    const uint64_t columns = (uint64_t)campaign->chip_columns + 2 * (uint64_t)campaign->edge;
+    plan->chip_rows = side_of(campaign->chip_rows, plan->layout.rows, campaign->edge);
+    plan->chip_columns = side_of(campaign->chip_columns, plan->layout.columns, campaign->edge);
+    const uint64_t rows = plan->chip_rows + 2 * (uint64_t)campaign->edge;
+    const uint64_t columns = plan->chip_columns + 2 * (uint64_t)campaign->edge;
     if (plan->layout.rows < rows || plan->layout.columns < columns)
-        return tree_failure(&campaign->tree, plan->place, "swaths",
-                            "%s has %llu x %llu pixels, too few for images of %u x %u that stay %u "
-                            "pixels away from its edges",
-                            plan->written, (unsigned long long)plan->layout.rows,
-                            (unsigned long long)plan->layout.columns, (unsigned)campaign->chip_rows,
-                            (unsigned)campaign->chip_columns, (unsigned)campaign->edge);
+        return tree_failure(
+            &campaign->tree, plan->place, "swaths",
+            "%s has %llu x %llu pixels, too few for images of %llu x %llu that stay %u "
+            "pixels away from its edges",
+            plan->written, (unsigned long long)plan->layout.rows,
+            (unsigned long long)plan->layout.columns, (unsigned long long)plan->chip_rows,
+            (unsigned long long)plan->chip_columns, (unsigned)campaign->edge);
     struct region chips = {campaign->edge, campaign->edge, plan->layout.rows - rows + 1,
                            plan->layout.columns - columns + 1};
-    limit_ranges(campaign, geometry, altitude_m, &chips);
-    if (chips.columns == 0 && !campaign->has_range)
+    const bool has_room = limit_ranges(campaign, geometry, altitude_m, plan, &chips);
+    if (!has_room && !campaign->has_range)
         return tree_failure(&campaign->tree, plan->place, "swaths",
                             "no image within %s begins beyond the sonar's altitude, up to %g m",
                             plan->written, altitude_m);
-    if (chips.columns == 0)
+    if (!has_room)
         return tree_failure(&campaign->tree, plan->place, "swaths",
                             "no image within %s has its middle at slant ranges of %g to %g m and "
                             "begins beyond the sonar's altitude, up to %g m",
@@ -290,15 +313,15 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
     struct crop_places *room = &plan->room;
     crop_places_clear(room);
     room->chips = chips;
-    room->box_count = plan->avoid_count;
+    room->box_count = images_show_contacts(campaign) ? 0 : plan->avoid_count;
     room->boxes = allocate_array(room->box_count + 1, sizeof *room->boxes);
     CHECK_MEMORY(report, room->boxes, "the places for images");
-    for (size_t i = 0; i < plan->avoid_count; i++) {
+    for (size_t i = 0; i < room->box_count; i++) {
         const struct region *box = &plan->avoid[i];
         struct region *forbidden = &room->boxes[i];
-        forbid(campaign, campaign->chip_rows, box->first_row, box->rows, &forbidden->first_row,
+        forbid(campaign, plan->chip_rows, box->first_row, box->rows, &forbidden->first_row,
                &forbidden->rows);
-        forbid(campaign, campaign->chip_columns, box->first_column, box->columns,
+        forbid(campaign, plan->chip_columns, box->first_column, box->columns,
                &forbidden->first_column, &forbidden->columns);
     }
     qsort(room->boxes, room->box_count, sizeof *room->boxes, compare_starts);

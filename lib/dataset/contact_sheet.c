@@ -89,8 +89,7 @@ static sonject_status load_thumbnail(struct report *report, const char *path,
     small->scale = fmin(1.0, CELL_SIDE / longer);
     small->rows = (uint32_t)fmax(1.0, floor((double)layout.rows * small->scale));
     small->columns = (uint32_t)fmax(1.0, floor((double)layout.columns * small->scale));
-    if (layout.rows <= CAMPAIGN_CHIP_MAX && layout.columns <= CAMPAIGN_CHIP_MAX &&
-        region_bytes(&layout, &all, &bytes))
+    if (region_bytes(&layout, &all, &bytes))
         pixels = allocate_array(bytes, 1);
     small->values = allocate_array((size_t)small->rows * small->columns, sizeof *small->values);
     sonject_status status = pixels && small->values
@@ -117,9 +116,9 @@ static void draw_thumbnail(struct canvas *canvas, const struct thumbnail *small,
         }
 }
 
-/* The boxes of COCO's annotations; object 1 is the target, where there is one. */
+/* The boxes of COCO's annotations; targets are the first objects. */
 static void draw_boxes(struct canvas *canvas, const json_t *annotations, double scale,
-                       bool has_target, int64_t x, int64_t y)
+                       json_int_t targets, int64_t x, int64_t y)
 {
     static const struct colour of_targets = {255, 160, 0};
     static const struct colour of_others = {80, 180, 255};
@@ -133,9 +132,10 @@ static void draw_boxes(struct canvas *canvas, const json_t *annotations, double 
             const double side = scale * (double)json_integer_value(json_array_get(box, k));
             sides[k] = (int64_t)fmin(fmax(k < 2 ? side : ceil(side), 0.0), CELL_SIDE);
         }
-        const bool is_first = json_integer_value(json_object_get(annotation, "object_id")) == 1;
+        const bool is_target =
+            json_integer_value(json_object_get(annotation, "object_id")) <= targets;
         canvas_frame(canvas, x + sides[0], y + sides[1], sides[2], sides[3],
-                     is_first && has_target ? of_targets : of_others);
+                     is_target ? of_targets : of_others);
     }
 }
 
@@ -154,7 +154,8 @@ static sonject_status draw_cell(const struct data_set *set, struct canvas *canva
     if (status == SONJECT_OK) {
         const char *target = member_text(record, "target");
         draw_thumbnail(canvas, &small, x, y);
-        draw_boxes(canvas, json_object_get(record, "annotations"), small.scale, *target, x, y);
+        draw_boxes(canvas, json_object_get(record, "annotations"), small.scale,
+                   json_integer_value(json_object_get(record, "targets")), x, y);
         snprintf(caption, sizeof caption, "%llu %s", (unsigned long long)id, target);
         size_t length = strlen(caption);
         while (length > 0 && text_length(caption, length) > CELL_SIDE)

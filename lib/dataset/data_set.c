@@ -103,6 +103,11 @@ static void remove_all(const struct data_set *set)
     discard(set->folder, HEAD_FILE);
 }
 
+static json_t *side_of(uint32_t pixels)
+{
+    return pixels > 0 ? json_count(pixels) : json_string("all");
+}
+
 static json_t *head_of(const struct sonject_campaign *campaign, const struct device *device,
                        json_t *inputs)
 {
@@ -132,8 +137,8 @@ static json_t *head_of(const struct sonject_campaign *campaign, const struct dev
         {"sonject", json_string(sonject_version())}, {"hash", json_string(campaign->hash)},
         {"inputs", json_incref(inputs)}, {"device", device ? device_document(device) : json_null()},
         {"images", json_count(plan->images)}, {"empty", json_number(plan->empty)},
-        {"clutter_alone", json_number(plan->clutter_alone)}, {"rows", json_count(plan->chip_rows)},
-        {"columns", json_count(plan->chip_columns)}, {"splits", splits}, {"classes", classes},
+        {"clutter_alone", json_number(plan->clutter_alone)}, {"rows", side_of(plan->chip_rows)},
+        {"columns", side_of(plan->chip_columns)}, {"splits", splits}, {"classes", classes},
         {"outputs", outputs}, {"swaths", swaths});
 }
 
@@ -226,9 +231,11 @@ static bool are_swaths(const json_t *swaths)
     return json_is_array(swaths);
 }
 
-static bool is_side(json_int_t pixels)
+static bool is_side(const json_t *head, const char *key)
 {
-    return pixels >= 1 && pixels <= CAMPAIGN_CHIP_MAX;
+    const json_int_t pixels = json_integer_value(json_object_get(head, key));
+    return (pixels >= 1 && pixels <= CAMPAIGN_CHIP_MAX) ||
+           strcmp(member_text(head, key), "all") == 0;
 }
 
 /* True if what documents need of the head is as it should be. */
@@ -245,11 +252,9 @@ static bool read_head(struct data_set *set)
             if (strcmp(json_string_value(name), output_kinds[kind].folder) == 0)
                 set->outputs |= OUTPUT_BIT(kind);
     }
-    set->rows = json_integer_value(json_object_get(set->head, "rows"));
-    set->columns = json_integer_value(json_object_get(set->head, "columns"));
     return json_is_integer(json_object_get(set->head, "sonject_campaign")) &&
-           has_plain(set->head, "sonject") && has_plain(set->head, "hash") && is_side(set->rows) &&
-           is_side(set->columns) && json_is_array(outputs) &&
+           has_plain(set->head, "sonject") && has_plain(set->head, "hash") &&
+           is_side(set->head, "rows") && is_side(set->head, "columns") && json_is_array(outputs) &&
            are_swaths(json_object_get(set->head, "swaths")) &&
            (json_is_null(device) || json_is_object(device)) &&
            json_is_number(json_object_get(set->head, "empty")) &&
@@ -364,6 +369,11 @@ static sonject_status add_entry(struct coco_file *coco, json_t *entry)
     return status;
 }
 
+static uint64_t side_told(const json_t *record, const char *key)
+{
+    return (uint64_t)json_integer_value(json_object_get(json_object_get(record, "swath"), key));
+}
+
 /* The image's entry, or its annotations, numbered over the split. */
 static sonject_status add_image(struct coco_file *coco, uint64_t id, bool has_annotations)
 {
@@ -373,8 +383,9 @@ static sonject_status add_image(struct coco_file *coco, uint64_t id, bool has_an
     sonject_status status = SONJECT_OK;
     const json_t *list = has_annotations ? json_object_get(record, "annotations") : NULL;
     if (!has_annotations)
-        status = add_entry(coco, coco_image(id, member_text(record, "image"), (uint64_t)set->rows,
-                                            (uint64_t)set->columns));
+        status =
+            add_entry(coco, coco_image(id, member_text(record, "image"), side_told(record, "rows"),
+                                       side_told(record, "columns")));
     for (size_t i = 0; status == SONJECT_OK && i < json_array_size(list); i++) {
         json_t *annotation = json_array_get(list, i);
         if (json_is_object(annotation)) {

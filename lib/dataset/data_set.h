@@ -26,7 +26,6 @@ struct data_set {
     const char *folder;
     json_t *head; /* campaign.json */
     uint64_t images;
-    json_int_t rows, columns; /* of each */
     uint32_t outputs;
     size_t split_count;
     const char *split_names[CAMPAIGN_SPLITS_MAX]; /* of head */

@@ -30,8 +30,9 @@ struct drawing {
     sonject_status status; /* so far */
     const struct campaign *campaign;
     struct image_plan *plan;
-    uint32_t trial;        /* step of a trial */
-    uint32_t attempt;      /* 0: the first */
+    uint32_t trial; /* step of a trial */
+    struct attempts attempts;
+    uint32_t attempt;      /* of what is drawn now; 0: the first */
     uint64_t index, count; /* of the image among those of its category */
     uint64_t cell;         /* of the grid, what is left of it */
     double rows[OBJECTS_OF_IMAGE], columns[OBJECTS_OF_IMAGE]; /* where objects lie */
@@ -40,18 +41,35 @@ struct drawing {
 
 /* Begins an empty plan, for image_plan_clear. trial: its step, or NO_TRIAL. */
 static void drawing_init(struct drawing *drawing, struct report *report,
-                         const struct campaign *campaign, uint32_t trial, uint32_t attempt,
-                         struct image_plan *plan)
+                         const struct campaign *campaign, uint32_t trial,
+                         const struct attempts *attempts, struct image_plan *plan)
 {
     memset(plan, 0, sizeof *plan);
-    plan->chip.rows = campaign->chip_rows;
-    plan->chip.columns = campaign->chip_columns;
     memset(drawing, 0, sizeof *drawing);
     drawing->report = report;
     drawing->campaign = campaign;
     drawing->plan = plan;
     drawing->trial = trial;
-    drawing->attempt = attempt;
+    drawing->attempts = *attempts;
+    drawing->attempt = attempts->of_all;
+}
+
+/* Before the swath is measured only its scene is of use. */
+static void set_swath(struct drawing *drawing, uint32_t number)
+{
+    const struct swath_plan *swath = &drawing->campaign->swaths[number];
+    const bool is_measured = swath->chip_rows > 0;
+    drawing->plan->swath = number;
+    drawing->plan->chip.rows = is_measured ? swath->chip_rows : CAMPAIGN_CHIP_MIN;
+    drawing->plan->chip.columns = is_measured ? swath->chip_columns : CAMPAIGN_CHIP_MIN;
+}
+
+/* What is drawn from here on is of that object. */
+static void begin_object(struct drawing *drawing, uint32_t number)
+{
+    drawing->attempt = drawing->attempts.of_all;
+    if (number < drawing->plan->target_count)
+        drawing->attempt += drawing->attempts.of_targets[number];
 }
 
 /* A seed for each category, so that they do not draw alike. */
@@ -190,15 +208,17 @@ uint32_t image_split(const struct campaign *campaign, uint64_t id)
 
 /* The image's swath and its place there. Images of a split follow its swaths: as many from each,
  * but for one. within: the image's number in its split. */
-static void choose_place(const struct campaign *campaign, struct image_plan *plan, uint64_t within)
+static void choose_place(struct drawing *drawing, uint64_t within)
 {
+    const struct campaign *campaign = drawing->campaign;
+    struct image_plan *plan = drawing->plan;
     const struct split *split = &campaign->splits[plan->split];
     const uint64_t swaths = split->swath_count;
     const uint64_t number = within * swaths / split->images;
     const uint64_t first = (number * split->images + swaths - 1) / swaths;
     const uint64_t end = ((number + 1) * split->images + swaths - 1) / swaths;
     double u, v;
-    plan->swath = split->swaths[number];
+    set_swath(drawing, split->swaths[number]);
     if (campaign->design == DESIGN_STRATIFIED) {
         u = stratified_number(campaign->seed, STREAM_CHIP_ROW + plan->swath, within - first,
                               end - first);
@@ -232,18 +252,19 @@ static void choose_kind(struct drawing *drawing, uint64_t within)
                                    drawing->index, drawing->count);
 }
 
-#define CANDIDATES 16 /* places that are tried for an object beside others */
+#define CANDIDATES 16   /* places that are tried for an object beside others */
+#define PLACES_MAX 1000 /* that may be taken */
 
 /* Draws that an object has of its own, and those of all objects that it has not. number: of the
- * object; 0 is the target, if there is one. */
+ * object; 0 is the target, if there is one. is_beside: clutter, or another target. */
 static void draw_object(struct drawing *drawing, const struct item *item, uint32_t number,
-                        bool is_clutter)
+                        bool is_beside)
 {
     const struct campaign *campaign = drawing->campaign;
     const struct draws *both[] = {&campaign->object_draws, &item->draws};
     const uint64_t place = drawing->plan->id * OBJECTS_OF_IMAGE + number;
     const uint64_t seed =
-        category_seed(campaign, is_clutter ? UINT32_MAX - 1 : drawing->plan->category);
+        category_seed(campaign, is_beside ? UINT32_MAX - 1 : drawing->plan->category);
     const uint64_t own_seed = attempt_seed(drawing, seed);
     char prefix[32];
     snprintf(prefix, sizeof prefix, "objects[%u].", (unsigned)number);
@@ -254,7 +275,7 @@ static void draw_object(struct drawing *drawing, const struct item *item, uint32
             if (k == 0 && draws_have_key(&item->draws, distribution->key))
                 continue;
             const char *value =
-                is_clutter && drawing->trial == NO_TRIAL
+                is_beside && drawing->trial == NO_TRIAL
                     ? distribution_value(
                           distribution, uniform_number(own_seed, distribution->stream, place), text)
                     : draw_value(drawing, distribution, seed, drawing->index, drawing->count, text);
@@ -267,14 +288,36 @@ static void draw_object(struct drawing *drawing, const struct item *item, uint32
         }
 }
 
+/* Whether a place in the chip is not one of a contact that objects keep away from. */
+static bool is_free(const struct drawing *drawing, double row, double column)
+{
+    const struct campaign *campaign = drawing->campaign;
+    const struct swath_plan *swath = &campaign->swaths[drawing->plan->swath];
+    const double clearance = (double)campaign->clearance;
+    row += (double)drawing->plan->chip.first_row;
+    column += (double)drawing->plan->chip.first_column;
+    for (size_t i = 0; images_show_contacts(campaign) && i < swath->avoid_count; i++) {
+        const struct region *box = &swath->avoid[i];
+        const double first_row = (double)box->first_row, first_column = (double)box->first_column;
+        if (row > first_row - clearance && row < first_row + (double)box->rows + clearance &&
+            column > first_column - clearance &&
+            column < first_column + (double)box->columns + clearance)
+            return false;
+    }
+    return true;
+}
+
 /* A place in the middle part of the chip: the first candidate for the first object, for others the
- * one that is farthest from all before. */
-static void place_object(struct drawing *drawing)
+ * one that is farthest from all before. False: all are taken by contacts. */
+static bool try_place(struct drawing *drawing, uint64_t seed)
 {
     const struct campaign *campaign = drawing->campaign;
     const struct region *chip = &drawing->plan->chip;
+    const struct swath_plan *swath = &campaign->swaths[drawing->plan->swath];
     const uint32_t number = drawing->objects;
-    const uint64_t seed = attempt_seed(drawing, campaign->seed);
+    const double offset = (double)chip->first_column;
+    const double first = fmax(0.0, swath->first_object_column - offset);
+    const double last = fmin((double)(chip->columns - 1), swath->last_object_column - offset);
     double farthest = -1.0;
     for (uint32_t i = 0; i < (number > 0 ? CANDIDATES : 1u); i++) {
         const uint64_t index = (drawing->plan->id * OBJECTS_OF_IMAGE + number) * CANDIDATES + i;
@@ -282,17 +325,30 @@ static void place_object(struct drawing *drawing)
         const double v = uniform_number(seed, STREAM_OBJECT_COLUMN, index) - 0.5;
         const double row =
             0.5 * (double)(chip->rows - 1) + campaign->spread * (double)(chip->rows - 1) * u;
-        const double column =
-            0.5 * (double)(chip->columns - 1) + campaign->spread * (double)(chip->columns - 1) * v;
+        const double column = first + 0.5 * (last - first) + campaign->spread * (last - first) * v;
         double nearest = HUGE_VAL;
         for (uint32_t j = 0; j < number; j++)
             nearest = fmin(nearest, hypot(row - drawing->rows[j], column - drawing->columns[j]));
-        if (nearest > farthest) {
+        if (nearest > farthest && is_free(drawing, row, column)) {
             farthest = nearest;
             drawing->rows[number] = row;
             drawing->columns[number] = column;
         }
     }
+    return farthest >= 0.0;
+}
+
+static void place_object(struct drawing *drawing)
+{
+    const uint64_t seed = attempt_seed(drawing, drawing->campaign->seed);
+    uint64_t tries = 0;
+    while (tries < PLACES_MAX && !try_place(drawing, seed ^ (UINT64_C(0xA0761D6478BD642F) * tries)))
+        tries++;
+    if (tries == PLACES_MAX && drawing->status == SONJECT_OK)
+        drawing->status = report_failure(
+            drawing->report, SONJECT_ERROR_INPUT,
+            "%s: the contacts to avoid leave no place for an object; lessen chip.clearance",
+            drawing->campaign->swaths[drawing->plan->swath].written);
     drawing->objects++;
 }
 
@@ -304,6 +360,7 @@ static void write_object(struct drawing *drawing, const struct item *item,
         .kind = TREE_TEXT, .is_quoted = true, .text = (char *)item->class_name};
     const uint32_t number = drawing->objects;
     char row[32], column[32];
+    begin_object(drawing, number);
     place_object(drawing);
     text_of_number(row, sizeof row, (double)chip->first_row + drawing->rows[number], 9);
     text_of_number(column, sizeof column, (double)chip->first_column + drawing->columns[number], 9);
@@ -313,51 +370,65 @@ static void write_object(struct drawing *drawing, const struct item *item,
                      item->object[1] == '}' ? "" : ", ", item->object + 1);
 }
 
+/* A number of objects in an image; 1 where the campaign does not say it. */
+static uint32_t draw_number(const struct drawing *drawing, const struct distribution *number)
+{
+    const uint64_t seed = drawing->campaign->seed;
+    char text[DISTRIBUTION_TEXT_CAPACITY];
+    uint64_t count = 1;
+    if (number->count > 0)
+        text_to_count(distribution_value(
+                          number, uniform_number(seed, number->stream, drawing->plan->id), text),
+                      &count);
+    return (uint32_t)count;
+}
+
 static uint32_t clutter_objects(struct drawing *drawing)
 {
     const struct campaign *campaign = drawing->campaign;
-    const struct distribution *number = &campaign->clutter_number;
     const uint32_t category = drawing->plan->category;
-    char text[DISTRIBUTION_TEXT_CAPACITY];
-    uint64_t count = 1;
     if (category == CATEGORY_EMPTY || campaign->clutter_count == 0)
         return 0;
-    if (number->count > 0)
-        text_to_count(
-            distribution_value(
-                number, uniform_number(campaign->seed, number->stream, drawing->plan->id), text),
-            &count);
-    return (uint32_t)(category == CATEGORY_CLUTTER && count == 0 ? 1 : count);
+    const uint32_t count = draw_number(drawing, &campaign->clutter_number);
+    return category == CATEGORY_CLUTTER && count == 0 ? 1 : count;
 }
 
-static const struct item *choose_clutter(const struct drawing *drawing, uint32_t number)
+/* One of the items by weight. number: of the object. */
+static const struct item *choose_item(const struct drawing *drawing, const struct item *items,
+                                      size_t count, uint32_t number)
 {
-    const struct campaign *campaign = drawing->campaign;
+    const struct item *item = items;
     double left = 0.0;
-    for (size_t i = 0; i < campaign->clutter_count; i++)
-        left += campaign->clutter[i].weight;
-    left *=
-        uniform_number(campaign->seed, STREAM_ITEM, drawing->plan->id * OBJECTS_OF_IMAGE + number);
-    const struct item *item = campaign->clutter;
-    while (item + 1 < campaign->clutter + campaign->clutter_count && left >= item->weight)
+    for (size_t i = 0; i < count; i++)
+        left += items[i].weight;
+    left *= uniform_number(drawing->campaign->seed, STREAM_ITEM,
+                           drawing->plan->id * OBJECTS_OF_IMAGE + number);
+    while (item + 1 < items + count && left >= item->weight)
         left -= (item++)->weight;
     return item;
 }
 
-/* All of the image; the target comes first, if there is one. */
+/* All of the image; targets come first, the one of its category before others. */
 static uint32_t choose_objects(struct drawing *drawing, const struct item *trial_clutter,
                                const struct item **items)
 {
+    const struct campaign *campaign = drawing->campaign;
     const uint32_t category = drawing->plan->category;
+    const bool has_target = category >= CATEGORY_TARGET;
     uint32_t count = 0;
-    if (category >= CATEGORY_TARGET)
-        items[count++] = &drawing->campaign->targets[category - CATEGORY_TARGET];
+    if (has_target)
+        items[count++] = &campaign->targets[category - CATEGORY_TARGET];
+    if (has_target && drawing->trial == NO_TRIAL)
+        for (const uint32_t end = draw_number(drawing, &campaign->target_number); count < end;
+             count++)
+            items[count] = choose_item(drawing, campaign->targets, campaign->target_count, count);
+    drawing->plan->target_count = count;
     if (trial_clutter) {
         items[count++] = trial_clutter;
     } else if (drawing->trial == NO_TRIAL) {
         const uint32_t end = count + clutter_objects(drawing);
         for (; count < end; count++)
-            items[count] = choose_clutter(drawing, count);
+            items[count] = choose_item(drawing, campaign->clutter, campaign->clutter_count, count);
     }
     return count;
 }
@@ -369,15 +440,17 @@ static void draw_objects(struct drawing *drawing, const struct item *trial_clutt
     const struct item *items[OBJECTS_OF_IMAGE];
     struct growing_text text = {NULL, 0, 0, false};
     const uint32_t count = choose_objects(drawing, trial_clutter, items);
-    const uint32_t first_clutter = drawing->plan->category >= CATEGORY_TARGET ? 1 : 0;
+    const uint32_t first_beside = drawing->plan->target_count > 0 ? 1 : 0;
     drawing->plan->object_count = count;
     growing_text_add(&text, "objects=[");
     for (uint32_t i = 0; i < count; i++)
         write_object(drawing, items[i], &text);
     growing_text_add(&text, "]");
     add_key(drawing, nowhere, growing_text_end(&text));
-    for (uint32_t i = 0; i < count; i++)
-        draw_object(drawing, items[i], i, i >= first_clutter);
+    for (uint32_t i = 0; i < count; i++) {
+        begin_object(drawing, i);
+        draw_object(drawing, items[i], i, i >= first_beside);
+    }
 }
 
 /* The swath's own keys, the chip and the seed, what is drawn of the scene, and the objects. */
@@ -410,15 +483,15 @@ static sonject_status fill_plan(struct drawing *drawing, const struct item *tria
 }
 
 sonject_status image_plan_make(struct report *report, const struct campaign *campaign, uint64_t id,
-                               uint32_t attempt, struct image_plan *plan)
+                               const struct attempts *attempts, struct image_plan *plan)
 {
     struct drawing drawing;
-    drawing_init(&drawing, report, campaign, NO_TRIAL, attempt, plan);
+    drawing_init(&drawing, report, campaign, NO_TRIAL, attempts, plan);
     plan->id = id;
     plan->seed = (uint64_t)(uniform_number(campaign->seed, STREAM_SEED, id) * 0x1p52);
     plan->split = image_split(campaign, id);
     const uint64_t within = id - campaign->splits[plan->split].first_image;
-    choose_place(campaign, plan, within);
+    choose_place(&drawing, within);
     choose_kind(&drawing, within);
     return fill_plan(&drawing, NULL);
 }
@@ -427,9 +500,10 @@ sonject_status image_plan_try(struct report *report, const struct campaign *camp
                               uint32_t swath, uint32_t category, uint32_t item, uint32_t step,
                               uint32_t attempt, struct image_plan *plan)
 {
+    const struct attempts attempts = {.of_all = attempt};
     struct drawing drawing;
-    drawing_init(&drawing, report, campaign, step, attempt, plan);
-    plan->swath = swath;
+    drawing_init(&drawing, report, campaign, step, &attempts, plan);
+    set_swath(&drawing, swath);
     plan->category = category;
     if (campaign->swaths[swath].room.places > 0)
         crop_sample(&campaign->swaths[swath].room, 0.0, 0.0, &plan->chip.first_row,

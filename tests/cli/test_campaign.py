@@ -5,6 +5,7 @@ import hashlib
 import json
 import pathlib
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -581,6 +582,80 @@ def test_targets_are_seen_as_they_are_to_be(ground, command, otherwise):
     else:
         assert not faint and 1 <= len(anew) < 12 and all("seen too little" in each for each in anew)
         assert f"Of {len(anew)} images" in page and "marked difficult" not in page
+
+
+@pytest.mark.parametrize("settings, rows, columns", [
+    (["chip.rows=all", "chip.columns=all"], ROWS, COLUMNS), (["chip.columns=all", "chip.edge=3"], CHIP, COLUMNS - 6)])
+def test_images_may_be_whole_swaths_with_several_targets(ground, command, settings, rows, columns):
+    """Which keep away from contacts and the water column, here of 40 columns."""
+    name = f"all{rows}"
+    done = command("campaign", "campaign.yaml", "-o", name, *[part for text in [
+        *settings, "targets_per_image={choice: [3, 5]}", "chip.spread=1", "empty=0.1",
+        "swaths[0].set={input.geometry.first_slant_range: 9 m}", "swaths[1].set={input.geometry.first_slant_range: 9 m}",
+        "swaths[2].set={input.geometry.first_slant_range: 9 m}"] for part in ("--set", text)])
+    assert done.returncode == 0, done.stderr
+    counts = []
+    for record in records(ground / name):
+        place = record["swath"]
+        assert (place["rows"], place["columns"]) == (rows, columns)
+        image = read_png(ground / name / of_image(record, "images", ".png"))
+        assert image.shape == (rows, columns)
+        objects = json.loads((ground / name / of_image(record, "truth", ".json")).read_text())["objects"]
+        counts.append(record["targets"])
+        assert [each["class"] in TARGETS for each in objects] == [
+            *[True] * record["targets"], *[False] * (len(objects) - record["targets"])]
+        (drawn,) = [entry for entry in record["set"] if entry.startswith("objects=")]
+        places = re.findall(r'"row": ([^,]+), "column": ([^}]+)}', drawn)
+        assert len(places) == len(objects)
+        for row, column in [map(float, each) for each in places]:
+            assert 40 <= column <= COLUMNS - 1 and place["row"] <= row <= place["row"] + rows - 1
+            assert place["path"] != "swath0.png" or row >= 22 or column <= 78
+    assert set(counts) == {0, 3, 5}
+    coco = json.loads((ground / name / "train" / "coco.json").read_text())
+    assert {(each["height"], each["width"]) for each in coco["images"]} == {(rows, columns)}
+    assert json.loads((ground / name / "campaign.json").read_text())["columns"] == "all"
+
+
+def test_of_several_targets_the_faint_ones_alone_are_drawn_anew(ground, command):
+    """Where they are not, they alone are difficult."""
+    visible = "visible={highlight: 6 dB, shadow: -1 dB, otherwise: %s}"
+    levels, are_seen = {}, {}
+    for otherwise in ("difficult", "redraw"):
+        done = command("campaign", "campaign.yaml", "-o", f"two_{otherwise}", "--set", visible % otherwise, *FAINT,
+                       "--set", "targets_per_image=2", "--set", "chip.spread=0.6")
+        assert done.returncode == 0, done.stderr
+        for record in records(ground / f"two_{otherwise}"):
+            truths = json.loads((ground / f"two_{otherwise}" / of_image(record, "truth", ".json")).read_text())["objects"]
+            assert len(truths) == record["targets"] == 2
+            key = otherwise, record["id"]
+            are_seen[key] = [(each["highlight_visibility_db"] or -99) >= 6 and (each["shadow_visibility_db"] or 99) <= -1
+                             for each in truths]
+            levels[key] = [entry.split("=")[1] for entry in record["set"] if "over_seabed" in entry]
+            for each in record["annotations"]:
+                assert each.get("difficult", False) != are_seen[key][each["object_id"] - 1]
+    first, last = ([[each[otherwise, i] for i in range(12)] for each in (levels, are_seen)]
+                   for otherwise in ("difficult", "redraw"))
+    assert all(map(all, last[1])) and not all(map(all, first[1]))
+    kept = [[old == new for old, new in zip(*pair)] for pair in zip(first[0], last[0])]
+    assert all(is_kept <= was_seen for each in zip(kept, first[1]) for is_kept, was_seen in zip(*each))
+    # but where a new place hides the other
+    assert sum(map(sum, kept)) >= 0.8 * sum(map(sum, first[1]))
+
+
+def test_objects_may_lie_at_the_border(ground, command):
+    """Boxes are cut there, and say so."""
+    done = command("campaign", "campaign.yaml", "-o", "border", "--set", "chip.spread=1", "--set", "images=24")
+    assert done.returncode == 0, done.stderr
+    cut = 0
+    for record in records(ground / "border"):
+        for each in record["annotations"]:
+            column, row, columns, rows = each["bbox"]
+            assert 0 <= column and 0 <= row and column + columns <= CHIP and row + rows <= CHIP
+            is_at_edge = column == 0 or row == 0 or column + columns == CHIP or row + rows == CHIP
+            assert each["truncated"] <= is_at_edge
+            cut += each["truncated"]
+    # of a chip's area more than a half is less than an object and its shadow from an edge
+    assert cut >= 6
 
 
 def test_a_value_may_be_a_ratio_of_another(ground, command):

@@ -160,7 +160,7 @@ static void test_campaign_files_tell_all(void **state)
     char expected[10 * SCENE_FOLDER_CAPACITY];
     static const char *const lines[] = {
         ":3:9: images: must be 1...10000000, not 0",
-        ":4:14: chip.rows: must be 16...8192, not 4",
+        ":4:14: chip.rows: must be all, or a whole number of 16...8192",
         ":5:10: labels[0]: 'yoolo' is not one of yolo, voc; did you mean 'yolo'?",
         ":7:5: swaths[0].path: missing; add it (image file)",
         ":9:5: targets[0].object: missing; add it (keys of an object that are not drawn)",
