@@ -65,9 +65,9 @@ SONJECT_API sonject_status sonject_scene_set(sonject_scene *scene, const char *k
 /* Sets a key whose value is the name of a table's file to numbers in memory, copied: values has
  * row_count rows of column_count numbers, which columns names as the file's first line would, such
  * as "along_track_m, sway_m". Keys: sonar.pulse.file, sonar.measured_response, sonar.motion.file,
- * sonar.motion.yaw.file, medium.profile.file; and seabed.relief[N].heights.file, whose numbers are
- * those of an image's pixels, columns NULL. Keys beside it, such as sonar.pulse.kind, are set by
- * themselves. On failure the scene is unchanged. Errors: ARGUMENT, INPUT, MEMORY. */
+ * sonar.motion.yaw.file, medium.profile.file, input.pings; and seabed.relief[N].heights.file, whose
+ * numbers are those of an image's pixels, columns NULL. Keys beside it, such as sonar.pulse.kind,
+ * are set by themselves. On failure the scene is unchanged. Errors: ARGUMENT, INPUT, MEMORY. */
 SONJECT_API sonject_status sonject_scene_set_table(sonject_scene *scene, const char *key,
                                                    const char *columns, const double *values,
                                                    size_t row_count, size_t column_count);

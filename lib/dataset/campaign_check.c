@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "dataset/campaign.h"
 #include "inject/scene_hash.h"
+#include "swath/geometry_notes.h"
 
 #define TRIALS_MAX 20000 /* scenes, about as many milliseconds at the most */
 
@@ -36,12 +37,13 @@ static void trial_clear(struct trial *trial)
     image_plan_clear(&trial->plan);
 }
 
-/* Over all of the swath, whose pings say it, or as the scene does. */
-static double highest_altitude(const struct scene *scene, const struct recording *recording)
+/* Over all rows of the swath. */
+static double highest_altitude(const struct scene *scene, const struct recording *recording,
+                               uint64_t rows)
 {
     double highest = scene->sonar.altitude_m;
-    for (uint64_t i = 0; recording && scene->has_recorded_altitude && i < recording->rows; i++)
-        highest = fmax(highest, (double)recording->pings[i].altitude_m);
+    for (uint64_t i = 0; scene->has_recorded_altitude && i < rows; i++)
+        highest = fmax(highest, recorded_altitude(scene, recording, i));
     return highest;
 }
 
@@ -63,9 +65,9 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
                                        trial.scene.array, &file));
     if (status == SONJECT_OK) {
         swath_file_layout(file, &swath->layout);
-        status =
-            campaign_measure(campaign->report, &campaign->campaign, number, &trial.scene.geometry,
-                             highest_altitude(&trial.scene, swath_file_recording(file)));
+        status = campaign_measure(
+            campaign->report, &campaign->campaign, number, &trial.scene.geometry,
+            highest_altitude(&trial.scene, swath_file_recording(file), swath->layout.rows));
     }
     swath_file_close(&file);
     trial_clear(&trial);

@@ -195,6 +195,11 @@ static void add_tables(struct digest *digest, const struct scene *scene)
         add_table(hash, tables[i]->along_track_m, tables[i]->values, sizeof *tables[i]->values,
                   tables[i]->count);
     end_section(digest, "sonar.motion.file");
+    add_table(hash, scene->pings.rows, scene->pings.altitudes_m, sizeof(double),
+              scene->pings.count);
+    if (scene->pings.first_ranges_m)
+        hash_add(hash, scene->pings.first_ranges_m, scene->pings.count * sizeof(double));
+    end_section(digest, "input.pings");
     for (size_t i = 0; i < scene->water_layer_count; i++)
         add_rows(hash, &layer_section, &scene->water_layers[i], scene);
     end_section(digest, "medium.layers");

@@ -32,6 +32,29 @@ double scene_reference_speed(const struct scene *scene)
                                         : scene->medium.sound_speed_mps;
 }
 
+/* Near the vertical, layers and heights would need rays that start at the nadir. */
+static sonject_status check_water_column(const struct patch_view *view, struct report *report,
+                                         const struct scene *scene, double first_column)
+{
+    const double last_range = view_processor_range(view, (double)view->columns - 1.0);
+    const bool is_level = scene->relief.count == 0;
+    if (!(view_ground_range(view, last_range) > 0.0))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "all of the patch, up to %.3f m slant range, lies in the water "
+                              "column, before the bottom's first return at %.3f m: move the patch "
+                              "outwards or correct first_slant_range or altitude",
+                              last_range, view_bottom_range(view));
+    if (view_ground_range(view, view->first_range_m) > 0.0 || (view->water.is_straight && is_level))
+        return SONJECT_OK;
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "the patch begins at %.3f m slant range, in the water column, which no "
+                          "patch may %s: begin with column %.0f, behind the bottom's first return "
+                          "at %.3f m",
+                          view->first_range_m,
+                          is_level ? "where layers bend the sound" : "over a seabed with relief",
+                          first_column + (double)view_water_columns(view), view_bottom_range(view));
+}
+
 sonject_status patch_view_init(struct patch_view *view, struct report *report,
                                const struct scene *scene, const struct water *water,
                                double first_row, double first_column, size_t rows, size_t columns)
@@ -53,17 +76,7 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
     view->first_x_m =
         view->is_mirrored ? -(along + (double)(rows - 1) * geometry->row_spacing_m) : along;
     view->first_range_m = geometry->first_slant_range_m + first_column * geometry->column_spacing_m;
-    const double last_range = view_processor_range(view, (double)columns - 1.0);
-    /* near the vertical, layers and heights would need rays that start at the nadir */
-    const bool may_begin_in_water = view->water.is_straight && scene->relief.count == 0;
-    if (!(view_ground_range(view, view->first_range_m) > 0.0) &&
-        !(may_begin_in_water && view_ground_range(view, last_range) > 0.0))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the patch starts at %.3f m slant range, which is not beyond the "
-                              "altitude of %.3f m: move the patch outwards or correct "
-                              "first_slant_range or altitude",
-                              view->first_range_m, view->altitude_m);
-    return SONJECT_OK;
+    return check_water_column(view, report, scene, first_column);
 }
 
 void view_find_pixel(const struct patch_view *view, double first_row, double first_column,

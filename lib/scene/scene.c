@@ -21,6 +21,7 @@ static void give_up_mesh(struct scene *scene, struct mesh *mesh)
 void scene_clear(struct scene *scene)
 {
     free(scene->input_path);
+    ping_table_clear(&scene->pings);
     free(scene->array);
     free(scene->band);
     free(scene->bands);

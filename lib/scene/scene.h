@@ -11,6 +11,7 @@
 #include "medium/water.h"
 #include "mesh/mesh.h"
 #include "scene/aperture_motion.h"
+#include "scene/geometry.h"
 #include "scene/params.h"
 #include "scene/relief_features.h"
 #include "scene/response_table.h"
@@ -78,7 +79,8 @@ struct scene {
     sonject_patch_params patch;
     sonject_input_kind input_kind;
     char *input_path;           /* owned; NULL unless input_kind is SONJECT_INPUT_FILE */
-    bool has_recorded_altitude; /* the input file says it, ping by ping */
+    struct ping_table pings;    /* of the input's rows, from a table */
+    bool has_recorded_altitude; /* that, or else the input file, says it row by row */
     bool input_is_complex;      /* two channels of the file are real and imaginary part */
     int32_t channel;            /* of a recording: SONJECT_CHANNEL_PORT and the like, or a number */
     char *array;                /* owned; of several in a file, its name; NULL: the only one */

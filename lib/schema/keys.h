@@ -193,6 +193,7 @@ struct reader {
     bool allows_user_shapes; /* code in files is wanted */
     bool takes_geometry;     /* of the input file, once all is read */
     bool takes_altitude;
+    bool takes_first_range;
     const char *moved_folder; /* as in struct scene_source */
     size_t moved_overrides;
     const struct number_array *arrays; /* in place of files */

@@ -1,15 +1,20 @@
 /* The keys of the whole file, of its image, and of the injection. */
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "scene/element_plan.h"
 #include "schema/keys.h"
 #include "schema/scene_file.h"
+#include "schema/tables.h"
 #include "swath/geometry_notes.h"
 #include "swath/recording.h"
 
 #define SIDE_MAX        (UINT32_C(1) << 20)
 #define SWATH_INDEX_MAX (UINT64_C(1) << 40)
+#define LENGTH_MAX_M    1e6
+#define PINGS_BYTES_MAX ((size_t)64 << 20)
 
 /* ---- The image. */
 
@@ -100,6 +105,17 @@ static sonject_status read_row_spacing(struct reader *reader, const struct tree_
     return SONJECT_OK;
 }
 
+static sonject_status read_first_range(struct reader *reader, const struct tree_node *node,
+                                       void *structure)
+{
+    sonject_geometry_params *geometry = structure;
+    reader->takes_first_range = is_word(node, "from_file");
+    if (!reader->takes_first_range)
+        return read_quantity(reader, node, QUANTITY_LENGTH, &geometry->first_slant_range_m);
+    geometry->first_slant_range_m = 0.0; /* until the table is read */
+    return SONJECT_OK;
+}
+
 /* No first slant range is right for most images, so there is none until it is given. */
 #define STRUCTURE sonject_geometry_params
 static const struct field geometry_fields[] = {
@@ -108,8 +124,10 @@ static const struct field geometry_fields[] = {
      .section = &ping_spacing_section, .unit = "m, km, cm, mm, or {speed, ping_rate}", REQUIRED},
     {"column_spacing", "distance between range cells, in slant range",
      QUANTITY(column_spacing_m, LENGTH), POSITIVE, .preset = 0.025, REQUIRED},
-    {"first_slant_range", "slant range of column 0 of the whole swath",
-     QUANTITY(first_slant_range_m, LENGTH), FROM_ZERO, .preset = NAN, REQUIRED},
+    {"first_slant_range",
+     "slant range of column 0 of the whole swath, or from_file, which is input.pings",
+     QUANTITY(first_slant_range_m, LENGTH), FROM_ZERO, .preset = NAN, .read = read_first_range,
+     .unit = "m, km, cm, mm, or from_file", REQUIRED},
     {"first_along_track", "track position of row 0", QUANTITY(first_along_track_m, LENGTH),
      COORDINATE},
     {"side", "of the track that the image shows",
@@ -198,11 +216,67 @@ static sonject_status read_channel(struct reader *reader, const struct tree_node
     return SONJECT_OK;
 }
 
+enum {
+    PING_ROW,
+    PING_ALTITUDE = 2,
+    PING_FIRST_RANGE
+};
+
+static sonject_status keep_pings(const struct number_table *table, struct report *report,
+                                 struct ping_table *pings)
+{
+    const size_t bytes = table->count * sizeof(double);
+    ping_table_clear(pings);
+    pings->rows = allocate_array(table->count, 3 * sizeof *pings->rows);
+    CHECK_MEMORY(report, pings->rows, "a table of pings");
+    pings->altitudes_m = pings->rows + table->count;
+    pings->count = table->count;
+    memcpy(pings->rows, table->values[PING_ROW], bytes);
+    memcpy(pings->altitudes_m, table->values[PING_ALTITUDE], bytes);
+    if (!table->values[PING_FIRST_RANGE])
+        return SONJECT_OK;
+    pings->first_ranges_m = pings->altitudes_m + table->count;
+    memcpy(pings->first_ranges_m, table->values[PING_FIRST_RANGE], bytes);
+    return SONJECT_OK;
+}
+
+static sonject_status read_pings(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    static const struct table_format format = {
+        .names = {"row", NULL, "altitude_m", "first_slant_range_m"},
+        .samples_max = PING_ROWS_MAX,
+        .bytes_max = PINGS_BYTES_MAX,
+        .samples_min = 2,
+        .most = {(double)SWATH_INDEX_MAX, 0.0, LENGTH_MAX_M, LENGTH_MAX_M},
+        .rises = true};
+    struct scene *scene = structure;
+    struct number_table table;
+    char *path = NULL;
+    CHECK(read_existing_path(reader, node, &path));
+    sonject_status status =
+        number_table_read(reader->report, path, find_array(reader, path), &format, &table);
+    free(path);
+    if (status != SONJECT_OK)
+        return status;
+    const double *ranges = table.values[PING_FIRST_RANGE];
+    for (size_t i = 0; status == SONJECT_OK && i < table.count; i++)
+        if (!(table.values[PING_ALTITUDE][i] > 0.0))
+            status = number_table_refuse(&table, reader->report, i, PING_ALTITUDE,
+                                         "must be above 0; leave rows out that have none");
+        else if (ranges && !(ranges[i] >= 0.0))
+            status = number_table_refuse(&table, reader->report, i, PING_FIRST_RANGE,
+                                         "must not be below 0");
+    THEN(status, keep_pings(&table, reader->report, &scene->pings));
+    number_table_clear(&table);
+    return status;
+}
+
 static sonject_status finish_input(struct reader *reader, const struct tree_node *node,
                                    void *structure)
 {
     const struct scene *scene = structure;
-    const char *file_keys = "channel array complex transfer";
+    const char *file_keys = "channel array complex transfer pings";
     char key[64];
     while (scene->input_kind != SONJECT_INPUT_FILE && next_key(&file_keys, key))
         if (is_given(node, key) && count_given(node, "path uniform synthetic") == 1)
@@ -228,6 +302,10 @@ static const struct field input_fields[] = {
      "where the pixels lie: row_spacing, column_spacing and first_slant_range, or from_file",
      PART(geometry, geometry_section), .read = read_geometry, REQUIRED},
     {"transfer", "what the file's numbers mean", PART(transfer, transfer_section)},
+    {"pings",
+     "of images whose file does not say it row by row: a table with columns row, altitude_m, and "
+     "first_slant_range_m, linear between its rows",
+     SPECIAL(read_pings, "file name")},
 };
 const struct section input_section = {ROWS(input_fields), .choice = "path uniform synthetic",
                                       .finish = finish_input};
@@ -336,9 +414,10 @@ static void take_recording(struct reader *reader)
 {
     struct report report = {{0}, NULL, NULL};
     const char *key;
-    if ((reader->takes_geometry || reader->takes_altitude) && are_sound(reader, "input patch") &&
-        recording_describe(&report, reader->takes_geometry, reader->takes_altitude, reader->scene,
-                           &key) != SONJECT_OK)
+    const struct recording_wish wish = {reader->takes_geometry, reader->takes_altitude,
+                                        reader->takes_first_range};
+    if ((wish.geometry || wish.altitude || wish.first_range) && are_sound(reader, "input patch") &&
+        recording_describe(&report, &wish, reader->scene, &key) != SONJECT_OK)
         refuse_key(reader, &reader->tree->root, key, "%s", report.message);
 }
 

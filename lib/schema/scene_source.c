@@ -177,9 +177,9 @@ sonject_status scene_source_set(struct scene_source *source, struct report *repo
 /* A key whose value names a table, or a grid of heights, that may be given as an array. */
 static bool takes_array(const char *key, bool *is_grid)
 {
-    static const char *const of_tables[] = {"sonar.pulse.file", "sonar.measured_response",
-                                            "sonar.motion.file", "sonar.motion.yaw.file",
-                                            "medium.profile.file"};
+    static const char *const of_tables[] = {"sonar.pulse.file",    "sonar.measured_response",
+                                            "sonar.motion.file",   "sonar.motion.yaw.file",
+                                            "medium.profile.file", "input.pings"};
     static const char of_heights[] = "].heights.file";
     const char *index_end = strchr(key, ']');
     *is_grid =
@@ -215,8 +215,8 @@ sonject_status scene_source_set_array(struct scene_source *source, struct report
     if (!takes_array(key, &is_grid))
         return input_failure(report, key,
                              "takes no array; sonar.pulse.file, sonar.measured_response, "
-                             "sonar.motion.file, sonar.motion.yaw.file, medium.profile.file and "
-                             "seabed.relief[0].heights.file do");
+                             "sonar.motion.file, sonar.motion.yaw.file, medium.profile.file, "
+                             "input.pings and seabed.relief[0].heights.file do");
     if (is_grid != (array->columns == NULL))
         return input_failure(report, key, "%s",
                              is_grid ? "heights have no names of columns" : "name the columns");

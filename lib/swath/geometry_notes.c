@@ -141,18 +141,16 @@ bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_pa
     return true;
 }
 
-/* The rows of the scene's patch within the file; all zeros mean all rows. */
-static sonject_status patch_rows(struct report *report, const struct scene *scene,
-                                 const struct recording *recording, uint64_t *first,
-                                 uint64_t *count)
+/* The rows of the scene's patch within the file's; all zeros mean all rows. */
+static sonject_status patch_rows(struct report *report, const struct scene *scene, uint64_t rows,
+                                 uint64_t *first, uint64_t *count)
 {
-    const uint64_t rows = recording->rows;
     *first = scene->patch.first_row;
     *count = scene->patch.rows > 0 ? scene->patch.rows : rows;
     if (*first >= rows || *count > rows - *first) {
         if (scene->patch.rows > 0 || *first >= rows)
             return input_failure(report, scene->input_path,
-                                 "has %llu pings: the patch's rows %llu to %llu are not among them",
+                                 "has %llu rows: the patch's rows %llu to %llu are not among them",
                                  (unsigned long long)rows, (unsigned long long)*first,
                                  (unsigned long long)(*first + *count - 1));
         *count = rows - *first;
@@ -162,21 +160,84 @@ static sonject_status patch_rows(struct report *report, const struct scene *scen
 
 /* What is asked for, and where it goes. */
 struct wanted {
-    bool geometry, altitude;
+    struct recording_wish wish;
     const char **key; /* gets the scene's key that a failure is about */
     sonject_geometry_params where;
     double altitude_m;
 };
+
+/* Whether a table of pings tells all of the patch's rows. */
+static sonject_status check_ping_rows(struct report *report, const struct ping_table *pings,
+                                      uint64_t rows, uint64_t first, uint64_t count)
+{
+    const double start = pings->rows[0];
+    const double end = pings->rows[pings->count - 1];
+    if (start < 0.0 || end > (double)(rows - 1))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "has rows from %g to %g, the image those from 0 to %llu: correct the "
+                              "table's rows",
+                              start, end, (unsigned long long)(rows - 1));
+    if (start > (double)first || end < (double)(first + count - 1))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "has rows from %g to %g, too few for the patch's, %llu to %llu: add "
+                              "some, or choose another patch",
+                              start, end, (unsigned long long)first,
+                              (unsigned long long)(first + count - 1));
+    return SONJECT_OK;
+}
+
+/* Means over the patch's rows. */
+static sonject_status take_pings(struct report *report, const struct scene *scene, uint64_t rows,
+                                 struct wanted *wanted)
+{
+    const struct ping_table *pings = &scene->pings;
+    const double *ranges = pings->first_ranges_m;
+    uint64_t first, count;
+    double nearest = INFINITY;
+    double farthest = 0.0;
+    *wanted->key = "patch";
+    CHECK(patch_rows(report, scene, rows, &first, &count));
+    *wanted->key = "input.pings";
+    CHECK(check_ping_rows(report, pings, rows, first, count));
+    wanted->altitude_m = 0.0;
+    double mean = 0.0;
+    for (uint64_t row = first; row < first + count; row++) {
+        const double range = ranges ? ping_table_at(pings, ranges, (double)row) : 0.0;
+        wanted->altitude_m += ping_table_at(pings, pings->altitudes_m, (double)row) / (double)count;
+        mean += range / (double)count;
+        nearest = fmin(nearest, range);
+        farthest = fmax(farthest, range);
+    }
+    if (!wanted->wish.first_range)
+        return SONJECT_OK;
+    if (!ranges)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "has no column first_slant_range_m, which "
+                              "input.geometry.first_slant_range: from_file needs");
+    if (farthest - nearest > 2.0 * wanted->where.column_spacing_m)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "first_slant_range_m is from %.3f to %.3f m over the patch's rows, "
+                              "more than a column of %g m from its mean: choose fewer rows",
+                              nearest, farthest, wanted->where.column_spacing_m);
+    wanted->where.first_slant_range_m = mean;
+    return SONJECT_OK;
+}
+
+/* From the file itself. */
+static bool takes_altitude(const struct scene *scene, const struct wanted *wanted)
+{
+    return wanted->wish.altitude && scene->pings.count == 0;
+}
 
 static sonject_status take_recording(struct report *report, const struct scene *scene,
                                      const struct recording *recording, struct wanted *wanted)
 {
     uint64_t first, count;
     *wanted->key = "patch";
-    CHECK(patch_rows(report, scene, recording, &first, &count));
+    CHECK(patch_rows(report, scene, recording->rows, &first, &count));
     const struct recording_geometry geometry = recording_geometry_of(recording, first, count);
     *wanted->key = "input.geometry";
-    if (wanted->geometry && !(geometry.row_spacing_m > 0.0))
+    if (wanted->wish.geometry && !(geometry.row_spacing_m > 0.0))
         return input_failure(report, scene->input_path,
                              "%s: give row_spacing, column_spacing (%g m here) and "
                              "first_slant_range (%g m) instead of from_file",
@@ -185,7 +246,7 @@ static sonject_status take_recording(struct report *report, const struct scene *
                                  : "the patch's pings all have the same position",
                              geometry.column_spacing_m, geometry.first_slant_range_m);
     *wanted->key = "sonar.altitude";
-    if (wanted->altitude && !(geometry.altitude_m > 0.0))
+    if (takes_altitude(scene, wanted) && !(geometry.altitude_m > 0.0))
         return input_failure(report, scene->input_path,
                              "has no altitudes: give the sonar's altitude instead of from_file");
     wanted->where.row_spacing_m = geometry.row_spacing_m;
@@ -207,14 +268,14 @@ static sonject_status take_notes(struct report *report, const struct scene *scen
         return input_failure(report, scene->input_path,
                              "is in ground range, and runs work in slant range: convert it first "
                              "with sonject convert --range-axis slant");
-    if (wanted->geometry && !geometry_notes_tell(&noted, &wanted->where))
+    if (wanted->wish.geometry && !geometry_notes_tell(&noted, &wanted->where))
         return input_failure(
             report, scene->input_path,
             "does not say where its pixels lie, as XTF and JSF files do and what sonject convert "
             "makes of "
             "them: give row_spacing, column_spacing and first_slant_range instead of from_file");
     *wanted->key = "sonar.altitude";
-    if (wanted->altitude && !(noted.altitude_m > 0.0))
+    if (takes_altitude(scene, wanted) && !(noted.altitude_m > 0.0))
         return input_failure(report, scene->input_path,
                              "does not say the sonar's altitude: give it instead of from_file");
     wanted->altitude_m = noted.altitude_m;
@@ -227,40 +288,61 @@ static sonject_status check_and_set(struct report *report, const struct wanted *
 {
     struct report why = {{0}, NULL, NULL};
     struct check check = {&why, NULL, SONJECT_OK};
+    const bool takes_geometry = wanted->wish.geometry || wanted->wish.first_range;
     *wanted->key = "input.geometry";
-    if (wanted->geometry)
+    if (takes_geometry)
         check.status = check_told(&wanted->where, &why);
     if (check.status == SONJECT_OK)
         *wanted->key = "sonar.altitude";
-    if (wanted->altitude)
+    if (wanted->wish.altitude)
         check_positive_length(&check, "altitude", wanted->altitude_m);
     if (check.status != SONJECT_OK)
         return input_failure(report, scene->input_path,
                              "its %s: give a right one instead of from_file", why.message);
-    if (wanted->geometry)
+    if (takes_geometry)
         scene->geometry = wanted->where;
-    if (wanted->altitude)
+    if (wanted->wish.altitude)
         scene->sonar.altitude_m = wanted->altitude_m;
-    scene->has_recorded_altitude = wanted->altitude;
+    scene->has_recorded_altitude = wanted->wish.altitude;
     return SONJECT_OK;
 }
 
-sonject_status recording_describe(struct report *report, bool takes_geometry, bool takes_altitude,
+sonject_status recording_describe(struct report *report, const struct recording_wish *wish,
                                   struct scene *scene, const char **key)
 {
     struct swath_file *file;
-    struct wanted wanted = {takes_geometry, takes_altitude, key, scene->geometry, 0.0};
+    struct wanted wanted = {*wish, key, scene->geometry, 0.0};
     *key = "input";
     if (!scene->input_path)
         return report_failure(report, SONJECT_ERROR_INPUT, "from_file needs a file as input.path");
+    *key = "input.geometry.first_slant_range";
+    if (wish->first_range && scene->pings.count == 0)
+        return report_failure(report, SONJECT_ERROR_INPUT, "from_file needs input.pings");
+    *key = "input";
     sonject_status status =
         swath_file_open_array(report, scene->input_path, scene->channel, scene->array, &file);
     if (status != SONJECT_OK)
         return status;
     const struct recording *recording = swath_file_recording(file);
-    status = recording ? take_recording(report, scene, recording, &wanted)
-                       : take_notes(report, scene, file, &wanted);
+    struct raster_layout layout;
+    swath_file_layout(file, &layout);
+    if (wish->geometry || takes_altitude(scene, &wanted))
+        status = recording ? take_recording(report, scene, recording, &wanted)
+                           : take_notes(report, scene, file, &wanted);
+    if (status == SONJECT_OK && scene->pings.count > 0)
+        status = take_pings(report, scene, layout.rows, &wanted);
     THEN(status, check_and_set(report, &wanted, scene));
     swath_file_close(&file);
     return status;
+}
+
+double recorded_altitude(const struct scene *scene, const struct recording *recording, uint64_t row)
+{
+    const struct ping_table *pings = &scene->pings;
+    if (!scene->has_recorded_altitude)
+        return scene->sonar.altitude_m;
+    if (pings->count == 0)
+        return recording ? (double)recording->pings[row].altitude_m : scene->sonar.altitude_m;
+    const double last = pings->rows[pings->count - 1];
+    return ping_table_at(pings, pings->altitudes_m, fmin(fmax((double)row, pings->rows[0]), last));
 }

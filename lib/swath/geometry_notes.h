@@ -43,12 +43,25 @@ void geometry_notes_read(const struct swath_file *file, struct noted_geometry *g
  * or are none that an image has. */
 bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_params *geometry);
 
-/* Takes the scene's geometry (takes_geometry) and the sonar's altitude (takes_altitude) from its
- * input: a recording, of which spacing and altitude are the means over the patch's rows, or an
- * image whose notes say them. Errors: INPUT (it does not say them: says
- * what to give instead; ground range; as swath_file_open_array), UNSUPPORTED, STORAGE, MEMORY. On
- * failure the scene is unchanged, and *key is the key of the scene that the message is about. */
-sonject_status recording_describe(struct report *report, bool takes_geometry, bool takes_altitude,
+/* What a scene leaves to its input. */
+struct recording_wish {
+    bool geometry, altitude;
+    bool first_range; /* of a geometry that is given else */
+};
+
+/* Takes that from it: from a recording, of which spacing and altitude are the means over the
+ * patch's rows, or from an image whose notes say them. Where the scene has a table of pings,
+ * altitude and first range are its means over the patch's rows. Errors: INPUT (it does not say
+ * them: says what to give instead; ground range; a table that has not all of the patch's rows, or
+ * first ranges that are more than a column apart; as swath_file_open_array), UNSUPPORTED, STORAGE,
+ * MEMORY. On failure the scene is unchanged, and *key is the key of the scene that the message is
+ * about. */
+sonject_status recording_describe(struct report *report, const struct recording_wish *wish,
                                   struct scene *scene, const char **key);
+
+/* The altitude at a row of the scene's input, m; 0 where nothing is told of it. recording: the
+ * input; NULL for other files. */
+double recorded_altitude(const struct scene *scene, const struct recording *recording,
+                         uint64_t row);
 
 #endif

@@ -537,10 +537,12 @@ CLAIM(what_lies_before_the_bottom_is_refused)
 {
     static const struct water_layer layers[] = {{0.0, 1490.0, 1.0}, {3.0, 1530.0, 1.0}};
     struct sea *sea = sea_open(FIRST_ROWS, FIRST_COLUMNS, 6.0);
-    EXPECT_REFUSED(sea, "not beyond the altitude", set_up(sea));
+    EXPECT_REFUSED(sea, "lies in the water column, before the bottom's first return at",
+                   set_up(sea));
     sea_move(sea, FIRST_RANGE);
     sea_set_layers(sea, layers, 2);
-    EXPECT_REFUSED(sea, "not beyond the altitude", set_up(sea));
+    EXPECT_REFUSED(sea, "which no patch may where layers bend the sound: begin with column",
+                   set_up(sea));
     sea_set_layers(sea, NULL, 0);
     place_in_pixels(sea_add_sphere(sea, 0.2, 0.0), 20.0, 90.0);
     EXPECT_REFUSED(sea, "lies in the water column", set_up(sea));

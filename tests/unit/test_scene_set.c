@@ -216,6 +216,7 @@ static void a_table_in_memory_is_that_of_a_file(void **state)
     static const double response[] = {-0.2, 0, 0.1, -0.1, 0.5, 0.2, 0, 1, 0, 0.2, 0.1, 0};
     static const double motion[] = {0, 1e-4, 1, 2e-4};
     static const double profile[] = {0, 1500, 10, 1501};
+    static const double pings[] = {0, 6, 10, 7};
     static const struct {
         const char *key, *columns;
         const double *values;
@@ -229,6 +230,8 @@ static void a_table_in_memory_is_that_of_a_file(void **state)
         {"sonar.motion.yaw.file", "along_track_m, yaw_rad", motion, 4, 2,
          "sonar.motion.yaw.advance", "1 m"},
         {"medium.profile.file", "height_m, sound_speed_mps", profile, 4, 2, NULL, NULL},
+        {"input.pings", "row, altitude_m", pings, 4, 2, "input",
+         "{path: a.tif, geometry: {row_spacing: 1, column_spacing: 1, first_slant_range: 40}}"},
     };
     sonject_context *context = *state;
     for (size_t i = 0; i < COUNT(cases); i++) {
