@@ -130,9 +130,9 @@ sonject_status json_document_write(struct report *report, json_t *document, size
 
 /* Where memory is out jansson may find fault with the text, or leave out a byte of it and tell
  * nothing: it is asked twice, and memory is. */
-static json_t *load_json(const char *text, size_t bytes, bool *lacks_memory)
+static json_t *load_json(const char *text, size_t bytes, json_error_t *error, bool *lacks_memory)
 {
-    json_t *document = json_loadb(text, bytes, 0, NULL);
+    json_t *document = json_loadb(text, bytes, 0, error);
     json_t *again = json_loadb(text, bytes, 0, NULL);
     void *room = allocate_array(bytes + 1, 2);
     *lacks_memory = !room || ((document || again) && !json_equal(document, again));
@@ -148,15 +148,20 @@ sonject_status json_document_read(struct report *report, const char *path, json_
     char *text;
     size_t bytes;
     bool lacks_memory;
+    json_error_t error;
     *document = NULL;
     CHECK(file_read_whole(report, path, DOCUMENT_BYTES_MAX, &text, &bytes));
-    *document = load_json(text, bytes, &lacks_memory);
+    *document = load_json(text, bytes, &error, &lacks_memory);
     free(text);
     if (lacks_memory)
         return report_out_of_memory(report, path);
     if (!json_is_object(*document)) {
         json_decref(*document);
         *document = NULL;
+        if (error.text[0])
+            return input_failure(report, path,
+                                 "damaged in line %d: %s; mend it, or remove it and run that again",
+                                 error.line, error.text);
         return input_failure(report, path, "damaged: no JSON object; remove it and run that again");
     }
     return SONJECT_OK;

@@ -39,12 +39,58 @@ static char *trim(char *text)
     return text;
 }
 
-/* Cuts a trimmed line into fields, whose number may exceed TABLE_FIELDS_MAX. */
+/* Behind the quotes that a field begins with, in which a doubled one stands for one; the field
+ * itself where there are none, or they do not end. */
+static char *behind_quotes(char *field)
+{
+    char *end = field;
+    while (*end == '"') {
+        char *last = strchr(end + 1, '"');
+        if (!last)
+            return field;
+        end = last + 1;
+    }
+    return end;
+}
+
+/* Takes the quotes off a trimmed field that is all in quotes. */
+static char *unquote(char *field)
+{
+    char *end = behind_quotes(field);
+    if (end == field || *end)
+        return field;
+    char *to = field;
+    for (const char *from = field + 1; from < end - 1; from++) {
+        *to++ = *from;
+        from += *from == '"';
+    }
+    *to = '\0';
+    return field;
+}
+
+/* Ends a line where a comment begins, which is not in a quoted field. */
+static void cut_comment(char *line, const char *separators)
+{
+    for (;;) {
+        line = behind_quotes(line + strspn(line, " \t"));
+        while (*line && *line != '#' && (*line == ' ' || !strchr(separators, *line)))
+            line++;
+        if (*line == 0 || *line == '#')
+            break;
+        line++;
+    }
+    *line = '\0';
+}
+
+/* Cuts a trimmed line into fields, whose number may exceed TABLE_FIELDS_MAX. Only fields between
+ * other separators than blanks have quotes. */
 static size_t split(char *line, char separator, char *fields[TABLE_FIELDS_MAX])
 {
     size_t count = 0;
     for (char *end = line; end; count++) {
         char *start = line;
+        if (separator && separator != ' ')
+            line = behind_quotes(line + strspn(line, " "));
         end = separator == ' ' ? strpbrk(line, " \t") : separator ? strchr(line, separator) : NULL;
         if (end) {
             *end = '\0';
@@ -53,7 +99,7 @@ static size_t split(char *line, char separator, char *fields[TABLE_FIELDS_MAX])
                 line++;
         }
         if (count < TABLE_FIELDS_MAX)
-            fields[count] = trim(start);
+            fields[count] = separator == ' ' ? trim(start) : unquote(trim(start));
     }
     return count;
 }
@@ -74,7 +120,7 @@ static sonject_status take_line(struct row_reader *reader, char *line, size_t le
     const char *start = line;
     if (strlen(line) != length)
         return table_refuse(reader->report, reader->file, number, "", "%s", not_text);
-    line[strcspn(line, "#")] = '\0';
+    cut_comment(line, reader->choices);
     line = trim(line);
     if (!*line)
         return SONJECT_OK;

@@ -47,6 +47,11 @@ static void test_every_way_to_write_a_table(void **state)
                  "time;depth_m;temp, C;sound_speed_mps;\n"
                  "10:00;12;4,5;1490.5;\n10:01;15.5;;1500;\n",
                  true);
+    expect_taken(state,
+                 "\"depth_m\", \"a \"\"b\"\", #c\",sound_speed_mps\n\"12\" ,\"d,e\",1490.5 # \"f\n"
+                 "15.5,\"\",\"1500\"#\n",
+                 true);
+    expect_taken(state, "a;\"depth_m\";sound_speed_mps\n\"x;12;1490.5\ny\"z;15.5;1500\n", true);
 }
 
 static void test_heights_rise_however_the_table_runs(void **state)

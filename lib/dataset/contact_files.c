@@ -1,0 +1,356 @@
+/* Sets of labelled contacts: which format a path has, where its images lie, what becomes of a box,
+ * and which highlight and which shadow are one contact. */
+#include "dataset/contact_files.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/text.h"
+#include "dataset/contact_reader.h"
+
+#define CONTACTS_MAX   100000
+#define PAIRING_ROUNDS 8 /* a chain of boxes that needs more is no labelling of contacts */
+
+/* ---- What readers add. */
+
+static char small(char letter)
+{
+    return letter >= 'A' && letter <= 'Z' ? (char)(letter - 'A' + 'a') : letter;
+}
+
+static bool begins(const char *text, const char *word)
+{
+    while (*word && small(*text) == *word)
+        text++, word++;
+    return *word == 0;
+}
+
+static bool has_word(const char *text, const char *word)
+{
+    while (*text && !begins(text, word))
+        text++;
+    return *text != 0;
+}
+
+bool name_ends(const char *name, const char *ending)
+{
+    const size_t length = strlen(name);
+    return length >= strlen(ending) && begins(name + length - strlen(ending), ending);
+}
+
+uint32_t part_of_class(const char *name, uint32_t part)
+{
+    const bool has_shadow = has_word(name, "shadow");
+    const bool has_highlight = has_word(name, "highlight") || has_word(name, "echo");
+    return has_shadow && has_highlight ? LABELLED_BOTH
+           : has_shadow                ? LABELLED_SHADOW
+           : has_highlight             ? LABELLED_HIGHLIGHT
+                                       : part;
+}
+
+/* Room for one more element behind count ones, which doubles; NULL: memory is out. */
+static void *make_room(void *list, size_t count, size_t size)
+{
+    const bool is_full = (count & (count - 1)) == 0;
+    return is_full ? realloc(list, (count > 0 ? 2 * count : 1) * size) : list;
+}
+
+/* The path of the file of an image, for free(); NULL: there is none, or memory is out. */
+static char *find_file(const struct contact_reader *reader, const char *name, bool *has_memory)
+{
+    *has_memory = true;
+    for (size_t i = 0; i < IMAGE_FOLDERS && reader->folders[i]; i++) {
+        char *path = path_join(reader->folders[i], name);
+        *has_memory = path != NULL;
+        if (!path || file_exists(path))
+            return path;
+        free(path);
+    }
+    return NULL;
+}
+
+sonject_status contact_reader_find_image(struct contact_reader *reader, const char *place,
+                                         const char *name, uint32_t *number)
+{
+    struct contact_set *set = reader->set;
+    char excerpt[200];
+    bool has_memory;
+    const json_t *known = json_object_get(reader->images, name);
+    *number = (uint32_t)json_integer_value(known);
+    if (known)
+        return SONJECT_OK;
+    if (*name == 0 || !text_is_printable(name))
+        return input_failure(reader->report, place,
+                             *name ? "the image's name is no text" : "no image is named");
+    char *path = find_file(reader, name, &has_memory);
+    if (!path && has_memory)
+        return input_failure(reader->report, place,
+                             "there is no image '%s', neither beside the labels nor in 'images' "
+                             "below or beside them",
+                             text_excerpt(excerpt, sizeof excerpt, name));
+    char **images = make_room(set->images, set->image_count, sizeof *images);
+    set->images = images ? images : set->images;
+    *number = (uint32_t)set->image_count;
+    if (!path || !images ||
+        json_object_set_new_nocheck(reader->images, name, json_integer(*number)) != 0) {
+        free(path);
+        return report_out_of_memory(reader->report, "contacts");
+    }
+    set->images[set->image_count++] = path;
+    return SONJECT_OK;
+}
+
+/* Whole pixels from start to end, of so many; 0: it is not known how many. */
+static void take_pixels(double start, double length, uint64_t count, uint64_t *first,
+                        uint64_t *pixels)
+{
+    const double last = count > 0 ? (double)count : (double)IMAGE_PIXELS_MAX;
+    const double begin = fmin(fmax(floor(start + 0.5), 0.0), last - 1.0);
+    const double end = fmax(fmin(floor(start + length + 0.5), last), begin + 1.0);
+    *first = (uint64_t)begin;
+    *pixels = (uint64_t)(end - begin);
+}
+
+/* Whether a side is within so many pixels, give or take one. */
+static bool is_inside(double start, double length, uint64_t count)
+{
+    const double last = count > 0 ? (double)count : (double)IMAGE_PIXELS_MAX;
+    return start >= -1.0 && start + length <= last + 1.0;
+}
+
+sonject_status contact_reader_add(struct contact_reader *reader, const char *place,
+                                  const struct labelled_image *image, uint32_t part,
+                                  const struct labelled_box *box)
+{
+    struct contact_set *set = reader->set;
+    if (!(box->rows > 0.0 && box->columns > 0.0))
+        return input_failure(reader->report, place,
+                             "the box has no area: %g rows and %g columns; mend or remove it",
+                             box->rows, box->columns);
+    if (!is_inside(box->row, box->rows, image->rows) ||
+        !is_inside(box->column, box->columns, image->columns)) {
+        char size[80] = "";
+        if (image->rows > 0 && image->columns > 0)
+            snprintf(size, sizeof size, " of %llu rows and %llu columns",
+                     (unsigned long long)image->rows, (unsigned long long)image->columns);
+        return input_failure(reader->report, place,
+                             "the box, rows %g to %g and columns %g to %g, is not in the image%s",
+                             box->row, box->row + box->rows, box->column,
+                             box->column + box->columns, size);
+    }
+    if (set->count == CONTACTS_MAX)
+        return input_failure(reader->report, place, "more than %d contacts; leave some out",
+                             CONTACTS_MAX);
+    struct labelled_contact *contacts = make_room(set->contacts, set->count, sizeof *contacts);
+    CHECK_MEMORY(reader->report, contacts, "contacts");
+    set->contacts = contacts;
+    struct labelled_contact *contact = &contacts[set->count++];
+    contact->image = image->number;
+    contact->part = part;
+    take_pixels(box->row, box->rows, image->rows, &contact->box.first_row, &contact->box.rows);
+    take_pixels(box->column, box->columns, image->columns, &contact->box.first_column,
+                &contact->box.columns);
+    return SONJECT_OK;
+}
+
+/* ---- Highlights and their shadows. */
+
+static int compare_contacts(const void *one, const void *other)
+{
+    const struct labelled_contact *a = one, *b = other;
+    const uint64_t keys[][2] = {{a->image, b->image},
+                                {a->box.first_row, b->box.first_row},
+                                {a->box.first_column, b->box.first_column},
+                                {a->box.rows, b->box.rows},
+                                {a->box.columns, b->box.columns},
+                                {a->part, b->part}};
+    for (size_t i = 0; i < COUNT(keys); i++)
+        if (keys[i][0] != keys[i][1])
+            return keys[i][0] < keys[i][1] ? -1 : 1;
+    return 0;
+}
+
+/* How far a highlight and a shadow are from lying as those of one object do: the shadow begins
+ * where the highlight ends, at the same rows. Infinite where they cannot be of one. */
+static double distance_between(const struct labelled_contact *one,
+                               const struct labelled_contact *other)
+{
+    const bool is_first = one->part == LABELLED_HIGHLIGHT;
+    const sonject_box *highlight = is_first ? &one->box : &other->box;
+    const sonject_box *shadow = is_first ? &other->box : &one->box;
+    if (one->part + other->part != LABELLED_HIGHLIGHT + LABELLED_SHADOW ||
+        highlight->first_row >= shadow->first_row + shadow->rows ||
+        shadow->first_row >= highlight->first_row + highlight->rows ||
+        highlight->first_column >= shadow->first_column + shadow->columns)
+        return INFINITY;
+    const double highlight_end = (double)(highlight->first_column + highlight->columns);
+    const double highlight_row = (double)highlight->first_row + 0.5 * (double)highlight->rows;
+    const double shadow_row = (double)shadow->first_row + 0.5 * (double)shadow->rows;
+    return hypot((double)shadow->first_column - highlight_end, shadow_row - highlight_row);
+}
+
+/* The nearest of an image's contacts, which are in the order of their rows, that may be the other
+ * part of one; count: none. */
+static size_t find_nearest(const struct labelled_contact *contacts, size_t count, size_t of)
+{
+    const sonject_box *box = &contacts[of].box;
+    double least = INFINITY;
+    size_t nearest = count;
+    for (size_t i = 0; i < count; i++) {
+        if (contacts[i].box.first_row >= box->first_row + box->rows)
+            break;
+        const double distance = distance_between(&contacts[of], &contacts[i]);
+        if (distance < least) {
+            least = distance;
+            nearest = i;
+        }
+    }
+    return nearest;
+}
+
+/* Makes one contact of each highlight and shadow of an image that are nearest to each other, until
+ * there are no more. A shadow's box that is in another one now has no rows. */
+static void pair_parts(struct labelled_contact *contacts, size_t count)
+{
+    bool goes_on = true;
+    for (int round = 0; goes_on && round < PAIRING_ROUNDS; round++) {
+        goes_on = false;
+        for (size_t i = 0; i < count; i++) {
+            struct labelled_contact *shadow = &contacts[i];
+            const size_t other =
+                shadow->part == LABELLED_SHADOW ? find_nearest(contacts, count, i) : count;
+            if (other == count || find_nearest(contacts, count, other) != i)
+                continue;
+            sonject_box *box = &contacts[other].box;
+            const sonject_box from = *box;
+            const sonject_box *add = &shadow->box;
+            box->first_row = from.first_row < add->first_row ? from.first_row : add->first_row;
+            box->first_column =
+                from.first_column < add->first_column ? from.first_column : add->first_column;
+            const uint64_t row_ends[] = {from.first_row + from.rows, add->first_row + add->rows};
+            const uint64_t ends[] = {from.first_column + from.columns,
+                                     add->first_column + add->columns};
+            box->rows = row_ends[row_ends[1] > row_ends[0]] - box->first_row;
+            box->columns = ends[ends[1] > ends[0]] - box->first_column;
+            contacts[other].part = shadow->part = LABELLED_BOTH;
+            shadow->box.rows = 0;
+            goes_on = true;
+        }
+    }
+}
+
+static void pair_all(struct contact_set *set)
+{
+    struct labelled_contact *contacts = set->contacts;
+    size_t kept = 0;
+    if (set->count == 0)
+        return;
+    qsort(contacts, set->count, sizeof *contacts, compare_contacts);
+    for (size_t start = 0, end; start < set->count; start = end) {
+        for (end = start; end < set->count && contacts[end].image == contacts[start].image;)
+            end++;
+        pair_parts(&contacts[start], end - start);
+    }
+    for (size_t i = 0; i < set->count; i++)
+        if (contacts[i].box.rows > 0)
+            contacts[kept++] = contacts[i];
+    set->count = kept;
+}
+
+/* ---- Reading. */
+
+/* "data/labels/train" gives "data/images/train"; NULL: there is no such part, or memory is out. */
+static char *folder_of_images(const char *folder)
+{
+    for (size_t at = strlen(folder); at-- > 0;)
+        if ((at == 0 || folder[at - 1] == '/') && begins(folder + at, "labels") &&
+            (folder[at + 6] == 0 || folder[at + 6] == '/')) {
+            char *images = copy_text(folder);
+            if (images)
+                memcpy(images + at, "images", 6);
+            return images;
+        }
+    return NULL;
+}
+
+static sonject_status find_folders(struct contact_reader *reader, const char *folder)
+{
+    static const char *const beside[] = {"images", "..", "../images", "../JPEGImages"};
+    reader->folders[0] = copy_text(folder);
+    for (size_t i = 0; i < COUNT(beside); i++)
+        reader->folders[i + 1] = path_join(folder, beside[i]);
+    for (size_t i = 0; i <= COUNT(beside); i++)
+        CHECK_MEMORY(reader->report, reader->folders[i], "contacts");
+    reader->folders[COUNT(beside) + 1] = folder_of_images(folder);
+    return SONJECT_OK;
+}
+
+/* Files of a folder: YOLO's, or VOC's where both are there, since these tell more. */
+static sonject_status read_folder(struct contact_reader *reader, const char *path)
+{
+    struct folder_names names;
+    bool has_xml = false, has_text = false;
+    CHECK(folder_names_read(&names, reader->report, path, ""));
+    for (size_t i = 0; i < names.count; i++) {
+        has_xml = has_xml || name_ends(names.names[i], ".xml");
+        has_text = has_text || name_ends(names.names[i], ".txt");
+    }
+    sonject_status status = find_folders(reader, path);
+    if (status == SONJECT_OK && !has_xml && !has_text)
+        status = input_failure(reader->report, path,
+                               "no labels: neither .json (COCO), .csv, .yaml (quantiles) nor a "
+                               "folder of .txt (YOLO) or .xml (VOC)");
+    THEN(status,
+         has_xml ? contacts_of_voc(reader, path, &names) : contacts_of_yolo(reader, path, &names));
+    folder_names_clear(&names);
+    return status;
+}
+
+static sonject_status read_labels(struct contact_reader *reader, const char *path)
+{
+    if (!file_exists(path))
+        return input_failure(reader->report, path, "there is no such file or folder of labels");
+    if (name_ends(path, ".yaml") || name_ends(path, ".yml"))
+        return quantiles_of_file(reader, path);
+    const bool is_coco = name_ends(path, ".json");
+    reader->images = json_object();
+    CHECK_MEMORY(reader->report, reader->images, "contacts");
+    if (is_coco || name_ends(path, ".csv")) {
+        char *folder = path_folder(path);
+        CHECK_MEMORY(reader->report, folder, "contacts");
+        sonject_status status = find_folders(reader, folder);
+        free(folder);
+        THEN(status, (is_coco ? contacts_of_coco : contacts_of_table)(reader, path));
+        CHECK(status);
+    } else {
+        CHECK(read_folder(reader, path));
+    }
+    if (reader->set->count == 0)
+        return input_failure(reader->report, path, "holds no contacts");
+    pair_all(reader->set);
+    return SONJECT_OK;
+}
+
+sonject_status contact_set_read(struct report *report, const char *path, uint32_t part,
+                                struct contact_set *set)
+{
+    struct contact_reader reader = {.report = report, .set = set, .part = part};
+    memset(set, 0, sizeof *set);
+    const sonject_status status = read_labels(&reader, path);
+    for (size_t i = 0; i < IMAGE_FOLDERS; i++)
+        free(reader.folders[i]);
+    json_decref(reader.images);
+    return status;
+}
+
+void contact_set_clear(struct contact_set *set)
+{
+    for (size_t i = 0; i < set->image_count; i++)
+        free(set->images[i]);
+    free(set->images);
+    free(set->contacts);
+    memset(set, 0, sizeof *set);
+}

@@ -1,0 +1,657 @@
+/* Labels of contacts: each format, as others and as sonject itself write it, what highlight and
+ * shadow of one contact are, and labels that are wrong. Images are of 30 rows and 40 columns. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <sys/stat.h>
+
+#include "base/report.h"
+#include "claims.h"
+#include "dataset/contact_files.h"
+#include "dataset/labels.h"
+#include "temporary_folder.h"
+
+#define ROWS_OF_IMAGE    30
+#define COLUMNS_OF_IMAGE 40
+
+/* All labels and images of a test are in a folder of its own. */
+static void put(void **state, const char *name, const char *text)
+{
+    write_bytes(temporary_file(*state, name), text, strlen(text));
+}
+
+static void put_image(void **state, const char *name)
+{
+    enum {
+        HEAD = 128
+    };
+    static char bytes[HEAD + 4 * ROWS_OF_IMAGE * COLUMNS_OF_IMAGE];
+    memset(bytes, ' ', HEAD);
+    memcpy(bytes, "\x93NUMPY\1\0v\0", 10);
+    const int length = snprintf(bytes + 10, HEAD - 10,
+                                "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d), }",
+                                ROWS_OF_IMAGE, COLUMNS_OF_IMAGE);
+    bytes[10 + length] = ' ';
+    bytes[HEAD - 1] = '\n';
+    write_bytes(temporary_file(*state, name), bytes, sizeof bytes);
+}
+
+/* name: of a file; "": the folder. */
+static sonject_status read_set(void **state, const char *name, uint32_t part, struct report *report,
+                               struct contact_set *set)
+{
+    struct temporary_folder *folder = *state;
+    memset(report, 0, sizeof *report);
+    return contact_set_read(report, *name ? temporary_file(folder, name) : folder->path, part, set);
+}
+
+struct expected {
+    const char *image; /* the end of its path */
+    uint32_t part;
+    sonject_box box;
+};
+
+static void expect_contacts(void **state, const char *name, uint32_t part,
+                            const struct expected *expected, size_t count)
+{
+    struct report report;
+    struct contact_set set;
+    EXPECT_OK(&report, read_set(state, name, part, &report, &set));
+    assert_string_equal(report.message, "");
+    assert_int_equal(set.count, count);
+    assert_int_equal(set.quantiles.count, 0);
+    for (size_t i = 0; i < count; i++) {
+        const struct labelled_contact *contact = &set.contacts[i];
+        assert_true(contact->image < set.image_count);
+        const char *path = set.images[contact->image];
+        assert_true(strlen(path) > strlen(expected[i].image));
+        assert_string_equal(path + strlen(path) - strlen(expected[i].image), expected[i].image);
+        assert_int_equal(contact->part, expected[i].part);
+        const sonject_box *box = &expected[i].box;
+        assert_int_equal(contact->box.first_row, box->first_row);
+        assert_int_equal(contact->box.first_column, box->first_column);
+        assert_int_equal(contact->box.rows, box->rows);
+        assert_int_equal(contact->box.columns, box->columns);
+    }
+    contact_set_clear(&set);
+    assert_null(set.contacts);
+}
+
+/* message: all of it, with % for the folder. */
+static void expect_refused(void **state, const char *name, const char *message)
+{
+    struct temporary_folder *folder = *state;
+    struct report report;
+    struct contact_set set;
+    char expected[REPORT_CAPACITY] = "";
+    for (const char *c = message; *c; c++)
+        sprintf(expected + strlen(expected), *c == '%' ? "%s" : "%.1s",
+                *c == '%' ? folder->path : c);
+    if (read_set(state, name, LABELLED_BOTH, &report, &set) != SONJECT_ERROR_INPUT)
+        fail_msg("not refused, though %s", message);
+    contact_set_clear(&set);
+    if (strcmp(report.message, expected) != 0)
+        fail_msg("the message is\n%s\nand not\n%s", report.message, expected);
+}
+
+/* ---- COCO. */
+
+#define IMAGES                                                                                     \
+    "{\"images\": [{\"id\": 7, \"file_name\": \"b.npy\", \"width\": 40, \"height\": 30},\n"        \
+    "{\"id\": \"x\", \"file_name\": \"a.npy\"}, {\"id\": 3, \"file_name\": \"none.npy\"}],\n"
+#define CATEGORIES                                                                                 \
+    "\"categories\": [{\"id\": 1, \"name\": \"mine\"}, {\"id\": 2, \"name\": \"Acoustic SHADOW\"}" \
+    ", {\"id\": 4, \"name\": \"mine-echo\"}, {\"id\": 5, \"name\": \"highlight, shadow\"}],\n"
+#define ANNOTATIONS(text) IMAGES CATEGORIES "\"annotations\": [" text "]}"
+#define ANNOTATION(image, category, box)                                                           \
+    "{\"image_id\": " image ", \"category_id\": " category ", \"bbox\": " box "}"
+
+static void test_coco(void **state)
+{
+    const struct expected expected[] = {{"/b.npy", LABELLED_SHADOW, {20, 0, 2, 40}},
+                                        {"/b.npy", LABELLED_BOTH, {25, 1, 5, 3}},
+                                        {"/a.npy", LABELLED_HIGHLIGHT, {2, 3, 4, 5}},
+                                        {"/a.npy", LABELLED_HIGHLIGHT, {6, 100, 1, 1}}};
+    put_image(state, "a.npy");
+    put_image(state, "b.npy");
+    put(state, "labels.json",
+        ANNOTATIONS(ANNOTATION("7", "5", "[1, 25, 3, 5]") ",\n" ANNOTATION(
+            "\"x\"", "1",
+            "[100.2, 6.4, 0.1, 0.1]") ",\n" ANNOTATION("7", "2",
+                                                       "[-0.6, 20, 41.5, 2]") ",\n" ANNOTATION("\"x"
+                                                                                               "\"",
+                                                                                               "4",
+                                                                                               "[2."
+                                                                                               "6, "
+                                                                                               "2."
+                                                                                               "4, "
+                                                                                               "5."
+                                                                                               "3, "
+                                                                                               "3."
+                                                                                               "7"
+                                                                                               "]")));
+    expect_contacts(state, "labels.json", LABELLED_HIGHLIGHT, expected, COUNT(expected));
+}
+
+static void test_coco_that_is_wrong(void **state)
+{
+    static const struct {
+        const char *text, *message;
+    } wrong[] = {
+        {"{\"images\": [],\n}", "%/l.json: damaged in line 2: string or '}' expected near '}'; "
+                                "mend it, or remove it and run that again"},
+        {"[]", "%/l.json: damaged: no JSON object; remove it and run that again"},
+        {"{}", "%/l.json: images: must be a list, as COCO has it"},
+        {"{\"images\": [3]}", "%/l.json: images[0]: needs an id and a file_name"},
+        {"{\"images\": [{\"id\": 1}]}", "%/l.json: images[0]: needs an id and a file_name"},
+        {"{\"images\": [{\"id\": 1, \"file_name\": \"a\"}, {\"id\": 1, \"file_name\": \"b\"}]}",
+         "%/l.json: images[1].id: an entry before has it, too"},
+        {IMAGES "\"categories\": [{\"id\": 1}]}",
+         "%/l.json: categories[0]: needs an id and a name"},
+        {IMAGES CATEGORIES "\"annotations\": {}}",
+         "%/l.json: annotations: must be a list, as COCO has it"},
+        {ANNOTATIONS(""), "%/l.json: holds no contacts"},
+        {ANNOTATIONS("1"),
+         "%/l.json: annotations[0]: bbox must be four numbers of pixels, [x, y, width, height]"},
+        {ANNOTATIONS(ANNOTATION("7", "1", "[1, 2, 3]")),
+         "%/l.json: annotations[0]: bbox must be four numbers of pixels, [x, y, width, height]"},
+        {ANNOTATIONS(ANNOTATION("7", "1", "[1, 2, 3, \"4\"]")),
+         "%/l.json: annotations[0]: bbox must be four numbers of pixels, [x, y, width, height]"},
+        {ANNOTATIONS(ANNOTATION("8", "1", "[1, 2, 3, 4]")),
+         "%/l.json: annotations[0]: image_id is of none of the images"},
+        {ANNOTATIONS(ANNOTATION("7", "3", "[1, 2, 3, 4]")),
+         "%/l.json: annotations[0]: category_id is of none of the categories"},
+        {ANNOTATIONS(ANNOTATION("7", "1", "[1, 2, 3, 4]") "," ANNOTATION("3", "1", "[1, 2, 3, 4]")),
+         "%/l.json: annotations[1]: there is no image 'none.npy', neither beside the labels nor in "
+         "'images' below or beside them"},
+        {ANNOTATIONS(ANNOTATION("7", "1", "[1, 2, 3, 0]")),
+         "%/l.json: annotations[0]: the box has no area: 0 rows and 3 columns; mend or remove it"},
+        {ANNOTATIONS(ANNOTATION("7", "1", "[1, 2, -3, 4]")),
+         "%/l.json: annotations[0]: the box has no area: 4 rows and -3 columns; mend or remove it"},
+        {ANNOTATIONS(ANNOTATION("7", "1", "[38, 2, 3.5, 4]")),
+         "%/l.json: annotations[0]: the box, rows 2 to 6 and columns 38 to 41.5, is not in the "
+         "image of 30 rows and 40 columns"},
+        {ANNOTATIONS(ANNOTATION("\"x\"", "1", "[38, -2, 3.5, 4]")),
+         "%/l.json: annotations[0]: the box, rows -2 to 2 and columns 38 to 41.5, is not in the "
+         "image"},
+        {ANNOTATIONS(ANNOTATION("\"x\"", "1", "[0, 1, 1e300, 4]")),
+         "%/l.json: annotations[0]: the box, rows 1 to 5 and columns 0 to 1e+300, is not in the "
+         "image"},
+        {"{\"images\": [{\"id\": 7, \"file_name\": \"a\\u0007.png\"}],\n" CATEGORIES
+         "\"annotations\": [" ANNOTATION("7", "1", "[1, 2, 3, 4]") "]}",
+         "%/l.json: annotations[0]: the image's name is no text"},
+        {"{\"images\": [{\"id\": 7, \"file_name\": \"b.npy\", \"width\": 0}],\n" CATEGORIES
+         "\"annotations\": [" ANNOTATION("7", "1", "[1, 2, 3, 4]") "]}",
+         "%/l.json: annotations[0]: its image's width or height is not a whole number of pixels"},
+    };
+    put_image(state, "a.npy");
+    put_image(state, "b.npy");
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        put(state, "l.json", wrong[i].text);
+        expect_refused(state, "l.json", wrong[i].message);
+    }
+    expect_refused(state, "none.json", "%/none.json: there is no such file or folder of labels");
+    expect_refused(state, "b.npy",
+                   "%/b.npy: no labels: neither .json (COCO), .csv, .yaml (quantiles) nor a folder "
+                   "of .txt (YOLO) or .xml (VOC)");
+}
+
+/* ---- CSV. */
+
+static void test_tables(void **state)
+{
+    const struct expected expected[] = {{"/a.npy", LABELLED_SHADOW, {1, 2, 3, 4}},
+                                        {"/a.npy", LABELLED_BOTH, {6, 2, 3, 4}},
+                                        {"/a.npy", LABELLED_HIGHLIGHT, {9, 2, 3, 4}},
+                                        {"/b, 2.npy", LABELLED_HIGHLIGHT, {0, 0, 1, 500}}};
+    put_image(state, "a.npy");
+    put_image(state, "b, 2.npy");
+    put(state, "labels.csv",
+        "image,row,column,rows,columns,part # comment\n\n"
+        "a.npy,9,2,3,4,\na.npy,0.6,2.3,3,4,Shadow\n\"a.npy\",6,2,3,4,both\n"
+        "\"b, 2.npy\",0,0,1,500,\"highlight\"\n");
+    expect_contacts(state, "labels.csv", LABELLED_HIGHLIGHT, expected, COUNT(expected));
+    put(state, "labels.CSV",
+        "class;rows;columns;row;column;image\nshadow;3;4;1;2;a.npy\nechoes and shadows;3;4;6;2;"
+        "a.npy\nrock;3;4;9;2;a.npy\n;1;500;0;0;b, 2.npy\n");
+    expect_contacts(state, "labels.CSV", LABELLED_HIGHLIGHT, expected, COUNT(expected));
+}
+
+static void test_tables_that_are_wrong(void **state)
+{
+#define T "image,row,column,rows,columns,part\n"
+    static const struct {
+        const char *text, *message;
+    } wrong[] = {
+        {"", "%/l.csv: there is nothing in it"},
+        {T, "%/l.csv: holds no contacts"},
+        {"image,row,column,rows,part\n",
+         "%/l.csv:1: columns: there is no such column; there must be image, row, column, rows, "
+         "columns, or those of sonject's contacts.csv"},
+        {"image,row,box_row,column,rows,part\n",
+         "%/l.csv:1: box_column: there is no such column; there must be image, row, column, rows, "
+         "columns, or those of sonject's contacts.csv"},
+        {"image,row,column,rows,columns,row\n",
+         "%/l.csv:1: row: two columns of this name; rename one"},
+        {T "a.npy,1,2,3,4\n", "%/l.csv:2: has 5 columns, but 6 have names"},
+        {T "a.npy,1,2,3,,\n", "%/l.csv:2: columns: '' is not a number"},
+        {T "a.npy,,,,,\n", "%/l.csv:2: row: '' is not a number"},
+        {T "a.npy,1,2 m,3,4,\n", "%/l.csv:2: column: '2 m' is not a number"},
+        {T "a.npy,1,2,3,4,tail\n", "%/l.csv:2: part: 'tail' is not one of highlight, shadow, both"},
+        {T "# a\n,1,2,3,4,\n", "%/l.csv:3: no image is named"},
+        {T "c.npy,1,2,3,4,\n", "%/l.csv:2: there is no image 'c.npy', neither beside the labels "
+                               "nor in 'images' below or beside them"},
+        {T "a.npy,1,2,3,0,\n",
+         "%/l.csv:2: the box has no area: 3 rows and 0 columns; mend or remove it"},
+        {T "a.npy,1,2,inf,4,\n",
+         "%/l.csv:2: the box, rows 1 to inf and columns 2 to 6, is not in the image"},
+    };
+    put_image(state, "a.npy");
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        put(state, "l.csv", wrong[i].text);
+        expect_refused(state, "l.csv", wrong[i].message);
+    }
+}
+
+static void test_so_many_contacts_and_no_more(void **state)
+{
+    enum {
+        MOST = 100000
+    };
+    struct report report;
+    struct contact_set set;
+    put_image(state, "a.npy");
+    for (int more = 0; more < 2; more++) {
+        FILE *file = open_new_file(temporary_file(*state, "l.csv"));
+        assert_non_null(file);
+        fprintf(file, "image,row,column,rows,columns\n");
+        for (int i = 0; i < MOST + more; i++)
+            fprintf(file, "a.npy,%d,0,1,1\n", i);
+        fclose(file);
+        if (more) {
+            expect_refused(state, "l.csv",
+                           "%/l.csv:100002: more than 100000 contacts; leave some out");
+            continue;
+        }
+        EXPECT_OK(&report, read_set(state, "l.csv", LABELLED_BOTH, &report, &set));
+        assert_int_equal(set.count, MOST);
+        assert_int_equal(set.contacts[MOST - 1].box.first_row, MOST - 1);
+        assert_int_equal(set.image_count, 1);
+        contact_set_clear(&set);
+    }
+}
+
+/* ---- YOLO. */
+
+static void test_yolo(void **state)
+{
+    /* fractions: x 8 to 16 of 40, y 3 to 9 of 30; then the whole image */
+    static const char text[] = "1 0.3 0.2 0.2 0.2\r\n\n 0\t0.5 0.5 1 1 \n";
+    struct expected expected[] = {{"/a.b.npy", LABELLED_HIGHLIGHT, {20, 10, 2, 4}},
+                                  {"/a.npy", LABELLED_HIGHLIGHT, {0, 0, 30, 40}},
+                                  {"/a.npy", LABELLED_HIGHLIGHT, {3, 8, 6, 8}}};
+    put_image(state, "a.npy");
+    put_image(state, "a.b.npy");
+    put(state, "a.txt", text);
+    put(state, "a.b.txt", "1 0.3 0.7 0.1 0.06666666667");
+    put(state, "empty.txt", "\n");
+    put(state, "a.jgw", "no image\n");
+    expect_contacts(state, "", LABELLED_HIGHLIGHT, expected, 3);
+    put(state, "classes.txt", "echo\r\nx\n");
+    expect_contacts(state, "", LABELLED_HIGHLIGHT, expected, 3);
+    (void)unlink(temporary_file(*state, "classes.txt"));
+    put(state, "data.yaml", "train: images\nnc: 2\nnames: [rock, both_echo_and_shadow]\n");
+    for (int i = 0; i < 3; i++)
+        expected[i].part = LABELLED_BOTH;
+    expect_contacts(state, "", LABELLED_BOTH, expected, 3);
+    put(state, "data.yaml", "names:\n  1: shadows\n  0: rock\n");
+    expected[0].part = expected[2].part = LABELLED_SHADOW;
+    expect_contacts(state, "", LABELLED_BOTH, expected, 3);
+}
+
+static void test_yolo_that_is_wrong(void **state)
+{
+#define NO_LINE                                                                                    \
+    " is not a class's number and four fractions, of the box's centre and sides, x before y"
+    static const struct {
+        const char *text, *message;
+    } wrong[] = {
+        {"", "%: holds no contacts"},
+        {"0 0.5 0.5 0.2 0.2\n0 0.5 0.5 0.2\n", "%/a.txt:2: '0 0.5 0.5 0.2'" NO_LINE},
+        {"0 0.5 0.5 0.2 0.2 0.9\n", "%/a.txt:1: '0 0.5 0.5 0.2 0.2 0.9'" NO_LINE},
+        {"0 0.5.5 0.5 0.2\n", "%/a.txt:1: '0 0.5.5 0.5 0.2'" NO_LINE},
+        {"0.5 0.5 0.5 0.2 0.2\n", "%/a.txt:1: '0.5 0.5 0.5 0.2 0.2'" NO_LINE},
+        {"mine 0.5 0.5 0.2 0.2\n", "%/a.txt:1: 'mine 0.5 0.5 0.2 0.2'" NO_LINE},
+        {"\n2 0.5 0.5 0.2 0.2\n", "%/a.txt:2: class 2 has no name in %/classes.txt"},
+        {"0 0.5 0.5 0.2 0\n",
+         "%/a.txt:1: the box has no area: 0 rows and 8 columns; mend or remove it"},
+        {"0 20 15 8 6\n", "%/a.txt:1: the box, rows 360 to 540 and columns 640 to 960, is not in "
+                          "the image of 30 rows and 40 columns"},
+    };
+    put_image(state, "a.npy");
+    put(state, "classes.txt", "mine\nshadow\n");
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        put(state, "a.txt", wrong[i].text);
+        expect_refused(state, "", wrong[i].message);
+    }
+    write_bytes(temporary_file(*state, "a.txt"), "0 0.5 0.5\0 0.2 0.2\n", 19);
+    expect_refused(state, "", "%/a.txt: is no text");
+    put(state, "a.txt", "0 0.5 0.5 0.2 0.2\n");
+    put(state, "classes.txt", "mi\x01ne\n");
+    expect_refused(state, "", "%/classes.txt: class 0 is no text");
+    (void)unlink(temporary_file(*state, "classes.txt"));
+    put(state, "data.yaml", "names: [[a]]\n");
+    expect_refused(state, "", "%/data.yaml:1:9: names: a class's name must be a text");
+    put(state, "data.yaml", "names: [a\n");
+    expect_refused(state, "",
+                   "%/data.yaml:2:1: names: not valid YAML (while parsing a flow sequence: did not "
+                   "find expected ',' or ']'); check indentation, colons, quotes and brackets");
+    (void)unlink(temporary_file(*state, "data.yaml"));
+    (void)unlink(temporary_file(*state, "a.npy"));
+    struct report report;
+    struct contact_set set;
+    put(state, "a.npz", "no image");
+    assert_int_equal(read_set(state, "", LABELLED_BOTH, &report, &set), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(report.message, "/a.npz: is of no format that sonject knows"));
+    contact_set_clear(&set);
+    (void)unlink(temporary_file(*state, "a.npz"));
+    expect_refused(state, "",
+                   "%/a.txt:1: there is no image of that name, neither beside the labels nor in "
+                   "'images' below or beside them");
+    (void)unlink(temporary_file(*state, "a.txt"));
+    expect_refused(state, "",
+                   "%: no labels: neither .json (COCO), .csv, .yaml (quantiles) nor a folder of "
+                   ".txt (YOLO) or .xml (VOC)");
+}
+
+/* Labels in data/labels/train, with images in data/images/train, or elsewhere about them. */
+static void test_where_images_are_looked_for(void **state)
+{
+    static const char *const folders[] = {"labels",           "labels/train", "labels/train/images",
+                                          "labels/images",    "images",       "images/train",
+                                          "labels/JPEGImages"};
+    static const char *const places[] = {"labels/train/a.npy", "labels/train/images/a.npy",
+                                         "labels/a.npy",       "labels/images/a.npy",
+                                         "images/train/a.npy", "labels/JPEGImages/a.npy"};
+    static const char *const labels[] = {"labels/train/a.txt", "labels/train/l.csv"};
+    struct expected expected = {NULL, LABELLED_BOTH, {3, 8, 6, 8}};
+    for (size_t i = 0; i < COUNT(folders); i++)
+        assert_int_equal(mkdir(temporary_file(*state, folders[i]), 0700), 0);
+    put(state, labels[0], "0 0.3 0.2 0.2 0.2\n");
+    put(state, labels[1], "image,row,column,rows,columns\na.npy,3,8,6,8\n");
+    for (size_t i = 0; i < COUNT(places); i++) {
+        put_image(state, places[i]);
+        expected.image = "/a.npy";
+        expect_contacts(state, labels[1], LABELLED_BOTH, &expected, 1);
+        expect_contacts(state, "labels/train", LABELLED_BOTH, &expected, 1);
+        (void)unlink(temporary_file(*state, places[i]));
+    }
+    for (size_t i = 0; i < COUNT(labels); i++)
+        (void)unlink(temporary_file(*state, labels[i]));
+    for (size_t i = COUNT(folders); i-- > 0;)
+        assert_int_equal(rmdir(temporary_file(*state, folders[i])), 0);
+}
+
+/* ---- VOC. */
+
+#define BOX(a, b, c, d)                                                                            \
+    "<bndbox><xmin>" #a "</xmin><ymin>" #b "</ymin><xmax> " #c " </xmax><ymax>" #d                 \
+    "</ymax></bndbox>"
+#define OBJECT(name, box) "<object><name>" name "</name>" box "</object>"
+#define SIZE              "<size><width>40</width><height>30</height><depth>1</depth></size>\n"
+
+static void test_voc(void **state)
+{
+    const struct expected expected[] = {{"/a&b.npy", LABELLED_SHADOW, {0, 0, 1, 1}},
+                                        {"/a&b.npy", LABELLED_BOTH, {2, 1, 8, 39}},
+                                        {"/c.npy", LABELLED_BOTH, {9, 4, 2, 100}}};
+    put_image(state, "a&b.npy");
+    put_image(state, "c.npy");
+    put(state, "1.xml",
+        "<?xml version='1.0'?>\n<annotation><folder>x</folder>" OBJECT(
+            "\n shadow\n",
+            BOX(0, 1, 1, 1)) "<filename>a&amp;b.npy\n</filename>" SIZE
+                             "<object><part><name>shadow</name>" BOX(
+                                 5, 5, 6,
+                                 6) "</part><name>rock</name>"
+                                    "<a><b><c-is-a-name-longer-than-there-is-room-for-in-what-is-"
+                                    "kept><name>shadow</name>"
+                                    "</c-is-a-name-longer-than-there-is-room-for-in-what-is-kept></"
+                                    "b></a>" BOX(2, 3, 40, 10) "</object></annotation>");
+    put(state, "2.xml",
+        "<annotation><filename>c.npy</filename>" OBJECT("r",
+                                                        BOX(5, 10, 104.2, 11)) "</annotation>");
+    put(state, "3.xml", "<annotation><filename>none</filename></annotation>");
+    put(state, "classes.txt", "rock\n");
+    expect_contacts(state, "", LABELLED_BOTH, expected, COUNT(expected));
+}
+
+static void test_voc_that_is_wrong(void **state)
+{
+#define VOC(text) "<annotation>\n<filename>a.npy</filename>\n" SIZE text "</annotation>"
+#define NEEDS     "%/a.xml:4: an object needs a name, and a bndbox of xmin, ymin, xmax, ymax"
+    static const struct {
+        const char *text, *message;
+    } wrong[] = {
+        {"", "%/a.xml:1: no XML: no element found"},
+        {"<annotation>\n<object></annotation>", "%/a.xml:2: no XML: mismatched tag"},
+        {"<html></html>",
+         "%/a.xml:1: an annotation of VOC begins with <annotation>, not with html"},
+        {VOC(""), "%: holds no contacts"},
+        {VOC(OBJECT("mine", BOX(1, 2, 3, 4)) OBJECT("mine", "")), NEEDS},
+        {VOC("<object>" BOX(1, 2, 3, 4) "</object>"), NEEDS},
+        {VOC(OBJECT("mine", BOX(1, 2, 3, 4)) "<object>" BOX(1, 2, 3, 4) "</object>"), NEEDS},
+        {VOC(OBJECT("mine", "<bndbox><xmin>1</xmin><ymin>1</ymin><xmax>1</xmax></bndbox>")), NEEDS},
+        {VOC(OBJECT("mine", BOX(1, 2, three, 4))), "%/a.xml:4: is no number of pixels: three"},
+        {VOC("<size><width>-4</width></size>"), "%/a.xml:4: is no number of pixels: -4"},
+        {VOC(OBJECT("mine", BOX(3, 2, 2, 4))),
+         "%/a.xml:4: the box has no area: 3 rows and 0 columns; mend or remove it"},
+        {VOC(OBJECT("mine", BOX(3, 2, 42, 4))),
+         "%/a.xml:4: the box, rows 1 to 4 and columns 2 to 42, is not in the image of 30 rows and "
+         "40 columns"},
+        {"<annotation>" OBJECT("mine", BOX(1, 2, 3, 4)) "</annotation>",
+         "%/a.xml:1: no image is named"},
+        {"<annotation><filename>c</filename>" OBJECT("mine", BOX(1, 2, 3, 4)) "</annotation>",
+         "%/a.xml:1: there is no image 'c', neither beside the labels nor in 'images' below or "
+         "beside them"},
+    };
+    put_image(state, "a.npy");
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        put(state, "a.xml", wrong[i].text);
+        expect_refused(state, "", wrong[i].message);
+    }
+    static char text[10000] = "<annotation><filename>";
+    memset(text + strlen(text), 'a', 9000);
+    put(state, "a.xml", strcat(text, "</filename></annotation>"));
+    expect_refused(state, "",
+                   "%/a.xml:1: more text than an annotation has in /annotation/filename");
+}
+
+/* ---- What sonject writes itself. */
+
+static void test_own_labels_are_read_as_they_were_written(void **state)
+{
+    static const sonject_box boxes[] = {
+        {0, 0, 30, 40}, {0, 39, 1, 1}, {7, 3, 11, 13}, {13, 17, 9, 7}, {29, 0, 1, 23}};
+    static const char *const names[LABEL_FILES] = {"coco.json", "contacts.csv", "image.txt",
+                                                   "classes.txt", "image.xml"};
+    enum {
+        CONTACTS = COUNT(boxes)
+    };
+    static sonject_object_params objects[CONTACTS + 1];
+    static sonject_object_truth truth;
+    struct contact contacts[CONTACTS + 1];
+    struct class_names classes = {NULL, 0};
+    struct report report = {{0}, NULL, NULL};
+    struct image_labels labels = {"image.npy", ROWS_OF_IMAGE, COLUMNS_OF_IMAGE,
+                                  false,       contacts,      CONTACTS + 1};
+    struct expected expected[CONTACTS];
+    memset(contacts, 0, sizeof contacts);
+    put_image(state, "image.npy");
+    for (uint32_t i = 0; i < CONTACTS + 1; i++) {
+        struct contact *contact = &contacts[i];
+        snprintf(objects[i].name, sizeof objects[i].name, "=a, \"b\" # %u", i);
+        snprintf(objects[i].class_name, sizeof objects[i].class_name, "%s",
+                 i == 2  ? "rock & shadow"
+                 : i % 2 ? "\"#1\" mine"
+                         : "a, b");
+        contact->number = i + 1;
+        contact->object = &objects[i];
+        contact->truth = &truth;
+        EXPECT_OK(&report, class_names_take(&classes, &report, objects[i].class_name,
+                                            &contact->class_number));
+        if (i == CONTACTS)
+            break; /* nothing is seen of it */
+        contact->box = boxes[i];
+        contact->pixels = 1;
+        expected[i] =
+            (struct expected){"/image.npy", i == 2 ? LABELLED_SHADOW : LABELLED_BOTH, boxes[i]};
+    }
+    for (int file = 0; file < LABEL_FILES; file++) {
+        EXPECT_OK(&report, labels_write(&report, &labels, &classes, (enum label_file)file,
+                                        temporary_file(*state, names[file])));
+        if (file != LABEL_YOLO)
+            expect_contacts(state, file < LABEL_YOLO ? names[file] : "", LABELLED_BOTH, expected,
+                            CONTACTS);
+    }
+    class_names_clear(&classes);
+}
+
+/* ---- Highlights and shadows. */
+
+static void test_highlight_and_shadow_are_one_contact(void **state)
+{
+#define H "a.npy,highlight,"
+#define S "a.npy,shadow,"
+    static const struct {
+        const char *rows; /* image, part, row, column, rows, columns */
+        size_t count;
+        struct expected expected[4];
+    } cases[] = {
+        {H "5,10,4,3\n" S "4,13,6,9\n", 1, {{"", LABELLED_BOTH, {4, 10, 6, 12}}}},
+        {S "4,13,3,9\n" H "5,10,14,3\n", 1, {{"", LABELLED_BOTH, {4, 10, 15, 12}}}},
+        /* a shadow that has the highlight in it; one that begins where the other ends */
+        {S "4,13,3,9\n" H "5,14,1,10\n", 1, {{"", LABELLED_BOTH, {4, 13, 3, 11}}}},
+        {S "4,13,3,9\n" H "5,21,1,1\n", 1, {{"", LABELLED_BOTH, {4, 13, 3, 9}}}},
+        {S "4,13,3,9\n" H "5,22,1,1\n",
+         2,
+         {{"", LABELLED_SHADOW, {4, 13, 3, 9}}, {"", LABELLED_HIGHLIGHT, {5, 22, 1, 1}}}},
+        /* other rows, another image, boxes around both */
+        {S "4,13,3,9\n" H "7,10,2,3\n" H "1,10,3,3\n",
+         3,
+         {{"", LABELLED_HIGHLIGHT, {1, 10, 3, 3}},
+          {"", LABELLED_SHADOW, {4, 13, 3, 9}},
+          {"", LABELLED_HIGHLIGHT, {7, 10, 2, 3}}}},
+        {S "4,13,3,9\nb.npy,highlight,4,10,3,3\na.npy,both,4,10,3,3\n",
+         3,
+         {{"", LABELLED_BOTH, {4, 10, 3, 3}},
+          {"", LABELLED_SHADOW, {4, 13, 3, 9}},
+          {"/b.npy", LABELLED_HIGHLIGHT, {4, 10, 3, 3}}}},
+        /* one behind the other; one beside the other, whose rows overlap */
+        {S "4,34,4,6\n" H "4,10,4,4\n" S "4,14,4,10\n" H "4,30,4,4\n",
+         2,
+         {{"", LABELLED_BOTH, {4, 10, 4, 14}}, {"", LABELLED_BOTH, {4, 30, 4, 10}}}},
+        {S "4,14,6,6\n" S "8,14,6,6\n" H "9,10,5,4\n" H "4,10,5,4\n",
+         2,
+         {{"", LABELLED_BOTH, {4, 10, 6, 10}}, {"", LABELLED_BOTH, {8, 10, 6, 10}}}},
+        /* a shadow is nearest to a highlight that has a nearer one, and keeps the one left */
+        {S "4,20,4,12\n" H "4,30,4,4\n" S "4,34,4,6\n",
+         2,
+         {{"", LABELLED_SHADOW, {4, 20, 4, 12}}, {"", LABELLED_BOTH, {4, 30, 4, 10}}}},
+        {S "4,20,4,12\n" H "4,30,4,4\n" S "4,34,4,6\n" H "4,0,4,4\n",
+         2,
+         {{"", LABELLED_BOTH, {4, 0, 4, 32}}, {"", LABELLED_BOTH, {4, 30, 4, 10}}}},
+    };
+    char text[400];
+    put_image(state, "a.npy");
+    put_image(state, "b.npy");
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        snprintf(text, sizeof text, "image,class,row,column,rows,columns\n%s", cases[i].rows);
+        put(state, "l.csv", text);
+        expect_contacts(state, "l.csv", LABELLED_BOTH, cases[i].expected, cases[i].count);
+    }
+    put(state, "l.csv",
+        "image,class,row,column,rows,columns\na.npy,mine,5,10,4,3\n" S "4,13,6,9\n");
+    expect_contacts(state, "l.csv", LABELLED_HIGHLIGHT, cases[0].expected, 1);
+}
+
+/* ---- Quantiles. */
+
+static void test_quantiles(void **state)
+{
+    struct report report;
+    struct contact_set set;
+    put(state, "q.yaml",
+        "quantiles: [0.05, 0.5, 1]\ncontacts: 120\nhighlight_range: [40 cm, 0.4, 6 m]\n"
+        "shadow_along: [1, 2, 3 km]\n");
+    EXPECT_OK(&report, read_set(state, "q.yaml", LABELLED_BOTH, &report, &set));
+    const struct extent_quantiles *quantiles = &set.quantiles;
+    assert_int_equal(set.count, 0);
+    assert_int_equal(quantiles->count, 3);
+    assert_true(quantiles->contacts == 120.0);
+    assert_true(quantiles->levels[0] == 0.05 && quantiles->levels[1] == 0.5 &&
+                quantiles->levels[2] == 1.0);
+    assert_true(quantiles->extents_m[1][0] == 0.4 && quantiles->extents_m[1][1] == 0.4 &&
+                quantiles->extents_m[1][2] == 6.0);
+    assert_true(quantiles->extents_m[2][0] == 1.0 && quantiles->extents_m[2][1] == 2.0 &&
+                quantiles->extents_m[2][2] == 3000.0);
+    for (int i = 0; i < 3; i++)
+        assert_true(isnan(quantiles->extents_m[0][i]) && isnan(quantiles->extents_m[3][i]));
+    contact_set_clear(&set);
+}
+
+static void test_quantiles_that_are_wrong(void **state)
+{
+#define Q "quantiles: [0.1, 0.5]\ncontacts: 12\n"
+    static const struct {
+        const char *text, *message;
+    } wrong[] = {
+        {"quantiles: [0.1, 0.5]\nshadow_range: [1, 2]\n",
+         "%/q.yml:1:1: contacts: missing; add it (how many they were read off)"},
+        {"contacts: 12\nshadow_range: [1, 2]\n",
+         "%/q.yml:1:1: quantiles: missing; add it (shares of all contacts)"},
+        {Q, "%/q.yml:1:1: tells no extents: add highlight_along, highlight_range, shadow_along or "
+            "shadow_range"},
+        {Q "shadow_range: 1 m\n",
+         "%/q.yml:3:15: shadow_range: must be a list of 1 to 32 numbers that rise"},
+        {Q "shadow_range: [1, 2, 3]\n",
+         "%/q.yml:3:15: shadow_range: has 3 numbers, but there are 2 quantiles"},
+        {Q "shadow_range: [2, 1]\n",
+         "%/q.yml:3:19: shadow_range[1]: must be above the one before, 2, not 1"},
+        {Q "shadow_range: [0, 1]\n",
+         "%/q.yml:3:16: shadow_range[0]: must be from 1e-06 to 1e+06 m, not 0"},
+        {Q "shadow_range: [1, 2 s]\n",
+         "%/q.yml:3:19: shadow_range[1]: unit 's' is not one of m, km, cm, mm"},
+        {Q "shadow_rang: [1, 2]\n",
+         "%/q.yml:3:1: shadow_rang: unknown key; did you mean 'shadow_range'?"},
+        {"quantiles: [0.1, 0.1]\ncontacts: 12\nshadow_range: [1, 2]\n",
+         "%/q.yml:1:18: quantiles[1]: must be above the one before, 0.1, not 0.1"},
+        {"quantiles: [5, 95]\ncontacts: 0\nshadow_range: [1, 2]\n",
+         "%/q.yml:1:13: quantiles[0]: must be from 0 to 1, not 5\n"
+         "%/q.yml:2:11: contacts: must be 1...1e+09, not 0"},
+        {"names: [a\n", "%/q.yml:2:1: names: not valid YAML (while parsing a flow sequence: did "
+                        "not find expected ',' or ']'); check indentation, colons, quotes and "
+                        "brackets"},
+    };
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        put(state, "q.yml", wrong[i].text);
+        expect_refused(state, "q.yml", wrong[i].message);
+    }
+    char text[800] = Q "shadow_range: [";
+    for (int i = 0; i < 33; i++)
+        sprintf(text + strlen(text), "%d, ", i + 1);
+    put(state, "q.yml", strcat(text, "]\n"));
+    expect_refused(state, "q.yml",
+                   "%/q.yml:3:15: shadow_range: must be a list of 1 to 32 numbers that rise");
+}
+
+#define IN_FOLDER(test)                                                                            \
+    cmocka_unit_test_setup_teardown(test, make_temporary_folder, remove_temporary_folder)
+
+TEST_PROGRAM(NULL, NULL, IN_FOLDER(test_coco), IN_FOLDER(test_coco_that_is_wrong),
+             IN_FOLDER(test_tables), IN_FOLDER(test_tables_that_are_wrong),
+             IN_FOLDER(test_so_many_contacts_and_no_more), IN_FOLDER(test_yolo),
+             IN_FOLDER(test_yolo_that_is_wrong), IN_FOLDER(test_where_images_are_looked_for),
+             IN_FOLDER(test_voc), IN_FOLDER(test_voc_that_is_wrong),
+             IN_FOLDER(test_own_labels_are_read_as_they_were_written),
+             IN_FOLDER(test_highlight_and_shadow_are_one_contact), IN_FOLDER(test_quantiles),
+             IN_FOLDER(test_quantiles_that_are_wrong))
