@@ -647,7 +647,11 @@ def test_objects_may_lie_at_the_border(ground, command):
     done = command("campaign", "campaign.yaml", "-o", "border", "--set", "chip.spread=1", "--set", "images=24")
     assert done.returncode == 0, done.stderr
     cut = 0
+    places = []
     for record in records(ground / "border"):
+        (drawn,) = [entry for entry in record["set"] if entry.startswith("objects=")]
+        places += [(float(row) - record["swath"]["row"], float(column) - record["swath"]["column"])
+                   for row, column in re.findall(r'"row": ([^,]+), "column": ([^}]+)}', drawn)]
         for each in record["annotations"]:
             column, row, columns, rows = each["bbox"]
             assert 0 <= column and 0 <= row and column + columns <= CHIP and row + rows <= CHIP
@@ -656,6 +660,9 @@ def test_objects_may_lie_at_the_border(ground, command):
             cut += each["truncated"]
     # of a chip's area more than a half is less than an object and its shadow from an edge
     assert cut >= 6
+    assert len(places) >= 24
+    for axis in zip(*places):  # of uniform numbers 10 % lie so near to each end
+        assert 0 <= min(axis) < 0.1 * CHIP and 0.9 * CHIP < max(axis) <= CHIP - 1
 
 
 def test_a_value_may_be_a_ratio_of_another(ground, command):
@@ -780,6 +787,38 @@ def test_the_example_runs_as_it_says(ground, environment):
     assert answer.returncode == 0, answer.stderr
     assert answer.stderr.endswith("sonject: these images are in minefield\n")
     assert sorted(record["id"] for record in records(ground / "minefield")) == [1, 21, 41]
+
+
+# Of the targets: how many may be in an image, lengths in metres from the smallest row to the largest.
+STARTS = {"bottom_mines": (1, 0.98, 3.25), "uxo": (1, 0.24, 2.22), "drums": (3, 0.585, 0.88), "crab_pots": (1, 0.9, 1.24),
+          "tyres": (1, 0.55, 1.04), "boulders": (7, 0.26, 1.8), "wreck_debris": (4, 0.5, 6)}
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_starting_campaigns_run_as_they_say(ground, environment, start):
+    """And are short, with what their tables say of sizes."""
+    text = (SOURCE / "tools" / "campaigns" / f"{start}.yaml").read_text()
+    assert text.count("\n") <= 80
+    folder = ground / f"start_{start}"
+    folder.mkdir()
+    (folder / "tools").symlink_to(SOURCE / "tools")
+    (folder / "sonject").symlink_to(COMMAND)
+    seabed, campaign = comment_commands(f"tools/campaigns/{start}.yaml")
+    answer = subprocess.run(["bash", "-euc", f"{seabed}; {campaign} --set images=6"], cwd=folder,
+                            env={**environment, "PATH": f"{folder}:{environment['PATH']}"},
+                            capture_output=True, text=True, check=False)
+    assert answer.returncode == 0, answer.stderr
+    (data,) = [path.parent for path in folder.glob("*/dataset.json")]
+    most, shortest, longest = STARTS[start]
+    found = records(data)
+    assert len(found) == 6 and max(record["targets"] for record in found) <= most
+    for record in found:
+        truths = json.loads((data / of_image(record, "truth", ".json")).read_text())["objects"]
+        for truth in truths[: record["targets"]]:
+            longer = max(truth["dimensions"].values())
+            assert shortest - 1e-6 <= longer <= 1.05 * longest
+        seen = [annotation["object_id"] for annotation in record["annotations"]]
+        assert set(range(1, 1 + record["targets"])) <= set(seen) or "difficult" in text
 
 
 HOSTILE = [
