@@ -13,6 +13,7 @@
     ROW(merge)                                                                                     \
     ROW(check)                                                                                     \
     ROW(measure)                                                                                   \
+    ROW(calibrate)                                                                                 \
     ROW(quicklook)                                                                                 \
     ROW(convert)                                                                                   \
     ROW(seabed)                                                                                    \

@@ -2,6 +2,7 @@
 #ifndef SONJECT_SONJECT_H
 #define SONJECT_SONJECT_H
 
+#include <sonject/calibrate.h>
 #include <sonject/campaign.h>
 #include <sonject/context.h>
 #include <sonject/convert.h>

@@ -3,8 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <sonject/calibrate.h>
+
 #include "api/handles.h"
 #include "base/memory.h"
+#include "measure/calibration.h"
 #include "measure/measures.h"
 
 #define FIND_MOST     100
@@ -153,4 +156,55 @@ sonject_status sonject_compare_contacts(sonject_context *context, const char *fi
     if (!first || !second)
         return null_argument(&context->report, "first and second");
     return compare_contact_files(&context->report, first, second, text);
+}
+
+/* Magnitudes of complex pixels; others as they are. */
+static sonject_status calibrate_pixels(struct report *report,
+                                       const sonject_calibrate_params *params,
+                                       const struct image_options *options, char **text)
+{
+    struct injection_input input;
+    struct stored_swath swath = {NULL, 0, 0, 0.0, 0.0, false};
+    float *packed = NULL;
+    sonject_status status = take_pixels(report, params->pixels, &input, &packed);
+    const size_t count = status == SONJECT_OK ? input.rows * input.columns : 0;
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++) {
+        packed[i] = input.is_complex ? hypotf(packed[2 * i], packed[2 * i + 1]) : packed[i];
+        if (!isfinite(packed[i]))
+            status = report_failure(report, SONJECT_ERROR_INPUT,
+                                    "the pixel at row %zu, column %zu is not a finite number",
+                                    i / input.columns, i % input.columns);
+    }
+    if (status == SONJECT_OK) {
+        swath.values = packed;
+        swath.rows = input.rows;
+        swath.columns = input.columns;
+        swath.is_complex = input.is_complex;
+    }
+    THEN(status, calibrate_image(report, params, options, &swath, text));
+    free(packed);
+    return status;
+}
+
+sonject_status sonject_calibrate(sonject_context *context, const sonject_calibrate_params *params,
+                                 char **text)
+{
+    sonject_calibrate_params taken;
+    struct image_options options;
+    char *made = NULL;
+    CHECK(context_begin_call(context));
+    struct report *report = &context->report;
+    if (text)
+        *text = NULL;
+    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "calibrate parameters"));
+    if (!taken.image == !taken.pixels)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT, "give an image file, or pixels");
+    CHECK(image_options_take(report, taken.channel, taken.array, NULL, taken.geometry, &options));
+    CHECK(taken.pixels ? calibrate_pixels(report, &taken, &options, &made)
+                       : calibrate_image(report, &taken, &options, NULL, &made));
+    if (text)
+        *text = made;
+    else
+        free(made);
+    return SONJECT_OK;
 }

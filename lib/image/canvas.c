@@ -155,6 +155,23 @@ static double distance_to(const struct stroke *stroke, double x, double y)
     return hypot(x - stroke->x0 - at * along_x, y - stroke->y0 - at * along_y);
 }
 
+void canvas_line(struct canvas *canvas, double x0, double y0, double x1, double y1,
+                 double thickness, struct colour colour)
+{
+    const struct stroke stroke = {x0, y0, x1, y1};
+    const double reach = 0.5 * thickness + 1.0;
+    if (!isfinite(x0 + y0 + x1 + y1))
+        return;
+    const double left = fmax(0.0, floor(fmin(x0, x1) - reach));
+    const double right = fmin(canvas->width - 1.0, ceil(fmax(x0, x1) + reach));
+    const double top = fmax(0.0, floor(fmin(y0, y1) - reach));
+    const double bottom = fmin(canvas->height - 1.0, ceil(fmax(y0, y1) + reach));
+    for (double y = top; y <= bottom; y += 1.0)
+        for (double x = left; x <= right; x += 1.0)
+            blend(canvas, (int64_t)x, (int64_t)y, colour,
+                  fmin(fmax(0.5 * thickness + 0.5 - distance_to(&stroke, x, y), 0.0), 1.0));
+}
+
 static void draw_glyph(struct canvas *canvas, int64_t x, int64_t y, const char *glyph,
                        enum text_direction direction, struct colour colour)
 {

@@ -28,6 +28,11 @@ void canvas_fill(struct canvas *canvas, int64_t x, int64_t y, int64_t width, int
 void canvas_frame(struct canvas *canvas, int64_t x, int64_t y, int64_t width, int64_t height,
                   struct colour colour);
 
+/* A straight line with round ends and smooth edges; one point makes a dot. Nothing where an end is
+ * no number. */
+void canvas_line(struct canvas *canvas, double x0, double y0, double x1, double y1,
+                 double thickness, struct colour colour);
+
 #define FONT_CAPITAL_HEIGHT 12 /* pixels */
 #define FONT_ASCENT         14 /* of the highest stroke above the baseline */
 #define FONT_DESCENT        5

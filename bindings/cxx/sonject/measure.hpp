@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include <sonject/calibrate.h>
 #include <sonject/context.hpp>
 #include <sonject/error.hpp>
 #include <sonject/injection.hpp>
@@ -37,6 +38,14 @@ inline sonject_measurement measure(const context &context, const pixels &image,
     params.influence_mask = influence.size() ? influence.data() : nullptr;
     params.labels_mask = labels.size() ? labels.data() : nullptr;
     return measure(context, params);
+}
+
+/* What a swath tells of itself, for scenes to take; see sonject_calibrate. */
+inline std::string calibrate(const context &context, const sonject_calibrate_params &params)
+{
+    detail::text text;
+    context.check(sonject_calibrate(context.get(), &params, text.out()));
+    return text.copy();
 }
 
 /* Contacts of an image as JSON; see sonject_measure_contacts. */

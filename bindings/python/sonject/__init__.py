@@ -20,7 +20,7 @@ from ._classes import (
     Statistics,
 )
 from .actions import (
-    absorption, check, convert, element_layout, element_series, form, inject, measure,
+    absorption, calibrate, check, convert, element_layout, element_series, form, inject, measure,
     measure_contact, merge, quicklook, run, run_elements, trace,
 )
 from .campaign import Campaign, merge_campaign
@@ -42,7 +42,7 @@ __all__ = [
     "Box", "Campaign", "CampaignImage", "Cancelled", "ContactMeasures", "Context", "ConvertAxis",
     "Device", "ElementLayout", "LabelFormat", "Measurement", "ObjectTruth",
     "Progress", "RangeAxis", "Result", "Samples", "Scene", "SeriesForm", "SonjectError",
-    "Statistics", "Status", "absorption", "check", "convert",
+    "Statistics", "Status", "absorption", "calibrate", "check", "convert",
     "default_context", "devices", "element_layout", "element_series", "form", "inject", "keys",
     "measure", "measure_contact", "merge", "merge_campaign", "quicklook", "run", "run_elements", "trace",
     "version",

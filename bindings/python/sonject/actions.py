@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import itertools
+import json
 from typing import Any, Iterable, Mapping, Optional, Tuple, Union
 
 import numpy
@@ -321,6 +322,46 @@ def measure(
     context.call("sonject_measure", context, ctypes.byref(params), ctypes.byref(measurement))
     del array, masks
     return Measurement.from_structure(measurement)
+
+
+def calibrate(
+    swath: Any,
+    *,
+    channel: Union[str, int, None] = None,
+    array: Optional[str] = None,
+    geometry: Optional[Mapping[str, Any]] = None,
+    output: Optional[PathLike] = None,
+    picture: Optional[PathLike] = None,
+    context: Optional[Context] = None,
+) -> dict[str, Any]:
+    """What a swath tells of itself: its transfer function, ceiling, looks, response, noise floor and
+    water column, as keys of scenes, and under "measured" each with its standard error, or "not_seen"
+    with the reason.
+
+    swath: an image file, or an array of numbers as they are stored, of any transfer function;
+    geometry: keys of input.geometry of scenes, None for what the file's metadata says; output: a file
+    that gets it as JSON, for input.calibration of scenes; picture: a PNG that shows why to believe it.
+    """
+    context = default_context() if context is None else context
+    is_file = isinstance(swath, (str, bytes)) or hasattr(swath, "__fspath__")
+    if not is_file:
+        swath = numpy.asarray(swath)
+        if swath.dtype.kind in "iu":
+            swath = swath.astype(numpy.float32)
+    pixels, kept = (None, None) if is_file else library_pixels(swath)
+    params = filled(
+        s.sonject_calibrate_params,
+        image=file_name("swath", swath) if is_file else None,
+        pixels=None if pixels is None else ctypes.pointer(pixels),
+        as_json=True,
+        output=optional_file_name("output", output),
+        picture=optional_file_name("picture", picture),
+        **_image_keys(channel=channel, array=array, geometry=geometry),
+    )
+    text = context.text("sonject_calibrate", context, ctypes.byref(params))
+    del kept
+    found: dict[str, Any] = json.loads(text)
+    return found
 
 
 def measure_contact(

@@ -1,0 +1,411 @@
+#include "measure/calibration.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "image/statistics.h"
+#include "measure/calibration_parts.h"
+#include "measure/speckle_law.h"
+
+#define EDGES_LEAST 4
+
+/* Looks. */
+#define LOOKS_NO_SPECKLE  32.0 /* as many, of one fit, say that the law is not that of speckle */
+#define LOOKS_MISFIT      0.02 /* and as large a misfit that looks mean little */
+#define LOOKS_ERROR_MOST  0.35 /* of the logarithm */
+#define LOOKS_ONE         0.1  /* of the logarithm: what differs less from one look is one look */
+#define LOOKS_BIAS        0.01 /* of what levels vary within plain tiles */
+#define CLEARLY           3.0  /* standard errors */
+#define PARAMETER_ONE     0.03 /* of the logarithm, likewise */
+#define PARAMETER_UNKNOWN 0.5
+#define EXPONENT_MOST     4.0
+
+/* Texture. */
+#define TEXTURE_FIRST_LAG 4 /* speckle is forgotten from here on */
+#define TEXTURE_END_LAG   8
+#define TEXTURE_MOST      0.6 /* of the variance of log intensity */
+
+static const char too_small[] =
+    "fewer than 12 tiles of 16 x 16 pixels are neither blank, constant nor clipped";
+
+double pixel_log_intensity(const struct calibration *calibration, const struct stored_swath *swath,
+                           double value)
+{
+    const enum curve_family family = calibration->family;
+    const struct curve_fit *fit = &calibration->fits[family];
+    const double least = family == CURVE_DECIBEL ? value : fmax(value, 0.5 * swath->unit);
+    return curve_log_intensity(family, fit->parameter, curve_full_scale(calibration, swath), least);
+}
+
+double curve_full_scale(const struct calibration *calibration, const struct stored_swath *swath)
+{
+    return calibration->full_scale.unseen ? swath->type_full : calibration->full_scale.value;
+}
+
+/* ---- The ceiling. */
+
+static void find_ceiling(const struct stored_swath *swath, struct calibration *found)
+{
+    const size_t count = swath->rows * swath->columns;
+    const double ceiling = swath->is_complex ? INFINITY : find_saturation(swath->values, count);
+    size_t clipped = 0;
+    double squares = 0.0;
+    found->full_scale.how = "fullest stored number, with more pixels than the one below it by far";
+    found->clipped.how = "share of pixels that have it, errors from strips of rows";
+    found->full_scale.value = ceiling;
+    if (!isfinite(ceiling)) {
+        found->full_scale.unseen = found->clipped.unseen =
+            swath->is_complex ? "complex pixels have no ceiling"
+                              : "the largest number has fewer than 16 pixels, or no more than 8 "
+                                "times those of the next: nothing clips";
+        return;
+    }
+    const size_t strips = swath->rows < 32 ? swath->rows : 32;
+    for (size_t strip = 0; strip < strips; strip++) {
+        const size_t first = strip * swath->rows / strips * swath->columns;
+        const size_t end = (strip + 1) * swath->rows / strips * swath->columns;
+        size_t here = 0;
+        for (size_t i = first; i < end; i++)
+            here += (double)swath->values[i] >= ceiling;
+        const double share = (double)here / (double)(end - first);
+        squares += share * share;
+        clipped += here;
+    }
+    const double share = (double)clipped / (double)count;
+    found->clipped.value = share;
+    found->clipped.error =
+        sqrt(fmax(0.0, squares / (double)strips - share * share) / (double)strips);
+}
+
+/* ---- The curve, and the speckle with it. */
+
+/* Texture's share of the variance of log intensity: what pixels some way apart have in common along
+ * both axes; bands along one of them are none. error: its standard error. */
+static sonject_status texture_share(struct report *report, const struct calibration *found,
+                                    const struct stored_swath *swath, enum curve_family family,
+                                    double *share, double *error)
+{
+    const struct plain_tiles *tiles = &found->tiles;
+    const size_t side = tiles->side, pixels = side * side;
+    double *logs = allocate_array(pixels, sizeof *logs);
+    double sums[2] = {0.0, 0.0}, squares[2] = {0.0, 0.0}, variance = 0.0;
+    CHECK_MEMORY(report, logs, "a calibration");
+    for (size_t tile = 0; tile < tiles->count; tile++) {
+        double mean = 0.0, own = 0.0, along[2] = {0.0, 0.0};
+        for (size_t i = 0; i < pixels; i++) {
+            const size_t at =
+                (tiles->rows[tile] + i / side) * swath->columns + tiles->columns[tile] + i % side;
+            const double value = fmax((double)swath->values[at], found->tiles.edges[0]);
+            logs[i] = curve_log_intensity(family, found->fits[family].parameter,
+                                          curve_full_scale(found, swath), value);
+            mean += logs[i] / (double)pixels;
+        }
+        for (size_t i = 0; i < pixels; i++)
+            own += (logs[i] - mean) * (logs[i] - mean) / (double)pixels;
+        for (size_t lag = TEXTURE_FIRST_LAG; lag < TEXTURE_END_LAG; lag++)
+            for (size_t i = 0; i < side; i++)
+                for (size_t k = 0; k + lag < side; k++) {
+                    const double a = logs[i * side + k], b = logs[i * side + k + lag];
+                    const double c = logs[k * side + i], d = logs[(k + lag) * side + i];
+                    const double weight =
+                        1.0 / (double)((TEXTURE_END_LAG - TEXTURE_FIRST_LAG) * side * (side - lag));
+                    along[0] += weight * (c - mean) * (d - mean);
+                    along[1] += weight * (a - mean) * (b - mean);
+                }
+        variance += own;
+        for (int axis = 0; axis < 2; axis++) {
+            sums[axis] += along[axis];
+            squares[axis] += along[axis] * along[axis];
+        }
+    }
+    free(logs);
+    const double count = (double)tiles->count;
+    const int axis = sums[0] < sums[1] ? 0 : 1;
+    const double mean = sums[axis] / count;
+    *error = sqrt(fmax(0.0, squares[axis] / count - mean * mean) / count) / (variance / count);
+    *share = fmin(TEXTURE_MOST, mean / (variance / count));
+    return SONJECT_OK;
+}
+
+/* The texture that has this share of the variance of log intensity beside so many looks. */
+static double texture_of_share(double share, double looks)
+{
+    const double variance = share / (1.0 - share) * log_gamma_variance(looks);
+    double low = 0.0, high = 4.0;
+    for (int i = 0; i < 50; i++) {
+        const double middle = 0.5 * (low + high);
+        if (log_gamma_variance(1.0 / middle) < variance)
+            low = middle;
+        else
+            high = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+static sonject_status fit_family(struct report *report, struct calibration *found,
+                                 const struct stored_swath *swath, enum curve_family family,
+                                 double parameter, double looks)
+{
+    return curve_fit_find(report, &found->tiles, curve_full_scale(found, swath), family, parameter,
+                          looks, found->fits[family].texture, &found->fits[family]);
+}
+
+/* Curve, looks and texture of a family, all free. */
+static sonject_status fit_freely(struct report *report, struct calibration *found,
+                                 const struct stored_swath *swath, enum curve_family family,
+                                 double parameter)
+{
+    struct curve_fit *fit = &found->fits[family];
+    double share = 0.0, error = 0.0;
+    CHECK(fit_family(report, found, swath, family, parameter, NAN));
+    CHECK(texture_share(report, found, swath, family, &share, &error));
+    fit->texture = share > CLEARLY * error ? texture_of_share(share, fmax(1.0, fit->looks)) : 0.0;
+    if (fit->texture > 0.0)
+        CHECK(fit_family(report, found, swath, family, parameter, NAN));
+    fit->texture_error =
+        texture_of_share(fmax(0.0, share) + fmax(error, 1e-6), fmax(1.0, fit->looks)) -
+        texture_of_share(fmax(1e-9, share), fmax(1.0, fit->looks));
+    return SONJECT_OK;
+}
+
+/* Whether the tiles' likelihoods differ by no more than they scatter (Q. H. Vuong, "Likelihood
+ * ratio tests for model selection and non-nested hypotheses", Econometrica 57, 1989). */
+static bool are_alike(const struct calibration *found, enum curve_family a, enum curve_family b)
+{
+    const double count = (double)found->tiles.count;
+    double sum = 0.0, squares = 0.0;
+    for (size_t i = 0; i < found->tiles.count; i++) {
+        const double difference = found->fits[a].by_tile[i] - found->fits[b].by_tile[i];
+        sum += difference;
+        squares += difference * difference;
+    }
+    const double variance = fmax(0.0, squares - sum * sum / count);
+    return fabs(sum) <= CLEARLY * sqrt(variance) + 1.0;
+}
+
+static bool is_near(double parameter, double error, double simple)
+{
+    return fabs(log(parameter / simple)) < CLEARLY * error + PARAMETER_ONE;
+}
+
+static void choose_family(struct calibration *found, const bool tried[CURVE_FAMILIES])
+{
+    const struct curve_fit *power = &found->fits[CURVE_POWER];
+    int best = -1;
+    for (int family = 0; family < CURVE_FAMILIES; family++)
+        if (tried[family] &&
+            (best < 0 || found->fits[family].likelihood > found->fits[best].likelihood))
+            best = family;
+    for (int family = 0; family < CURVE_FAMILIES; family++)
+        found->alike[family] =
+            tried[family] && are_alike(found, (enum curve_family)family, (enum curve_family)best);
+    const bool is_simple = is_near(power->parameter, power->parameter_error, 1.0) ||
+                           is_near(power->parameter, power->parameter_error, 0.5);
+    found->family = (enum curve_family)best;
+    if (found->alike[CURVE_POWER] && is_simple)
+        found->family = CURVE_POWER;
+    else if (found->alike[CURVE_DECIBEL] && power->parameter > EXPONENT_MOST)
+        found->family = CURVE_DECIBEL; /* no recorder has such an exponent */
+    found->alike[found->family] = false;
+    /* nearly straight, it is the same curve */
+    if (found->family == CURVE_POWER && is_near(power->parameter, power->parameter_error, 1.0) &&
+        is_near(found->fits[CURVE_SCHLICK].parameter, found->fits[CURVE_SCHLICK].parameter_error,
+                1.0))
+        found->alike[CURVE_SCHLICK] = false;
+}
+
+/* The parameter of the chosen family for one look. */
+static sonject_status fit_one_look(struct report *report, struct calibration *found,
+                                   const struct stored_swath *swath, double parameter)
+{
+    const enum curve_family family = found->family;
+    const bool by_contrast = found->looks.unseen && isnan(parameter);
+    found->parameter.how = by_contrast ? "amplitudes of plain tiles vary as those of one look"
+                                       : "likeliest for speckle in plain tiles of all levels";
+    CHECK(fit_family(report, found, swath, family, parameter, 1.0));
+    if (!by_contrast)
+        return SONJECT_OK;
+    struct curve_fit *fit = &found->fits[family];
+    CHECK(find_by_contrast(report, &found->tiles, swath, curve_full_scale(found, swath), family,
+                           fit));
+    const double error = fit->parameter_error;
+    CHECK(fit_family(report, found, swath, family, fit->parameter, 1.0)); /* for the levels */
+    fit->parameter_error = error;
+    return SONJECT_OK;
+}
+
+/* Looks of the chosen family, and its parameter where they are known to be one. */
+static sonject_status settle_looks(struct report *report, struct calibration *found,
+                                   const struct stored_swath *swath, double parameter)
+{
+    const struct curve_fit *fit = &found->fits[found->family];
+    const double error = fit->looks_error;
+    struct estimate *looks = &found->looks;
+    looks->value = fit->looks;
+    looks->error = fit->looks * hypot(error, LOOKS_BIAS);
+    looks->how = "law of the logarithm of intensity in plain tiles, fitted with the curve";
+    found->parameter.how = "likeliest for speckle in plain tiles of all levels";
+    if (fit->looks > LOOKS_NO_SPECKLE || !(error < LOOKS_ERROR_MOST) ||
+        (isnan(parameter) && fit->misfit > LOOKS_MISFIT))
+        looks->unseen = "the logarithms of the plain tiles' numbers are not spread as those of "
+                        "speckle; 1 look is taken";
+    else if (isnan(parameter) && log(fit->looks) < fmax(LOOKS_ONE, CLEARLY * error))
+        looks->value = 1.0;
+    else
+        return SONJECT_OK;
+    return fit_one_look(report, found, swath, parameter);
+}
+
+/* The kind that the power's exponent makes, which is then fitted no more. Where no law of speckle
+ * tells looks and exponent apart, several looks of plain amplitudes explain a narrow spread. */
+static sonject_status settle_power(struct report *report, struct calibration *found,
+                                   const struct stored_swath *swath)
+{
+    const struct curve_fit *fit = &found->fits[CURVE_POWER];
+    const bool is_narrow = found->looks.unseen && fit->parameter > 1.0;
+    found->transfer.kind = SONJECT_TRANSFER_GAMMA;
+    found->alike[CURVE_POWER] = is_narrow;
+    found->alike_exponent = fit->parameter;
+    for (int kind = 0; kind < 2; kind++) {
+        const double simple = kind == 0 ? 1.0 : 0.5;
+        if (!is_near(fit->parameter, fit->parameter_error, simple) && !(kind == 0 && is_narrow))
+            continue;
+        found->transfer.kind = kind == 0 ? SONJECT_TRANSFER_AMPLITUDE : SONJECT_TRANSFER_INTENSITY;
+        found->looks.unseen = NULL;
+        CHECK(fit_freely(report, found, swath, CURVE_POWER, simple));
+        return settle_looks(report, found, swath, simple);
+    }
+    return SONJECT_OK;
+}
+
+static void tell_curve(struct calibration *found)
+{
+    const struct curve_fit *fit = &found->fits[found->family];
+    found->parameter.value = fit->parameter;
+    found->parameter.error = fit->parameter * fit->parameter_error;
+    found->shape.how = "what pixels 4 to 7 apart have in common in plain tiles";
+    found->looks.value = fmax(1.0, found->looks.value);
+    if (fit->texture > 0.0) {
+        found->shape.value = 1.0 / fit->texture;
+        found->shape.error = fit->texture_error / (fit->texture * fit->texture);
+    } else {
+        found->shape.unseen = "plain tiles have no texture that speckle does not explain";
+    }
+    if (!(fit->parameter_error < PARAMETER_UNKNOWN) &&
+        found->transfer.kind >= SONJECT_TRANSFER_DECIBEL)
+        found->parameter.unseen = "the tiles do not tell it to within a half";
+}
+
+static sonject_status find_curve(struct report *report, struct calibration *found,
+                                 const struct stored_swath *swath)
+{
+    const double full = curve_full_scale(found, swath);
+    const size_t count = swath->rows * swath->columns;
+    double lowest = INFINITY, highest = -INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        lowest = fmin(lowest, (double)swath->values[i]);
+        highest = fmax(highest, (double)swath->values[i]);
+    }
+    if (swath->is_complex) {
+        found->family = CURVE_POWER;
+        found->transfer.kind = SONJECT_TRANSFER_AMPLITUDE;
+        CHECK(fit_freely(report, found, swath, CURVE_POWER, 1.0));
+        CHECK(settle_looks(report, found, swath, 1.0));
+        tell_curve(found);
+        return SONJECT_OK;
+    }
+    const bool tried[CURVE_FAMILIES] = {
+        [CURVE_POWER] = lowest >= 0.0,
+        [CURVE_DECIBEL] = true,
+        [CURVE_SCHLICK] = lowest >= 0.0 && highest <= full,
+    };
+    for (int family = 0; family < CURVE_FAMILIES; family++)
+        if (tried[family])
+            CHECK(fit_freely(report, found, swath, (enum curve_family)family, NAN));
+    choose_family(found, tried);
+    CHECK(settle_looks(report, found, swath, NAN));
+    if (found->family == CURVE_POWER)
+        CHECK(settle_power(report, found, swath));
+    else
+        found->transfer.kind =
+            found->family == CURVE_DECIBEL ? SONJECT_TRANSFER_DECIBEL : SONJECT_TRANSFER_SCHLICK;
+    tell_curve(found);
+    return SONJECT_OK;
+}
+
+/* ---- All of it. */
+
+void calibration_clear(struct calibration *calibration)
+{
+    for (int family = 0; family < CURVE_FAMILIES; family++)
+        curve_fit_clear(&calibration->fits[family]);
+    plain_tiles_clear(&calibration->tiles);
+    first_returns_clear(&calibration->returns);
+    memset(calibration, 0, sizeof *calibration);
+}
+
+static void fill_unseen(struct calibration *found)
+{
+    struct estimate *const all[] = {
+        &found->transfer_kind, &found->parameter,     &found->looks,         &found->shape,
+        &found->along_rows,    &found->range_columns, &found->noise_floor_db};
+    for (size_t i = 0; i < COUNT(all); i++)
+        all[i]->unseen = too_small;
+}
+
+static void forget_curve(struct calibration *found)
+{
+    for (int family = 0; family < CURVE_FAMILIES; family++)
+        curve_fit_clear(&found->fits[family]);
+    plain_tiles_clear(&found->tiles);
+    memset(&found->looks, 0, sizeof found->looks);
+    memset(&found->shape, 0, sizeof found->shape);
+}
+
+/* Tiles, and the curve that they tell; of too few there is none. */
+static sonject_status find_from_tiles(struct report *report, struct calibration *found,
+                                      const struct stored_swath *swath)
+{
+    const double ceiling = found->full_scale.unseen ? INFINITY : found->full_scale.value;
+    CHECK(plain_tiles_init(&found->tiles, report, swath, &found->returns, ceiling));
+    if (found->tiles.count >= TILES_LEAST && found->tiles.edge_count >= EDGES_LEAST)
+        return find_curve(report, found, swath);
+    fill_unseen(found);
+    return SONJECT_OK;
+}
+
+sonject_status calibrate_swath(struct report *report, const struct stored_swath *swath,
+                               const struct calibration_geometry *geometry,
+                               struct calibration *calibration)
+{
+    struct calibration *found = calibration;
+    memset(found, 0, sizeof *found);
+    found->rows = swath->rows;
+    found->columns = swath->columns;
+    found->row_spacing_m = geometry->row_spacing_m;
+    found->column_spacing_m = geometry->column_spacing_m;
+    found->first_slant_range_m = geometry->first_slant_range_m;
+    found->nadir_column.unseen = found->altitude_m.unseen = too_small;
+    find_ceiling(swath, found);
+    sonject_status status = find_from_tiles(report, found, swath);
+    if (status == SONJECT_OK && !found->transfer_kind.unseen) {
+        status = find_water(report, found, swath);
+        if (status == SONJECT_OK && found->returns.sides != WATER_UNSEEN) {
+            forget_curve(found);
+            status = find_from_tiles(report, found, swath);
+        }
+    }
+    if (status == SONJECT_OK && !found->transfer_kind.unseen)
+        status = find_parts(report, found, swath);
+    if (!found->full_scale.unseen)
+        found->transfer.full_scale = found->full_scale.value;
+    found->transfer.parameter =
+        !found->transfer_kind.unseen && found->transfer.kind >= SONJECT_TRANSFER_DECIBEL
+            ? found->parameter.value
+            : 1.0;
+    if (status != SONJECT_OK)
+        calibration_clear(found);
+    return status;
+}

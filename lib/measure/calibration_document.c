@@ -1,0 +1,277 @@
+/* A calibration as a document: keys that a scene takes, and what was measured. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/json_document.h"
+#include "base/memory.h"
+#include "base/text.h"
+#include "measure/calibration.h"
+
+#define DIGITS     4
+#define WHOLE_MOST 1e6 /* whole numbers, such as a ceiling, stay as they are */
+#define LINE_WIDTH 96
+#define LOOKS_KEPT 64.0 /* that injection.match.looks takes at most */
+
+static const char *const kind_words[] = {"amplitude", "intensity", "decibel", "gamma", "schlick"};
+static const char *const family_words[] = {
+    [CURVE_POWER] = "gamma", [CURVE_DECIBEL] = "decibel", [CURVE_SCHLICK] = "schlick"};
+static const char *const side_words[] = {
+    [WATER_AT_LEFT] = "one, range grows to the right",
+    [WATER_AT_RIGHT] = "one, range grows to the left",
+    [WATER_BETWEEN] = "two",
+};
+
+/* A number of four digits, so that no last bit of a machine's logarithms decides a pixel. */
+static double rounded(double value)
+{
+    char text[DIGITS + 16];
+    double number = value;
+    const char *rest;
+    if (isfinite(value))
+        text_to_number(text_of_number(text, sizeof text, value, DIGITS), &number, &rest);
+    return number;
+}
+
+static json_t *number_of(double value)
+{
+    return fabs(value) < WHOLE_MOST && value == floor(value) ? json_integer((json_int_t)value)
+                                                             : json_number(rounded(value));
+}
+
+static json_t *quantity(double value, const char *unit)
+{
+    char number[DIGITS + 16], text[DIGITS + 24];
+    snprintf(text, sizeof text, "%s %s", text_of_number(number, sizeof number, value, DIGITS),
+             unit);
+    return json_text(text);
+}
+
+static json_t *seen(const struct estimate *estimate, const char *unit)
+{
+    json_t *object = json_object();
+    if (estimate->unseen) {
+        json_add(&object, "not_seen", json_text(estimate->unseen));
+        return object;
+    }
+    json_add(&object, "value", number_of(estimate->value));
+    json_add(&object, "standard_error", number_of(estimate->error));
+    if (unit)
+        json_add(&object, "unit", json_text(unit));
+    if (estimate->how)
+        json_add(&object, "how", json_text(estimate->how));
+    return object;
+}
+
+static json_t *transfer_keys(const struct calibration *found)
+{
+    json_t *transfer = json_object();
+    if (!found->transfer_kind.unseen) {
+        json_add(&transfer, "kind", json_text(kind_words[found->transfer.kind]));
+        if (found->transfer.kind >= SONJECT_TRANSFER_DECIBEL)
+            json_add(&transfer, "parameter", number_of(found->transfer.parameter));
+    }
+    if (!found->full_scale.unseen)
+        json_add(&transfer, "full_scale", number_of(found->full_scale.value));
+    return transfer;
+}
+
+/* Adds a section that has keys. */
+static void add_section(json_t **document, const char *key, json_t *section)
+{
+    if (section && json_object_size(section) == 0)
+        json_decref(section);
+    else
+        json_add(document, key, section);
+}
+
+static void add_scene_keys(json_t **document, const struct calibration *found)
+{
+    json_t *input = json_object(), *sonar = json_object(), *injection = json_object();
+    add_section(&input, "transfer", transfer_keys(found));
+    add_section(document, "input", input);
+    if (!found->altitude_m.unseen)
+        json_add(&sonar, "altitude", quantity(found->altitude_m.value, "m"));
+    add_section(document, "sonar", sonar);
+    if (!found->noise_floor_db.unseen)
+        json_add(&injection, "noise_floor", quantity(found->noise_floor_db.value, "dB"));
+    if (!found->looks.unseen && found->looks.value <= LOOKS_KEPT)
+        json_add(&injection, "match", JSON_OBJECT({"looks", number_of(found->looks.value)}));
+    add_section(document, "injection", injection);
+}
+
+static json_t *numbers(const double *values, size_t count)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < count; i++)
+        json_append(&list, number_of(values[i]));
+    return list;
+}
+
+static json_t *measured_curve(const struct calibration *found)
+{
+    json_t *curve = json_object();
+    json_t *alike = json_array();
+    if (found->transfer_kind.unseen) {
+        json_decref(alike);
+        json_add(&curve, "not_seen", json_text(found->transfer_kind.unseen));
+        return curve;
+    }
+    json_add(&curve, "kind", json_text(kind_words[found->transfer.kind]));
+    for (int family = 0; family < CURVE_FAMILIES; family++)
+        if (found->alike[family]) {
+            char text[64], number[DIGITS + 16];
+            const double parameter = family == CURVE_POWER && found->family == CURVE_POWER
+                                         ? found->alike_exponent
+                                         : found->fits[family].parameter;
+            snprintf(text, sizeof text, "%s %s", family_words[family],
+                     text_of_number(number, sizeof number, parameter, DIGITS));
+            json_append(&alike, json_text(text));
+        }
+    json_add(&curve, "cannot_be_told_from", alike);
+    if (found->transfer.kind >= SONJECT_TRANSFER_DECIBEL)
+        json_add(&curve, "parameter", seen(&found->parameter, NULL));
+    json_add(&curve, "tiles", json_count(found->tiles.count));
+    json_add(&curve, "tile_side", json_count(found->tiles.side));
+    return curve;
+}
+
+static json_t *measured_response(const struct estimate *width, const double *correlation,
+                                 const char *unit, double spacing_m)
+{
+    json_t *object = seen(width, unit);
+    if (!width->unseen && spacing_m > 0.0)
+        json_add(&object, "metres", number_of(width->value * spacing_m));
+    if (correlation[0] > 0.0)
+        json_add(&object, "correlation", numbers(correlation, CALIBRATION_LAGS));
+    return object;
+}
+
+static json_t *measured_gain(const struct calibration *found)
+{
+    double middles[GAIN_BANDS];
+    const size_t bands = found->gain_bands;
+    for (size_t band = 0; band < bands; band++)
+        middles[band] = ((double)band + 0.5) * (double)found->columns / (double)bands - 0.5;
+    return JSON_OBJECT({"columns", numbers(middles, bands)},
+                       {"decibels", numbers(found->gain_db, bands)},
+                       {"standard_error", numbers(found->gain_error_db, bands)});
+}
+
+json_t *calibration_document(const struct calibration *found, const char *path, const char *channel)
+{
+    json_t *document = JSON_OBJECT({"sonject_calibration", json_integer(1)});
+    json_t *measured = json_object();
+    add_scene_keys(&document, found);
+    if (path)
+        json_add(&measured, "swath", json_text(path));
+    if (channel)
+        json_add(&measured, "channel", json_text(channel));
+    json_add(&measured, "rows", json_count(found->rows));
+    json_add(&measured, "columns", json_count(found->columns));
+    json_add(&measured, "transfer", measured_curve(found));
+    json_add(&measured, "full_scale", seen(&found->full_scale, NULL));
+    json_add(&measured, "clipped", seen(&found->clipped, NULL));
+    json_add(&measured, "looks", seen(&found->looks, NULL));
+    json_add(&measured, "k_shape", seen(&found->shape, NULL));
+    json_add(
+        &measured, "response_along_track",
+        measured_response(&found->along_rows, found->correlation[0], "rows", found->row_spacing_m));
+    json_add(&measured, "response_range",
+             measured_response(&found->range_columns, found->correlation[1], "columns",
+                               found->column_spacing_m));
+    json_add(&measured, "noise_floor", seen(&found->noise_floor_db, "dB"));
+    if (found->returns.sides != WATER_UNSEEN)
+        json_add(&measured, "sides", json_text(side_words[found->returns.sides]));
+    json_add(&measured, "nadir_column", seen(&found->nadir_column, NULL));
+    json_add(&measured, "altitude", seen(&found->altitude_m, "m"));
+    if (found->returns.columns)
+        json_add(&measured, "first_return", numbers(found->returns.columns, found->rows));
+    if (!found->transfer_kind.unseen)
+        json_add(&measured, "gain", measured_gain(found));
+    json_add(&document, "measured", measured);
+    return document;
+}
+
+/* ---- YAML. */
+
+/* A text in quotes, as JSON has them and YAML takes them, unless it is plainly one. */
+static void add_text(struct growing_text *text, const char *value)
+{
+    const size_t plain = strspn(value, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                       "0123456789_./+- ");
+    if (value[plain] == '\0' && *value && *value != ' ' && (*value != '-' || value[1] > ' ') &&
+        value[strlen(value) - 1] != ' ') {
+        growing_text_add(text, "%s", value);
+        return;
+    }
+    growing_text_add(text, "\"");
+    for (; *value; value++)
+        growing_text_add(text, *value == '"' || *value == '\\' ? "\\%c" : "%c", *value);
+    growing_text_add(text, "\"");
+}
+
+static void add_value(struct growing_text *text, const json_t *value)
+{
+    char number[DIGITS + 24];
+    if (json_is_string(value))
+        add_text(text, json_string_value(value));
+    else if (json_is_integer(value))
+        growing_text_add(text, "%lld", (long long)json_integer_value(value));
+    else if (json_is_real(value))
+        growing_text_add(text, "%s",
+                         text_of_number(number, sizeof number, json_real_value(value), 10));
+    else
+        growing_text_add(text, "null");
+}
+
+static void add_list(struct growing_text *text, const json_t *list, int depth)
+{
+    size_t start = text->length;
+    growing_text_add(text, " [");
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        if (i > 0)
+            growing_text_add(text, ",");
+        if (text->length - start > LINE_WIDTH) {
+            growing_text_add(text, "\n%*s", 2 * depth + 1, "");
+            start = text->length;
+        }
+        growing_text_add(text, i > 0 ? " " : "");
+        add_value(text, json_array_get(list, i));
+    }
+    growing_text_add(text, "]\n");
+}
+
+static void add_object(struct growing_text *text, const json_t *object, int depth)
+{
+    const char *key;
+    json_t *value;
+    json_object_foreach((json_t *)object, key, value)
+    {
+        growing_text_add(text, "%*s%s:", 2 * depth, "", key);
+        if (json_is_object(value)) {
+            growing_text_add(text, "\n");
+            add_object(text, value, depth + 1);
+        } else if (json_is_array(value)) {
+            add_list(text, value, depth);
+        } else {
+            growing_text_add(text, " ");
+            add_value(text, value);
+            growing_text_add(text, "\n");
+        }
+    }
+}
+
+sonject_status document_as_yaml(struct report *report, const json_t *document, char **text)
+{
+    struct growing_text lines = {NULL, 0, 0, false};
+    *text = NULL;
+    CHECK_MEMORY(report, document, "a calibration");
+    growing_text_add(&lines, "# A swath's calibration. A scene takes the keys above `measured` by "
+                             "input.calibration;\n# keys of its own win.\n");
+    add_object(&lines, document, 0);
+    *text = growing_text_end(&lines);
+    CHECK_MEMORY(report, *text, "a calibration");
+    return SONJECT_OK;
+}

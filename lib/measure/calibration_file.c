@@ -1,0 +1,147 @@
+/* A calibration of an image file or of numbers in memory, and the files that it leaves. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/json_document.h"
+#include "base/memory.h"
+#include "measure/calibration.h"
+#include "swath/geometry_notes.h"
+#include "swath/swath_file.h"
+
+#define FULL_8_BIT  255.0
+#define FULL_16_BIT 65535.0
+
+/* The unit that all values are multiples of, and the type's full scale; of floats that are whole
+ * numbers those of integers. */
+static void find_type(struct stored_swath *swath, enum pixel_type type, const void *stored)
+{
+    const size_t count = swath->rows * swath->columns;
+    float largest = 0.0f;
+    bool are_whole = true;
+    for (size_t i = 0; i < count && are_whole; i++) {
+        are_whole = swath->values[i] >= 0.0f && swath->values[i] <= (float)FULL_16_BIT &&
+                    floorf(swath->values[i]) == swath->values[i];
+        largest = fmaxf(largest, swath->values[i]);
+    }
+    swath->unit = 0.0;
+    swath->type_full = pixel_full_scale(type);
+    if (swath->is_complex)
+        return;
+    if (type != PIXEL_FLOAT32) {
+        swath->unit = quantisation_step(type, stored, count);
+    } else if (are_whole && largest > 1.0f) {
+        swath->unit = 1.0;
+        swath->type_full = (double)largest > FULL_8_BIT ? FULL_16_BIT : FULL_8_BIT;
+    }
+}
+
+/* Numbers of a file, or magnitudes of complex ones; *values is for free(). */
+static sonject_status read_swath(struct report *report, const char *path, struct swath_file *file,
+                                 struct stored_swath *swath, float **values)
+{
+    struct raster_layout layout;
+    size_t bytes = 0;
+    swath_file_layout(file, &layout);
+    const struct region whole = {0, 0, layout.rows, layout.columns};
+    void *stored =
+        layout.rows * layout.columns <= (uint64_t)1 << 31 && region_bytes(&layout, &whole, &bytes)
+            ? allocate_array(bytes, 1)
+            : NULL;
+    swath->rows = (size_t)layout.rows;
+    swath->columns = (size_t)layout.columns;
+    swath->is_complex = layout.channels == 2;
+    *values = stored ? allocate_array(swath->rows, swath->columns * sizeof **values) : NULL;
+    sonject_status status = *values ? swath_file_read(report, file, &whole, stored)
+                                    : report_out_of_memory(report, path);
+    const size_t count = swath->rows * swath->columns;
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++) {
+        const size_t at = i * layout.channels;
+        const double first = pixel_number(layout.type, stored, at);
+        const double value =
+            swath->is_complex ? hypot(first, pixel_number(layout.type, stored, at + 1)) : first;
+        (*values)[i] = (float)value;
+        if (!isfinite((*values)[i]))
+            status = report_failure(report, SONJECT_ERROR_INPUT,
+                                    "%s: the pixel at row %zu, column %zu is not a finite number",
+                                    path, i / swath->columns, i % swath->columns);
+    }
+    swath->values = *values;
+    if (status == SONJECT_OK)
+        find_type(swath, layout.type, stored);
+    free(stored);
+    return status;
+}
+
+static void find_geometry(const struct swath_file *file, const struct image_options *options,
+                          struct calibration_geometry *geometry)
+{
+    struct noted_geometry noted;
+    sonject_geometry_params known = options->geometry;
+    if (file && !options->has_geometry) {
+        geometry_notes_read(file, &noted);
+        geometry->column_spacing_m = noted.axis == RANGE_GROUND ? NAN : noted.column_spacing_m;
+        geometry->row_spacing_m = noted.row_spacing_m;
+        geometry->first_slant_range_m = noted.axis == RANGE_GROUND ? NAN : noted.first_range_m;
+    } else if (options->has_geometry) {
+        geometry->column_spacing_m = known.column_spacing_m;
+        geometry->row_spacing_m = known.row_spacing_m;
+        geometry->first_slant_range_m = known.first_slant_range_m;
+    }
+}
+
+static sonject_status write_results(struct report *report, const sonject_calibrate_params *params,
+                                    const struct stored_swath *swath,
+                                    const struct calibration *found, char **text)
+{
+    json_t *document = calibration_document(found, params->image, params->channel);
+    *text = NULL;
+    sonject_status status = SONJECT_OK;
+    if (!params->as_json)
+        status = document_as_yaml(report, document, text);
+    else if (!(*text = json_document_text(document, JSON_INDENT(1) | JSON_REAL_PRECISION(10))))
+        status = report_out_of_memory(report, "a calibration");
+    if (params->picture)
+        THEN(status, calibration_page_write(report, found, swath, params->image, params->picture));
+    if (params->output)
+        THEN(status, file_write_whole(report, params->output, *text, strlen(*text)));
+    json_decref(document);
+    if (status != SONJECT_OK) {
+        free(*text);
+        *text = NULL;
+    }
+    return status;
+}
+
+sonject_status calibrate_image(struct report *report, const sonject_calibrate_params *params,
+                               const struct image_options *options, struct stored_swath *pixels,
+                               char **text)
+{
+    struct stored_swath swath = {NULL, 0, 0, 0.0, 0.0, false};
+    struct calibration_geometry geometry = {NAN, NAN, NAN};
+    struct calibration found;
+    struct swath_file *file = NULL;
+    float *values = NULL;
+    sonject_status status = SONJECT_OK;
+    *text = NULL;
+    if (pixels) {
+        swath = *pixels;
+        find_type(&swath, PIXEL_FLOAT32, NULL);
+    } else {
+        status =
+            swath_file_open_array(report, params->image, options->channel, options->array, &file);
+        THEN(status, read_swath(report, params->image, file, &swath, &values));
+    }
+    if (status == SONJECT_OK)
+        find_geometry(file, options, &geometry);
+    if (file)
+        swath_file_close(&file);
+    THEN(status, calibrate_swath(report, &swath, &geometry, &found));
+    if (status == SONJECT_OK) {
+        status = write_results(report, params, &swath, &found, text);
+        calibration_clear(&found);
+    }
+    free(values);
+    return status;
+}

@@ -1,0 +1,560 @@
+#include "measure/calibration_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+#define DECIBELS 4.3429448190325182 /* of one neper of intensity */
+#define CLEARLY  3.0                /* standard errors */
+
+/* Response. */
+#define FAINTEST_CORRELATION 0.02
+#define FAR_LAG              8     /* from here on speckle is forgotten */
+#define WIDTH_BIAS           0.015 /* plain tiles are chosen by what speckle they happen to have, too */
+#define UNEVEN_MOST          2.0  /* of the tiles' median variance */
+#define PEAK_MOST            14.0 /* over a tile's mean; brighter pixels are no speckle */
+
+/* Noise floor: blocks of pixels. */
+#define BLOCK           4
+#define TREND_BANDS     6   /* a running mean reaches so small a part of the bands to either side */
+#define DARK            0.1 /* of the median seabed, -10 dB */
+#define FLOOR_HIGHEST   0.063 /* -12 dB; what is not darker may be seabed */
+#define BLOCKS_LEAST    8     /* in all, each amid dark ones */
+#define COMPONENT_LEAST 4     /* in one dark part */
+#define SAME_LEVEL      2.0   /* 3 dB */
+#define ROUNDING_MOST   0.05  /* of the floor */
+#define LOWEST_SHARE    0.05  /* of pixels that may lie at the lowest number */
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double middle_of(double *values, size_t count)
+{
+    qsort(values, count, sizeof *values, compare_doubles);
+    return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+}
+
+static double median_level(const struct calibration *found, double *scratch)
+{
+    memcpy(scratch, found->fits[found->family].levels, found->tiles.count * sizeof *scratch);
+    return middle_of(scratch, found->tiles.count);
+}
+
+/* Intensities over a level. Values that are whole numbers go by a table. */
+static sonject_status fill_intensities(struct report *report, const struct calibration *found,
+                                       const struct stored_swath *swath, double level,
+                                       float *intensity)
+{
+    const size_t count = swath->rows * swath->columns;
+    const size_t length = swath->unit > 0.0 ? (size_t)(swath->type_full / swath->unit) + 1 : 0;
+    float *table = allocate_array(length, sizeof *table);
+    CHECK_MEMORY(report, table, "a calibration");
+    for (size_t i = 0; i < length; i++)
+        table[i] = (float)exp(pixel_log_intensity(found, swath, (double)i * swath->unit) - level);
+    for (size_t i = 0; i < count; i++) {
+        const double value = (double)swath->values[i];
+        const size_t at = length > 0 ? (size_t)(value / swath->unit + 0.5) : 0;
+        intensity[i] = length > 0 ? table[at < length ? at : length - 1]
+                                  : (float)exp(pixel_log_intensity(found, swath, value) - level);
+        if (value == 0.0 && found->family != CURVE_DECIBEL)
+            intensity[i] = 0.0f;
+    }
+    free(table);
+    return SONJECT_OK;
+}
+
+/* ---- The response, from the correlation of the plain tiles' intensity. */
+
+/* Sums of products of pixels of a tile some way apart along an axis, over the mean's square. */
+static double tile_covariance(const float *tile, size_t side, size_t stride, size_t lag, int axis,
+                              double mean)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < side; i++)
+        for (size_t k = 0; k + lag < side; k++) {
+            const size_t a = axis == 0 ? k * stride + i : i * stride + k;
+            const size_t b = axis == 0 ? a + lag * stride : a + lag;
+            sum += ((double)tile[a] - mean) * ((double)tile[b] - mean);
+        }
+    return sum / ((double)(side * (side - lag)) * mean * mean);
+}
+
+/* Half-power width of a Gaussian response that correlates intensities so: exp(-2 ln 2 x^2 / w^2),
+ * which falls to a half at w / sqrt 2. Between lags the logarithm goes with the lag's square. */
+static double width_of(const double correlation[CALIBRATION_LAGS])
+{
+    size_t lag = 1;
+    while (lag + 1 < CALIBRATION_LAGS && correlation[lag] > 0.5)
+        lag++;
+    const double before = -log(fmin(1.0, fmax(1e-3, correlation[lag - 1])));
+    const double after = -log(fmin(0.999, fmax(1e-3, correlation[lag])));
+    const double near = (double)((lag - 1) * (lag - 1)), far = (double)(lag * lag);
+    if (!(after > before))
+        return NAN;
+    return sqrt(2.0 * (near + (far - near) * (log(2.0) - before) / (after - before)));
+}
+
+/* Leaves out tiles of more than twice the median variance, across edges and shadows; sums up the
+ * others, and returns how many they are. */
+static size_t leave_uneven(double *values, size_t count, double sums[CALIBRATION_LAGS])
+{
+    size_t taken = 0;
+    double median = 0.0;
+    /* the median by halving: as many above as below */
+    for (double step = 1.0; step > 1e-4; step *= 0.5) {
+        size_t below = 0;
+        for (size_t i = 0; i < count; i++)
+            below += values[i * CALIBRATION_LAGS] < median + step;
+        median += 2 * below < count ? step : 0.0;
+    }
+    memset(sums, 0, CALIBRATION_LAGS * sizeof *sums);
+    for (size_t i = 0; i < count; i++) {
+        if (values[i * CALIBRATION_LAGS] > UNEVEN_MOST * median)
+            continue;
+        memmove(values + taken * CALIBRATION_LAGS, values + i * CALIBRATION_LAGS,
+                CALIBRATION_LAGS * sizeof *values);
+        for (size_t lag = 0; lag < CALIBRATION_LAGS; lag++)
+            sums[lag] += values[taken * CALIBRATION_LAGS + lag];
+        taken++;
+    }
+    return taken;
+}
+
+static sonject_status find_response(struct report *report, struct calibration *found,
+                                    const struct stored_swath *swath, const float *intensity,
+                                    int axis, struct estimate *width)
+{
+    const struct plain_tiles *tiles = &found->tiles;
+    double *values = allocate_array(tiles->count, CALIBRATION_LAGS * sizeof *values);
+    double *correlation = found->correlation[axis];
+    double means[CALIBRATION_LAGS] = {0.0}, errors[CALIBRATION_LAGS], far = 0.0;
+    CHECK_MEMORY(report, values, "a calibration");
+    size_t taken = 0;
+    for (size_t tile = 0; tile < tiles->count; tile++) {
+        const float *pixels = intensity + tiles->rows[tile] * swath->columns + tiles->columns[tile];
+        double mean = 0.0, peak = 0.0;
+        for (size_t i = 0; i < tiles->side * tiles->side; i++) {
+            const double own = pixels[i / tiles->side * swath->columns + i % tiles->side];
+            mean += own / (double)(tiles->side * tiles->side);
+            peak = fmax(peak, own);
+        }
+        if (!(peak < PEAK_MOST * mean))
+            continue;
+        for (size_t lag = 0; lag < CALIBRATION_LAGS; lag++)
+            values[taken * CALIBRATION_LAGS + lag] =
+                tile_covariance(pixels, tiles->side, swath->columns, lag, axis, mean);
+        taken++;
+    }
+    taken = leave_uneven(values, taken, means);
+    const double count = (double)taken;
+    if (taken < TILES_LEAST) {
+        free(values);
+        width->unseen = "hardly a plain tile is without pixels that are brighter than speckle";
+        return SONJECT_OK;
+    }
+    for (size_t lag = 0; lag < CALIBRATION_LAGS; lag++)
+        means[lag] /= count;
+    for (size_t lag = FAR_LAG; lag < CALIBRATION_LAGS; lag++)
+        far += means[lag] / (CALIBRATION_LAGS - FAR_LAG);
+    for (size_t lag = 0; lag < CALIBRATION_LAGS; lag++) {
+        double squares = 0.0;
+        correlation[lag] = (means[lag] - far) / (means[0] - far);
+        for (size_t tile = 0; tile < taken; tile++) {
+            const double *own = values + tile * CALIBRATION_LAGS;
+            const double off = own[lag] - means[lag] - correlation[lag] * (own[0] - means[0]);
+            squares += off * off;
+        }
+        errors[lag] = sqrt(squares) / count / (means[0] - far);
+    }
+    free(values);
+    width->how = "half-power width of a Gaussian response whose speckle is so correlated";
+    if (correlation[1] < fmax(FAINTEST_CORRELATION, CLEARLY * errors[1])) {
+        width->unseen = "neighbouring pixels are independent: the response is narrower than 0.7 of "
+                        "a pixel";
+        return SONJECT_OK;
+    }
+    double higher[CALIBRATION_LAGS];
+    for (size_t lag = 0; lag < CALIBRATION_LAGS; lag++)
+        higher[lag] = lag == 0 ? 1.0 : correlation[lag] + errors[lag];
+    width->value = width_of(correlation);
+    width->error = hypot(fabs(width_of(higher) - width->value), WIDTH_BIAS * width->value);
+    if (!isfinite(width->value) || !isfinite(width->error))
+        width->unseen = "the correlation does not fall off within 11 pixels";
+    return SONJECT_OK;
+}
+
+/* ---- Level against range. */
+
+static void find_gain(struct calibration *found, double level)
+{
+    const struct plain_tiles *tiles = &found->tiles;
+    const double *levels = found->fits[found->family].levels;
+    const size_t across = found->columns / tiles->side;
+    found->gain_bands = across < GAIN_BANDS ? across : GAIN_BANDS;
+    for (size_t band = 0; band < found->gain_bands; band++) {
+        double sum = 0.0, squares = 0.0, count = 0.0;
+        for (size_t i = 0; i < tiles->count; i++) {
+            const size_t middle = tiles->columns[i] + tiles->side / 2;
+            if (middle * found->gain_bands / found->columns != band)
+                continue;
+            const double own = DECIBELS * (levels[i] - level);
+            sum += own;
+            squares += own * own;
+            count += 1.0;
+        }
+        const double mean = sum / count;
+        found->gain_db[band] = count >= 2.0 ? mean : NAN;
+        found->gain_error_db[band] =
+            count >= 2.0 ? sqrt(fmax(0.0, squares / count - mean * mean) / (count - 1.0)) : NAN;
+    }
+}
+
+/* The seabed's trend over range: running means over the bands that have tiles, over the median
+ * level. scatter: what the bands scatter about it, dB. */
+static void find_trend(const struct calibration *found, double trend[GAIN_BANDS], double *scatter)
+{
+    const size_t bands = found->gain_bands;
+    double squares = 0.0, count = 0.0, last = 1.0;
+    for (size_t band = 0; band < bands; band++) {
+        double sum = 0.0, near = 0.0;
+        for (size_t k = 0; k < bands; k++) {
+            const size_t apart = k > band ? k - band : band - k;
+            if (apart <= bands / TREND_BANDS && !isnan(found->gain_db[k])) {
+                sum += found->gain_db[k];
+                near += 1.0;
+            }
+        }
+        trend[band] = near > 0.0 ? exp(sum / near / DECIBELS) : NAN;
+        if (near > 0.0 && !isnan(found->gain_db[band])) {
+            squares += (found->gain_db[band] - sum / near) * (found->gain_db[band] - sum / near);
+            count += 1.0;
+        }
+    }
+    *scatter = count > 0.0 ? sqrt(squares / count) : 0.0;
+    for (size_t band = bands; band-- > 0;) /* in the water that of the seabed behind it */
+        last = trend[band] = isnan(trend[band]) ? last : trend[band];
+    for (size_t band = 0; band < bands; band++)
+        last = trend[band] = isfinite(trend[band]) ? trend[band] : last;
+}
+
+/* ---- The noise floor, from what is dark. */
+
+struct block_map {
+    size_t rows, columns; /* in blocks */
+    double trend[GAIN_BANDS], trend_scatter_db;
+    double *means;
+    size_t *parts; /* number of the dark part that a block is amid, from 1; 0: none */
+};
+
+struct dark_part {
+    double mean;
+    size_t blocks, number;
+};
+
+static int compare_parts(const void *a, const void *b)
+{
+    const double x = ((const struct dark_part *)a)->mean;
+    const double y = ((const struct dark_part *)b)->mean;
+    return (x > y) - (x < y);
+}
+
+static double trend_at(const struct calibration *found, const struct block_map *map, size_t block)
+{
+    const size_t column = block % map->columns * BLOCK + BLOCK / 2;
+    return map->trend[column * found->gain_bands / found->columns];
+}
+
+/* Means of blocks over the seabed at their range; those of nothing but 0 are blank, not dark, and
+ * infinite here. */
+static void fill_blocks(const struct calibration *found, const struct stored_swath *swath,
+                        const float *intensity, struct block_map *map)
+{
+    for (size_t i = 0; i < map->rows * map->columns; i++) {
+        double sum = 0.0;
+        bool is_blank = true;
+        for (size_t k = 0; k < BLOCK * BLOCK; k++) {
+            const size_t at = (i / map->columns * BLOCK + k / BLOCK) * swath->columns +
+                              i % map->columns * BLOCK + k % BLOCK;
+            sum += (double)intensity[at];
+            is_blank = is_blank && swath->values[at] == 0.0f;
+        }
+        map->means[i] = is_blank ? INFINITY : sum / (BLOCK * BLOCK) / trend_at(found, map, i);
+    }
+}
+
+static bool is_amid_dark(const struct block_map *map, size_t row, size_t column)
+{
+    if (row == 0 || column == 0 || row + 1 >= map->rows || column + 1 >= map->columns)
+        return false;
+    for (size_t i = 0; i < 9; i++)
+        if (!(map->means[(row + i / 3 - 1) * map->columns + column + i % 3 - 1] < DARK))
+            return false;
+    return true;
+}
+
+/* Gives all blocks that hang together the part's number; stack: room for all blocks. */
+static struct dark_part flood(struct block_map *map, size_t start, size_t number, size_t *stack)
+{
+    struct dark_part part = {0.0, 0, number};
+    size_t height = 0;
+    stack[height++] = start;
+    map->parts[start] = number;
+    while (height > 0) {
+        const size_t at = stack[--height];
+        const size_t beside[] = {at - 1, at + 1, at - map->columns, at + map->columns};
+        part.mean += map->means[at];
+        part.blocks++;
+        for (size_t i = 0; i < 4; i++) /* none lies at the map's edge */
+            if (map->parts[beside[i]] == 0 &&
+                is_amid_dark(map, beside[i] / map->columns, beside[i] % map->columns)) {
+                map->parts[beside[i]] = number;
+                stack[height++] = beside[i];
+            }
+    }
+    part.mean /= (double)part.blocks;
+    return part;
+}
+
+/* The darkest parts that are as dark as each other: how many of the sorted list. */
+static size_t count_darkest(const struct dark_part *list, size_t count, double *mean,
+                            size_t *blocks)
+{
+    size_t taken = 0;
+    *mean = 0.0;
+    *blocks = 0;
+    while (taken < count && (taken == 0 || list[taken].mean < SAME_LEVEL * *mean)) {
+        const double sum = *mean * (double)*blocks + list[taken].mean * (double)list[taken].blocks;
+        *blocks += list[taken].blocks;
+        *mean = sum / (double)*blocks;
+        taken++;
+    }
+    return taken;
+}
+
+/* What rounding to stored steps adds to the mean of intensities, and which share of the pixels lies
+ * at the lowest number. */
+static void look_at_steps(const struct calibration *found, const struct stored_swath *swath,
+                          const struct block_map *map, const uint8_t *is_taken, double lowest,
+                          double level, double *rounding, double *at_lowest)
+{
+    size_t pixels = 0, low = 0;
+    *rounding = 0.0;
+    for (size_t i = 0; i < map->rows * map->columns; i++) {
+        if (!is_taken[map->parts[i]])
+            continue;
+        for (size_t k = 0; k < BLOCK * BLOCK; k++) {
+            const size_t at = (i / map->columns * BLOCK + k / BLOCK) * swath->columns +
+                              i % map->columns * BLOCK + k % BLOCK;
+            const double value = (double)swath->values[at], half = 0.5 * swath->unit;
+            const double step =
+                exp(0.5 * (pixel_log_intensity(found, swath, value + half) - level)) -
+                (value > half ? exp(0.5 * (pixel_log_intensity(found, swath, value - half) - level))
+                              : 0.0);
+            *rounding += half > 0.0 ? step * step / 12.0 / trend_at(found, map, i) : 0.0;
+            low += value <= lowest;
+            pixels++;
+        }
+    }
+    *rounding /= (double)pixels;
+    *at_lowest = (double)low / (double)pixels;
+}
+
+static double block_deviation(const struct block_map *map, const uint8_t *is_taken, double mean,
+                              size_t blocks)
+{
+    double squares = 0.0;
+    for (size_t i = 0; i < map->rows * map->columns; i++)
+        if (is_taken[map->parts[i]])
+            squares += (map->means[i] - mean) * (map->means[i] - mean);
+    return sqrt(squares / (double)blocks);
+}
+
+/* By how many dB a standard error of the curve's parameter moves the floor over the seabed. */
+static double floor_by_parameter(const struct calibration *found, double level, double log_floor)
+{
+    const struct curve_fit *fit = &found->fits[found->family];
+    const double error =
+        found->transfer.kind < SONJECT_TRANSFER_DECIBEL ? 0.0 : fit->parameter_error;
+    const double b = fit->parameter;
+    double slopes[2]; /* of log intensities by the logarithm of b, at the floor and the seabed */
+    if (found->family != CURVE_SCHLICK)
+        return DECIBELS * log_floor * error;
+    for (int i = 0; i < 2; i++) {
+        const double amplitude = exp(0.5 * (level + (i == 0 ? log_floor : 0.0)));
+        const double q = amplitude * b / (1.0 + (b - 1.0) * amplitude);
+        slopes[i] = 2.0 * b * (1.0 - q) / (b - (b - 1.0) * q);
+    }
+    return DECIBELS * (slopes[0] - slopes[1]) * error;
+}
+
+static void judge_floor(const struct calibration *found, const struct stored_swath *swath,
+                        struct block_map *map, struct dark_part *list, size_t count, double level,
+                        uint8_t *is_taken, struct estimate *noise)
+{
+    double mean, rounding, at_lowest, lowest = INFINITY;
+    size_t blocks;
+    qsort(list, count, sizeof *list, compare_parts);
+    const size_t taken = count_darkest(list, count, &mean, &blocks);
+    noise->how = "darkest shadows or water column, over the seabed at their range";
+    noise->unseen = "no shadow or water column of 16 x 16 pixels lies 12 dB under the seabed and "
+                    "above 0";
+    if (blocks < BLOCKS_LEAST || !(mean < FLOOR_HIGHEST))
+        return;
+    for (size_t i = 0; i < taken; i++)
+        is_taken[list[i].number] = 1;
+    for (size_t i = 0; i < swath->rows * swath->columns; i++)
+        lowest = fmin(lowest, (double)swath->values[i]);
+    look_at_steps(found, swath, map, is_taken, lowest, level, &rounding, &at_lowest);
+    noise->unseen = "the darkest shadows lie below what the stored numbers tell apart";
+    if ((found->family == CURVE_DECIBEL && at_lowest > LOWEST_SHARE) ||
+        rounding > ROUNDING_MOST * mean)
+        return;
+    noise->unseen = NULL;
+    const double floor = mean - rounding;
+    /* neighbouring blocks share their speckle: as if there were a quarter of them */
+    double scatter =
+        block_deviation(map, is_taken, mean, blocks) / mean / sqrt(0.25 * (double)blocks);
+    double squares = 0.0;
+    for (size_t i = 0; i < taken; i++)
+        squares += (double)list[i].blocks * (list[i].mean - mean) * (list[i].mean - mean);
+    if (taken > 2)
+        scatter = fmax(scatter, sqrt(squares / (double)blocks / (double)(taken - 1)) / mean);
+    noise->value = DECIBELS * log(floor);
+    noise->error = hypot(hypot(DECIBELS * (scatter + 0.5 * rounding / floor),
+                               map->trend_scatter_db / sqrt((double)taken)),
+                         floor_by_parameter(found, level, log(floor)));
+}
+
+static sonject_status find_floor(struct report *report, struct calibration *found,
+                                 const struct stored_swath *swath, const float *intensity,
+                                 double level)
+{
+    struct block_map map = {.rows = swath->rows / BLOCK, .columns = swath->columns / BLOCK};
+    const size_t blocks = map.rows * map.columns;
+    map.means = allocate_array(blocks, sizeof *map.means);
+    map.parts = allocate_array(blocks, sizeof *map.parts);
+    size_t *stack = allocate_array(blocks, sizeof *stack);
+    struct dark_part *list = allocate_array(blocks + 1, sizeof *list);
+    uint8_t *is_taken = allocate_array(blocks + 1, 1);
+    const bool is_complete = map.means && map.parts && stack && list && is_taken;
+    size_t count = 0, number = 0;
+    if (is_complete) {
+        find_trend(found, map.trend, &map.trend_scatter_db);
+        fill_blocks(found, swath, intensity, &map);
+        for (size_t i = 0; i < blocks; i++) {
+            if (map.parts[i] != 0 || !is_amid_dark(&map, i / map.columns, i % map.columns))
+                continue;
+            const struct dark_part part = flood(&map, i, ++number, stack);
+            if (part.blocks >= COMPONENT_LEAST)
+                list[count++] = part;
+        }
+        judge_floor(found, swath, &map, list, count, level, is_taken, &found->noise_floor_db);
+    }
+    free(map.means);
+    free(map.parts);
+    free(stack);
+    free(list);
+    free(is_taken);
+    CHECK_MEMORY(report, is_complete, "a calibration");
+    return SONJECT_OK;
+}
+
+/* ---- The water column. */
+
+/* Standard error of a ping's first return, of what the pings scatter about their neighbours. */
+static double return_error(const double *columns, size_t rows, double *scratch)
+{
+    for (size_t i = 1; i + 1 < rows; i++)
+        scratch[i - 1] = fabs(columns[i - 1] - 2.0 * columns[i] + columns[i + 1]);
+    return rows < 3 ? NAN : 1.4826 * middle_of(scratch, rows - 2) / sqrt(6.0);
+}
+
+/* scratch: as many as there are rows. */
+static void tell_water(struct calibration *found, double *scratch)
+{
+    static const char no_water[] =
+        "fewer than nine in ten rows begin with a water column 10 dB under the seabed";
+    const struct first_returns *returns = &found->returns;
+    found->nadir_column.unseen = found->altitude_m.unseen = NULL;
+    found->nadir_column.how = "halfway between both sides' first returns";
+    found->altitude_m.how = "median of the pings' first returns; the error is that of a ping";
+    if (returns->sides == WATER_UNSEEN) {
+        found->nadir_column.unseen = found->altitude_m.unseen = no_water;
+        return;
+    }
+    if (returns->sides == WATER_BETWEEN) {
+        found->nadir_column.value = returns->nadir_column;
+        found->nadir_column.error = returns->nadir_column_error;
+    } else {
+        found->nadir_column.unseen = "the swath shows one side";
+    }
+    const double error = return_error(returns->columns, found->rows, scratch);
+    memcpy(scratch, returns->columns, found->rows * sizeof *scratch);
+    const double columns = middle_of(scratch, found->rows);
+    const bool knows_first = returns->sides != WATER_BETWEEN && found->first_slant_range_m >= 0.0;
+    const double first = knows_first ? found->first_slant_range_m / found->column_spacing_m : 0.5;
+    if (!(found->column_spacing_m > 0.0)) {
+        found->altitude_m.unseen = "the column spacing is not known";
+        return;
+    }
+    found->altitude_m.value = (columns + first) * found->column_spacing_m;
+    found->altitude_m.error = fmax(error, 0.3) * found->column_spacing_m;
+}
+
+sonject_status find_water(struct report *report, struct calibration *found,
+                          const struct stored_swath *swath)
+{
+    struct first_returns *returns = &found->returns;
+    float *intensity = allocate_array(swath->rows, swath->columns * sizeof *intensity);
+    double *scratch = allocate_array(
+        swath->rows > found->tiles.count ? swath->rows : found->tiles.count, sizeof *scratch);
+    sonject_status status =
+        intensity && scratch ? SONJECT_OK : report_out_of_memory(report, "a calibration");
+    THEN(status, fill_intensities(report, found, swath, median_level(found, scratch), intensity));
+    THEN(status, first_returns_find(returns, report, intensity, found->rows, found->columns));
+    if (status == SONJECT_OK)
+        tell_water(found, scratch);
+    free(intensity);
+    free(scratch);
+    return status;
+}
+
+static void fill_histogram(struct calibration *found, const struct stored_swath *swath)
+{
+    const size_t count = swath->rows * swath->columns;
+    double top = 0.0;
+    for (size_t i = 0; i < count; i++)
+        top = fmax(top, (double)swath->values[i]);
+    found->histogram_top = swath->unit > 0.0 ? fmin(swath->type_full, top) : top;
+    for (size_t i = 0; i < count && top > 0.0; i++) {
+        const double at = fmax(0.0, (double)swath->values[i]) / found->histogram_top * PAGE_BINS;
+        found->histogram[(size_t)fmin(PAGE_BINS - 1.0, at)] += 1.0 / (double)count;
+    }
+}
+
+sonject_status find_parts(struct report *report, struct calibration *found,
+                          const struct stored_swath *swath)
+{
+    float *intensity = allocate_array(swath->rows, swath->columns * sizeof *intensity);
+    double *scratch = allocate_array(found->tiles.count, sizeof *scratch);
+    sonject_status status =
+        intensity && scratch ? SONJECT_OK : report_out_of_memory(report, "a calibration");
+    if (status == SONJECT_OK) {
+        const double level = median_level(found, scratch);
+        status = fill_intensities(report, found, swath, level, intensity);
+        find_gain(found, level);
+        fill_histogram(found, swath);
+        THEN(status, find_response(report, found, swath, intensity, 0, &found->along_rows));
+        THEN(status, find_response(report, found, swath, intensity, 1, &found->range_columns));
+        THEN(status, find_floor(report, found, swath, intensity, level));
+    }
+    free(intensity);
+    free(scratch);
+    return status;
+}

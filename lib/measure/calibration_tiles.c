@@ -1,0 +1,216 @@
+/* The tiles that a calibration rests on: fixed ones all over the swath, of which the plainer half
+ * is taken. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "measure/calibration.h"
+#include "measure/contacts.h"
+
+#define TILE_SIDE       32
+#define TILE_SIDE_SMALL 16
+#define TILES_FEW       40   /* of the larger ones; below, smaller ones are taken */
+#define CANDIDATES_MOST 4000 /* tiles looked at */
+#define TILES_MOST      600  /* tiles taken */
+#define PARTS           4    /* of a tile along an axis, whose medians tell how plain it is */
+#define CLIPPED_MOST    0.25 /* of a tile's pixels */
+#define BLANK_MOST      0.05
+#define QUANTILE_EDGES  48
+
+struct candidate {
+    size_t row, column;
+    float unevenness;
+};
+
+static int compare_candidates(const void *a, const void *b)
+{
+    const float x = ((const struct candidate *)a)->unevenness;
+    const float y = ((const struct candidate *)b)->unevenness;
+    return (x > y) - (x < y);
+}
+
+/* Back to the order of their places. */
+static int compare_places(const void *a, const void *b)
+{
+    const struct candidate *x = a, *y = b;
+    if (x->row != y->row)
+        return x->row < y->row ? -1 : 1;
+    return x->column < y->column ? -1 : x->column > y->column;
+}
+
+static void copy_part(const struct stored_swath *swath, size_t row, size_t column, size_t side,
+                      float *part)
+{
+    for (size_t i = 0; i < side; i++)
+        memcpy(part + i * side, swath->values + (row + i) * swath->columns + column,
+               side * sizeof *part);
+}
+
+static float median_of(float *values, size_t count)
+{
+    qsort(values, count, sizeof *values, compare_floats);
+    return 0.5f * (values[(count - 1) / 2] + values[count / 2]);
+}
+
+/* How unlike the medians of its parts are, over the spread of its pixels: a rank statistic, which
+ * no curve changes much. Infinite for a tile that is blank, clipped or constant. */
+static float unevenness(const struct stored_swath *swath, size_t row, size_t column, size_t side,
+                        double ceiling)
+{
+    float pixels[TILE_SIDE * TILE_SIDE];
+    const size_t count = side * side, part = side / PARTS;
+    double sum = 0.0, squares = 0.0;
+    size_t blank = 0, clipped = 0;
+    for (size_t i = 0; i < PARTS * PARTS; i++) {
+        copy_part(swath, row + i / PARTS * part, column + i % PARTS * part, part, pixels);
+        const double median = median_of(pixels, part * part);
+        sum += median;
+        squares += median * median;
+    }
+    copy_part(swath, row, column, side, pixels);
+    for (size_t i = 0; i < count; i++) {
+        blank += pixels[i] == 0.0f;
+        clipped += (double)pixels[i] >= ceiling;
+    }
+    qsort(pixels, count, sizeof *pixels, compare_floats);
+    const double spread = (double)(pixels[3 * count / 4] - pixels[count / 4]);
+    const double parts = PARTS * PARTS;
+    if ((double)blank > BLANK_MOST * (double)count ||
+        (double)clipped > CLIPPED_MOST * (double)count || !(spread > 0.0))
+        return INFINITY;
+    return (float)(sqrt(fmax(0.0, squares / parts - sum * sum / (parts * parts))) / spread);
+}
+
+/* Looks at tiles all over the swath; *count gets how many can be used. */
+static struct candidate *find_candidates(const struct stored_swath *swath,
+                                         const struct first_returns *water, size_t side,
+                                         double ceiling, size_t *count)
+{
+    const size_t across = swath->columns / side, all = swath->rows / side * across;
+    const size_t tried = all < CANDIDATES_MOST ? all : CANDIDATES_MOST;
+    struct candidate *list = allocate_array(tried, sizeof *list);
+    *count = 0;
+    for (size_t i = 0; list && i < tried; i++) {
+        const size_t tile = i * all / tried;
+        struct candidate *next = &list[*count];
+        next->row = tile / across * side;
+        next->column = tile % across * side;
+        const struct water_place place = {next->row, next->column, side, side};
+        next->unevenness = first_returns_cover(water, &place, swath->columns)
+                               ? INFINITY
+                               : unevenness(swath, next->row, next->column, side, ceiling);
+        *count += isfinite(next->unevenness);
+    }
+    return list;
+}
+
+/* Edges at quantiles of all that is in the tiles, between whole numbers where the numbers are
+ * whole. What clips has a cell of its own. */
+static sonject_status choose_edges(struct plain_tiles *tiles, struct report *report,
+                                   const struct stored_swath *swath, double ceiling)
+{
+    static const double tails[] = {0.0005, 0.002, 0.005, 0.01, 0.98, 0.99, 0.995, 0.998, 0.9995};
+    const size_t pixels = tiles->side * tiles->side, count = tiles->count * pixels;
+    const double unit = swath->unit;
+    const double last = isfinite(ceiling)
+                            ? unit > 0.0 ? ceiling - 0.5 * unit : ceiling - 1e-6 * fabs(ceiling)
+                            : INFINITY;
+    float *sorted = allocate_array(count, sizeof *sorted);
+    double wanted[QUANTILE_EDGES + COUNT(tails) + 1];
+    size_t wanted_count = 0;
+    CHECK_MEMORY(report, sorted, "a calibration");
+    for (size_t i = 0; i < tiles->count; i++)
+        copy_part(swath, tiles->rows[i], tiles->columns[i], tiles->side, sorted + i * pixels);
+    qsort(sorted, count, sizeof *sorted, compare_floats);
+    for (size_t i = 0; i < 4; i++)
+        wanted[wanted_count++] = tails[i];
+    for (size_t i = 1; i < QUANTILE_EDGES; i++)
+        wanted[wanted_count++] = (double)i / QUANTILE_EDGES;
+    for (size_t i = 4; i < COUNT(tails); i++)
+        wanted[wanted_count++] = tails[i];
+    tiles->edge_count = 0;
+    for (size_t i = 0; i < wanted_count; i++) {
+        const double value = (double)sorted[(size_t)(wanted[i] * (double)(count - 1))];
+        const double edge = unit > 0.0 ? (floor(value / unit) + 0.5) * unit : value;
+        if (edge < last && (tiles->edge_count == 0 || edge > tiles->edges[tiles->edge_count - 1]))
+            tiles->edges[tiles->edge_count++] = edge;
+    }
+    if (isfinite(last))
+        tiles->edges[tiles->edge_count++] = last;
+    free(sorted);
+    return SONJECT_OK;
+}
+
+static size_t cell_of(const struct plain_tiles *tiles, double value)
+{
+    size_t low = 0, high = tiles->edge_count; /* the first edge not below the value */
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (tiles->edges[middle] < value)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static sonject_status fill_cells(struct plain_tiles *tiles, struct report *report,
+                                 const struct stored_swath *swath)
+{
+    const size_t cells = tiles->edge_count + 1, pixels = tiles->side * tiles->side;
+    float values[TILE_SIDE * TILE_SIDE];
+    tiles->counts = allocate_array(tiles->count, cells * sizeof *tiles->counts);
+    CHECK_MEMORY(report, tiles->counts, "a calibration");
+    for (size_t i = 0; i < tiles->count; i++) {
+        copy_part(swath, tiles->rows[i], tiles->columns[i], tiles->side, values);
+        for (size_t k = 0; k < pixels; k++)
+            tiles->counts[i * cells + cell_of(tiles, (double)values[k])]++;
+    }
+    return SONJECT_OK;
+}
+
+sonject_status plain_tiles_init(struct plain_tiles *tiles, struct report *report,
+                                const struct stored_swath *swath, const struct first_returns *water,
+                                double ceiling)
+{
+    memset(tiles, 0, sizeof *tiles);
+    tiles->side = TILE_SIDE;
+    if (swath->rows / TILE_SIDE * (swath->columns / TILE_SIDE) < TILES_FEW)
+        tiles->side = TILE_SIDE_SMALL;
+    size_t count;
+    struct candidate *list = find_candidates(swath, water, tiles->side, ceiling, &count);
+    CHECK_MEMORY(report, list, "a calibration");
+    qsort(list, count, sizeof *list, compare_candidates);
+    const size_t plain = count < TILES_FEW ? count : count / 2 < TILES_FEW ? TILES_FEW : count / 2;
+    qsort(list, plain, sizeof *list, compare_places);
+    tiles->count = plain < TILES_MOST ? plain : TILES_MOST;
+    tiles->rows = allocate_array(tiles->count, sizeof *tiles->rows);
+    tiles->columns = allocate_array(tiles->count, sizeof *tiles->columns);
+    tiles->unevenness = allocate_array(tiles->count, sizeof *tiles->unevenness);
+    sonject_status status = tiles->rows && tiles->columns && tiles->unevenness
+                                ? SONJECT_OK
+                                : report_out_of_memory(report, "a calibration");
+    for (size_t i = 0; status == SONJECT_OK && i < tiles->count; i++) {
+        tiles->rows[i] = list[i * plain / tiles->count].row;
+        tiles->columns[i] = list[i * plain / tiles->count].column;
+        tiles->unevenness[i] = list[i * plain / tiles->count].unevenness;
+    }
+    free(list);
+    if (status == SONJECT_OK && tiles->count > 0)
+        status = choose_edges(tiles, report, swath, ceiling);
+    if (status == SONJECT_OK && tiles->count > 0)
+        status = fill_cells(tiles, report, swath);
+    if (status != SONJECT_OK)
+        plain_tiles_clear(tiles);
+    return status;
+}
+
+void plain_tiles_clear(struct plain_tiles *tiles)
+{
+    free(tiles->rows);
+    free(tiles->columns);
+    free(tiles->unevenness);
+    free(tiles->counts);
+    memset(tiles, 0, sizeof *tiles);
+}

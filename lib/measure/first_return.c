@@ -1,0 +1,227 @@
+#include "measure/first_return.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+#define WINDOW        24   /* columns on either side of the step */
+#define ROWS_AVERAGED 2    /* of a row, that count too: 120 samples of speckle know 0.5 dB */
+#define PULSE         16   /* first columns, which may hold the transmitted pulse */
+#define STEP_DB       10.0 /* from water to seabed */
+#define FAINTEST      1e-30f
+#define FAINTEST_DB   (-300.0)
+#define WATER_MARGIN  8.0 /* columns behind the first return that are no plain seabed */
+#define PROFILE_ROWS  200 /* that tell where to look for the nadir */
+#define NADIR_SPREAD  4.0 /* columns, that the middle of both sides may vary */
+#define ROWS_SHARE    0.9 /* of the rows, that must have one: shadows begin with seabed in some */
+
+/* sums[j]: of the levels (dB) before column j, in a row and those beside it. Levels are averaged
+ * and not intensities, since fish and spikes are bright. */
+static void sum_levels(const float *levels, size_t rows, size_t columns, size_t row, double *sums)
+{
+    const size_t first = row > ROWS_AVERAGED ? row - ROWS_AVERAGED : 0;
+    const size_t end = row + ROWS_AVERAGED < rows ? row + ROWS_AVERAGED + 1 : rows;
+    sums[0] = 0.0;
+    for (size_t column = 0; column < columns; column++) {
+        double level = 0.0;
+        for (size_t r = first; r < end; r++)
+            level += (double)levels[r * columns + column];
+        sums[column + 1] = sums[column] + level / (double)(end - first);
+    }
+}
+
+static double mean_level(const double *sums, size_t first, size_t columns)
+{
+    return (sums[first + columns] - sums[first]) / (double)columns;
+}
+
+static double step_at(const double *sums, size_t column)
+{
+    return mean_level(sums, column, WINDOW) - mean_level(sums, column - WINDOW, WINDOW);
+}
+
+/* The largest step near the first one that is high enough; 0: all before it is not dark. */
+static size_t first_step(const double *sums, size_t columns)
+{
+    size_t found = 0;
+    double largest = STEP_DB;
+    double brightest = FAINTEST_DB; /* of the water */
+    for (size_t column = PULSE + WINDOW; column + WINDOW <= columns; column++) {
+        const double step = step_at(sums, column);
+        if (step >= largest) {
+            largest = step;
+            found = column;
+        } else if (found > 0 && column > found + WINDOW) {
+            break;
+        }
+    }
+    for (size_t column = PULSE; found > 0 && column + WINDOW <= found; column++)
+        brightest = fmax(brightest, mean_level(sums, column, WINDOW));
+    return found > 0 && mean_level(sums, found, WINDOW) > brightest + 0.5 * STEP_DB ? found : 0;
+}
+
+sonject_status find_first_return(struct report *report, const float *intensity, size_t rows,
+                                 size_t columns, size_t *first_columns)
+{
+    double *sums = allocate_array(columns + 1, sizeof *sums);
+    float *levels = allocate_array(rows, columns * sizeof *levels);
+    size_t last = 0;
+    size_t missing = 0;
+    const bool is_complete = sums && levels;
+    for (size_t i = 0; is_complete && i < rows * columns; i++)
+        levels[i] = intensity[i] > FAINTEST ? 10.0f * log10f(intensity[i]) : (float)FAINTEST_DB;
+    for (size_t row = 0; is_complete && row < rows; row++) {
+        sum_levels(levels, rows, columns, row, sums);
+        const size_t column = first_step(sums, columns);
+        missing += column == 0;
+        if ((double)missing > (1.0 - ROWS_SHARE) * (double)rows)
+            break;
+        for (size_t above = 0; last == 0 && above < row; above++)
+            first_columns[above] = column;
+        last = column > 0 ? column : last;
+        first_columns[row] = last;
+    }
+    if ((double)missing > (1.0 - ROWS_SHARE) * (double)rows)
+        memset(first_columns, 0, rows * sizeof *first_columns);
+    free(levels);
+    free(sums);
+    CHECK_MEMORY(report, is_complete, "the water column");
+    return SONJECT_OK;
+}
+
+bool first_returns_cover(const struct first_returns *returns, const struct water_place *place,
+                         size_t columns)
+{
+    const double left = (double)place->column, right = left + (double)place->columns;
+    for (size_t row = place->row; returns->columns && row < place->row + place->rows; row++) {
+        const double water = returns->columns[row] + WATER_MARGIN;
+        if (returns->sides == WATER_AT_LEFT ? left < water
+            : returns->sides == WATER_AT_RIGHT
+                ? right > (double)columns - water
+                : left < returns->nadir_column + water && right > returns->nadir_column - water)
+            return true;
+    }
+    return false;
+}
+
+void first_returns_clear(struct first_returns *returns)
+{
+    free(returns->columns);
+    memset(returns, 0, sizeof *returns);
+}
+
+/* First returns of the columns from first on, count of them, to the right or to the left. */
+static sonject_status find_side(struct report *report, const float *intensity, size_t rows,
+                                size_t stride, size_t first, size_t count, bool is_mirrored,
+                                size_t *first_columns)
+{
+    float *side = allocate_array(rows, count * sizeof *side);
+    CHECK_MEMORY(report, side, "the water column");
+    for (size_t row = 0; row < rows; row++)
+        for (size_t k = 0; k < count; k++)
+            side[row * count + k] =
+                intensity[row * stride + (is_mirrored ? first + count - 1 - k : first + k)];
+    const sonject_status status = find_first_return(report, side, rows, count, first_columns);
+    free(side);
+    return status;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The middle of the darkest columns, all those about the darkest one whose mean levels over the
+ * rows are nearer to its than to the median; a transmitted pulse amid them counts, too. */
+static sonject_status find_darkest(struct report *report, const float *intensity, size_t rows,
+                                   size_t columns, size_t *middle)
+{
+    const size_t stride = rows / PROFILE_ROWS + 1;
+    double *profile = allocate_array(columns, 2 * sizeof *profile);
+    double *sorted = profile + columns;
+    size_t darkest = 0;
+    CHECK_MEMORY(report, profile, "the water column");
+    for (size_t row = 0; row < rows; row += stride)
+        for (size_t column = 0; column < columns; column++)
+            profile[column] += log(fmax(FAINTEST, (double)intensity[row * columns + column]));
+    memcpy(sorted, profile, columns * sizeof *profile);
+    qsort(sorted, columns, sizeof *sorted, compare_doubles);
+    for (size_t column = 0; column < columns; column++)
+        if (profile[column] < profile[darkest])
+            darkest = column;
+    const double edge = 0.5 * (sorted[0] + sorted[columns / 2]);
+    size_t first = darkest, last = darkest;
+    for (size_t column = darkest; column < columns && column <= last + 2 * PULSE; column++)
+        last = profile[column] < edge ? column : last;
+    for (size_t column = darkest + 1; column-- > 0 && column + 2 * PULSE >= first;)
+        first = profile[column] < edge ? column : first;
+    *middle = (first + last) / 2;
+    free(profile);
+    return SONJECT_OK;
+}
+
+/* The nadir is halfway between both sides' first returns, whatever column the search began at. */
+static sonject_status join_sides(struct first_returns *returns, struct report *report,
+                                 const size_t *right, const size_t *left, size_t rows,
+                                 size_t middle)
+{
+    double *halfway = allocate_array(rows, sizeof *halfway);
+    CHECK_MEMORY(report, halfway, "the water column");
+    for (size_t row = 0; row < rows; row++) {
+        halfway[row] = (double)middle - 0.5 + 0.5 * ((double)right[row] - (double)left[row]);
+        returns->columns[row] = 0.5 * ((double)right[row] + (double)left[row]);
+    }
+    qsort(halfway, rows, sizeof *halfway, compare_doubles);
+    returns->nadir_column = halfway[rows / 2];
+    /* as of normal values, 1.349 deviations between the quartiles; five rows share their water */
+    const double spread = (halfway[3 * rows / 4] - halfway[rows / 4]) / 1.349;
+    const double rounding = 0.3;
+    returns->nadir_column_error =
+        1.2533 * hypot(spread, rounding) / sqrt(fmax(1.0, (double)rows / (2 * ROWS_AVERAGED + 1)));
+    free(halfway);
+    returns->sides = spread < NADIR_SPREAD ? WATER_BETWEEN : WATER_UNSEEN;
+    return SONJECT_OK;
+}
+
+sonject_status first_returns_find(struct first_returns *returns, struct report *report,
+                                  const float *intensity, size_t rows, size_t columns)
+{
+    size_t middle = 0;
+    memset(returns, 0, sizeof *returns);
+    returns->nadir_column = NAN;
+    size_t *right = allocate_array(rows, sizeof *right);
+    size_t *left = allocate_array(rows, sizeof *left);
+    returns->columns = allocate_array(rows, sizeof *returns->columns);
+    sonject_status status = right && left && returns->columns
+                                ? SONJECT_OK
+                                : report_out_of_memory(report, "the water column");
+    if (rows > 0 && columns > 0)
+        THEN(status, find_darkest(report, intensity, rows, columns, &middle));
+    THEN(status,
+         find_side(report, intensity, rows, columns, middle, columns - middle, false, right));
+    THEN(status, find_side(report, intensity, rows, columns, 0, middle, true, left));
+    if (status == SONJECT_OK && rows > 0 && right[rows - 1] > 0 && left[rows - 1] > 0)
+        status = join_sides(returns, report, right, left, rows, middle);
+    for (int is_mirrored = 0; is_mirrored < 2 && returns->sides == WATER_UNSEEN; is_mirrored++) {
+        THEN(status, find_side(report, intensity, rows, columns, 0, columns, is_mirrored, right));
+        if (status != SONJECT_OK || rows == 0 || right[rows - 1] == 0)
+            continue;
+        returns->sides = is_mirrored ? WATER_AT_RIGHT : WATER_AT_LEFT;
+        returns->nadir_column = is_mirrored ? (double)columns - 0.5 : -0.5;
+        for (size_t row = 0; row < rows; row++)
+            returns->columns[row] = (double)right[row];
+    }
+    if (returns->sides == WATER_UNSEEN) {
+        free(returns->columns);
+        returns->columns = NULL;
+    }
+    free(right);
+    free(left);
+    if (status != SONJECT_OK)
+        first_returns_clear(returns);
+    return status;
+}

@@ -1,0 +1,120 @@
+/* The curve by the plain tiles' amplitude contrast alone, for swaths whose numbers no law of
+ * speckle describes. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "measure/calibration.h"
+
+#define RAYLEIGH_CONTRAST 0.5227 /* standard deviation over mean, sqrt(4 / pi - 1) */
+#define HALVINGS          40
+#define SLOPE_STEP        0.05 /* of the parameter's logarithm */
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+struct contrast_work {
+    const struct plain_tiles *tiles;
+    const struct stored_swath *swath;
+    double full_scale;
+    enum curve_family family;
+    float most_uneven; /* of the tiles that count */
+    size_t count;      /* of them */
+    double *contrasts; /* of each */
+};
+
+/* The median over the tiles. Contrasts do not depend on a tile's level. */
+static double contrast_at(struct contrast_work *work, double parameter)
+{
+    const struct plain_tiles *tiles = work->tiles;
+    const size_t side = tiles->side, pixels = side * side;
+    work->count = 0;
+    for (size_t tile = 0; tile < tiles->count; tile++) {
+        if (tiles->unevenness[tile] > work->most_uneven)
+            continue;
+        const float *first =
+            work->swath->values + tiles->rows[tile] * work->swath->columns + tiles->columns[tile];
+        const double level =
+            curve_log_intensity(work->family, parameter, work->full_scale, (double)first[0]);
+        double sum = 0.0, squares = 0.0;
+        for (size_t i = 0; i < pixels; i++) {
+            const double value = (double)first[i / side * work->swath->columns + i % side];
+            const double log_intensity =
+                curve_log_intensity(work->family, parameter, work->full_scale, value);
+            const double amplitude = exp(0.5 * (log_intensity - (isfinite(level) ? level : 0.0)));
+            sum += amplitude;
+            squares += amplitude * amplitude;
+        }
+        work->contrasts[work->count++] =
+            sqrt(fmax(0.0, squares * (double)pixels / (sum * sum) - 1.0));
+    }
+    qsort(work->contrasts, work->count, sizeof *work->contrasts, compare_doubles);
+    return work->contrasts[work->count / 2];
+}
+
+/* The logarithm of the parameter that gives the contrast of one look; *error: its standard error.
+ */
+static double solve(struct contrast_work *work, double low, double high, double *error)
+{
+    for (int i = 0; i < HALVINGS; i++) {
+        const double middle = 0.5 * (low + high);
+        if (contrast_at(work, exp(middle)) < RAYLEIGH_CONTRAST)
+            low = middle;
+        else
+            high = middle;
+    }
+    const double found = 0.5 * (low + high);
+    const double slope =
+        (contrast_at(work, exp(found + SLOPE_STEP)) - contrast_at(work, exp(found - SLOPE_STEP))) /
+        (2.0 * SLOPE_STEP);
+    contrast_at(work, exp(found));
+    /* of a median: 1.2533 deviations over the root, a deviation from the quartiles */
+    const size_t count = work->count;
+    const double deviation = (work->contrasts[3 * count / 4] - work->contrasts[count / 4]) / 1.349;
+    *error = slope > 0.0 ? 1.2533 * deviation / sqrt((double)count) / slope : INFINITY;
+    return found;
+}
+
+static int compare_unevenness(const void *a, const void *b)
+{
+    const float x = *(const float *)a;
+    const float y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+sonject_status find_by_contrast(struct report *report, const struct plain_tiles *tiles,
+                                const struct stored_swath *swath, double full_scale,
+                                enum curve_family family, struct curve_fit *fit)
+{
+    const double low = log(family == CURVE_SCHLICK ? 1.0 : fit->parameter / 20.0);
+    const double high = log(family == CURVE_SCHLICK ? 1e4 : fit->parameter * 20.0);
+    struct contrast_work work = {tiles,
+                                 swath,
+                                 full_scale,
+                                 family,
+                                 INFINITY,
+                                 0,
+                                 allocate_array(tiles->count, sizeof *work.contrasts)};
+    float *sorted = allocate_array(tiles->count, sizeof *sorted);
+    const bool is_complete = work.contrasts && sorted;
+    if (is_complete) {
+        double plainer_error;
+        const double found = solve(&work, low, high, &fit->parameter_error);
+        memcpy(sorted, tiles->unevenness, tiles->count * sizeof *sorted);
+        qsort(sorted, tiles->count, sizeof *sorted, compare_unevenness);
+        work.most_uneven = sorted[tiles->count / 2];
+        /* what the seabed's own unevenness does to it, the plainer half of the tiles tells */
+        const double plainer = solve(&work, low, high, &plainer_error);
+        fit->parameter = exp(found);
+        fit->parameter_error = hypot(fit->parameter_error, plainer - found);
+    }
+    free(work.contrasts);
+    free(sorted);
+    CHECK_MEMORY(report, is_complete, "a calibration");
+    return SONJECT_OK;
+}

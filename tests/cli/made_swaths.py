@@ -1,0 +1,93 @@
+"""Swaths made of speckle whose curve, looks, ceiling and noise floor are known."""
+
+import numpy
+
+ROWS, COLUMNS = 768, 800
+WIDTH = 1.5  # half-power width of the response, pixels
+LEVEL_DB = 2.0  # of the seabed's level, standard deviation
+# of each kind: parameter, and median amplitude of the seabed over full scale
+KINDS = {"amplitude": (None, 0.12), "intensity": (None, 0.25), "gamma": (1.7, 0.08),
+         "schlick": (3.0, 0.2), "decibel": (None, 0.1)}
+
+
+def _smooth(noise, deviation):
+    """Convolved with a Gaussian of that standard deviation, round the edges."""
+    rows = numpy.fft.fftfreq(noise.shape[0])[:, None]
+    columns = numpy.fft.fftfreq(noise.shape[1])[None, :]
+    weights = numpy.exp(-2 * (numpy.pi * deviation) ** 2 * (rows**2 + columns**2))
+    return numpy.fft.ifft2(numpy.fft.fft2(noise) * weights)
+
+
+def _field(random, shape):
+    """Circular Gaussian, of mean square 1, as a Gaussian response of that width makes it."""
+    noise = random.standard_normal(shape) + 1j * random.standard_normal(shape)
+    field = _smooth(noise, WIDTH / (2 * numpy.log(2) ** 0.5))
+    return field / numpy.mean(numpy.abs(field) ** 2) ** 0.5
+
+
+class Made:
+    """numbers: stored, 8 or 16 bits; the rest is what a calibration is to find."""
+
+    def __init__(self, kind, looks=1, share=0.9, floor_db=-25.0, seed=1, bits=16, water=None):
+        """share: of the type's largest number that is the ceiling. water: first returns of the rows,
+        columns from the left."""
+        self.kind, self.looks = kind, looks
+        self.parameter, level = KINDS[kind]
+        self.ceiling = round(share * (2**bits - 1))
+        random = numpy.random.default_rng(seed)
+        shape = (ROWS, COLUMNS)
+        seabed = _smooth(random.standard_normal(shape), 40.0).real
+        seabed = 10 ** (seabed * LEVEL_DB / seabed.std() / 10)
+        lit = numpy.ones(shape)
+        for _ in range(14):  # shadows
+            row, column = random.integers(0, ROWS - 40), random.integers(0, COLUMNS - 80)
+            lit[row : row + 24, column : column + 60] = 0
+        for _ in range(40):  # contacts that clip
+            row, column = random.integers(0, ROWS - 8), random.integers(0, COLUMNS - 8)
+            lit[row : row + 3, column : column + 5] = (1.6 / level) ** 2
+        if water is not None:
+            columns, first = numpy.arange(COLUMNS)[None, :], numpy.asarray(water)[:, None]
+            lit[columns < first + 100] = 1  # no shadow hides where the seabed begins
+            lit[columns < first] = 0
+        noise = 10 ** (floor_db / 10)
+        intensity = sum(
+            numpy.abs(_field(random, shape) * (seabed * lit) ** 0.5
+                      + _field(random, shape) * noise**0.5) ** 2 for _ in range(looks)) / looks
+        amplitude = level * intensity**0.5
+        if kind == "decibel":  # 80 dB from the lowest number to full scale
+            self.parameter = 80.0 / self.ceiling
+        stored = {
+            "amplitude": lambda a: a,
+            "intensity": lambda a: a**2,
+            "gamma": lambda a: a ** (1 / self.parameter),
+            "schlick": lambda a: a * self.parameter / (1 + (self.parameter - 1) * a),
+            "decibel": lambda a: 1 + 20 * numpy.log10(numpy.maximum(a, 1e-9)) / 80,
+        }[kind](amplitude)
+        numbers = numpy.clip(numpy.round(self.ceiling * stored), 0, self.ceiling)
+        self.numbers = numbers.astype(numpy.uint8 if bits == 8 else numpy.uint16)
+        self.clipped = float(numpy.mean(numbers >= self.ceiling))
+        self.floor_db = 10 * numpy.log10(noise / numpy.median(seabed + noise))
+
+
+# Largest standard errors, over the value; of the floor in dB.
+LIMITS = {"parameter": 0.05, "looks": 0.1, "noise_floor": 1.0, "response_along_track": 0.05,
+          "response_range": 0.05}
+
+
+def deviations(made, measured):
+    """What was found less what is so, in standard errors, and whether these are small enough."""
+    found = {
+        "looks": (measured["looks"], made.looks),
+        "noise_floor": (measured["noise_floor"], made.floor_db),
+        "response_along_track": (measured["response_along_track"], WIDTH),
+        "response_range": (measured["response_range"], WIDTH),
+    }
+    if made.kind in ("gamma", "schlick", "decibel"):
+        found["parameter"] = (measured["transfer"]["parameter"], made.parameter)
+    result = {}
+    for name, (estimate, truth) in found.items():
+        assert "not_seen" not in estimate, (made.kind, made.looks, name, estimate)
+        error = estimate["standard_error"]
+        limit = LIMITS[name] * (1.0 if name == "noise_floor" else truth)
+        result[name] = ((estimate["value"] - truth) / error, error / limit)
+    return result

@@ -1,0 +1,162 @@
+"""sonject calibrate: what a swath tells of itself."""
+
+import json
+
+import numpy
+import pytest
+
+from conftest import assert_refused
+from images import png_bytes
+from made_swaths import COLUMNS, KINDS, ROWS, Made, deviations
+from measured_images import measured, read_png, read_xtf
+
+
+def calibrated(sonject, *arguments):
+    answer = sonject("calibrate", "--json", *arguments)
+    assert answer.returncode == 0, answer.stderr
+    return json.loads(answer.stdout)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_made_swath_tells_what_made_it(kind, sonject, tmp_path):
+    """One of test_calibration_matrix.py's cases of each curve: five estimates within 4 standard errors,
+    beyond which one of 3,000 swaths lies."""
+    made = Made(kind, looks=1 if kind == "decibel" else 2)
+    numpy.save(tmp_path / "made.npy", made.numbers)
+    found = calibrated(sonject, "made.npy")
+    assert found["input"]["transfer"]["kind"] == kind
+    assert found["input"]["transfer"]["full_scale"] == made.ceiling
+    assert found["measured"]["clipped"]["value"] == pytest.approx(made.clipped, rel=1e-3)
+    for name, (deviation, width) in deviations(made, found["measured"]).items():
+        assert abs(deviation) < 4 and width < 1, (name, deviation, width)
+    assert found["injection"]["match"]["looks"] == found["measured"]["looks"]["value"]
+    floor = found["measured"]["noise_floor"]["value"]
+    assert found["injection"]["noise_floor"] == f"{floor:g} dB"
+
+
+def test_the_same_swath_tells_the_same_in_every_form(sonject, tmp_path):
+    made = Made("schlick", bits=8)
+    numpy.save(tmp_path / "made.npy", made.numbers)
+    numpy.save(tmp_path / "floats.npy", made.numbers.astype(numpy.float32))
+    (tmp_path / "made.png").write_bytes(png_bytes(made.numbers))
+    answers = [calibrated(sonject, name) for name in ("made.npy", "made.png", "floats.npy")]
+    for answer in answers:
+        del answer["measured"]["swath"]
+    assert answers[0] == answers[1] == answers[2]
+
+
+def test_complex_pixels_have_no_curve(sonject, tmp_path):
+    random = numpy.random.default_rng(2)
+    field = random.standard_normal((256, 256, 2)).view(numpy.complex128)[..., 0]
+    numpy.save(tmp_path / "field.npy", field.astype(numpy.complex64))
+    found = calibrated(sonject, "field.npy")
+    assert found["input"]["transfer"] == {"kind": "amplitude"}
+    assert found["measured"]["looks"]["value"] == pytest.approx(1, abs=0.05)
+    assert "complex" in found["measured"]["full_scale"]["not_seen"]
+    assert "independent" in found["measured"]["response_range"]["not_seen"]
+
+
+def test_what_is_not_there_is_not_seen_and_the_reason_told(sonject, tmp_path):
+    numpy.save(tmp_path / "small.npy", numpy.full((40, 40), 7, numpy.uint8))
+    found = calibrated(sonject, "small.npy")
+    assert set(found) == {"sonject_calibration", "measured"}
+    unseen = {name for name, told in found["measured"].items()
+              if isinstance(told, dict) and told.get("not_seen")}
+    assert unseen >= {"transfer", "full_scale", "looks", "noise_floor", "response_range", "altitude"}
+
+
+def test_water_columns_of_one_side_and_two(sonject, tmp_path):
+    """Speckle knows the first return of a ping to a sample, and the nadir, from 768, much better."""
+    rows = numpy.arange(ROWS)
+    water = numpy.round(120 + 40 * numpy.sin(rows / 90)).astype(int)
+    right = Made("amplitude", water=water, seed=5).numbers
+    left = Made("amplitude", water=water, seed=6).numbers[:, ::-1]
+    spacing = ("--row-spacing", "0.1", "--column-spacing", "0.05", "--first-range", "0.025")
+    for name, numbers, sides in (("right", right, "one, range grows to the right"),
+                                 ("left", left, "one, range grows to the left"),
+                                 ("both", numpy.hstack([left[:, 300:], right]), "two")):
+        numpy.save(tmp_path / f"{name}.npy", numbers)
+        found = calibrated(sonject, f"{name}.npy", *spacing)
+        told = found["measured"]
+        assert told["sides"] == sides
+        off = numpy.abs(numpy.array(told["first_return"]) - water)
+        assert numpy.mean(off <= 2) > 0.95, (name, numpy.sort(off)[-40:])
+        assert told["altitude"]["value"] == pytest.approx(0.05 * (numpy.median(water) + 0.5), abs=0.06)
+        assert found["sonar"]["altitude"] == f"{told['altitude']['value']:g} m"
+        if sides == "two":
+            nadir = told["nadir_column"]
+            assert abs(nadir["value"] - (COLUMNS - 300 - 0.5)) < 3 * nadir["standard_error"] + 0.25
+        else:
+            assert "one side" in told["nadir_column"]["not_seen"]
+
+
+def test_yaml_says_what_json_says(sonject, tmp_path):
+    """Read by a scene, which test_calibration_key.py does; here by its lines."""
+    numpy.save(tmp_path / "made.npy", Made("decibel").numbers)
+    found = calibrated(sonject, "made.npy")
+    answer = sonject("calibrate", "made.npy", "-o", "made.yaml", "--picture", "made.png")
+    assert answer.returncode == 0 and answer.stdout == ""
+    lines = (tmp_path / "made.yaml").read_text().splitlines()
+    transfer = found["input"]["transfer"]
+    assert f"    parameter: {transfer['parameter']:g}" in lines
+    assert f"    full_scale: {transfer['full_scale']}" in lines
+    assert f"  noise_floor: {found['injection']['noise_floor']}" in lines
+    assert (tmp_path / "made.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_bad_input_is_refused(sonject, tmp_path):
+    numpy.save(tmp_path / "nan.npy", numpy.full((64, 64), numpy.nan, numpy.float32))
+    numpy.save(tmp_path / "made.npy", numpy.zeros((64, 64), numpy.uint8))
+    assert_refused(sonject("calibrate", "nan.npy"), 3, "row 0, column 0", "not a finite number")
+    assert_refused(sonject("calibrate", "none.npy"), 3, "none.npy")
+    assert_refused(sonject("calibrate", "made.npy", "--row-spacing", "1"), 2, "belong together")
+    assert_refused(sonject("calibrate", "made.npy", "-o", "no/folder/a.yaml"), 5, "no/folder")
+
+
+def plain_parameter(image):
+    """The Schlick parameter that gives the amplitudes of the plainer half of an image's tiles, in the
+    median, the contrast of one look."""
+    side, part = 32, 8
+    rows, columns = (size // side for size in image.shape)
+    tiles = image[: rows * side, : columns * side].astype(float).reshape(rows, side, columns, side)
+    tiles = tiles.swapaxes(1, 2).reshape(-1, side, side) / 255
+    parts = tiles.reshape(-1, 4, part, 4, part).swapaxes(2, 3).reshape(-1, 16, part * part)
+    quartiles = numpy.percentile(tiles.reshape(-1, side * side), [25, 75], axis=1)
+    unevenness = numpy.median(parts, 2).std(1) / (quartiles[1] - quartiles[0])
+    plain = tiles[unevenness <= numpy.median(unevenness)].reshape(-1, side * side)
+    low, high = 1.0, 20.0
+    while high - low > 1e-3:
+        middle = 0.5 * (low + high)
+        amplitudes = plain / (middle - (middle - 1) * plain)
+        contrast = numpy.median(amplitudes.std(1) / amplitudes.mean(1))
+        low, high = (middle, high) if contrast < (4 / numpy.pi - 1) ** 0.5 else (low, middle)
+    return low
+
+
+@pytest.mark.parametrize("name", ["image_02", "image_11", "sassed44_1001x1001_original"])
+def test_a_measured_curve_is_what_plain_patches_need(name, sonject):
+    path = measured(f"sassed/{name}.png")
+    found = calibrated(sonject, path)["input"]["transfer"]
+    assert found["kind"] == "schlick"
+    assert found["parameter"] == pytest.approx(plain_parameter(read_png(path)), abs=0.3)
+
+
+def test_measured_decibels_a_grey_level(sonject):
+    """0.378: by the contrast of plain patches (and 16 bits of amplitude on 255 levels)."""
+    found = calibrated(sonject, measured("sas/hisas2040_wreck_6079x3578.jpg"))["input"]["transfer"]
+    assert found["kind"] == "decibel"
+    assert found["parameter"] == pytest.approx(0.378, rel=0.03)
+
+
+def test_measured_clipping_and_first_returns(sonject):
+    """The recorded altitudes of this line are those of another sensor, 10 to 60 samples short of where
+    both sides' seabed begins, so that the sides are held to each other."""
+    path = measured("sidescan/scotsman-iver2.xtf")
+    found = [calibrated(sonject, path, "--channel", side) for side in ("port", "starboard")]
+    samples, _ = read_xtf(path)
+    for side in found:
+        assert side["input"]["transfer"]["full_scale"] == 32767
+    assert found[0]["measured"]["clipped"]["value"] == pytest.approx(numpy.mean(samples == 32767),
+                                                                     rel=1e-3)
+    port, starboard = (numpy.array(side["measured"]["first_return"]) for side in found)
+    assert numpy.mean(numpy.abs(port - starboard) <= 4) >= 0.95

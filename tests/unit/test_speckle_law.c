@@ -1,0 +1,103 @@
+/* The law of speckle's logarithm, against closed forms. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "base/memory.h"
+#include "measure/first_return.h"
+#include "measure/speckle_law.h"
+
+static void moments_of(const struct speckle_law *law, double *mean, double *variance)
+{
+    *mean = *variance = 0.0;
+    for (int i = 0; i < LAW_POINTS; i++)
+        *mean += law->density[i] * (LAW_LEAST + i * LAW_STEP);
+    for (int i = 0; i < LAW_POINTS; i++)
+        *variance += law->density[i] * pow(LAW_LEAST + i * LAW_STEP - *mean, 2.0);
+}
+
+/* Trigamma at whole numbers: pi^2 / 6 less the first squares' reciprocals. */
+static void variance_of_a_logarithm_is_trigamma(void **state)
+{
+    double exact = 3.14159265358979323846 * 3.14159265358979323846 / 6.0;
+    (void)state;
+    for (int looks = 1; looks <= 12; looks++) {
+        assert_true(fabs(log_gamma_variance(looks) - exact) < 1e-8);
+        exact -= 1.0 / (looks * looks);
+    }
+}
+
+/* A K distribution's log intensity is the sum of two gamma variables' logarithms. Grid and cut ends
+ * leave 1e-3 of the variance. */
+static void texture_adds_its_variance(void **state)
+{
+    struct speckle_law law;
+    double mean, variance;
+    (void)state;
+    for (int looks = 1; looks <= 4; looks++)
+        for (int k = 0; k < 4; k++) {
+            const double shape = k == 0 ? INFINITY : 3.0 * k;
+            const double exact =
+                log_gamma_variance(looks) + (k == 0 ? 0.0 : log_gamma_variance(shape));
+            speckle_law_init(&law, looks, 1.0 / shape);
+            moments_of(&law, &mean, &variance);
+            assert_true(fabs(variance - exact) < 3e-3 * exact);
+        }
+}
+
+/* One look's intensity is exponential: what lies below x of its mean is 1 - exp(-x). */
+static void one_look_is_exponential(void **state)
+{
+    struct speckle_law law;
+    double density;
+    (void)state;
+    speckle_law_init(&law, 1.0, 0.0);
+    for (double x = 0.01; x < 6.0; x *= 1.37) {
+        assert_true(fabs(speckle_law_below(&law, log(x), &density) - (1.0 - exp(-x))) < 2e-5);
+        assert_true(fabs(density - x * exp(-x)) < 2e-4);
+        assert_true(fabs(speckle_law_quantile(&law, 1.0 - exp(-x)) - log(x)) < 1e-2);
+    }
+}
+
+/* A waterfall of two sides, of a level 20 dB over the water from a column that changes. */
+static void a_nadir_lies_between_both_first_returns(void **state)
+{
+    enum {
+        ROWS = 60,
+        COLUMNS = 400,
+        NADIR = 190
+    };
+    struct report report = {{0}, NULL, NULL};
+    struct first_returns returns;
+    float *intensity = allocate_array(ROWS, COLUMNS * sizeof *intensity);
+    (void)state;
+    for (int row = 0; row < ROWS; row++)
+        for (int column = 0; column < COLUMNS; column++)
+            intensity[row * COLUMNS + column] = abs(column - NADIR) < 60 + row / 2 ? 0.01f : 1.0f;
+    assert_int_equal(first_returns_find(&returns, &report, intensity, ROWS, COLUMNS), SONJECT_OK);
+    assert_int_equal(returns.sides, WATER_BETWEEN);
+    assert_true(fabs(returns.nadir_column - NADIR) <= 0.5);
+    for (int row = 3; row < ROWS - 3; row++)
+        assert_true(fabs(returns.columns[row] - (60 + row / 2) + 0.5) <= 1.0);
+    const struct water_place water = {10, NADIR + 30, 16, 16}, seabed = {10, NADIR + 120, 16, 16};
+    assert_true(first_returns_cover(&returns, &water, COLUMNS));
+    assert_false(first_returns_cover(&returns, &seabed, COLUMNS));
+    first_returns_clear(&returns);
+    free(intensity);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(variance_of_a_logarithm_is_trigamma),
+        cmocka_unit_test(texture_adds_its_variance),
+        cmocka_unit_test(one_look_is_exponential),
+        cmocka_unit_test(a_nadir_lies_between_both_first_returns),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

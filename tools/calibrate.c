@@ -1,0 +1,82 @@
+/* sonject calibrate: what a swath tells of itself, for scenes to take. */
+#include <stdio.h>
+
+#include <sonject/sonject.h>
+
+#include "console.h"
+#include "image_arguments.h"
+#include "verbs.h"
+
+struct calibrate_options {
+    const char *image;
+    const char *output;
+    const char *picture;
+    bool json;
+    const char *channel;
+    const char *array;
+    struct geometry_arguments geometry;
+};
+
+#define MEMBER(name) offsetof(struct calibrate_options, name)
+
+static const struct argument arguments[] = {
+    {"--output", "-o", "FILE", "write it there instead of to standard output", ARGUMENT_TEXT, false,
+     MEMBER(output)},
+    {"--picture", NULL, "PNG", "draw a page that shows why to believe it", ARGUMENT_TEXT, false,
+     MEMBER(picture)},
+    {"--json", NULL, NULL, "write JSON, which scenes take as well", ARGUMENT_FLAG, false,
+     MEMBER(json)},
+    {"--channel", NULL, "port|starboard|N", "of an XTF file", ARGUMENT_TEXT, false,
+     MEMBER(channel)},
+    {"--array", NULL, "NAME", "in an HDF5 or MATLAB file of several", ARGUMENT_TEXT, false,
+     MEMBER(array)},
+    GEOMETRY_NUMBER(struct calibrate_options, "--row-spacing", "M", "along-track distance of rows",
+                    row_spacing),
+    GEOMETRY_NUMBER(struct calibrate_options, "--column-spacing", "M",
+                    "slant range distance of columns", column_spacing),
+    GEOMETRY_NUMBER(struct calibrate_options, "--first-range", "M",
+                    "slant range of the first column", first_range),
+};
+
+static int work(const void *verb_options)
+{
+    const struct calibrate_options *options = verb_options;
+    sonject_calibrate_params params = {.struct_size = sizeof(params)};
+    char geometry[IMAGE_TEXT];
+    uint32_t is_ground = 0;
+    double altitude_m = 0.0;
+    params.image = options->image;
+    params.as_json = options->json;
+    params.channel = options->channel;
+    params.array = options->array;
+    params.picture = options->picture;
+    params.output = options->output;
+    if (!channel_check("calibrate", options->channel) ||
+        !geometry_parse("calibrate", &options->geometry, &is_ground, &altitude_m, geometry,
+                        &params.geometry))
+        return EXIT_CODE_USAGE;
+    sonject_context *context = NULL;
+    char *text = NULL;
+    sonject_status status = sonject_context_create(NULL, &context);
+    if (status == SONJECT_OK)
+        status = sonject_calibrate(context, &params, &text);
+    if (text && !options->output)
+        fputs(text, stdout);
+    const int code = status == SONJECT_OK ? finish_output() : fail_with(context, status);
+    sonject_text_release(&text);
+    sonject_context_release(&context);
+    return code;
+}
+
+const struct verb calibrate_verb = {
+    .name = "calibrate",
+    .summary = "estimates a swath's curve, ceiling, speckle, noise floor and altitude, for scenes",
+    .operand = "SWATH",
+    .operand_offset = MEMBER(image),
+    .arguments = arguments,
+    .argument_count = sizeof(arguments) / sizeof(arguments[0]),
+    .notes = "A scene takes the file as input.calibration; keys of its own win. Each estimate has\n"
+             "a standard error and how it was found, or the reason why it was not seen.",
+    .options_size = sizeof(struct calibrate_options),
+    .work = work,
+};
