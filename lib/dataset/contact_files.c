@@ -258,6 +258,7 @@ static void pair_all(struct contact_set *set)
         if (contacts[i].box.rows > 0)
             contacts[kept++] = contacts[i];
     set->count = kept;
+    qsort(contacts, kept, sizeof *contacts, compare_contacts);
 }
 
 /* ---- Reading. */

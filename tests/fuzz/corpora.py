@@ -2,6 +2,7 @@
 words(kind, source) lists what a mutation may put in. Some are files that a reader must refuse, where
 a fuzzer would take long to think of them."""
 
+import json
 import re
 import struct
 import sys
@@ -180,10 +181,29 @@ def snippets(source):
     return {"boulder": code, "short": short, "deep": b"(" * 300}
 
 
+def labels(_):
+    """Of an image of 2 rows and 3 columns."""
+    coco = {"images": [{"id": 1, "file_name": "a.npy", "width": 3, "height": 2}],
+            "categories": [{"id": 1, "name": "highlight"}, {"id": 2, "name": "shadow"}],
+            "annotations": [{"image_id": 1, "category_id": 1, "bbox": [0, 0, 1, 2]},
+                            {"image_id": 1, "category_id": 2, "bbox": [1, 0, 2, 2]}]}
+    box = b"<bndbox><xmin>1</xmin><ymin>1</ymin><xmax>3</xmax><ymax>2</ymax></bndbox>"
+    return {
+        "coco": json.dumps(coco).encode(),
+        "plain": b"image,row,column,rows,columns,part\na.npy,0,0,1,1,highlight\na.npy,0,1,1,2,shadow\n",
+        "own": b'image,class,box_row,box_column,box_rows,box_columns\n"a.npy","a, b",0,0,1,1\n',
+        "quantiles": b"quantiles: [0.1, 0.5]\ncontacts: 12\nshadow_range: [1, 2 m]\n"
+                     b"highlight_along: [20 cm, 1]\n",
+        "yolo": b"0 0.5 0.5 0.2 0.2\n1 0.5 0.5 1 1\n",
+        "voc": b"<annotation><filename>a.npy</filename><size><width>3</width><height>2</height></size>"
+               b"<object><name>shadow</name>" + box + b"</object></annotation>",
+    }
+
+
 MAKERS = {"scene": scenes, "target": targets, "xtf": recordings, "jsf": jsf_recordings, "npy": arrays, "mat": matlab,
           "stl": stl, "obj": obj, "ply": ply, "image": images, "table": tables,
-          "snippet": snippets}
-TEXTS = {"scene", "target", "npy", "stl", "obj", "ply", "table", "snippet"}
+          "snippet": snippets, "labels": labels}
+TEXTS = {"scene", "target", "npy", "stl", "obj", "ply", "table", "snippet", "labels"}
 
 
 def make(kind, folder, source):

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "dataset/campaign.h"
+#include "dataset/contact_files.h"
 #include "image/raster.h"
 #include "mesh/mesh.h"
 #include "mesh/mesh_reader.h"
@@ -156,6 +157,33 @@ static void fuzz_table(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t
     number_table_clear(&table);
 }
 
+/* Labels of each format, of images that are a.npy. */
+static void fuzz_labels(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
+{
+    static const char *const files[][2] = {{"l.json", "l.json"},
+                                           {"l.csv", "l.csv"},
+                                           {"l.yaml", "l.yaml"},
+                                           {"yolo/a.txt", "yolo"},
+                                           {"voc/a.xml", "voc"}};
+    (void)fuzzer;
+    for (size_t i = 0; i < COUNT(files); i++) {
+        struct report report = {{0}, NULL, NULL};
+        struct contact_set set;
+        put_file(files[i][0], bytes, count);
+        const sonject_status status = contact_set_read(&report, files[i][1], LABELLED_BOTH, &set);
+        expect(status, &report, true);
+        if (status == SONJECT_OK && (set.count == 0) != (set.quantiles.count > 0))
+            abort();
+        for (size_t k = 0; status == SONJECT_OK && k < set.count; k++) {
+            const struct labelled_contact *contact = &set.contacts[k];
+            if (contact->image >= set.image_count || contact->box.rows == 0 ||
+                contact->box.columns == 0)
+                abort();
+        }
+        contact_set_clear(&set);
+    }
+}
+
 /* What sonject itself reads of image files: the heads of BMP and PGM. Decoding is OpenImageIO's. */
 static void fuzz_image(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
 {
@@ -262,7 +290,8 @@ static const struct fuzzer fuzzers[] = {
     {"npy", fuzz_swath, &npy_format, NULL}, {"mat", fuzz_swath, &mat_format, NULL},
     {"stl", fuzz_mesh, NULL, stl_read},     {"obj", fuzz_mesh, NULL, obj_read},
     {"ply", fuzz_mesh, NULL, ply_read},     {"image", fuzz_image, NULL, NULL},
-    {"table", fuzz_table, NULL, NULL},      {"snippet", fuzz_snippet, NULL, NULL}};
+    {"table", fuzz_table, NULL, NULL},      {"snippet", fuzz_snippet, NULL, NULL},
+    {"labels", fuzz_labels, NULL, NULL}};
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {

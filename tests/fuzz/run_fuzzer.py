@@ -27,6 +27,11 @@ def fill(folder, kind, source):
     for name, text in corpora.targets(source).items():
         (folder / "targets" / name).write_bytes(text)
     (folder / "targets" / "rock.obj").write_bytes(ROCK)
+    image = corpora.arrays(source)["f4"]
+    (folder / "a.npy").write_bytes(image)
+    for labels in ("yolo", "voc"):
+        (folder / labels).mkdir()
+        (folder / labels / "a.npy").write_bytes(image)
     words = corpora.words(kind, source)
     (folder / "words").write_text("".join(f'"{word}"\n' for word in words))
     return [f"-dict={folder / 'words'}"] if words else []

@@ -202,17 +202,17 @@ static void test_tables(void **state)
     const struct expected expected[] = {{"/a.npy", LABELLED_SHADOW, {1, 2, 3, 4}},
                                         {"/a.npy", LABELLED_BOTH, {6, 2, 3, 4}},
                                         {"/a.npy", LABELLED_HIGHLIGHT, {9, 2, 3, 4}},
-                                        {"/b, 2.npy", LABELLED_HIGHLIGHT, {0, 0, 1, 500}}};
+                                        {"/b \"2\", 3.npy", LABELLED_HIGHLIGHT, {0, 0, 1, 500}}};
     put_image(state, "a.npy");
-    put_image(state, "b, 2.npy");
+    put_image(state, "b \"2\", 3.npy");
     put(state, "labels.csv",
         "image,row,column,rows,columns,part # comment\n\n"
         "a.npy,9,2,3,4,\na.npy,0.6,2.3,3,4,Shadow\n\"a.npy\",6,2,3,4,both\n"
-        "\"b, 2.npy\",0,0,1,500,\"highlight\"\n");
+        "\"b \"\"2\"\", 3.npy\",0,0,1,500,\"highlight\"\n");
     expect_contacts(state, "labels.csv", LABELLED_HIGHLIGHT, expected, COUNT(expected));
     put(state, "labels.CSV",
         "class;rows;columns;row;column;image\nshadow;3;4;1;2;a.npy\nechoes and shadows;3;4;6;2;"
-        "a.npy\nrock;3;4;9;2;a.npy\n;1;500;0;0;b, 2.npy\n");
+        "a.npy\nrock;3;4;9;2;a.npy\n;1;500;0;0;b \"2\", 3.npy\n");
     expect_contacts(state, "labels.CSV", LABELLED_HIGHLIGHT, expected, COUNT(expected));
 }
 
@@ -402,21 +402,19 @@ static void test_where_images_are_looked_for(void **state)
 static void test_voc(void **state)
 {
     const struct expected expected[] = {{"/a&b.npy", LABELLED_SHADOW, {0, 0, 1, 1}},
-                                        {"/a&b.npy", LABELLED_BOTH, {2, 1, 8, 39}},
+                                        {"/a&b.npy", LABELLED_SHADOW, {2, 1, 8, 39}},
                                         {"/c.npy", LABELLED_BOTH, {9, 4, 2, 100}}};
     put_image(state, "a&b.npy");
     put_image(state, "c.npy");
+#define DEEP "longer-than-there-is-room-for-on-the-way-to-an-element"
     put(state, "1.xml",
         "<?xml version='1.0'?>\n<annotation><folder>x</folder>" OBJECT(
-            "\n shadow\n",
-            BOX(0, 1, 1, 1)) "<filename>a&amp;b.npy\n</filename>" SIZE
-                             "<object><part><name>shadow</name>" BOX(
-                                 5, 5, 6,
-                                 6) "</part><name>rock</name>"
-                                    "<a><b><c-is-a-name-longer-than-there-is-room-for-in-what-is-"
-                                    "kept><name>shadow</name>"
-                                    "</c-is-a-name-longer-than-there-is-room-for-in-what-is-kept></"
-                                    "b></a>" BOX(2, 3, 40, 10) "</object></annotation>");
+            "\n shadow\n", BOX(0, 1, 1, 1)) "<filename>a&amp;b.npy\n</filename>" SIZE
+                                            "<object><part><name>highlight</name>" BOX(
+                                                5, 5, 6,
+                                                6) "</part>echo <name>rock's shadow</name>"
+                                                   "<" DEEP "><name>highlight</name></" DEEP
+                                                   ">" BOX(2, 3, 40, 10) "</object></annotation>");
     put(state, "2.xml",
         "<annotation><filename>c.npy</filename>" OBJECT("r",
                                                         BOX(5, 10, 104.2, 11)) "</annotation>");
@@ -553,6 +551,20 @@ static void test_highlight_and_shadow_are_one_contact(void **state)
         {S "4,14,6,6\n" S "8,14,6,6\n" H "9,10,5,4\n" H "4,10,5,4\n",
          2,
          {{"", LABELLED_BOTH, {4, 10, 6, 10}}, {"", LABELLED_BOTH, {8, 10, 6, 10}}}},
+        /* the rows' middles tell; what is of other rows stands in nobody's way */
+        {S "4,14,4,6\n" S "5,14,4,6\n" H "6,10,2,4\n",
+         2,
+         {{"", LABELLED_SHADOW, {4, 14, 4, 6}}, {"", LABELLED_BOTH, {5, 10, 4, 10}}}},
+        {S "4,13,3,9\n" H "2,10,2,3\n" H "4,0,3,3\n",
+         2,
+         {{"", LABELLED_HIGHLIGHT, {2, 10, 2, 3}}, {"", LABELLED_BOTH, {4, 0, 3, 22}}}},
+        {H "4,10,3,3\n" S "2,13,2,9\n" S "4,20,3,9\n",
+         2,
+         {{"", LABELLED_SHADOW, {2, 13, 2, 9}}, {"", LABELLED_BOTH, {4, 10, 3, 19}}}},
+        /* one contact with its highlight's rows first, another with its shadow's */
+        {H "4,10,9,3\n" S "12,13,3,9\n" S "3,33,9,3\n" H "11,30,3,3\n",
+         2,
+         {{"", LABELLED_BOTH, {3, 30, 11, 6}}, {"", LABELLED_BOTH, {4, 10, 11, 12}}}},
         /* a shadow is nearest to a highlight that has a nearer one, and keeps the one left */
         {S "4,20,4,12\n" H "4,30,4,4\n" S "4,34,4,6\n",
          2,
