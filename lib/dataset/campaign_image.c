@@ -263,9 +263,8 @@ static void take_alone(struct campaign_image *image, struct scene *scene, struct
         image->swath.empty.numbers[i] -= chip->first_row;
     *scene = image->scene;
     *swath = image->swath;
-    scene->geometry.first_along_track_m += (double)chip->first_row * scene->geometry.row_spacing_m;
-    scene->geometry.first_slant_range_m +=
-        (double)chip->first_column * scene->geometry.column_spacing_m;
+    scene->geometry = geometry_crop(&image->scene.geometry, (double)chip->first_row,
+                                    (double)chip->first_column, (double)chip->columns);
     swath->layout.rows = chip->rows;
     swath->layout.columns = chip->columns;
     swath->patch = all;
@@ -280,7 +279,7 @@ static sonject_status write_pixels(struct sonject_campaign *campaign, const stru
     struct geometry_notes notes;
     void *stored = swath_stored_result(swath, result, &result->statistics.output_clipped);
     CHECK_MEMORY(campaign->report, stored, "an image");
-    geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
+    geometry_notes_init(&notes, &scene->sonar, &scene->geometry);
     const sonject_status status = raster_file_write(campaign->report, path, &swath->layout,
                                                     swath->is_complex ? complex_names : NULL,
                                                     notes.attributes, notes.count, stored);

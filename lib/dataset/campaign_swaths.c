@@ -231,11 +231,6 @@ void crop_sample(const struct crop_places *room, double along_track, double rang
     free_columns(room, *row, part_of(columns, range), column);
 }
 
-static double column_at(const sonject_geometry_params *geometry, double range_m)
-{
-    return (range_m - geometry->first_slant_range_m) / geometry->column_spacing_m;
-}
-
 /* First columns beyond the first return whose chip's middle has a slant range within the limits. An
  * image that has all columns begins where the swath does: there the limits are those of its
  * objects. False where nothing is left. */
@@ -246,11 +241,18 @@ static bool limit_ranges(const struct campaign *campaign, const sonject_geometry
     const double half = has_all ? 0.0 : 0.5 * (double)(campaign->chip_columns - 1);
     const double end =
         (double)chips->first_column + (double)(has_all ? plan->chip_columns : chips->columns) - 1.0;
-    double low = fmax((double)chips->first_column, floor(column_at(geometry, altitude_m)) + 1.0);
+    const double bottom = geometry_column(geometry, altitude_m);
+    double low = (double)chips->first_column;
     double high = end;
+    if (geometry_is_reversed(geometry))
+        high = fmin(high, ceil(bottom) - 1.0 - 2.0 * half);
+    else
+        low = fmax(low, floor(bottom) + 1.0);
     if (campaign->has_range) {
-        low = fmax(low, ceil(column_at(geometry, campaign->nearest_range_m) - half - 1e-9));
-        high = fmin(high, floor(column_at(geometry, campaign->farthest_range_m) - half + 1e-9));
+        const double near = geometry_column(geometry, campaign->nearest_range_m) - half;
+        const double far = geometry_column(geometry, campaign->farthest_range_m) - half;
+        low = fmax(low, ceil(fmin(near, far) - 1e-9));
+        high = fmin(high, floor(fmax(near, far) + 1e-9));
     }
     plan->first_object_column = has_all ? low : 0.0;
     plan->last_object_column = has_all ? high : (double)plan->layout.columns;
@@ -286,19 +288,25 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
 {
     struct swath_plan *plan = &campaign->swaths[swath];
     plan->chip_rows = side_of(campaign->chip_rows, plan->layout.rows, campaign->edge);
-    plan->chip_columns = side_of(campaign->chip_columns, plan->layout.columns, campaign->edge);
+    uint64_t first, width;
+    if (!geometry_side(geometry, plan->layout.columns, &first, &width))
+        return tree_failure(&campaign->tree, plan->place, "swaths",
+                            "nadir_column %g leaves none of the %llu columns of %s to the side",
+                            geometry->nadir_column, (unsigned long long)plan->layout.columns,
+                            plan->written);
+    plan->chip_columns = side_of(campaign->chip_columns, width, campaign->edge);
     const uint64_t rows = plan->chip_rows + 2 * (uint64_t)campaign->edge;
     const uint64_t columns = plan->chip_columns + 2 * (uint64_t)campaign->edge;
-    if (plan->layout.rows < rows || plan->layout.columns < columns)
+    if (plan->layout.rows < rows || width < columns)
         return tree_failure(
             &campaign->tree, plan->place, "swaths",
             "%s has %llu x %llu pixels, too few for images of %llu x %llu that stay %u "
             "pixels away from its edges",
-            plan->written, (unsigned long long)plan->layout.rows,
-            (unsigned long long)plan->layout.columns, (unsigned long long)plan->chip_rows,
-            (unsigned long long)plan->chip_columns, (unsigned)campaign->edge);
-    struct region chips = {campaign->edge, campaign->edge, plan->layout.rows - rows + 1,
-                           plan->layout.columns - columns + 1};
+            plan->written, (unsigned long long)plan->layout.rows, (unsigned long long)width,
+            (unsigned long long)plan->chip_rows, (unsigned long long)plan->chip_columns,
+            (unsigned)campaign->edge);
+    struct region chips = {campaign->edge, first + campaign->edge, plan->layout.rows - rows + 1,
+                           width - columns + 1};
     const bool has_room = limit_ranges(campaign, geometry, altitude_m, plan, &chips);
     if (!has_room && !campaign->has_range)
         return tree_failure(&campaign->tree, plan->place, "swaths",

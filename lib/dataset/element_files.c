@@ -42,8 +42,10 @@ static json_t *image_document(const struct scene *scene, const struct injection_
         {"column_spacing_m", json_number(geometry->column_spacing_m)},
         {"first_along_track_m",
          json_number(geometry->first_along_track_m + input->first_row * geometry->row_spacing_m)},
-        {"first_slant_range_m", json_number(geometry->first_slant_range_m +
-                                            input->first_column * geometry->column_spacing_m)});
+        {"first_slant_range_m",
+         json_number(
+             fmin(geometry_range(geometry, input->first_column),
+                  geometry_range(geometry, input->first_column + (double)(input->columns - 1))))});
 }
 
 static json_t *series_document(const struct scene *scene, const struct injection_input *input,

@@ -38,8 +38,8 @@ static json_t *swath_box_document(const struct run_facts *facts, const sonject_b
     const uint64_t column = facts->swath->patch.first_column + box->first_column;
     const double along =
         geometry->first_along_track_m + ((double)row - 0.5) * geometry->row_spacing_m;
-    const double near =
-        geometry->first_slant_range_m + ((double)column - 0.5) * geometry->column_spacing_m;
+    const double near = fmin(geometry_range(geometry, (double)column - 0.5),
+                             geometry_range(geometry, (double)(column + box->columns) - 0.5));
     const double width = (double)box->columns * geometry->column_spacing_m;
     const double ground = level_ground_range(facts, near);
     return JSON_OBJECT(
@@ -170,8 +170,10 @@ static json_t *corners_document(const struct run_facts *facts)
         const bool is_last = corner >= 2;
         const bool is_far = corner == 1 || corner == 2;
         const double row = (double)(patch->first_row + (is_last ? patch->rows - 1 : 0));
-        const double column = (double)(patch->first_column + (is_far ? patch->columns - 1 : 0));
-        const double range = geometry->first_slant_range_m + column * geometry->column_spacing_m;
+        const bool is_last_column = is_far != geometry_is_reversed(geometry);
+        const double column =
+            (double)(patch->first_column + (is_last_column ? patch->columns - 1 : 0));
+        const double range = geometry_range(geometry, column);
         json_append(&corners, position_document(facts, row, level_ground_range(facts, range)));
     }
     return corners;
@@ -346,8 +348,10 @@ static sonject_status write_float_layer(struct report *report, const struct run_
     const struct raster_layout layout = {patch->rows, patch->columns, channels, PIXEL_FLOAT32};
     struct geometry_notes notes;
     struct raster_attribute attributes[GEOMETRY_NOTES_MAX + 2];
-    geometry_notes_init(&notes, &facts->scene->sonar, &facts->scene->geometry,
-                        (double)patch->first_row, (double)patch->first_column);
+    const sonject_geometry_params geometry =
+        geometry_crop(&facts->scene->geometry, (double)patch->first_row,
+                      (double)patch->first_column, (double)patch->columns);
+    geometry_notes_init(&notes, &facts->scene->sonar, &geometry);
     memcpy(attributes, notes.attributes, sizeof notes.attributes);
     attributes[notes.count] = (struct raster_attribute){"sonject:phase_sign", "exp(+i 2 pi f t)"};
     attributes[notes.count + 1] = (struct raster_attribute){
@@ -389,9 +393,9 @@ static sonject_status write_quicklook(struct report *report, const struct run_fa
         .first_along_track_m =
             geometry->first_along_track_m + (double)patch->first_row * geometry->row_spacing_m,
         .row_spacing_m = geometry->row_spacing_m,
-        .first_range_m = geometry->first_slant_range_m +
-                         (double)patch->first_column * geometry->column_spacing_m,
-        .column_spacing_m = geometry->column_spacing_m,
+        .first_range_m = geometry_range(geometry, (double)patch->first_column),
+        .column_spacing_m = geometry_is_reversed(geometry) ? -geometry->column_spacing_m
+                                                           : geometry->column_spacing_m,
         .range_label = "slant range, m",
         .difference_db = 20.0};
     uint8_t *picture = NULL;

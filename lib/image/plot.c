@@ -126,7 +126,7 @@ static struct plot_scale scale_of(uint64_t pixels, double length)
 static void choose_scales(const struct plot_frame *frame, double target,
                           struct plot_scale *along_track, struct plot_scale *range)
 {
-    const double ratio = frame->row_spacing_m / frame->column_spacing_m;
+    const double ratio = frame->row_spacing_m / fabs(frame->column_spacing_m);
     const double row_size = isfinite(ratio) && ratio > 0.0 ? ratio : 1.0;
     const double height = row_size * (double)frame->rows;
     const double width = (double)frame->columns;
@@ -310,9 +310,10 @@ static int64_t axis_room(const struct plot *plot)
 static struct plot_ticks axis_ticks(double first, double spacing, const struct plot_scale *scale,
                                     int64_t length, double every)
 {
-    const double last = first + spacing * (double)(scale->pixels - 1);
-    const double half = 0.5 * spacing;
-    return plot_ticks_between(first - half, last + half, fmax(1.0, (double)length / every));
+    const double start = first - 0.5 * spacing;
+    const double end = start + spacing * (double)scale->pixels;
+    return plot_ticks_between(fmin(start, end), fmax(start, end),
+                              fmax(1.0, (double)length / every));
 }
 
 /* Where the value of an axis lies, from the panel's edge. */

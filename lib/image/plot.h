@@ -16,7 +16,7 @@ struct plot_panel {
 struct plot_frame {
     uint64_t rows, columns; /* of every panel */
     double first_along_track_m, row_spacing_m;
-    double first_range_m, column_spacing_m; /* of the axis that is labelled */
+    double first_range_m, column_spacing_m; /* of the axis that is labelled; it may fall */
     /* "slant range, m" or "ground range, m"; "column": axes in pixels, the other one called "row"
      */
     const char *range_label;

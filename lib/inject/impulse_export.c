@@ -228,6 +228,7 @@ static bool write_facts(hid_t file, const struct scene *scene, const struct inje
         {"row_spacing_m", geometry->row_spacing_m},
         {"column_spacing_m", geometry->column_spacing_m},
         {"first_slant_range_m", geometry->first_slant_range_m},
+        {"nadir_column", geometry->nadir_column},
     };
     bool is_done = true;
     for (size_t i = 0; is_done && i < sizeof wholes / sizeof *wholes; i++)

@@ -40,18 +40,28 @@ sonject_status make_input(struct report *report, const struct scene *scene,
     return status;
 }
 
-static void flip_rows(void *plane, size_t rows, size_t row_bytes)
+/* Puts count things of so many bytes each in reverse order. */
+static void reverse(char *things, size_t count, size_t bytes)
 {
-    char *top = plane;
-    for (size_t row = 0; row < rows / 2; row++) {
-        char *a = top + row * row_bytes;
-        char *b = top + (rows - 1 - row) * row_bytes;
-        for (size_t i = 0; i < row_bytes; i++) {
+    for (size_t k = 0; k < count / 2; k++) {
+        char *a = things + k * bytes;
+        char *b = things + (count - 1 - k) * bytes;
+        for (size_t i = 0; i < bytes; i++) {
             const char kept = a[i];
             a[i] = b[i];
             b[i] = kept;
         }
     }
+}
+
+/* From the image's order of rows and columns into the view's, or back. */
+static void turn(const struct patch_view *view, void *plane, size_t pixel_bytes)
+{
+    const size_t row_bytes = view->columns * pixel_bytes;
+    if (view->is_mirrored)
+        reverse(plane, view->rows, row_bytes);
+    for (size_t row = 0; view->is_reversed && row < view->rows; row++)
+        reverse((char *)plane + row * row_bytes, view->columns, pixel_bytes);
 }
 
 static sonject_status check_combination(struct report *report, const struct scene *scene,
@@ -150,13 +160,12 @@ sonject_status injection_setup_init(struct injection_setup *setup, struct report
                                     struct device *device, const struct scene *scene,
                                     const struct injection_input *input)
 {
-    const size_t row_bytes = input->columns * (input->is_complex ? 2 : 1) * sizeof(float);
+    const size_t pixel_bytes = (input->is_complex ? 2 : 1) * sizeof(float);
     CHECK(injection_setup_init_scene(setup, report, device, scene, input));
-    setup->pixels = allocate_array(input->rows, row_bytes);
+    setup->pixels = allocate_array(input->rows, input->columns * pixel_bytes);
     CHECK_MEMORY(report, setup->pixels, "the patch");
-    memcpy(setup->pixels, input->pixels, input->rows * row_bytes);
-    if (setup->tracer.view.is_mirrored)
-        flip_rows(setup->pixels, input->rows, row_bytes);
+    memcpy(setup->pixels, input->pixels, input->rows * input->columns * pixel_bytes);
+    turn(&setup->tracer.view, setup->pixels, pixel_bytes);
     return SONJECT_OK;
 }
 
@@ -197,34 +206,37 @@ static sonject_status result_init(struct injection_result *result, struct report
     return SONJECT_OK;
 }
 
-static void flip_box(sonject_box *box, size_t rows)
+static void turn_box(const struct patch_view *view, sonject_box *box)
 {
-    if (box->rows > 0)
-        box->first_row = rows - box->first_row - box->rows;
+    if (box->rows > 0 && view->is_mirrored)
+        box->first_row = view->rows - box->first_row - box->rows;
+    if (box->rows > 0 && view->is_reversed)
+        box->first_column = view->columns - box->first_column - box->columns;
 }
 
-/* From the mirrored view back into the image's row order. */
-static void unmirror(struct injection_result *result)
+/* From the view back into the image's own pixels. */
+static void turn_back(const struct patch_view *view, struct injection_result *result)
 {
-    const size_t rows = result->rows;
-    const size_t line = result->columns * sizeof(float);
-    flip_rows(result->image, rows, line * (result->is_complex ? 2 : 1));
-    flip_rows(result->field, rows, line * 2);
-    flip_rows(result->energy, rows, line);
-    flip_rows(result->visibility, rows, line);
+    turn(view, result->image, sizeof(float) * (result->is_complex ? 2 : 1));
+    turn(view, result->field, sizeof(float) * 2);
+    turn(view, result->energy, sizeof(float));
+    turn(view, result->visibility, sizeof(float));
     for (uint32_t i = 0; i < result->orders; i++)
-        flip_rows(result->order_energy[i], rows, line);
-    flip_rows(result->highlight, rows, result->columns);
-    flip_rows(result->shadow, rows, result->columns);
-    flip_rows(result->labels, rows, result->columns);
-    flip_rows(result->influence, rows, result->columns);
+        turn(view, result->order_energy[i], sizeof(float));
+    turn(view, result->highlight, 1);
+    turn(view, result->shadow, 1);
+    turn(view, result->labels, 1);
+    turn(view, result->influence, 1);
     for (uint32_t i = 0; i < result->object_count; i++) {
         sonject_object_truth *truth = &result->objects[i];
-        truth->row = (double)(rows - 1) - truth->row;
-        truth->along_track_m = -truth->along_track_m;
-        flip_box(&truth->highlight, rows);
-        flip_box(&truth->shadow, rows);
-        flip_box(&truth->both, rows);
+        truth->column = view_patch_column(view, truth->column);
+        if (view->is_mirrored) {
+            truth->row = (double)(view->rows - 1) - truth->row;
+            truth->along_track_m = -truth->along_track_m;
+        }
+        turn_box(view, &truth->highlight);
+        turn_box(view, &truth->shadow);
+        turn_box(view, &truth->both);
     }
 }
 
@@ -363,8 +375,8 @@ sonject_status injection_run(struct report *report, struct device *device,
     sonject_status status = prepare(&prepared, report, device, scene, input, progress, user);
     THEN(status, result_init(result, report, scene, input));
     THEN(status, form_and_compose(&prepared, input, result));
-    if (status == SONJECT_OK && prepared.setup.tracer.view.is_mirrored)
-        unmirror(result);
+    if (status == SONJECT_OK)
+        turn_back(&prepared.setup.tracer.view, result);
     prepared_clear(&prepared);
     if (status != SONJECT_OK)
         injection_result_clear(result);

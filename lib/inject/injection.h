@@ -29,7 +29,7 @@ struct injection_input {
                                       grids must be fine and wide enough */
 };
 
-/* What sonject_result is. All layers rows x columns in the image's row order. */
+/* What sonject_result is. All layers rows x columns in the image's own order. */
 struct injection_result {
     size_t rows, columns;
     bool is_complex;
@@ -84,7 +84,7 @@ struct injection_setup {
     struct placements placements;
     struct water water;
     struct tracer tracer;
-    float *pixels; /* in the view's row order */
+    float *pixels; /* in the view's order of rows and columns */
 };
 
 /* Lays the scene out without the pixels, which stay NULL: geometry, water, objects, response.

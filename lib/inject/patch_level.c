@@ -45,7 +45,8 @@ static sonject_status set_intensity(struct patch_level *level, struct report *re
             return report_failure(
                 report, SONJECT_ERROR_INPUT,
                 "the patch's pixel at row %zu, column %zu is %s: mend the image",
-                view->is_mirrored ? view->rows - 1 - row : row, i % view->columns,
+                view->is_mirrored ? view->rows - 1 - row : row,
+                (size_t)view_patch_column(view, (double)(i % view->columns)),
                 isnan(a) || isnan(b)
                     ? "not a number (NaN)"
                     : (intensity > 1e30 ? "too large or infinite" : "a negative amplitude"));

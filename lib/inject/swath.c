@@ -12,17 +12,27 @@
 #include "swath/raster_file.h"
 #include "swath/swath_file.h"
 
-/* The scene's patch; all zeros mean the whole swath. */
+/* The scene's patch; all zeros mean the whole swath, or of two sides that one. */
 static sonject_status choose_patch(struct report *report, const struct scene *scene,
                                    struct swath *swath)
 {
     const sonject_patch_params *asked = &scene->patch;
     const struct raster_layout *layout = &swath->layout;
     struct region *patch = &swath->patch;
+    uint64_t first, columns;
+    if (!geometry_side(&scene->geometry, layout->columns, &first, &columns))
+        return scene_locate(
+            scene, report,
+            report_failure(report, SONJECT_ERROR_INPUT,
+                           "nadir_column %g leaves none of the image's %llu columns to %s: correct "
+                           "it, or the side",
+                           scene->geometry.nadir_column, (unsigned long long)layout->columns,
+                           scene->geometry.side == SONJECT_SIDE_PORT ? "port" : "starboard"),
+            "input.geometry.nadir_column");
     patch->first_row = asked->first_row;
-    patch->first_column = asked->first_column;
+    patch->first_column = asked->columns ? asked->first_column : first + asked->first_column;
     patch->rows = asked->rows ? asked->rows : layout->rows - asked->first_row;
-    patch->columns = asked->columns ? asked->columns : layout->columns - asked->first_column;
+    patch->columns = asked->columns ? asked->columns : columns - asked->first_column;
     if (asked->first_row >= layout->rows || asked->first_column >= layout->columns ||
         !region_is_inside(layout, patch))
         return report_failure(
@@ -469,7 +479,7 @@ static sonject_status write_made(struct report *report, const struct scene *scen
         memcpy(row_in_swath(swath, whole, row), (const char *)result->image + row * bytes, bytes);
     static const char *const complex_names[] = {"real", "imag"};
     struct geometry_notes notes;
-    geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
+    geometry_notes_init(&notes, &scene->sonar, &scene->geometry);
     return raster_file_write(report, path, &swath->layout, swath->is_complex ? complex_names : NULL,
                              notes.attributes, notes.count, whole);
 }
@@ -525,7 +535,7 @@ sonject_status write_seabed(struct report *report, const struct scene *scene, co
     CHECK(make_input(report, scene, &input));
     const struct raster_layout layout = {input.rows, input.columns, is_complex ? 2 : 1,
                                          is_png ? PIXEL_UINT8 : PIXEL_FLOAT32};
-    geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
+    geometry_notes_init(&notes, &scene->sonar, &scene->geometry);
     if (is_png)
         to_bytes((float *)input.pixels, input.rows * input.columns);
     const sonject_status status =

@@ -2,9 +2,28 @@
 #ifndef SONJECT_SCENE_GEOMETRY_H
 #define SONJECT_SCENE_GEOMETRY_H
 
+#include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "scene/params.h"
+
+/* Whether range grows towards column 0. */
+bool geometry_is_reversed(const sonject_geometry_params *geometry);
+
+/* Slant range in m of a column of the swath, which may be fractional, and the reverse; on the other
+ * side of a nadir column ranges are less than that column's. */
+double geometry_range(const sonject_geometry_params *geometry, double column);
+double geometry_column(const sonject_geometry_params *geometry, double range_m);
+
+/* The columns on the imaged side of a swath of so many; false if there are none, or if the nadir
+ * column is none of them. */
+bool geometry_side(const sonject_geometry_params *geometry, uint64_t columns, uint64_t *first,
+                   uint64_t *count);
+
+/* Of an image by itself that is so many columns of the swath, from a row and a column on. */
+sonject_geometry_params geometry_crop(const sonject_geometry_params *geometry, double first_row,
+                                      double first_column, double columns);
 
 #define PING_ROWS_MAX ((size_t)1 << 20)
 

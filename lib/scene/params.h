@@ -24,13 +24,16 @@ typedef enum sonject_side {
 
 /* Rows are track positions, columns slant range: pixel (n, j) is centred on track position
  * first_along_track_m + n * row_spacing_m and slant range first_slant_range_m + j *
- * column_spacing_m, range being reference sound speed * time / 2. */
+ * column_spacing_m, range being reference sound speed * time / 2. With a nadir column, port is what
+ * lies to its left, starboard to its right, and range grows from it to both sides
+ * (scene/geometry.h). */
 typedef struct sonject_geometry_params {
     uint32_t side; /* sonject_side; poses are meant in the image's own ping order on either side */
     double row_spacing_m;
     double column_spacing_m;
     double first_along_track_m;
-    double first_slant_range_m; /* NaN: not set */
+    double first_slant_range_m; /* of column 0, or of the nadir column; NaN: not set */
+    double nadir_column;        /* 0: none */
 } sonject_geometry_params;
 
 /* A channel of an XTF or JSF file: a number as the file counts them, or the only one of a side. */

@@ -46,13 +46,14 @@ static sonject_status check_water_column(const struct patch_view *view, struct r
                               last_range, view_bottom_range(view));
     if (view_ground_range(view, view->first_range_m) > 0.0 || (view->water.is_straight && is_level))
         return SONJECT_OK;
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "the patch begins at %.3f m slant range, in the water column, which no "
-                          "patch may %s: begin with column %.0f, behind the bottom's first return "
-                          "at %.3f m",
-                          view->first_range_m,
-                          is_level ? "where layers bend the sound" : "over a seabed with relief",
-                          first_column + (double)view_water_columns(view), view_bottom_range(view));
+    return report_failure(
+        report, SONJECT_ERROR_INPUT,
+        "the patch begins at %.3f m slant range, in the water column, which no "
+        "patch may %s: %s with column %.0f, behind the bottom's first return at %.3f m",
+        view->first_range_m, is_level ? "where layers bend the sound" : "over a seabed with relief",
+        view->is_reversed ? "end" : "begin",
+        first_column + view_patch_column(view, (double)view_water_columns(view)),
+        view_bottom_range(view));
 }
 
 sonject_status patch_view_init(struct patch_view *view, struct report *report,
@@ -75,8 +76,20 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
     const double along = geometry->first_along_track_m + first_row * geometry->row_spacing_m;
     view->first_x_m =
         view->is_mirrored ? -(along + (double)(rows - 1) * geometry->row_spacing_m) : along;
-    view->first_range_m = geometry->first_slant_range_m + first_column * geometry->column_spacing_m;
+    view->is_reversed = geometry_is_reversed(geometry);
+    view->first_range_m = geometry_range(geometry, first_column + view_patch_column(view, 0.0));
+    if (view->first_range_m < geometry->first_slant_range_m && geometry->nadir_column > 0.0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the patch's columns %.0f to %.0f are not all to %s of nadir_column "
+                              "%g: choose others, or the other side",
+                              first_column, first_column + (double)columns - 1.0,
+                              view->is_mirrored ? "starboard" : "port", geometry->nadir_column);
     return check_water_column(view, report, scene, first_column);
+}
+
+double view_patch_column(const struct patch_view *view, double column)
+{
+    return view->is_reversed ? (double)(view->columns - 1) - column : column;
 }
 
 void view_find_pixel(const struct patch_view *view, double first_row, double first_column,
@@ -90,7 +103,7 @@ void view_find_pixel(const struct patch_view *view, double first_row, double fir
     } else if (kind == SONJECT_POSITION_PIXELS) {
         const double image_row = along - first_row;
         *row = view->is_mirrored ? (double)(view->rows - 1) - image_row : image_row;
-        *column = range - first_column;
+        *column = view_patch_column(view, range - first_column);
     }
 }
 

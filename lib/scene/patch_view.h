@@ -21,8 +21,9 @@ struct patch_view {
     double first_range_m; /* processor's slant range of column 0 */
     double range_ratio;   /* processor over straight range: reference over straight sound speed */
     double altitude_m;
-    double wavelength_m; /* in the straight water, around seabed and targets */
-    bool is_mirrored;
+    double wavelength_m;   /* in the straight water, around seabed and targets */
+    bool is_mirrored;      /* its rows are the image's from the last to the first */
+    bool is_reversed;      /* and so are its columns, so that range grows with them */
     struct ray_path water; /* of sound straight from the sonar */
 };
 
@@ -35,11 +36,14 @@ double scene_reference_speed(const struct scene *scene);
 
 /* The scene's geometry shifted to the region that starts at first_row, first_column of the swath.
  * water is borrowed. The patch may begin in the water column where water and seabed are level and
- * plain. Errors: INPUT (patch not beyond the altitude, no pixels, sonar not above the
- * straight water's targets). */
+ * plain. Errors: INPUT (patch in the water column, or on both sides of the nadir column; no pixels;
+ * sonar not above the straight water's targets). */
 sonject_status patch_view_init(struct patch_view *view, struct report *report,
                                const struct scene *scene, const struct water *water,
                                double first_row, double first_column, size_t rows, size_t columns);
+
+/* The patch's column that a column of the view is. */
+double view_patch_column(const struct patch_view *view, double column);
 
 /* Row and column of the view at a position given as an object's is: kind sonject_position_kind.
  * first_row, first_column: of the patch in the swath. */

@@ -116,6 +116,22 @@ static sonject_status read_first_range(struct reader *reader, const struct tree_
     return SONJECT_OK;
 }
 
+static sonject_status finish_geometry(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    sonject_geometry_params *geometry = structure;
+    if (is_given(node, "nadir_column") && geometry->nadir_column == 0.0)
+        return refuse_key(reader, node, "nadir_column", "must be above 0, not 0");
+    if (is_given(node, "first_slant_range"))
+        return SONJECT_OK;
+    if (!is_given(node, "nadir_column"))
+        return refuse_key(reader, node, "first_slant_range",
+                          "missing; add it (slant range of column 0 of the whole swath), or "
+                          "nadir_column");
+    geometry->first_slant_range_m = 0.0;
+    return SONJECT_OK;
+}
+
 /* No first slant range is right for most images, so there is none until it is given. */
 #define STRUCTURE sonject_geometry_params
 static const struct field geometry_fields[] = {
@@ -125,15 +141,21 @@ static const struct field geometry_fields[] = {
     {"column_spacing", "distance between range cells, in slant range",
      QUANTITY(column_spacing_m, LENGTH), POSITIVE, .preset = 0.025, REQUIRED},
     {"first_slant_range",
-     "slant range of column 0 of the whole swath, or from_file, which is input.pings",
+     "slant range of column 0 of the whole swath, or of nadir_column, there 0 if not given; or "
+     "from_file, which is input.pings",
      QUANTITY(first_slant_range_m, LENGTH), FROM_ZERO, .preset = NAN, .read = read_first_range,
-     .unit = "m, km, cm, mm, or from_file", REQUIRED},
+     .unit = "m, km, cm, mm, or from_file"},
+    {"nadir_column",
+     "of an image of two sides, or whose range grows to the left: where range begins; port is what "
+     "lies to its left, starboard to its right",
+     QUANTITY(nadir_column, NUMBER), WITHIN(0.0, INDEX_MAX), .per = " columns", NONE_IF_ZERO},
     {"first_along_track", "track position of row 0", QUANTITY(first_along_track_m, LENGTH),
      COORDINATE},
     {"side", "of the track that the image shows",
      WORD(side) = {[SONJECT_SIDE_PORT] = "port", [SONJECT_SIDE_STARBOARD] = "starboard"}},
 };
-static const struct section geometry_section = {ROWS(geometry_fields), .bytes = sizeof(STRUCTURE)};
+static const struct section geometry_section = {ROWS(geometry_fields), .finish = finish_geometry,
+                                                .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
 static sonject_status read_geometry(struct reader *reader, const struct tree_node *node,

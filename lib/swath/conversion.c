@@ -125,6 +125,10 @@ static sonject_status check_axis(struct report *report, const struct noted_geome
         return input_failure(report, params->input,
                              "is in %s range already: take the range axis out",
                              to_ground ? "ground" : "slant");
+    if (geometry->nadir_column > 0.0)
+        return input_failure(report, params->input,
+                             "has a nadir column; range axes are changed where range grows from "
+                             "column 0 on");
     if (!(geometry->altitude_m > 0.0))
         return input_failure(
             report, params->input,

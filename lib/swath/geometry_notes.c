@@ -22,6 +22,7 @@ static const struct {
     {"sonject:first_along_track_m", NULL, offsetof(struct noted_geometry, first_along_track_m)},
     {"sonject:first_slant_range_m", "sonject:first_ground_range_m",
      offsetof(struct noted_geometry, first_range_m)},
+    {"sonject:nadir_column", NULL, offsetof(struct noted_geometry, nadir_column)},
 };
 #define NUMBERS (sizeof numbers / sizeof *numbers)
 
@@ -56,15 +57,15 @@ void geometry_notes_make(struct geometry_notes *notes, const struct noted_geomet
 }
 
 void geometry_notes_init(struct geometry_notes *notes, const sonject_sonar_params *sonar,
-                         const sonject_geometry_params *geometry, double first_row,
-                         double first_column)
+                         const sonject_geometry_params *geometry)
 {
     const struct noted_geometry noted = {
         .axis = RANGE_SLANT,
         .row_spacing_m = geometry->row_spacing_m,
         .column_spacing_m = geometry->column_spacing_m,
-        .first_along_track_m = geometry->first_along_track_m + first_row * geometry->row_spacing_m,
-        .first_range_m = geometry->first_slant_range_m + first_column * geometry->column_spacing_m,
+        .first_along_track_m = geometry->first_along_track_m,
+        .first_range_m = geometry->first_slant_range_m,
+        .nadir_column = geometry->nadir_column > 0.0 ? geometry->nadir_column : NAN,
         .altitude_m = sonar->altitude_m,
         .frequency_hz = sonar->centre_frequency_hz,
         .bandwidth_hz = sonar->bandwidth_hz,
@@ -82,7 +83,7 @@ static void read_recording(const struct recording *recording, struct noted_geome
     geometry->first_along_track_m = 0.0;
     geometry->first_range_m = told.first_slant_range_m;
     geometry->altitude_m = told.altitude_m > 0.0 ? told.altitude_m : NAN;
-    geometry->frequency_hz = geometry->bandwidth_hz = NAN;
+    geometry->frequency_hz = geometry->bandwidth_hz = geometry->nadir_column = NAN;
     geometry->knows_side = true;
     geometry->side = recording->side == RECORDED_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
 }
@@ -122,6 +123,7 @@ static sonject_status check_told(const sonject_geometry_params *geometry, struct
     check_positive_length(&check, "column_spacing", geometry->column_spacing_m);
     check_length(&check, "first_slant_range", geometry->first_slant_range_m);
     check_coordinate(&check, "first_along_track", geometry->first_along_track_m);
+    check_length(&check, "nadir_column", geometry->nadir_column);
     return check.status;
 }
 
@@ -133,6 +135,7 @@ bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_pa
     told.column_spacing_m = noted->column_spacing_m;
     told.first_along_track_m = noted->first_along_track_m;
     told.first_slant_range_m = noted->first_range_m;
+    told.nadir_column = isnan(noted->nadir_column) ? 0.0 : noted->nadir_column;
     told.side = noted->side;
     if (noted->axis != RANGE_SLANT || !noted->knows_side ||
         check_told(&told, &unused) != SONJECT_OK)

@@ -7,13 +7,14 @@
 #include "swath/raster_file.h"
 #include "swath/swath_file.h"
 
-#define GEOMETRY_NOTES_MAX 9
+#define GEOMETRY_NOTES_MAX 10
 
 /* Where the pixels of a file lie and what made them, as far as it is known: NaN where it is not. */
 struct noted_geometry {
     enum range_axis axis;
     double row_spacing_m, column_spacing_m; /* columns: along the axis */
     double first_along_track_m, first_range_m;
+    double nadir_column;
     double altitude_m, frequency_hz, bandwidth_hz;
     bool knows_side;
     uint32_t side; /* SONJECT_SIDE_... */
@@ -29,11 +30,9 @@ struct geometry_notes {
 /* Texts of all that is known. */
 void geometry_notes_make(struct geometry_notes *notes, const struct noted_geometry *geometry);
 
-/* The same of a scene's image. first_row, first_column: where the file's pixel (0, 0) lies in the
- * geometry. */
+/* The same of a scene's image, whose pixel (0, 0) is the geometry's. */
 void geometry_notes_init(struct geometry_notes *notes, const sonject_sonar_params *sonar,
-                         const sonject_geometry_params *geometry, double first_row,
-                         double first_column);
+                         const sonject_geometry_params *geometry);
 
 /* What a file says: in such texts, or as a recording (means over all of it). Nothing of it is
  * checked but that numbers are finite. */

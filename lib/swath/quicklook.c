@@ -101,6 +101,10 @@ static sonject_status to_ground_range(struct report *report, const char *path, e
         return input_failure(report, path,
                              "does not say where its columns lie: give row spacing, column spacing "
                              "and first slant range");
+    if (frame->column_spacing_m < 0.0)
+        return input_failure(report, path,
+                             "has range that grows to the left, of which only a slant range axis "
+                             "can be drawn");
     if (!(altitude > 0.0))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "a ground range axis needs the altitude: give --altitude");
@@ -170,9 +174,11 @@ static enum range_axis fill_frame(struct plot_frame *frame, const sonject_quickl
     frame->rows = image->rows;
     frame->columns = image->columns;
     frame->row_spacing_m = (has_metres ? geometry.row_spacing_m : 1.0) * block;
-    frame->column_spacing_m = (has_metres ? geometry.column_spacing_m : 1.0) * block;
+    frame->column_spacing_m =
+        (has_metres ? geometry_range(&geometry, 1.0) - geometry_range(&geometry, 0.0) : 1.0) *
+        block;
     frame->first_along_track_m = has_metres ? geometry.first_along_track_m : 0.0;
-    frame->first_range_m = has_metres ? geometry.first_slant_range_m : 0.0;
+    frame->first_range_m = has_metres ? geometry_range(&geometry, 0.0) : 0.0;
     frame->range_label = !has_metres ? "column" : is_ground ? "ground range, m" : "slant range, m";
     frame->minimum_db = params->minimum_db;
     frame->maximum_db = params->maximum_db;

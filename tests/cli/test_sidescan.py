@@ -8,6 +8,7 @@ import pytest
 
 import images
 from conftest import assert_refused
+from measured_images import read_png
 
 ROWS, COLUMNS = 60, 200
 GEOMETRY = "{row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.075 m}"
@@ -147,3 +148,181 @@ def test_what_may_not_begin_in_the_water_column_says_why(sonject, tmp_path, line
     column = int(answer.stderr.split("begin with column ")[1].split(",")[0])
     patch = patch.replace("column: 10", f"column: {column}").replace("columns: 170", "columns: 140")
     sonject.done("check", write_scene(tmp_path, patch=patch, more=more))
+
+
+# ---- Two sides in one image.
+
+NADIR = 203.5  # between columns 203 and 204
+TWO_SIDED = """\
+sonject: 1
+input: {{path: {path}, geometry: {{row_spacing: 0.1 m, column_spacing: 0.15 m, {geometry}, side: {side}}}}}
+patch: {{row: 10, column: {column}, rows: 40, columns: 120}}
+sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: 6 m, resolution: 0.1 m}}
+objects:
+  - {{name: can, shape: cylinder, length: 1 m, diameter: 0.4 m, heading: 30 deg, roll: 10 deg,
+     position: {{row: 28, column: {at}}}}}
+  - {{name: box, shape: box, length: 1 m, width: 0.5 m, height: 0.3 m, position: {{along_track: 2.2 m, slant_range: 22 m}}}}
+"""
+
+
+@pytest.fixture
+def waterfall(tmp_path):
+    """Port and starboard from the nadir outwards, and both in one image, port mirrored at its left."""
+    random = numpy.random.default_rng(11)
+    sides = [random.rayleigh(2000.0, (ROWS, columns)).astype(numpy.uint16) for columns in (204, 196)]
+    (tmp_path / "both.tif").write_bytes(images.tiff_bytes(numpy.hstack([sides[0][:, ::-1], sides[1]])))
+    for name, pixels in zip(("port", "starboard"), sides):
+        (tmp_path / f"{name}.tif").write_bytes(images.tiff_bytes(pixels))
+    return sides
+
+
+def run_sides(sonject, folder, side):
+    """The same injection into the image of two sides, and into that of one; their folders."""
+    one, both = folder / "one.yaml", folder / "both.yaml"
+    one.write_text(TWO_SIDED.format(path=f"{side}.tif", geometry="first_slant_range: 0.075 m", side=side, column=60,
+                                    at=100))
+    column, at = (204 - 180, 203 - 100) if side == "port" else (204 + 60, 204 + 100)
+    both.write_text(TWO_SIDED.format(path="both.tif", geometry=f"nadir_column: {NADIR}", side=side, column=column,
+                                     at=at))
+    sonject.done("run", one, "-o", "one", "--labels", "yolo,voc")
+    sonject.done("run", both, "-o", "both", "--labels", "yolo,voc")
+    return folder / "one", folder / "both"
+
+
+def mirrored(side, column, columns=1):
+    """Where columns of the side's own image lie in that of both."""
+    return 204 - column - columns if side == "port" else 204 + column
+
+
+@pytest.mark.parametrize("side", ["port", "starboard"])
+def test_a_side_of_two_is_as_one_by_itself(sonject, tmp_path, waterfall, side):
+    """Pixels, masks, boxes and labels in the image's own pixels, to the last bit."""
+    one, both = run_sides(sonject, tmp_path, side)
+    before = images.read_tiff(tmp_path / "both.tif")
+    turn = slice(None, None, -1) if side == "port" else slice(None)
+
+    def half(pixels):
+        return (pixels[:, :204] if side == "port" else pixels[:, 204:])[:, turn]
+
+    after, alone = images.read_tiff(both / "image.tif"), images.read_tiff(one / "image.tif")
+    assert numpy.array_equal(half(after), alone) and (after != before).sum() > 100
+    other = slice(204, None) if side == "port" else slice(0, 204)
+    assert numpy.array_equal(after[:, other], before[:, other])
+    for name in ("highlight", "shadow", "labels", "influence"):
+        masks = [read_png(folder / f"{name}.png") for folder in (one, both)]
+        assert numpy.array_equal(half(masks[1]), masks[0]) and masks[0].any() and not masks[1][:, other].any()
+    for name in ("energy", "patch"):
+        layers = [images.read_tiff(folder / f"{name}.tif") for folder in (one, both)]
+        assert numpy.array_equal(layers[1][:, turn], layers[0])
+    truths = [json.loads((folder / "truth.json").read_text()) for folder in (one, both)]
+    for found, expected in zip(truths[1]["objects"], truths[0]["objects"]):
+        assert found["column"] == pytest.approx(mirrored(side, expected["column"]), abs=1e-6)
+        for key in ("row", "along_track_m", "slant_range_m", "ground_range_m", "highlight_cut", "shadow_visible",
+                    "target_strength_db", "highlight_contrast_db", "shadow_visibility_db", "position"):
+            assert found[key] == expected[key]
+        for box in ("highlight", "shadow", "box"):
+            assert found[box]["column"] == mirrored(side, expected[box]["column"], expected[box]["columns"])
+            for key in ("row", "rows", "columns"):
+                assert found[box][key] == expected[box][key]
+            for key in ("slant_range_m", "width_m", "ground_range_m", "along_track_m"):
+                assert found[box][key] == pytest.approx(expected[box][key], rel=1e-9)
+    found, expected = (json.loads((folder / "coco.json").read_text())["annotations"] for folder in (both, one))
+    for a, b in zip(found, expected):
+        x, y, width, height = b["bbox"]
+        assert a["bbox"] == [mirrored(side, x, width), y, width, height] and a["area"] == b["area"]
+    for a, b in zip((both / "image.txt").read_text().splitlines(), (one / "image.txt").read_text().splitlines()):
+        a, b = (numpy.array(line.split(), float) for line in (a, b))
+        middle = mirrored(side, b[1] * waterfall[side == "starboard"].shape[1], 0)
+        assert a[1] * 400 == pytest.approx(middle, abs=1e-3) and a[2] == pytest.approx(b[2])
+
+
+def test_images_of_a_port_half_say_where_they_lie(sonject, tmp_path, waterfall):
+    """patch.tif, whose range grows to the left, is read as such."""
+    _, both = run_sides(sonject, tmp_path, "port")
+    told = (both / "energy.tif").read_bytes()
+    for note in (b"sonject:nadir_column=119\n", b"sonject:first_slant_range_m=9.075\n", b"sonject:side=port\n"):
+        assert note in told
+    (tmp_path / "taken.yaml").write_text("""\
+sonject: 1
+input: {path: both/energy.tif, geometry: from_file, transfer: {kind: intensity}}
+sonar: {frequency: 600 kHz, bandwidth: 10 kHz, altitude: from_file, resolution: 0.1 m}
+patch: {row: 0, column: 0, rows: 40, columns: 100}
+""")
+    last = 9.075 + 119 * 0.15
+    assert f"slant range {last - 99 * 0.15:.2f}...{last:.2f} m, port" in sonject.done("check", "taken.yaml").stdout
+    sonject.done("quicklook", "both/energy.tif", "-o", "a.png", "--transfer", "intensity")
+    assert_refused(sonject("quicklook", "both/energy.tif", "-o", "b.png", "--range-axis", "ground"), 3,
+                   "has range that grows to the left")
+    assert_refused(sonject("convert", "both/energy.tif", "b.tif", "--range-axis", "ground"), 3, "has a nadir column")
+
+
+@pytest.mark.parametrize("geometry, patch, words", [
+    ("nadir_column: 0", "", "input.geometry.nadir_column: must be above 0, not 0"),
+    ("nadir_column: 400, side: port", "",
+     "input.geometry.nadir_column: nadir_column 400 leaves none of the image's 400 columns to port: correct it, or"),
+    ("nadir_column: 399.5, side: starboard", "",
+     "input.geometry.nadir_column: nadir_column 399.5 leaves none of the image's 400 columns to starboard"),
+    ("nadir_column: 203.5, side: port", "{row: 0, column: 100, rows: 60, columns: 120}",
+     "the patch's columns 100 to 219 are not all to port of nadir_column 203.5: choose others, or the other side"),
+    ("nadir_column: 203.5, side: starboard", "{row: 0, column: 203, rows: 60, columns: 120}",
+     "the patch's columns 203 to 322 are not all to starboard of nadir_column 203.5"),
+    ("nadir_column: 203.5, side: port", "{row: 0, column: 180, rows: 60, columns: 20}",
+     "all of the patch, up to 3.525 m slant range, lies in the water column, before the bottom's first return at 6.000"),
+    ("side: port", "", "input.geometry.first_slant_range: missing; add it"),
+])
+def test_wrong_nadir_columns_are_refused(sonject, tmp_path, waterfall, geometry, patch, words):
+    (tmp_path / "scene.yaml").write_text(f"""\
+sonject: 1
+input: {{path: both.tif, geometry: {{row_spacing: 0.1 m, column_spacing: 0.15 m, {geometry}}}}}
+sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: 6 m, resolution: 0.1 m}}
+{patch and "patch: " + patch}
+""")
+    assert_refused(sonject("check", "scene.yaml"), 3, "scene.yaml:2:", words)
+
+
+def test_without_a_patch_the_side_is_worked_on(sonject, tmp_path, waterfall):
+    for side, words in (("port", "60 x 204 pixels from row 0, column 0\n"),
+                        ("starboard", "60 x 196 pixels from row 0, column 204\n")):
+        (tmp_path / "scene.yaml").write_text(f"""\
+sonject: 1
+input: {{path: both.tif, geometry: {{row_spacing: 0.1 m, column_spacing: 0.15 m, nadir_column: 203.5, side: {side}}}}}
+sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: 6 m, resolution: 0.1 m}}
+""")
+        assert words in sonject.done("check", "scene.yaml").stdout
+
+
+@pytest.mark.parametrize("side", ["port", "starboard"])
+def test_campaigns_cut_images_out_of_a_side(sonject, tmp_path, waterfall, side):
+    """As they lie in it, away from the contacts of the image's own pixels."""
+    (tmp_path / "base.yaml").write_text(f"""\
+sonject: 1
+input: {{path: both.tif, geometry: {{row_spacing: 0.1 m, column_spacing: 0.15 m, nadir_column: 203.5, side: {side}}}}}
+sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: 6 m, resolution: 0.1 m}}
+""")
+    (tmp_path / "campaign.yaml").write_text("""\
+sonject_campaign: 1
+scene: base.yaml
+images: 24
+chip: {rows: 16, columns: 60, slant_range: [8 m, 14 m]}
+swaths: [{path: both.tif, avoid: [{row: 20, column: 120, rows: 5, columns: 10}]}]
+targets: [{class: ball, object: {shape: sphere, diameter: 0.5 m}}]
+""")
+    sonject.done("campaign", "campaign.yaml", "-o", "data")
+    pixels = images.read_tiff(tmp_path / "both.tif")
+    columns = [record["swath"]["column"] for record in records(tmp_path / "data")]
+    assert max(columns) - min(columns) > 10
+    for record in records(tmp_path / "data"):
+        row, column = record["swath"]["row"], record["swath"]["column"]
+        middle = abs(column + 29.5 - NADIR) * 0.15
+        assert 8 <= middle <= 14 and (column + 59 < NADIR) == (side == "port")
+        nearest = min(abs(column - NADIR), abs(column + 59 - NADIR)) * 0.15
+        assert nearest > 6 and not (row < 25 and row + 16 > 20 and column < 130 and column + 60 > 120)
+        image = images.read_tiff(tmp_path / "data/all/images" / f"{record['id']:08}.tif")
+        cut = pixels[row:row + 16, column:column + 60]
+        truth = json.loads((tmp_path / "data/all/truth" / f"{record['id']:08}.json").read_text())["objects"][0]
+        changed = numpy.argwhere(image != cut)
+        assert (image == cut).mean() > 0.5 and abs(numpy.median(changed[:, 0]) - truth["row"]) < 4
+        # the shadow lies behind the target, away from the nadir
+        shadow, middle = truth["shadow"], truth["column"]
+        assert (shadow["column"] + 0.5 * shadow["columns"] < middle) == (side == "port")
+        assert truth["slant_range_m"] == pytest.approx(abs(column + truth["column"] - NADIR) * 0.15, abs=0.3)

@@ -122,6 +122,7 @@ static const struct key_case {
      .number = 0.015},
     {"input.geometry.first_slant_range", "0.043 km", S(DOUBLE, geometry.first_slant_range_m),
      .number = 43.0},
+    {"input.geometry.nadir_column", "203.5", S(DOUBLE, geometry.nadir_column), .number = 203.5},
     {"input.geometry.first_along_track", "-3 m", S(DOUBLE, geometry.first_along_track_m),
      .number = -3.0},
     {"input.geometry.side", "starboard", S(U32, geometry.side), .number = SONJECT_SIDE_STARBOARD},
