@@ -158,6 +158,15 @@ typedef struct sonject_object_truth {
 SONJECT_API sonject_status sonject_result_object(const sonject_result *result, uint32_t index,
                                                  sonject_object_truth *truth);
 
+/* Where a number that was used came from. */
+typedef enum sonject_source {
+    SONJECT_SOURCE_DEFAULT = 0,     /* the key's own */
+    SONJECT_SOURCE_SCENE = 1,       /* the scene's key */
+    SONJECT_SOURCE_CALIBRATION = 2, /* the file of the scene's input.calibration */
+    SONJECT_SOURCE_PATCH = 3,       /* measured in the patch */
+    SONJECT_SOURCE_FALLBACK = 4     /* taken since the patch does not tell it */
+} sonject_source;
+
 /* Counts, times in seconds, and how the output compares with the input. */
 typedef struct sonject_statistics {
     uint32_t struct_size;
@@ -192,6 +201,8 @@ typedef struct sonject_statistics {
     double range_resolution_m;   /* -3 dB width */
     double looks;                /* 1: single-look */
     double saturation_amplitude; /* infinite: none but the format's full scale */
+    uint32_t noise_floor_source; /* sonject_source */
+    uint32_t looks_source;       /* sonject_source */
 } sonject_statistics;
 
 /* statistics->struct_size must be set. Errors: ARGUMENT. */

@@ -46,6 +46,10 @@ sonject_status find_input(struct report *report, const struct scene *scene,
                           const sonject_pixels *pixels, struct injection_input *input,
                           float **owned)
 {
+    if (scene->calibrates_itself)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "input.calibration: auto is for runs on files: make a file with "
+                              "sonject_calibrate and name it");
     if (pixels)
         return take_pixels(report, pixels, input, owned);
     if (scene->input_kind != SONJECT_INPUT_UNIFORM && scene->input_kind != SONJECT_INPUT_SYNTHETIC)

@@ -59,6 +59,23 @@ static sonject_status check_shard(struct report *report, const sonject_run_param
     return SONJECT_OK;
 }
 
+/* Runs the scene; one that asks for a calibration with that. */
+static sonject_status run_calibrated(sonject_context *context, const sonject_scene *handle,
+                                     const struct run_request *asked, int *was_finished)
+{
+    struct run_request request = *asked;
+    struct scene calibrated;
+    struct report *report = &context->report;
+    if (!request.scene->calibrates_itself)
+        return run_scene(report, &context->device, &request, was_finished);
+    sonject_status status =
+        calibrated_scene_read(report, &handle->source, request.scene, &request, &calibrated);
+    request.scene = &calibrated;
+    THEN(status, run_scene(report, &context->device, &request, was_finished));
+    scene_clear(&calibrated);
+    return status;
+}
+
 sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
                            const sonject_run_params *params, sonject_progress_function progress,
                            void *user, int *was_finished)
@@ -80,7 +97,7 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
     request.exit_after_s = taken.exit_after_s;
     request.checkpoint_s = taken.checkpoint_s;
     request.overwrites = taken.overwrites != 0;
-    return run_scene(report, &context->device, &request, was_finished);
+    return run_calibrated(context, scene, &request, was_finished);
 }
 
 sonject_status sonject_merge(sonject_context *context, const sonject_scene *scene,
@@ -99,7 +116,7 @@ sonject_status sonject_merge(sonject_context *context, const sonject_scene *scen
         return merge_folder(report, &context->device, &request, taken.allows_user_shapes != 0,
                             was_finished);
     CHECK(scene_use(report, scene, &request.scene));
-    return run_scene(report, &context->device, &request, was_finished);
+    return run_calibrated(context, scene, &request, was_finished);
 }
 
 sonject_status sonject_trace(sonject_context *context, const sonject_scene *scene, const char *file,

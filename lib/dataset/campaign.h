@@ -348,6 +348,8 @@ struct sonject_campaign {
     json_t *inputs;                           /* all that images depend on, by name; owned */
     char hash[HASH_TEXT_CAPACITY];            /* of inputs */
     struct class_names classes; /* of all that may be drawn: images number them alike */
+    const char *folder;         /* of a run, where calibrations go; NULL: no run is under way */
+    char **calibrations; /* of each swath whose scene asks for one, the file; owned; NULL: none */
     struct swath_store store;
     struct mesh_store meshes; /* of scenes whose mesh_store it is */
 };
@@ -392,6 +394,9 @@ sonject_status campaign_image_make(struct device *device, struct sonject_campaig
                                    uint64_t id, sonject_progress_function progress, void *user,
                                    struct campaign_image *image);
 void campaign_image_clear(struct campaign_image *image);
+
+/* Of a run that has ended. */
+void campaign_forget_calibrations(struct sonject_campaign *campaign);
 
 /* Writes the image's files below the folder, its record last. Errors: STORAGE, MEMORY,
  * UNSUPPORTED. */

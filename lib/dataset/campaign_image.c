@@ -118,14 +118,16 @@ sonject_status campaign_read_scene(struct sonject_campaign *campaign, const stru
         for (size_t i = 0; i < plan->key_count; i++)
             overrides[i] = plan->keys[i].text;
         overrides[plan->key_count] = input_text;
-        const struct scene_source source = {.path = campaign->campaign.scene_path,
-                                            .text = campaign->scene_text,
-                                            .overrides = overrides,
-                                            .override_count = plan->key_count + 1,
-                                            .moved_folder = campaign->campaign.folder,
-                                            .moved_overrides = plan->key_count,
-                                            .allows_user_shapes = campaign->allows_user_shapes,
-                                            .are_relations = are_relations};
+        const struct scene_source source = {
+            .path = campaign->campaign.scene_path,
+            .text = campaign->scene_text,
+            .overrides = overrides,
+            .override_count = plan->key_count + 1,
+            .moved_folder = campaign->campaign.folder,
+            .moved_overrides = plan->key_count,
+            .made_calibration = campaign->calibrations ? campaign->calibrations[plan->swath] : NULL,
+            .allows_user_shapes = campaign->allows_user_shapes,
+            .are_relations = are_relations};
         status = scene_source_read(&source, campaign->report, scene);
         if (status != SONJECT_OK)
             place_message(campaign, plan);
@@ -143,6 +145,37 @@ static void keep_reason(const struct report *report, char reason[REASON_CAPACITY
                  report->message);
 }
 
+void campaign_forget_calibrations(struct sonject_campaign *campaign)
+{
+    for (size_t i = 0; campaign->calibrations && i < campaign->campaign.swath_count; i++)
+        free(campaign->calibrations[i]);
+    free(campaign->calibrations);
+    campaign->calibrations = NULL;
+}
+
+/* Makes the calibration of the plan's swath, which its later scenes have from the start; leaves the
+ * scene initialised. */
+static sonject_status calibrate_plan(struct sonject_campaign *campaign,
+                                     const struct image_plan *plan, struct scene *scene)
+{
+    char path[PATH_CAPACITY], folder[PATH_CAPACITY], name[24];
+    struct mesh_store *meshes = scene->mesh_store;
+    CHECK(path_in(campaign->report, folder, campaign->folder, "calibrations"));
+    snprintf(name, sizeof name, "%lu", (unsigned long)plan->swath);
+    CHECK(scene_calibrate(campaign->report, scene, folder, name, true, path));
+    if (!campaign->calibrations)
+        campaign->calibrations =
+            allocate_array(campaign->campaign.swath_count, sizeof *campaign->calibrations);
+    CHECK_MEMORY(campaign->report, campaign->calibrations, "a campaign's calibrations");
+    campaign->calibrations[plan->swath] = copy_text(path);
+    CHECK_MEMORY(campaign->report, campaign->calibrations[plan->swath],
+                 "a campaign's calibrations");
+    scene_clear(scene);
+    scene_init(scene);
+    scene->mesh_store = meshes;
+    return SONJECT_OK;
+}
+
 sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t id,
                                    struct attempts *attempts, char reason[REASON_CAPACITY],
                                    struct image_plan *plan, struct scene *scene)
@@ -152,6 +185,10 @@ sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t i
         sonject_status status =
             image_plan_make(campaign->report, &campaign->campaign, id, attempts, plan);
         THEN(status, campaign_read_scene(campaign, plan, scene, &are_relations));
+        if (status == SONJECT_OK && scene->calibrates_itself && campaign->folder) {
+            THEN(status, calibrate_plan(campaign, plan, scene));
+            THEN(status, campaign_read_scene(campaign, plan, scene, &are_relations));
+        }
         if (status != SONJECT_ERROR_INPUT || !are_relations || attempts->of_all + 1 >= ATTEMPTS_MAX)
             return status;
         keep_reason(campaign->report, reason);

@@ -149,6 +149,7 @@ sonject_status campaign_run(struct sonject_campaign *campaign, struct device_slo
                           .user = user,
                           .begin_s = clock_seconds()};
     sonject_status status = begin_set(&sweep);
+    campaign->folder = params->folder;
     THEN(status, find_missing(&sweep));
     sweep.start_s = clock_seconds();
     THEN(status, make_missing(&sweep));
@@ -157,6 +158,8 @@ sonject_status campaign_run(struct sonject_campaign *campaign, struct device_slo
     bool is_finished = sweep.missing == 0;
     if (status == SONJECT_OK && params->shard_count == 1 && !params->only_one)
         status = finish_whole(&sweep, &is_finished);
+    campaign->folder = NULL;
+    campaign_forget_calibrations(campaign);
     if (was_finished)
         *was_finished = status == SONJECT_OK && is_finished;
     data_set_clear(&sweep.set);

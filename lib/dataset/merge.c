@@ -23,15 +23,19 @@ static sonject_status count_shards(struct report *report, const char *folder, ui
 
 /* The scene that the first of the shards keeps. */
 static sonject_status read_kept_scene(struct report *report, const struct sums_file *file,
-                                      bool allows_user_shapes, struct scene *scene)
+                                      const char *folder, bool allows_user_shapes,
+                                      struct scene *scene)
 {
+    char calibration[PATH_CAPACITY];
     sonject_form_params params;
     memset(&params, 0, sizeof params);
     params.file = file->path;
     params.allows_user_shapes = allows_user_shapes;
     if (strcmp(file->head.identity.version, sonject_version()) != 0)
         return refuse_foreign_sums(report, file->path, "another version of sonject");
-    return read_traced_scene(report, &file->scene, &params, scene);
+    CHECK(path_in(report, calibration, folder, CALIBRATION_NAME ".yaml"));
+    return read_traced_scene(report, &file->scene, &params,
+                             file_exists(calibration) ? calibration : NULL, scene);
 }
 
 /* A run whose scene its shards keep. */
@@ -48,7 +52,8 @@ static sonject_status merge_kept(struct report *report, struct device_slot *slot
     sonject_status status = sums_folder_read(&folder, report, work, 0, SIZE_MAX, false);
     const bool has_shards = status == SONJECT_OK && folder.count > 0;
     if (has_shards)
-        status = read_kept_scene(report, &folder.files[0], allows_user_shapes, &scene);
+        status =
+            read_kept_scene(report, &folder.files[0], asked->folder, allows_user_shapes, &scene);
     sums_folder_clear(&folder);
     request.scene = &scene;
     if (has_shards) {

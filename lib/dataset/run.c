@@ -37,8 +37,13 @@ static int tell_stage(void *user, double fraction, const char *stage)
 void tell_noise_floor(struct report *report, const struct scene *scene,
                       const sonject_statistics *statistics)
 {
-    if (scene->injection.estimate_noise)
+    if (statistics->noise_floor_source == SONJECT_SOURCE_PATCH)
         report_log(report, "noise floor estimated from the patch: %.1f dB over the mean seabed",
+                   statistics->noise_floor_db);
+    else if (scene->injection.estimate_noise)
+        report_log(report,
+                   "noise floor: no shadow of the patch tells it, %.1f dB over the mean seabed is "
+                   "taken",
                    statistics->noise_floor_db);
 }
 
@@ -127,6 +132,7 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
                    "note: %s is written anew: of the input's metadata it keeps the description",
                    facts->image_name);
     THEN(status, file_list_add(&facts->files, report, folder, facts->image_name, true));
+    THEN(status, calibration_files_list(report, facts->scene, folder, &facts->files));
     THEN(status, write_documents(report, facts, folder, run_start, start));
     earlier_tidy(folder, earlier, facts->files);
     json_decref(facts->files);
@@ -155,6 +161,7 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
         return status;
     swath_leave_empty(swath, &result);
     tell_empty(report, swath);
+    tell_calibration(report, scene);
     tell_noise_floor(report, scene, &result.statistics);
     tell_seen(report, scene, &result);
     result.statistics.input_clipped = swath->clipped;
@@ -378,7 +385,8 @@ static const char **join_overrides(const struct kept_scene *kept, const sonject_
 }
 
 sonject_status read_traced_scene(struct report *report, const struct kept_scene *kept,
-                                 const sonject_form_params *params, struct scene *scene)
+                                 const sonject_form_params *params, const char *calibration,
+                                 struct scene *scene)
 {
     if (!kept->text)
         return report_failure(report, SONJECT_ERROR_INPUT,
@@ -397,6 +405,7 @@ sonject_status read_traced_scene(struct report *report, const struct kept_scene 
     source.moved_folder = is_here ? NULL : kept->folder;
     source.moved_overrides = kept->override_count;
     source.allows_user_shapes = params->allows_user_shapes != 0;
+    source.made_calibration = calibration;
     const sonject_status status = path && overrides
                                       ? scene_source_read(&source, report, scene)
                                       : report_out_of_memory(report, "the scene's text");
@@ -420,11 +429,11 @@ static sonject_status form_file(struct report *report, struct device_slot *slot,
     CHECK(check_sums(report, request->sums));
     request->traced = request->scene;
     if (kept->text || !request->scene) {
-        CHECK(read_traced_scene(report, kept, &as_traced, traced));
+        CHECK(read_traced_scene(report, kept, &as_traced, NULL, traced));
         request->traced = traced;
     }
     if (!request->scene && params->override_count > 0) {
-        CHECK(read_traced_scene(report, kept, params, formed));
+        CHECK(read_traced_scene(report, kept, params, NULL, formed));
         request->scene = formed;
     }
     if (!request->scene)

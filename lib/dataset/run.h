@@ -44,10 +44,12 @@ sonject_status merge_folder(struct report *report, struct device_slot *slot,
                             int *was_finished);
 
 /* Reads the scene whose text a file keeps, with the overrides of params, whose file is for the
- * message. Names of files are meant from where it was traced. scene is the caller's for
- * scene_clear, also on failure. Errors: INPUT, STORAGE, MEMORY. */
+ * message. Names of files are meant from where it was traced. calibration: the file that stands for
+ * input.calibration: auto; NULL: none. scene is the caller's for scene_clear, also on failure.
+ * Errors: INPUT, STORAGE, MEMORY. */
 sonject_status read_traced_scene(struct report *report, const struct kept_scene *kept,
-                                 const sonject_form_params *params, struct scene *scene);
+                                 const sonject_form_params *params, const char *calibration,
+                                 struct scene *scene);
 
 /* What the hydrophones hear of the scene's input, into the folder: sonject_elements_run. */
 sonject_status run_elements(struct report *report, struct device_slot *slot,
@@ -107,6 +109,32 @@ uint32_t labels_of_document(const json_t *run);
 
 /* Which device that is; NULL when memory is out. */
 json_t *device_document(const struct device *device);
+
+/* ---- Calibrations that scenes ask for by input.calibration: auto. */
+
+#define CALIBRATION_NAME "calibration"
+
+/* Makes folder/name.yaml of the scene's image, and a picture beside it, unless it is there; one of
+ * another image is made anew if it may be replaced. path gets its name. Processes that make it at
+ * the same time make the same. Errors: as of sonject_calibrate. */
+sonject_status scene_calibrate(struct report *report, const struct scene *scene, const char *folder,
+                               const char *name, bool replaces, char path[PATH_CAPACITY]);
+
+/* Makes the file in the request's folder and reads the scene with it; calibrated is for
+ * scene_clear, also on failure. Errors: as above, and of scene_source_read. */
+sonject_status calibrated_scene_read(struct report *report, const struct scene_source *source,
+                                     const struct scene *scene, const struct run_request *request,
+                                     struct scene *calibrated);
+
+/* Adds its files, if the scene's calibration is the folder's. Errors: STORAGE, MEMORY. */
+sonject_status calibration_files_list(struct report *report, const struct scene *scene,
+                                      const char *folder, json_t **files);
+
+/* Logs which keys a scene has from its calibration. */
+void tell_calibration(struct report *report, const struct scene *scene);
+
+/* The numbers that a run used and where they came from; NULL where memory is out. */
+json_t *sources_document(const struct scene *scene, const sonject_statistics *statistics);
 
 /* ---- What a folder holds of an earlier call: a result whose last document names what it was made
  * of and its files. */

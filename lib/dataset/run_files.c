@@ -201,6 +201,7 @@ sonject_status write_truth(struct report *report, const struct run_facts *facts,
     json_t *document =
         JSON_OBJECT({"image", json_text(facts->image_name)}, {"range_axis", json_string("slant")},
                     {"patch", place}, {"blending", blending_document(&facts->result->statistics)},
+                    {"numbers", sources_document(facts->scene, &facts->result->statistics)},
                     {"objects", objects});
     return json_document_write(report, document, 12, path);
 }
@@ -300,6 +301,7 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
         JSON_COUNT(statistics, ray_queries), JSON_COUNT(statistics, impulses),
         {"peak_memory_bytes", json_count((uint64_t)kilobytes * 1024)},
         JSON_NUMBER(statistics, noise_floor_db), {"blending", blending_document(statistics)},
+        {"numbers", sources_document(facts->scene, statistics)},
         {"input_clipped_pixels", json_count(statistics->input_clipped)},
         {"output_clipped_pixels", json_count(statistics->output_clipped)},
         JSON_COUNT(statistics, changed_pixels), {"seabed_comparison", comparison});

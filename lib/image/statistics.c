@@ -181,7 +181,8 @@ void mean_and_deviation(const float *values, size_t count, double *mean, double 
  * noise is not above -20 dB; where nothing is as dark as that, -22.5 dB is taken. And a picture
  * that was clipped at its dark end says less than is there, so it is not below -30 dB. Blocks of
  * nothing but 0 are blank corners, not water. */
-double estimate_noise_floor(const float *intensity, const float *level, size_t rows, size_t columns)
+double estimate_noise_floor(const float *intensity, const float *level, size_t rows, size_t columns,
+                            bool *is_measured)
 {
     const size_t high = smaller(NOISE_BLOCK, rows);
     const size_t wide = smaller(NOISE_BLOCK, columns);
@@ -197,7 +198,8 @@ double estimate_noise_floor(const float *intensity, const float *level, size_t r
             if (sum > 0.0 && sum < darkest)
                 darkest = sum;
         }
-    return darkest > NOISE_HIGHEST ? NOISE_UNKNOWN : fmax(NOISE_LOWEST, darkest);
+    *is_measured = darkest <= NOISE_HIGHEST;
+    return *is_measured ? fmax(NOISE_LOWEST, darkest) : NOISE_UNKNOWN;
 }
 
 /* A whole number that is larger the larger the float is. */

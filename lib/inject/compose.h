@@ -20,6 +20,7 @@ struct patch_level {
     float *cell_energy;   /* expected cross-section of a pixel of plain seabed (mu0), m^2; a column
                              each */
     double noise_ratio;   /* noise energy over level */
+    bool measures_noise;  /* it was estimated, and a shadow of the patch told it */
     size_t water_columns; /* before the first return from the bottom; their level is that of the
                              seabed nearby */
 };
@@ -63,6 +64,7 @@ sonject_status set_target_levels(const struct tracer *tracer, struct echoes *ech
 struct image_match {
     struct speckle_statistics seabed; /* measured around the objects */
     double looks;                     /* of speckle that is put in; 1: single-look */
+    uint32_t looks_source;            /* sonject_source */
     double saturation;                /* amplitude that cuts highlights, or INFINITY */
     double ceiling; /* of the image and its file: the lesser of that and what is stored */
 };

@@ -289,6 +289,10 @@ static void fill_statistics(const struct tracer *tracer, const struct patch_leve
     statistics->form_s = echoes->form_s;
     statistics->inject_s = inject_s;
     statistics->noise_floor_db = 10.0 * log10(level->noise_ratio);
+    statistics->noise_floor_source =
+        !tracer->scene->injection.estimate_noise
+            ? scene_key_source(tracer->scene, "injection.noise_floor")
+            : (uint32_t)(level->measures_noise ? SONJECT_SOURCE_PATCH : SONJECT_SOURCE_FALLBACK);
     for (size_t i = 0; i < result->rows * result->columns; i++)
         statistics->changed_pixels += result->influence[i] != 0;
 }

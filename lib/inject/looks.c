@@ -155,6 +155,9 @@ sonject_status match_image(struct tracer *tracer, const float *pixels,
     if (status != SONJECT_OK || input->is_complex || input->is_made ||
         asked->mode != SONJECT_MODE_COMPOSITE)
         return status;
+    match->looks_source = seabed->blocks > 0 ? SONJECT_SOURCE_PATCH : SONJECT_SOURCE_FALLBACK;
+    if (asked->match_looks >= 1.0)
+        match->looks_source = scene_key_source(tracer->scene, "injection.match.looks");
     if (asked->match_looks >= 1.0)
         match->looks = asked->match_looks;
     else if (seabed->blocks > 0 && seabed->looks > LOOKS_CLEARLY &&
@@ -184,6 +187,7 @@ void tell_match(const struct image_match *match, const struct point_response *re
     statistics->along_track_resolution_m = response->resolution_m;
     statistics->range_resolution_m = response->range_resolution_m;
     statistics->looks = match->looks;
+    statistics->looks_source = match->looks_source;
     statistics->saturation_amplitude = match->saturation;
 }
 

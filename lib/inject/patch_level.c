@@ -140,7 +140,8 @@ sonject_status patch_level_init(struct patch_level *level, struct report *report
                                                           view_processor_range(view, (double)j));
     level->noise_ratio =
         scene->injection.estimate_noise
-            ? estimate_noise_floor(level->intensity, level->level, view->rows, view->columns)
+            ? estimate_noise_floor(level->intensity, level->level, view->rows, view->columns,
+                                   &level->measures_noise)
             : pow(10.0, scene->injection.noise_floor_db / 10.0);
     return SONJECT_OK;
 }

@@ -16,6 +16,12 @@
 static sonject_status choose_patch(struct report *report, const struct scene *scene,
                                    struct swath *swath)
 {
+    if (scene->calibrates_itself)
+        return scene_locate(scene, report,
+                            report_failure(report, SONJECT_ERROR_INPUT,
+                                           "auto is for run and campaign: make a file with sonject "
+                                           "calibrate and name it"),
+                            "input.calibration");
     const sonject_patch_params *asked = &scene->patch;
     const struct raster_layout *layout = &swath->layout;
     struct region *patch = &swath->patch;

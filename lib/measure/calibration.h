@@ -136,7 +136,7 @@ void calibration_clear(struct calibration *calibration);
 /* As a document: keys of scenes, and `measured` with standard errors. Numbers have four significant
  * digits. NULL where memory is out; for json_decref. */
 json_t *calibration_document(const struct calibration *calibration, const char *path,
-                             const char *channel);
+                             const char *hash, const char *channel);
 
 /* A document as YAML; for free(). Errors: MEMORY. */
 sonject_status document_as_yaml(struct report *report, const json_t *document, char **text);

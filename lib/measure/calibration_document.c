@@ -159,13 +159,16 @@ static json_t *measured_gain(const struct calibration *found)
                        {"standard_error", numbers(found->gain_error_db, bands)});
 }
 
-json_t *calibration_document(const struct calibration *found, const char *path, const char *channel)
+json_t *calibration_document(const struct calibration *found, const char *path, const char *hash,
+                             const char *channel)
 {
     json_t *document = JSON_OBJECT({"sonject_calibration", json_integer(1)});
     json_t *measured = json_object();
     add_scene_keys(&document, found);
     if (path)
         json_add(&measured, "swath", json_text(path));
+    if (hash)
+        json_add(&measured, "swath_xxh3", json_text(hash));
     if (channel)
         json_add(&measured, "channel", json_text(channel));
     json_add(&measured, "rows", json_count(found->rows));

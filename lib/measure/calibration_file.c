@@ -95,8 +95,14 @@ static sonject_status write_results(struct report *report, const sonject_calibra
                                     const struct stored_swath *swath,
                                     const struct calibration *found, char **text)
 {
-    json_t *document = calibration_document(found, params->image, params->channel);
+    char hash[HASH_TEXT_CAPACITY];
+    const char *name = params->image ? strrchr(params->image, '/') : NULL;
     *text = NULL;
+    if (params->image)
+        CHECK(file_hash(report, params->image, hash));
+    /* the folder is whoever's: the same swath tells the same anywhere */
+    json_t *document = calibration_document(found, name ? name + 1 : params->image,
+                                            params->image ? hash : NULL, params->channel);
     sonject_status status = SONJECT_OK;
     if (!params->as_json)
         status = document_as_yaml(report, document, text);

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <sonject/result.h>
+
 #include "base/memory.h"
 
 #define PI 3.14159265358979323846
@@ -23,6 +25,8 @@ void scene_clear(struct scene *scene)
     free(scene->input_path);
     ping_table_clear(&scene->pings);
     free(scene->array);
+    free(scene->calibration);
+    free(scene->calibrated);
     free(scene->band);
     free(scene->bands);
     free(scene->objects);
@@ -129,6 +133,21 @@ sonject_status scene_note_key(struct scene *scene, struct report *report, const 
     key->place = memcpy(key->path + path_bytes, place, place_bytes);
     written->count++;
     return SONJECT_OK;
+}
+
+uint32_t scene_key_source(const struct scene *scene, const char *path)
+{
+    const size_t length = strlen(path);
+    const char *line = scene->calibrated;
+    while (line && *line) {
+        if (strncmp(line, path, length) == 0 && line[length] == '\n')
+            return SONJECT_SOURCE_CALIBRATION;
+        line += strcspn(line, "\n") + 1;
+    }
+    for (size_t i = 0; i < scene->written.count; i++)
+        if (strcmp(scene->written.keys[i].path, path) == 0)
+            return SONJECT_SOURCE_SCENE;
+    return SONJECT_SOURCE_DEFAULT;
 }
 
 /* Shortens path to the section that it lies in; to "" at last. */

@@ -80,6 +80,9 @@ struct scene {
     sonject_input_kind input_kind;
     char *input_path;           /* owned; NULL unless input_kind is SONJECT_INPUT_FILE */
     struct ping_table pings;    /* of the input's rows, from a table */
+    char *calibration;          /* owned; the file that input.calibration names; NULL: none */
+    char *calibrated;           /* owned; the keys that were taken from it, one a line; NULL: none */
+    bool calibrates_itself;     /* auto: whoever runs the scene makes that file first */
     bool has_recorded_altitude; /* that, or else the input file, says it row by row */
     bool input_is_complex;      /* two channels of the file are real and imaginary part */
     int32_t channel;            /* of a recording: SONJECT_CHANNEL_PORT and the like, or a number */
@@ -126,6 +129,9 @@ void user_shapes_clear(struct user_shapes *shapes);
 /* Notes the place of a key, whose section has been noted before. Errors: MEMORY. */
 sonject_status scene_note_key(struct scene *scene, struct report *report, const char *path,
                               const char *place);
+
+/* Where a key's value comes from, a sonject_source: default, scene or calibration. */
+uint32_t scene_key_source(const struct scene *scene, const char *path);
 
 /* The number of the mesh that the scene already has from that file, as it now is, with those
  * options; else reads and appends it. Errors: as mesh_load, INPUT also where it is open or there

@@ -198,8 +198,9 @@ struct reader {
     size_t moved_overrides;
     const struct number_array *arrays; /* in place of files */
     size_t array_count;
-    bool takes_pixels;    /* the input may be pixels that a call is given */
-    struct key_path path; /* of the section or key that is read */
+    const char *made_calibration; /* file that stands for input.calibration: auto; NULL: none */
+    bool takes_pixels;            /* the input may be pixels that a call is given */
+    struct key_path path;         /* of the section or key that is read */
 };
 
 /* Reads a section's keys into structure. What is wrong is refused and keeps the value that it has,
@@ -208,6 +209,10 @@ struct reader {
  */
 sonject_status read_section(struct reader *reader, const struct section *section,
                             const struct tree_node *node, void *structure);
+
+/* Takes the keys of the file that input.calibration names under those of the scene. Errors: INPUT,
+ * STORAGE, MEMORY. */
+sonject_status take_calibration(struct reader *reader, struct tree *tree);
 
 /* Whether a status is one after which nothing more is read. */
 bool reading_ends(sonject_status status);

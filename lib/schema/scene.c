@@ -294,11 +294,19 @@ static sonject_status read_pings(struct reader *reader, const struct tree_node *
     return status;
 }
 
+/* The file is under the scene's keys already. */
+static sonject_status read_calibration(struct reader *reader, const struct tree_node *node,
+                                       void *structure)
+{
+    (void)structure;
+    return read_text(reader, node) ? SONJECT_OK : SONJECT_ERROR_INPUT;
+}
+
 static sonject_status finish_input(struct reader *reader, const struct tree_node *node,
                                    void *structure)
 {
     const struct scene *scene = structure;
-    const char *file_keys = "channel array complex transfer pings";
+    const char *file_keys = "channel array complex calibration transfer pings";
     char key[64];
     while (scene->input_kind != SONJECT_INPUT_FILE && next_key(&file_keys, key))
         if (is_given(node, key) && count_given(node, "path uniform synthetic") == 1)
@@ -324,6 +332,11 @@ static const struct field input_fields[] = {
      "where the pixels lie: row_spacing, column_spacing and first_slant_range, or from_file",
      PART(geometry, geometry_section), .read = read_geometry, REQUIRED},
     {"transfer", "what the file's numbers mean", PART(transfer, transfer_section)},
+    {"calibration",
+     "file of sonject calibrate, whose keys count where the scene has none of its own; or auto: "
+     "run "
+     "and campaign make it",
+     SPECIAL(read_calibration, "file name, or auto")},
     {"pings",
      "of images whose file does not say it row by row: a table with columns row, altitude_m, and "
      "first_slant_range_m, linear between its rows",

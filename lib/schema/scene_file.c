@@ -182,6 +182,7 @@ static sonject_status fill_scene(struct tree *tree, const struct scene_source *s
                             .moved_overrides = source->moved_overrides,
                             .arrays = source->arrays,
                             .array_count = source->array_count,
+                            .made_calibration = source->made_calibration,
                             .takes_pixels = source->takes_pixels};
     sonject_status status = apply_overrides(tree, source);
     if (reading_ends(status))
@@ -190,6 +191,7 @@ static sonject_status fill_scene(struct tree *tree, const struct scene_source *s
         return refuse_value(&reader, &tree->root,
                             "there is nothing in it; start with 'sonject: 1'");
     status = choose_band(&reader, tree);
+    THEN(status, take_calibration(&reader, tree));
     return status == SONJECT_OK ? read_section(&reader, &scene_section, &tree->root, scene)
                                 : status;
 }

@@ -27,7 +27,8 @@ struct scene_source {
      * is, as with all others. */
     const char *moved_folder;
     size_t moved_overrides;
-    struct number_array *arrays; /* by their names, which are their keys' values */
+    const char *made_calibration; /* file that stands for input.calibration: auto; NULL: none */
+    struct number_array *arrays;  /* by their names, which are their keys' values */
     size_t array_count;
     bool allows_user_shapes;
     bool takes_pixels;   /* the input may be pixels that a call is given: none of path, uniform and

@@ -42,6 +42,7 @@ static const struct {
     {"input.array", file},
     {"input.complex", file},
     {"input.transfer.", file},
+    {"input.calibration", file},
     {"input.pings", file},
     {"medium.profile.", UNIFORM GEOMETRY ARRAY "}\nsurface: {depth: 20 m}\n"},
 };
@@ -92,6 +93,7 @@ static const struct key_case {
     {"input.channel", "5", S(U32, channel), .number = 5.0},
     {"input.array", "swath", S(PATH, array), .text = "swath"},
     {"input.pings", SOURCE_ROOT "/tests/unit/pings.csv", S(U64, pings.count), .number = 3.0},
+    {"input.calibration", "auto", S(BOOL, calibrates_itself), .number = 1.0},
     {"input.complex", "true", S(BOOL, input_is_complex), .number = 1.0},
     {"input.uniform.rows", "1048576", S(U32, uniform_rows), .number = 1048576.0},
     {"input.uniform.columns", "7", S(U32, uniform_columns), .number = 7.0},

@@ -19,7 +19,8 @@ static bool is_without_effect(const char *path)
         "sonject",
         "band", /* what it chooses does */
         "bands",
-        "input.path", /* the swath's identity tells files apart */
+        "input.path",        /* the swath's identity tells files apart */
+        "input.calibration", /* the keys that it tells count */
         "seabed.relief[].mound.position",
         "objects[].level",
         "objects[].position",

@@ -172,7 +172,9 @@ static double floor_of(double shadow, size_t hole, size_t blank_columns)
                                            (float)(is_hole ? shadow : 1.0) *
                                            (float)(i < blank_columns ? 0.0 : 1.0);
         }
-    const double ratio = estimate_noise_floor(intensity, level, rows, columns);
+    bool is_measured;
+    const double ratio = estimate_noise_floor(intensity, level, rows, columns, &is_measured);
+    assert_int_equal(is_measured, shadow < 1.0 && hole >= 30); /* else it is no measurement */
     free(intensity);
     free(level);
     return 10.0 * log10(ratio);
@@ -188,9 +190,11 @@ static void test_noise_floor(void **state)
     expect_near(floor_of(1e-6, 30, 0), -30.0, 1e-9);            /* clipped shadow */
     expect_near(floor_of(pow(10.0, -2.5), 5, 0), -22.5, 1e-6);  /* a hole smaller than a block */
     /* a patch smaller than a block */
-    expect_near(
-        estimate_noise_floor((const float[]){0.004f, 0.006f}, (const float[]){1.0f, 1.0f}, 1, 2),
-        0.005, 1e-9);
+    bool is_measured = false;
+    expect_near(estimate_noise_floor((const float[]){0.004f, 0.006f}, (const float[]){1.0f, 1.0f},
+                                     1, 2, &is_measured),
+                0.005, 1e-9);
+    assert_true(is_measured);
 }
 
 static double distance_of(const float *a, const float *b, size_t count)

@@ -1,0 +1,170 @@
+/* A calibration under a scene: the file that input.calibration names has keys of scenes, which
+ * count where the scene has none of its own. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "schema/keys.h"
+
+struct layer {
+    struct reader *reader;
+    struct tree *tree;
+    struct tree calibration;
+    struct tree_place place; /* of the key that names the file */
+    struct key_path path;    /* in both */
+    struct growing_text taken;
+};
+
+static sonject_status check_keys(struct layer *layer, const struct tree_node *node)
+{
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
+        const struct tree_entry *entry = &node->entries[i];
+        const struct section *section;
+        const char *near = NULL;
+        if (!entry->key)
+            continue;
+        const size_t before = key_path_add(&layer->path, entry->key);
+        if (!scene_key_find(&scene_section, layer->path.text, &near, &section))
+            status =
+                tree_failure(&layer->calibration, entry->place, layer->path.text,
+                             "no key of scenes%s%s%s; what was measured goes below measured",
+                             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+        THEN(status, check_keys(layer, &entry->value));
+        key_path_shorten(&layer->path, before);
+    }
+    return status;
+}
+
+/* Whatever is wrong with it is told where the scene names the file. */
+static void move_place(struct tree_node *node, struct tree_place place)
+{
+    node->place = place;
+    for (size_t i = 0; i < node->count; i++) {
+        node->entries[i].place = place;
+        move_place(&node->entries[i].value, place);
+    }
+}
+
+static void note_taken(struct layer *layer, const struct tree_node *node)
+{
+    if (node->kind != TREE_SECTION) {
+        growing_text_add(&layer->taken, "%s\n", layer->path.text);
+        return;
+    }
+    for (size_t i = 0; i < node->count; i++) {
+        const size_t before = key_path_add(&layer->path, node->entries[i].key);
+        note_taken(layer, &node->entries[i].value);
+        key_path_shorten(&layer->path, before);
+    }
+}
+
+/* A curve of the scene's own has no parameter of another's. */
+static bool is_hidden(const struct layer *layer, const struct tree_node *scene, const char *key)
+{
+    return strcmp(layer->path.text, "input.transfer") == 0 && tree_find(scene, "kind") &&
+           strcmp(key, "full_scale") != 0;
+}
+
+/* Moves what the scene lacks from the calibration's section into its own. */
+static sonject_status lay_under(struct layer *layer, struct tree_node *scene,
+                                struct tree_node *calibration)
+{
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < calibration->count; i++) {
+        struct tree_entry *from = &calibration->entries[i];
+        struct tree_entry *to = tree_find(scene, from->key);
+        if (is_hidden(layer, scene, from->key))
+            continue;
+        const size_t before = key_path_add(&layer->path, from->key);
+        if (to && to->value.kind == TREE_SECTION && from->value.kind == TREE_SECTION) {
+            status = lay_under(layer, &to->value, &from->value);
+        } else if (!to) {
+            status = tree_append(layer->tree, scene, &layer->path, from->key, layer->place, &to);
+            if (status == SONJECT_OK) {
+                const struct tree_node empty = to->value;
+                move_place(&from->value, layer->place);
+                to->value = from->value;
+                from->value = empty;
+                note_taken(layer, &to->value);
+            }
+        }
+        key_path_shorten(&layer->path, before);
+    }
+    return status;
+}
+
+/* The version, and sections of scenes' keys; the rest goes under the scene's. */
+static sonject_status take_keys(struct layer *layer, const char *file)
+{
+    static const char *const sections[] = {"input", "sonar", "injection"};
+    struct tree *own = &layer->calibration;
+    const struct tree_entry *version = tree_find(&own->root, "sonject_calibration");
+    if (!version || version->value.kind != TREE_TEXT || !version->value.text ||
+        strcmp(version->value.text, "1") != 0)
+        return tree_failure(own, version ? version->place : own->root.place, "sonject_calibration",
+                            "must be 1: is it a file of sonject calibrate?");
+    growing_text_add(&layer->taken, "%s", "");
+    for (size_t i = 0; i < own->root.count; i++) {
+        struct tree_entry *entry = &own->root.entries[i];
+        bool is_known = false;
+        for (size_t k = 0; k < COUNT(sections); k++)
+            is_known = is_known || strcmp(entry->key, sections[k]) == 0;
+        if (strcmp(entry->key, "sonject_calibration") == 0 || strcmp(entry->key, "measured") == 0)
+            continue;
+        if (!is_known || entry->value.kind != TREE_SECTION)
+            return tree_failure(own, entry->place, entry->key,
+                                "a calibration has the sections input, sonar, injection and "
+                                "measured");
+        struct tree_node root = {.kind = TREE_SECTION, .entries = entry, .count = 1};
+        CHECK(check_keys(layer, &root));
+        CHECK(lay_under(layer, &layer->tree->root, &root));
+    }
+    layer->reader->scene->calibration = copy_text(file);
+    layer->reader->scene->calibrated = growing_text_end(&layer->taken);
+    memset(&layer->taken, 0, sizeof layer->taken);
+    CHECK_MEMORY(layer->reader->report,
+                 layer->reader->scene->calibration && layer->reader->scene->calibrated,
+                 "a calibration");
+    return SONJECT_OK;
+}
+
+static sonject_status lay_file(struct reader *reader, struct tree *tree,
+                               const struct tree_entry *named, const char *file)
+{
+    char *text = NULL;
+    size_t bytes;
+    struct layer layer = {.reader = reader, .tree = tree, .place = named->value.place};
+    CHECK(file_read_whole(reader->report, file, TREE_BYTES_MAX, &text, &bytes));
+    tree_init(&layer.calibration, reader->report, file);
+    layer.calibration.mistakes = tree->mistakes;
+    layer.calibration.named_at = named->value.place;
+    sonject_status status = tree_parse(&layer.calibration, text, bytes);
+    free(text);
+    THEN(status, take_keys(&layer, file));
+    free(layer.taken.characters);
+    tree_clear(&layer.calibration);
+    return status;
+}
+
+sonject_status take_calibration(struct reader *reader, struct tree *tree)
+{
+    const struct tree_entry *input = tree_find(&tree->root, "input");
+    const struct tree_entry *named = input ? tree_find(&input->value, "calibration") : NULL;
+    const char *made = reader->made_calibration;
+    char *file = NULL;
+    if (!named || count_given(&input->value, "uniform synthetic") > 0)
+        return SONJECT_OK; /* refused with the section */
+    if (is_word(&named->value, "auto")) {
+        reader->scene->calibrates_itself = made == NULL;
+        return made ? lay_file(reader, tree, named, made) : SONJECT_OK;
+    }
+    const size_t outer = key_path_add(&reader->path, "input");
+    key_path_add(&reader->path, "calibration");
+    sonject_status status = read_existing_path(reader, &named->value, &file);
+    key_path_shorten(&reader->path, outer);
+    THEN(status, lay_file(reader, tree, named, file));
+    free(file);
+    return status;
+}
