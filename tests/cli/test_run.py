@@ -190,7 +190,7 @@ def test_verbose_tells_what_happens_to_an_8_bit_swath(sonject, scene, tmp_path):
     *news, last = answer.stderr.splitlines()
     assert last == "sonject: the result is in result"
     assert all(line.startswith("sonject: ") for line in news)
-    for words in ("device '", "trace_rough.cl built in", "noise floor estimated",
+    for words in ("device '", "trace_rough.cl built in", "noise floor: no shadow",
                   "3 pixels of the patch are at the image's full scale"):
         assert len([line for line in news if words in line]) == 1, (words, news)
     quiet = sonject.done("run", scene, "-o", "quiet", *chosen, "--verbose", "--quiet")

@@ -134,7 +134,7 @@ def test_the_log_tells_device_programs_and_noise_floor():
     lines = answer.stdout.splitlines()
     assert [line for line in lines if line.startswith("device '")] == lines[:1]
     assert any("trace_rough.cl built in" in line for line in lines)
-    assert lines[-1].startswith("noise floor estimated")
+    assert lines[-1].startswith("noise floor: no shadow")
 
 
 def run_python(code, **environment):
