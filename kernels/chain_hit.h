@@ -3,6 +3,7 @@
 #define SONJECT_KERNELS_CHAIN_HIT_H
 
 #include "fan.h"
+#include "fouling.h"
 #include "intersection.h"
 #include "random.h"
 #include "seabed.h"
@@ -113,6 +114,14 @@ FUNCTION GLOBAL const struct surface_record *surface_number(
     return i == SEABED ? &chains->seabed : &objects[i].surface;
 }
 
+/* What fouls surface number i makes of scattering at a hit. */
+FUNCTION vfloat fouling_at(GLOBAL const struct object_record *objects, int i,
+                           const struct chain_hit *hit, struct vector3 out)
+{
+    return i < 0 ? SPLAT(1.0f)
+                 : fouling_factor(&objects[i], hit->point, hit->normal, hit->back, out);
+}
+
 /* Scattering at a hit from one direction into another (rough part), kernels/surface.h. */
 FUNCTION vfloat scattering_at(const struct fan_record *fan, GLOBAL const struct chain_record *chain,
                               GLOBAL const struct object_record *objects,
@@ -126,7 +135,8 @@ FUNCTION vfloat scattering_at(const struct fan_record *fan, GLOBAL const struct 
         if (ANY(here))
             scattering = SELECT(
                 here,
-                rough_scattering(surface_number(chain, objects, i), hit->normal, hit->back, out),
+                rough_scattering(surface_number(chain, objects, i), hit->normal, hit->back, out) *
+                    fouling_at(objects, i, hit, out),
                 scattering);
     }
     return scattering;

@@ -199,7 +199,8 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
             step_from_surface(chains, spheres, chain->choice, surface_number(chains, objects, i), i,
                               order, hit, choice, u, v);
         step.direction = choose3(here, from.direction, step.direction);
-        step.weight = SELECT(here, from.weight, step.weight);
+        const vfloat fouled = from.weight * fouling_at(objects, i, hit, from.direction);
+        step.weight = SELECT(here, SELECT(from.is_specular, from.weight, fouled), step.weight);
         step.is_specular = SELECT(here, from.is_specular, step.is_specular);
     }
     const vfloat factor = map_factor(fan, pieces, chains, map, hit);

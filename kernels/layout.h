@@ -29,6 +29,7 @@ enum random_stream {
     STREAM_IMAGE_RAYS = 4096,    /* + STREAMS_OF_PAIR * number of the pair of sources + part */
     STREAM_IMAGE_ROUGH_RAYS = 1048576, /* likewise */
     STREAM_MULTIBOUNCE_RAYS = 2097152, /* likewise; the sonar alone is pair 0 */
+    STREAM_FOULING = 536870912,        /* + object */
     STREAMS_OF_PAIR = 1024
 };
 
@@ -103,8 +104,9 @@ struct object_record {
     float slant_offset;    /* m: of that face from the centre */
     float bounding_radius; /* m, about the centre */
     struct end_record ends[ENDS];
-    RECORD_WORD mesh_words; /* mesh: where its mesh_record is, in 4-byte words from this record;
-                               user's shape: likewise, its user_record */
+    RECORD_WORD mesh_words;    /* mesh: where its mesh_record is, in 4-byte words from this record;
+                                  user's shape: likewise, its user_record */
+    RECORD_WORD fouling_words; /* where its fouling_record is, likewise; 0: it has none */
     RECORD_WORD tree_words; /* of the first record: where the object_tree_record of all objects is,
                                likewise; 0: there is none */
     RECORD_INT cuts;
@@ -311,6 +313,22 @@ struct outcome_record {
 /* The bins, or columns, of a line that may hold anything but zeros, from first on to before end. */
 struct filled_span {
     RECORD_INT first, end;
+};
+
+/* Waves whose sum is a random field of an object's fouling. */
+#define FOULING_WAVES 12
+
+struct fouling_wave {
+    float x, y, z; /* cycles per m, in the frame's axes */
+    float phase;   /* cycles, at the centre of the object or part */
+};
+
+struct fouling_record {
+    float albedo_gain; /* nepers of energy that a wave adds at its crest; 0: albedo is even */
+    float albedo_peak; /* the albedo where all crests meet */
+    float slope_gain;  /* slope of a wave of one cycle per m at its steepest, m; 0: no relief */
+    struct fouling_wave albedo[FOULING_WAVES];
+    struct fouling_wave relief[FOULING_WAVES]; /* phase: of its slope */
 };
 
 /* How many spheres around targets there may be. */

@@ -5,6 +5,7 @@
 
 #include "aspects.h"
 #include "fan.h"
+#include "fouling.h"
 #include "intersection.h"
 #include "random.h"
 #include "reflectivity_map.h"
@@ -194,7 +195,10 @@ FUNCTION vfloat scattering_of_targets(const struct fan_record *fan,
             *range = SELECT(here, way.range, *range);
         }
         scattering = SELECT(
-            is_open, rough_scattering(&objects[i].surface, normal, back, out) * dot3(normal, out),
+            is_open,
+            rough_scattering(&objects[i].surface, normal, back, out) * dot3(normal, out) *
+                fouling_factor(&objects[i], along3(squinted->start, squinted->direction, distance),
+                               normal, back, out),
             scattering);
     }
     return scattering;

@@ -34,8 +34,9 @@ FUNCTION void trace_rough_images_group(const struct fan_record *fan,
     const vfloat wavefront = fan->strip_width * fan->elevation_step * path.wavefront_out;
     const vfloat boundaries = path.reflection_real * path.reflection_real +
                               path.reflection_imaginary * path.reflection_imaginary;
-    const vfloat energy = rough_scattering(&object->surface, hit.normal, reversed3(ray.direction),
-                                           reversed3(path.back.direction)) *
+    const struct vector3 out = reversed3(ray.direction), back = reversed3(path.back.direction);
+    const vfloat energy = rough_scattering(&object->surface, hit.normal, out, back) *
+                          fouling_factor(object, hit.point, hit.normal, out, back) *
                           path.cosine_back * wavefront * (path.spreading * path.spreading) *
                           boundaries * (pair->echoes * pair->echoes * fan->quanta);
     const vfloat kept = SELECT(path.is_open, energy, SPLAT(0.0f));

@@ -116,7 +116,8 @@ enum device_program {
 enum program_variant {
     PROGRAM_WITH_MESHES = 1,
     PROGRAM_WITH_RELIEF = 2,
-    PROGRAM_WITH_ASPECTS = 4 /* the rough part's */
+    PROGRAM_WITH_ASPECTS = 4, /* the rough part's */
+    PROGRAM_WITH_FOULING = 8  /* of what scatters */
 };
 
 /* The kernels' sources, flattened at build time (embed.py) so that no file is needed at run time.

@@ -25,10 +25,11 @@ static void program_options(const struct device *device, uint32_t variant, bool 
                             char options[OPTIONS_CAPACITY])
 {
     const size_t length = language_options(device, options);
-    snprintf(options + length, OPTIONS_CAPACITY - length, " -DWIDTH=%u%s%s%s%s%s",
+    snprintf(options + length, OPTIONS_CAPACITY - length, " -DWIDTH=%u%s%s%s%s%s%s",
              (unsigned)device->width, variant & PROGRAM_WITH_MESHES ? " -DWITH_MESHES" : "",
              variant & PROGRAM_WITH_RELIEF ? " -DWITH_RELIEF" : "",
              variant & PROGRAM_WITH_ASPECTS ? " -DWITH_ASPECTS" : "",
+             variant & PROGRAM_WITH_FOULING ? " -DWITH_FOULING" : "",
              device->is_cpu ? "" : " -DTALLY_IS_SHARED",
              has_user_code ? " -DWITH_USER_SHAPES" : "");
 }

@@ -259,7 +259,7 @@ static bool has_rough_part(const struct tracer *tracer, uint32_t number)
 {
     const struct placed_object *object = &tracer->objects[number];
     for (uint32_t i = 0; i < object->part_count; i++)
-        if (material_is_rough(tracer->placements[object->first_part + i].material))
+        if (material_is_rough(&tracer->placements[object->first_part + i].material))
             return true;
     return false;
 }

@@ -351,7 +351,7 @@ static sonject_status check_glints(const struct tracer *tracer, const struct tra
 {
     struct line_grid grid;
     uint32_t part = 0;
-    while (part < traced->part_count && !material_is_smooth(traced->placements[part].material))
+    while (part < traced->part_count && !material_is_smooth(&traced->placements[part].material))
         part++;
     if (part == traced->part_count)
         return SONJECT_OK;

@@ -327,6 +327,15 @@ typedef enum sonject_position_kind {
     SONJECT_POSITION_PIXELS = 2 /* along: row, range: column of the swath, centres at integers */
 } sonject_position_kind;
 
+/* What grows on an object: two random fields of Gaussian autocorrelation exp(-(r/length)^2/2) over
+ * its surface, in its own coordinates. */
+typedef struct sonject_fouling_params {
+    double albedo_db; /* rms, of the energy that is scattered, whose mean stays; 0: even */
+    double albedo_length_m;
+    double relief_m; /* rms height; tilts what scatters, and adds to the roughness; 0: none */
+    double relief_length_m;
+} sonject_fouling_params;
+
 /* Lengths are overall. Length runs along the object's nose direction (own x), width across it (own
  * y, to the left of the nose as seen from above), height upwards when the pose is level (own z). An
  * object is the same thing to port and to starboard. */
@@ -361,9 +370,10 @@ typedef struct sonject_object_params {
     uint32_t cut_count;      /* of cuts that count */
     uint32_t mesh;           /* number of a mesh of the scene */
     sonject_cut cuts[SONJECT_CUTS_CAPACITY];
-    uint32_t user_shape; /* number of a user's shape of the scene */
-    uint32_t level_kind; /* sonject_level_kind */
-    double level_db;     /* not for SONJECT_LEVEL_PHYSICAL */
+    uint32_t user_shape;            /* number of a user's shape of the scene */
+    uint32_t level_kind;            /* sonject_level_kind */
+    double level_db;                /* not for SONJECT_LEVEL_PHYSICAL */
+    sonject_fouling_params fouling; /* of the whole object, whatever its parts have */
 } sonject_object_params;
 
 /* A shape by code, whose contract is in sonject/user_shape.h. All 0: a closed solid without code,

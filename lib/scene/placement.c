@@ -111,7 +111,13 @@ static struct placement pose_part(const struct scene *scene, uint32_t object,
                                   const struct scene_part *in_object, double axes[3][3])
 {
     const sonject_object_params *shape = in_object ? &in_object->shape : &scene->objects[object];
-    struct placement part = {.shape = shape->shape, .object = object, .material = &shape->material};
+    const sonject_fouling_params *fouling = &scene->objects[object].fouling;
+    struct placement part = {.shape = shape->shape, .object = object, .material = shape->material};
+    if (fouling->relief_m > 0.0) {
+        part.material.roughness_m = hypot(part.material.roughness_m, fouling->relief_m);
+        part.material.glossy_slope =
+            hypot(part.material.glossy_slope, fouling->relief_m / fouling->relief_length_m);
+    }
     shape_size_init_in_scene(&part.size, scene, shape);
     part.bounding_radius_m = part.size.bounding_radius_m;
     if (!in_object) {

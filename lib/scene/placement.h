@@ -10,9 +10,9 @@
 
 /* One part. */
 struct placement {
-    uint32_t shape;                          /* enum shape_kind */
-    uint32_t object;                         /* number of the object that it belongs to */
-    const sonject_material_params *material; /* the scene's */
+    uint32_t shape;                   /* enum shape_kind */
+    uint32_t object;                  /* number of the object that it belongs to */
+    sonject_material_params material; /* the scene's, with the relief that fouls it */
     double centre[3];  /* m: x of the view, horizontal range from the track, height */
     double axes[3][3]; /* rows: nose, own y, own z, in view coordinates */
     struct shape_size size;

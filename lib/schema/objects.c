@@ -92,6 +92,34 @@ static const struct section cut_section = {ROWS(cut_fields)};
     }
 
 #define STRUCTURE sonject_object_params
+static const struct field fouling_fields[] = {
+    {"albedo", "rms of what the rough part scatters, about the mean that the material says",
+     QUANTITY(fouling.albedo_db, DECIBEL), WITHIN(0.0, 10.0)},
+    {"albedo_length", "over which that changes: exp(-(r / length)^2 / 2) is its autocorrelation",
+     QUANTITY(fouling.albedo_length_m, LENGTH), WITHIN(1e-3, LENGTH_MAX_M), .preset = 0.15},
+    {"relief", "rms height; tilts what scatters, and takes from smooth parts as roughness does",
+     QUANTITY(fouling.relief_m, LENGTH), WITHIN(0.0, 1.0)},
+    {"relief_length", "likewise; at least twice the height",
+     QUANTITY(fouling.relief_length_m, LENGTH), WITHIN(1e-3, LENGTH_MAX_M), .preset = 0.05},
+};
+static void relate_fouling(struct check *check, const void *structure)
+{
+    const sonject_fouling_params *fouling = &((const sonject_object_params *)structure)->fouling;
+    if (fouling->relief_m > 0.5 * fouling->relief_length_m)
+        check_relation(check, "relief", "relief_length",
+                       "must be at most half of relief_length, %g m, but is %g m",
+                       fouling->relief_length_m, fouling->relief_m);
+}
+static const struct section fouling_section = {ROWS(fouling_fields), .relations = relate_fouling};
+#undef STRUCTURE
+
+#define FOULING_FIELD                                                                              \
+    {                                                                                              \
+        "fouling", "what grows on it: random albedo and relief, in its own coordinates",           \
+            SAME(fouling_section)                                                                  \
+    }
+
+#define STRUCTURE sonject_object_params
 static const struct field shape_fields[] = {SHAPE_FIELDS};
 
 void object_init(sonject_object_params *object)
@@ -321,6 +349,7 @@ static const struct field target_fields[] = {
     {"class", "label for training", LABEL(class_name)},
     SHAPE_FIELDS,
     SURFACE_FIELD("surface of the target: a material's name, or a section"),
+    FOULING_FIELD,
     {"parts", "instead of one shape: the target is their union", SPECIAL(note_parts, "list")},
 };
 static const struct section target_section = {ROWS(target_fields), .choice = "shape parts",
@@ -444,6 +473,7 @@ static const struct field object_fields[] = {
                          [SONJECT_LEVEL_OVER_SEABED] = ""},
      .section = &level_section},
     SURFACE_FIELD("surface of the object: a material's name, or a section"),
+    FOULING_FIELD,
     {"parts", "instead of one shape: the object is their union", .kind = FIELD_SPECIAL,
      .unit = "list", .section = &part_section, .is_list = true, .read = read_object_parts},
 };

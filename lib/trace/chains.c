@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "trace/fan.h"
+#include "trace/fouling.h"
 #include "trace/object_buffer.h"
 
 #define PI              3.14159265358979323846
@@ -149,7 +150,7 @@ static sonject_status init_object_fan(struct chain_fan *fan, struct tracer *trac
     const struct elevations edges = elevations_of_object(tracer, part, &tracer->view.water);
     const double half_length = placement_half_extent(placement, along);
     const double middle = central - grazing;
-    const bool is_specular = material_is_smooth(placement->material);
+    const bool is_specular = material_is_smooth(&placement->material);
     const bool has_reverse = tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED &&
                              tracer->scene->sonar.transducer_side_m == 0.0;
     const bool finds_surface = sea_surface_is_in_chains(tracer, grid);
@@ -257,8 +258,9 @@ static struct most_sent most_sent_by_surfaces(const struct chain_trace *trace,
             brightest = fmax(brightest, map[i]);
     join_surface(&most, &seabed, true, brightest);
     for (uint32_t i = 0; i < tracer->part_count; i++) {
-        const sonject_material_params *material = tracer->placements[i].material;
-        join_surface(&most, material, false, material_is_rough(material));
+        const sonject_material_params *material = &tracer->placements[i].material;
+        join_surface(&most, material, false,
+                     material_is_rough(material) * fouling_brightest(tracer, i));
     }
     if (trace->has_sea_surface)
         join_surface(&most, &sea_surface, true, material_is_rough(&sea_surface));

@@ -272,7 +272,7 @@ static double step_to_objects(const struct tracer *tracer, double strip_m)
         const double grazing = placement_grazing(placement, &tracer->view);
         const double radius =
             ray_path_arrival(&tracer->view.water, grazing, placement->centre[2]).wavefront_m;
-        if (material_is_rough(placement->material))
+        if (material_is_rough(&placement->material))
             step = fmin(step, 0.25 * PI * size * size / (OBJECT_RAYS * strip_m * radius));
     }
     return step / tracer->scene->injection.ray_scale;

@@ -16,7 +16,7 @@
 
 static bool is_smooth(const struct tracer *tracer, uint32_t part)
 {
-    return material_is_smooth(tracer->placements[part].material);
+    return material_is_smooth(&tracer->placements[part].material);
 }
 
 bool multibounce_may_echo(const struct tracer *tracer, uint32_t part)

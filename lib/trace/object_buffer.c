@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "scene/shapes/shape.h"
 #include "trace/fan.h"
+#include "trace/fouling.h"
 #include "trace/rough.h"
 #include "user/snippet.h"
 
@@ -180,7 +181,7 @@ void object_record_init(struct object_record *record, const struct tracer *trace
         for (int k = 0; k < 3; k++)
             record->axes[3 * axis + k] = (float)placement->axes[axis][k];
     shape_record_init(record, &placement->size, placement->shape);
-    surface_record_init(&record->surface, placement->material, tracer->view.wavelength_m);
+    surface_record_init(&record->surface, &placement->material, tracer->view.wavelength_m);
 }
 
 sonject_status object_records_create(struct object_record **records, const struct tracer *tracer,
@@ -249,6 +250,24 @@ static void write_users(const struct tracer *tracer, const struct part_list *par
     }
 }
 
+/* Likewise those of fouling, behind them. Returns where they end; words: NULL to find that alone.
+ */
+static size_t write_fouling(const struct tracer *tracer, const struct part_list *parts,
+                            struct object_record *records, uint32_t *words, size_t at)
+{
+    for (uint32_t i = 0; i < parts->count; i++) {
+        struct fouling_record record;
+        if (!object_is_fouled(tracer, placement_of(tracer, parts, i)->object))
+            continue;
+        fouling_record_init(&record, tracer, placement_of(tracer, parts, i));
+        records[i].fouling_words = (uint32_t)(at - i * WORDS_OF(struct object_record));
+        if (words)
+            memcpy(words + at, &record, sizeof record);
+        at += ALIGNED(WORDS_OF(record));
+    }
+    return at;
+}
+
 static size_t record_words(uint32_t part_count)
 {
     return ALIGNED(part_count * WORDS_OF(struct object_record));
@@ -287,7 +306,8 @@ static sonject_status write_buffer(struct tracer *tracer, struct object_record *
 {
     size_t begin[SCENE_MESHES_MAX];
     const size_t users_begin = lay_out(tracer, parts, begin);
-    const size_t tree_begin = users_begin + user_words(tracer, parts);
+    const size_t fouling_begin = users_begin + user_words(tracer, parts);
+    const size_t tree_begin = write_fouling(tracer, parts, records, NULL, fouling_begin);
     const size_t count = tree_begin + tree->count;
     if (count > WORDS_MOST || count * WORD > tracer->device->allocation_limit)
         return report_failure(tracer->report, SONJECT_ERROR_INPUT,
@@ -302,6 +322,7 @@ static sonject_status write_buffer(struct tracer *tracer, struct object_record *
                                                i * WORDS_OF(struct object_record));
     }
     write_users(tracer, parts, records, words, users_begin);
+    write_fouling(tracer, parts, records, words, fouling_begin);
     if (tree->count > 0)
         records[0].tree_words = (uint32_t)tree_begin;
     memcpy(words, records, parts->count * sizeof *records);

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "trace/fan.h"
+#include "trace/fouling.h"
 #include "trace/glints.h"
 #include "trace/object_buffer.h"
 
@@ -161,7 +162,8 @@ static void choose_quanta(struct rough_trace *trace, const struct tracer *tracer
             seabed = fmax(seabed, map[i]);
     double brightest = 1.0 / PI;
     for (uint32_t i = 0; i < tracer->part_count; i++)
-        brightest = fmax(brightest, material_brightness(tracer->placements[i].material));
+        brightest = fmax(brightest, material_brightness(&tracer->placements[i].material) *
+                                        fouling_brightest(tracer, i));
     const double wavefront =
         (double)fan->strip_width * fan->elevation_step * 2.0 * fan->reference_range;
     const double beam = has_beam(trace) ? beam_largest_weight(tracer, fan) : 1.0;
@@ -357,7 +359,7 @@ sonject_status rough_trace_images(struct rough_trace *trace, struct tracer *trac
 {
     sonject_status status = SONJECT_OK;
     for (uint32_t i = 0; status == SONJECT_OK && i < tracer->part_count; i++)
-        if (material_is_rough(tracer->placements[i].material) &&
+        if (material_is_rough(&tracer->placements[i].material) &&
             line_grid_cells(&trace->tiles[tracer->placements[i].object].grid) > 0 &&
             image_source_bins(tracer, i, &trace->grid).count > 0)
             status = trace_part(trace, tracer, i);

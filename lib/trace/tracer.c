@@ -8,6 +8,7 @@
 #include "scene/shapes/shape.h"
 #include "trace/checkpoint.h"
 #include "trace/fan.h"
+#include "trace/fouling.h"
 #include "trace/object_buffer.h"
 #include "user/snippet.h"
 
@@ -15,7 +16,7 @@
 #define TALLY_BYTES ((size_t)64 << 20)
 
 /* Host and device must agree on every byte. */
-typedef char object_record_is_packed[sizeof(struct object_record) == 57 * 4 ? 1 : -1];
+typedef char object_record_is_packed[sizeof(struct object_record) == 58 * 4 ? 1 : -1];
 typedef char fan_record_is_packed[sizeof(struct fan_record) == 76 * 4 ? 1 : -1];
 typedef char chain_record_is_packed[sizeof(struct chain_record) == 43 * 4 ? 1 : -1];
 typedef char sphere_group_is_packed[sizeof(struct sphere_group) == 64 * 4 ? 1 : -1];
@@ -227,9 +228,15 @@ sonject_status launch_begin(struct launch *launch, struct tracer *tracer,
     const bool has_aspects =
         program == PROGRAM_TRACE_ROUGH &&
         (aspects_sine(tracer) > 0.0 || tracer->scene->sonar.kind == SONJECT_SONAR_REAL);
+    const bool scatters = program == PROGRAM_TRACE_ROUGH || program == PROGRAM_TRACE_ROUGH_IMAGES ||
+                          program == PROGRAM_TRACE_CHAINS;
+    bool has_fouling = false;
+    for (uint32_t i = 0; i < tracer->scene->object_count; i++)
+        has_fouling = has_fouling || object_is_fouled(tracer, i);
     const uint32_t variant = (tracer->scene->mesh_count > 0 ? PROGRAM_WITH_MESHES : 0u) |
                              (tracer->relief ? PROGRAM_WITH_RELIEF : 0u) |
-                             (has_aspects ? PROGRAM_WITH_ASPECTS : 0u);
+                             (has_aspects ? PROGRAM_WITH_ASPECTS : 0u) |
+                             (has_fouling && scatters ? PROGRAM_WITH_FOULING : 0u);
     if (tracer->checkpoint && tracer->checkpoint->files)
         return SONJECT_OK;
     return scene_kernel_create(tracer->report, tracer->device, tracer->scene, variant, program,

@@ -2,6 +2,7 @@
 #define WITHOUT_MESHES /* as the device builds them for these scenes */
 #define WITHOUT_RELIEF
 #define WITHOUT_ASPECTS
+#define WITHOUT_FOULING
 #include "kernels/trace_chains.h"
 #include "kernels/trace_rough.h"
 #include "kernels/trace_smooth.h"

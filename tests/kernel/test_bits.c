@@ -31,6 +31,7 @@ enum scene_flag {
     GLINTS = 8192,
     IMAGES = 16384,
     CHAINS = 32768,
+    FOULED = 131072,
     TILES = 65536 /* of the rough part by all ways, at the least and the most lanes */
 };
 
@@ -63,7 +64,9 @@ static const struct scene_case {
     {"aspects over relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | WITH_ASPECTS | ON_RELIEF | WITH_MAP,
      0.2, 1},
     {"beam", FOUR_OBJECTS, ROUGH | WITH_BEAM, 0.0, 1},
+    {"fouling", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | TILES | FOULED, 0.2, 1},
     {"chains", TWO_OBJECTS, CHAINS, 0.0, 3},
+    {"chains off what is fouled", TWO_OBJECTS, CHAINS | FOULED | UNDER_SURFACE, 0.0, 3},
     {"chains, paper's columns, map", TWO_OBJECTS, CHAINS | PAPER_COLUMNS | WITH_MAP, 0.0, 3},
     {"chains, wide source", TWO_OBJECTS, CHAINS | SMOOTH_SEABED, 4.0, 4},
     {"brute force", TWO_OBJECTS, CHAINS | PAPER_COLUMNS | BRUTE_FORCE, 4.0, 3},
@@ -209,6 +212,8 @@ static void make_scene(struct bench *bench, const struct scene_case *scene)
     sonar->transducer_side_m = scene->source_side;
     bench_set_layers(bench, layers, scene->flags & IN_LAYERS ? 2 : 0);
     place_objects(bench, scene->objects);
+    for (uint32_t i = 1; scene->flags & FOULED && i < bench->scene.object_count; i++)
+        bench->scene.objects[i].fouling = (sonject_fouling_params){i * 2.0, 0.05, 0.004, 0.03};
     if (scene->flags & (ON_RELIEF | ON_RIPPLES))
         make_relief(bench, scene->flags & ON_RIPPLES);
     if (scene->flags & SMOOTH_SEABED) {

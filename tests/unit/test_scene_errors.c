@@ -37,7 +37,7 @@ static void test_unknown_keys(void **state)
          "user, "
          "length, width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, "
          "cuts, "
-         "position, heading, pitch, roll, burial, level, material, parts"},
+         "position, heading, pitch, roll, burial, level, material, fouling, parts"},
     };
     expect_all(state, wrong, COUNT(wrong));
 }
@@ -225,6 +225,10 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
                      "{sidelobes: 0 dB, terms: 1}}}\n",
          ":3:87: sonar.response.taylor.sidelobes: must be 1...120 dB, not 0\n"
          ":3:100: sonar.response.taylor.terms: must be 2...16, not 1"},
+        {MATERIAL "steel\n    fouling: {albedo: 12 dB, relief: 3 cm}\n",
+         ":8:23: objects[0].fouling.albedo: must be 0...10 dB, not 12\n"
+         ":8:38: objects[0].fouling.relief: must be at most half of relief_length, 0.05 m, but is "
+         "0.03 m"},
         {MATERIAL "stele\n", ":7:15: objects[0].material: 'stele' is not one of " KNOWN_MATERIALS
                              "; did you mean 'steel'?"},
         {MATERIAL "{reflection: 0.5, lambert: 0.05, glossy: {albedo: 0.2}}\n",

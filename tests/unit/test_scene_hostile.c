@@ -14,9 +14,9 @@ static const char *const examples[] = {"demo",    "elements", "figure4", "figure
                                        "figure6", "figure7",  "layers",  "relief",
                                        "shapes",  "surface",  "targets", "user_shape"};
 static const char *const targets[] = {
-    "anchor",    "boulder", "boulder_relief",       "crab_pot_frame",      "cylinder_mine",
-    "oil_drum",  "rock",    "tethered_sphere_mine", "truncated_cone_mine", "tyre",
-    "wedge_mine"};
+    "anchor",        "bomb",      "boulder", "boulder_relief",       "crab_pot_frame",
+    "cylinder_mine", "oil_drum",  "rock",    "tethered_sphere_mine", "truncated_cone_mine",
+    "tyre",          "wedge_mine"};
 
 /* How many are tried of each example; of targets, which are read through a scene, a tenth. */
 static size_t mutations_wanted(void)

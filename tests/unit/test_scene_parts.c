@@ -247,7 +247,7 @@ static void test_targets_that_are_wrong(void **state)
          "length, "
          "width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, cuts, "
          "material, "
-         "parts"},
+         "fouling, parts"},
     };
     struct scene_folder *folder = *state;
     static const char scene[] = OBJECT "target: target.yaml\n";
@@ -320,11 +320,12 @@ static void test_the_library_of_targets(void **state)
     if (read_scene_file(&report, SOURCE_ROOT "/tools/scenes/targets.yaml", NULL, 0, false,
                         &scene) != SONJECT_OK)
         fail_msg("%s", report.message);
-    assert_int_equal(scene.object_count, 11);
+    assert_int_equal(scene.object_count, 12);
     assert_int_equal(scene.mesh_count, 1);
     for (uint32_t i = 0; i < scene.object_count; i++) {
         assert_true(scene.objects[i].name[0] != 0);
         assert_true(strcmp(scene.objects[i].class_name, "mine") == 0 ||
+                    strcmp(scene.objects[i].class_name, "uxo") == 0 ||
                     strcmp(scene.objects[i].class_name, "clutter") == 0);
     }
     scene_clear(&scene);
