@@ -224,6 +224,7 @@ struct campaign {
     uint32_t edge, clearance;         /* pixels kept free at swaths' edges, around contacts */
     double spread;                    /* of the chip's sides, where objects may lie */
     double nearest_range_m, farthest_range_m;
+    double least_ratio, most_ratio; /* of range over altitude; 0: any */
     double empty, clutter_alone;
     double visible_highlight_db, visible_shadow_db; /* of targets: at least, at most; NaN: any */
     uint32_t faint;                                 /* enum faint */
@@ -275,10 +276,12 @@ sonject_status campaign_split(struct report *report, struct campaign *campaign,
                               char (*hashes)[HASH_TEXT_CAPACITY]);
 
 /* Finds where images may lie in a swath whose layout is known. geometry: of the scene with that
- * swath. altitude_m: the sonar's highest, which images begin beyond, so that no target lies in the
- * water column. Errors: INPUT (no room), MEMORY. */
+ * swath. altitudes_m: the sonar's at each row; images begin beyond the highest, so that no target
+ * lies in the water column, unless they may show it and are limited in range over altitude. Errors:
+ * INPUT (no room), MEMORY. */
 sonject_status campaign_measure(struct report *report, struct campaign *campaign, size_t swath,
-                                const sonject_geometry_params *geometry, double altitude_m);
+                                const sonject_geometry_params *geometry, const double *altitudes_m,
+                                bool may_show_water);
 
 /* Whether images have all rows or columns of swaths, so that contacts to avoid are in them: then
  * objects keep away from them instead. */

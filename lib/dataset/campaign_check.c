@@ -6,6 +6,7 @@
 #include <sonject/version.h>
 
 #include "base/json_document.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "dataset/campaign.h"
 #include "inject/scene_hash.h"
@@ -37,14 +38,26 @@ static void trial_clear(struct trial *trial)
     image_plan_clear(&trial->plan);
 }
 
-/* Over all rows of the swath. */
-static double highest_altitude(const struct scene *scene, const struct recording *recording,
-                               uint64_t rows)
+/* Measures an opened swath, with the altitude at each row: the row's before it where none is told.
+ */
+static sonject_status measure_rows(struct sonject_campaign *campaign, uint32_t number,
+                                   const struct scene *scene, const struct swath_file *file)
 {
-    double highest = scene->sonar.altitude_m;
-    for (uint64_t i = 0; scene->has_recorded_altitude && i < rows; i++)
-        highest = fmax(highest, recorded_altitude(scene, recording, i));
-    return highest;
+    const struct swath_plan *swath = &campaign->campaign.swaths[number];
+    const size_t rows = (size_t)swath->layout.rows;
+    /* as check_water_column */
+    const bool may_show_water = scene->water_layer_count == 0 && scene->relief.count == 0;
+    double *altitudes = allocate_array(rows, sizeof *altitudes);
+    double altitude = scene->sonar.altitude_m;
+    CHECK_MEMORY(campaign->report, altitudes, "the altitudes");
+    for (size_t i = 0; i < rows; i++) {
+        const double told = recorded_altitude(scene, swath_file_recording(file), i);
+        altitudes[i] = altitude = told > 0.0 ? told : altitude;
+    }
+    const sonject_status status = campaign_measure(campaign->report, &campaign->campaign, number,
+                                                   &scene->geometry, altitudes, may_show_water);
+    free(altitudes);
+    return status;
 }
 
 /* Size and room of a swath, whose scene tells its geometry. */
@@ -65,9 +78,7 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
                                        trial.scene.array, &file));
     if (status == SONJECT_OK) {
         swath_file_layout(file, &swath->layout);
-        status = campaign_measure(
-            campaign->report, &campaign->campaign, number, &trial.scene.geometry,
-            highest_altitude(&trial.scene, swath_file_recording(file), swath->layout.rows));
+        status = measure_rows(campaign, number, &trial.scene, file);
     }
     swath_file_close(&file);
     trial_clear(&trial);

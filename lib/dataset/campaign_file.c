@@ -10,6 +10,7 @@
 #include "dataset/campaign.h"
 #include "schema/keys.h"
 
+#define RATIO_MAX     1000.0
 #define OBJECT_PREFIX "objects[]."
 
 sonject_status grow_list(struct report *report, void *list, size_t count, size_t size)
@@ -221,6 +222,23 @@ static sonject_status read_range(struct reader *reader, const struct tree_node *
                         campaign->nearest_range_m, campaign->farthest_range_m);
 }
 
+static sonject_status read_ratio(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    struct campaign *campaign = structure;
+    if (node->kind != TREE_LIST || node->count != 2)
+        return refuse_value(reader, node, "must be two numbers, [least, most]");
+    CHECK(read_quantity(reader, &node->entries[0].value, QUANTITY_NUMBER, &campaign->least_ratio));
+    CHECK(read_quantity(reader, &node->entries[1].value, QUANTITY_NUMBER, &campaign->most_ratio));
+    if (campaign->least_ratio >= 1.0 && campaign->least_ratio < campaign->most_ratio &&
+        campaign->most_ratio <= RATIO_MAX)
+        return SONJECT_OK;
+    return refuse_value(reader, node,
+                        "must rise within 1...%g, where 1 is straight below the sonar, not from %g "
+                        "to %g",
+                        RATIO_MAX, campaign->least_ratio, campaign->most_ratio);
+}
+
 static sonject_status read_side(struct reader *reader, const struct tree_node *node, uint32_t *side)
 {
     uint64_t pixels = 0;
@@ -314,6 +332,11 @@ static const struct field chip_fields[] = {
      QUANTITY(spread, NUMBER), WITHIN(0.0, 1.0)},
     {"slant_range", "[nearest, farthest] of images' middles, or of objects where columns: all",
      .kind = FIELD_SPECIAL, .read = read_range, .unit = "list of two lengths"},
+    {"range_over_altitude",
+     "[least, most] of the same over the sonar's altitude there; images may then begin in the "
+     "water "
+     "column",
+     .kind = FIELD_SPECIAL, .read = read_ratio, .unit = "list of two numbers"},
 };
 static const struct section chip_section = {ROWS(chip_fields)};
 

@@ -231,36 +231,92 @@ void crop_sample(const struct crop_places *room, double along_track, double rang
     free_columns(room, *row, part_of(columns, range), column);
 }
 
+/* What limits where images lie: the swath's geometry and the sonar's altitude over it. */
+struct limits {
+    const struct campaign *campaign;
+    const sonject_geometry_params *geometry;
+    const double *altitudes_m; /* of each row */
+    double lowest_m, highest_m;
+    bool shows_water; /* images may begin in the water column */
+};
+
+/* Narrows low...high to the first columns of what has its middle at slant ranges from near to far.
+ */
+static void limit_columns(const struct limits *limits, double half, double near_m, double far_m,
+                          double *low, double *high)
+{
+    const double near = geometry_column(limits->geometry, near_m) - half;
+    const double far = geometry_column(limits->geometry, far_m) - half;
+    *low = fmax(*low, ceil(fmin(near, far) - 1e-9));
+    *high = near_m <= far_m ? fmin(*high, floor(fmax(near, far) + 1e-9)) : -1.0;
+}
+
 /* First columns beyond the first return whose chip's middle has a slant range within the limits. An
  * image that has all columns begins where the swath does: there the limits are those of its
  * objects. False where nothing is left. */
-static bool limit_ranges(const struct campaign *campaign, const sonject_geometry_params *geometry,
-                         double altitude_m, struct swath_plan *plan, struct region *chips)
+static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, struct region *chips)
 {
+    const struct campaign *campaign = limits->campaign;
+    const sonject_geometry_params *geometry = limits->geometry;
+    const bool is_reversed = geometry_is_reversed(geometry);
     const bool has_all = campaign->chip_columns == 0;
     const double half = has_all ? 0.0 : 0.5 * (double)(campaign->chip_columns - 1);
     const double end =
         (double)chips->first_column + (double)(has_all ? plan->chip_columns : chips->columns) - 1.0;
-    const double bottom = geometry_column(geometry, altitude_m);
+    const bool shows_water = limits->shows_water && !has_all;
+    const double bottom =
+        geometry_column(geometry, shows_water ? limits->lowest_m : limits->highest_m);
     double low = (double)chips->first_column;
     double high = end;
-    if (geometry_is_reversed(geometry))
+    if (is_reversed && !shows_water)
         high = fmin(high, ceil(bottom) - 1.0 - 2.0 * half);
-    else
+    else if (!shows_water)
         low = fmax(low, floor(bottom) + 1.0);
-    if (campaign->has_range) {
-        const double near = geometry_column(geometry, campaign->nearest_range_m) - half;
-        const double far = geometry_column(geometry, campaign->farthest_range_m) - half;
-        low = fmax(low, ceil(fmin(near, far) - 1e-9));
-        high = fmin(high, floor(fmax(near, far) + 1e-9));
-    }
-    plan->first_object_column = has_all ? low : 0.0;
-    plan->last_object_column = has_all ? high : (double)plan->layout.columns;
+    if (campaign->has_range)
+        limit_columns(limits, half, campaign->nearest_range_m, campaign->farthest_range_m, &low,
+                      &high);
+    if (has_all && campaign->least_ratio > 0.0)
+        limit_columns(limits, half, campaign->least_ratio * limits->highest_m,
+                      campaign->most_ratio * limits->lowest_m, &low, &high);
+    plan->first_object_column = has_all ? low : is_reversed ? 0.0 : floor(bottom) + 1.0;
+    plan->last_object_column = has_all       ? high
+                               : is_reversed ? ceil(bottom) - 1.0
+                                             : (double)plan->layout.columns;
     if (!has_all && low <= high) {
         chips->columns = (uint64_t)(high - low) + 1;
         chips->first_column = (uint64_t)low;
     }
     return low <= high;
+}
+
+#define RATIO_BLOCKS 64 /* of rows, over which the altitude is taken from its least to its most */
+
+/* Forbids first pixels of chips whose range over altitude is beyond the limits: two boxes for each
+ * block of rows, behind the room's others. */
+static void limit_ratios(const struct limits *limits, const struct swath_plan *plan,
+                         struct crop_places *room)
+{
+    const struct campaign *campaign = limits->campaign;
+    const struct region *chips = &room->chips;
+    const uint64_t blocks = chips->rows < RATIO_BLOCKS ? chips->rows : RATIO_BLOCKS;
+    const uint64_t end_column = chips->first_column + chips->columns;
+    for (uint64_t i = 0; campaign->least_ratio > 0.0 && i < blocks; i++) {
+        const uint64_t first = chips->first_row + i * chips->rows / blocks;
+        const uint64_t end = chips->first_row + (i + 1) * chips->rows / blocks;
+        double lowest = HUGE_VAL, highest = 0.0;
+        double low = (double)chips->first_column, high = (double)end_column - 1.0;
+        for (uint64_t row = first; row < end + plan->chip_rows - 1; row++) {
+            lowest = fmin(lowest, limits->altitudes_m[row]);
+            highest = fmax(highest, limits->altitudes_m[row]);
+        }
+        limit_columns(limits, 0.5 * (double)(plan->chip_columns - 1),
+                      campaign->least_ratio * highest, campaign->most_ratio * lowest, &low, &high);
+        const uint64_t from = low <= high ? (uint64_t)low : end_column;
+        const uint64_t to = low <= high ? (uint64_t)high + 1 : end_column;
+        room->boxes[room->box_count++] =
+            (struct region){first, chips->first_column, end - first, from - chips->first_column};
+        room->boxes[room->box_count++] = (struct region){first, to, end - first, end_column - to};
+    }
 }
 
 /* First pixels, along one axis, of chips that would touch a box. */
@@ -284,9 +340,16 @@ static uint64_t side_of(uint32_t asked, uint64_t pixels, uint32_t edge)
 }
 
 sonject_status campaign_measure(struct report *report, struct campaign *campaign, size_t swath,
-                                const sonject_geometry_params *geometry, double altitude_m)
+                                const sonject_geometry_params *geometry, const double *altitudes_m,
+                                bool may_show_water)
 {
     struct swath_plan *plan = &campaign->swaths[swath];
+    struct limits limits = {campaign, geometry, altitudes_m,
+                            HUGE_VAL, 0.0,      may_show_water && campaign->least_ratio > 0.0};
+    for (uint64_t row = 0; row < plan->layout.rows; row++) {
+        limits.lowest_m = fmin(limits.lowest_m, altitudes_m[row]);
+        limits.highest_m = fmax(limits.highest_m, altitudes_m[row]);
+    }
     plan->chip_rows = side_of(campaign->chip_rows, plan->layout.rows, campaign->edge);
     uint64_t first, width;
     if (!geometry_side(geometry, plan->layout.columns, &first, &width))
@@ -307,22 +370,22 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
             (unsigned)campaign->edge);
     struct region chips = {campaign->edge, first + campaign->edge, plan->layout.rows - rows + 1,
                            width - columns + 1};
-    const bool has_room = limit_ranges(campaign, geometry, altitude_m, plan, &chips);
+    const bool has_room = limit_ranges(&limits, plan, &chips);
     if (!has_room && !campaign->has_range)
         return tree_failure(&campaign->tree, plan->place, "swaths",
                             "no image within %s begins beyond the sonar's altitude, up to %g m",
-                            plan->written, altitude_m);
+                            plan->written, limits.highest_m);
     if (!has_room)
         return tree_failure(&campaign->tree, plan->place, "swaths",
                             "no image within %s has its middle at slant ranges of %g to %g m and "
                             "begins beyond the sonar's altitude, up to %g m",
                             plan->written, campaign->nearest_range_m, campaign->farthest_range_m,
-                            altitude_m);
+                            limits.highest_m);
     struct crop_places *room = &plan->room;
     crop_places_clear(room);
     room->chips = chips;
     room->box_count = images_show_contacts(campaign) ? 0 : plan->avoid_count;
-    room->boxes = allocate_array(room->box_count + 1, sizeof *room->boxes);
+    room->boxes = allocate_array(room->box_count + 2 * RATIO_BLOCKS + 1, sizeof *room->boxes);
     CHECK_MEMORY(report, room->boxes, "the places for images");
     for (size_t i = 0; i < room->box_count; i++) {
         const struct region *box = &plan->avoid[i];
@@ -332,6 +395,8 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
         forbid(campaign, plan->chip_columns, box->first_column, box->columns,
                &forbidden->first_column, &forbidden->columns);
     }
+    if (campaign->chip_columns > 0)
+        limit_ratios(&limits, plan, room);
     qsort(room->boxes, room->box_count, sizeof *room->boxes, compare_starts);
     uint64_t column;
     for (uint64_t row = chips.first_row, end; row < chips.first_row + chips.rows; row = end) {
@@ -340,6 +405,12 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
     }
     if (room->places > 0)
         return SONJECT_OK;
+    if (campaign->least_ratio > 0.0)
+        return tree_failure(&campaign->tree, plan->place, "swaths",
+                            "no image within %s has its middle at %g to %g times the sonar's "
+                            "altitude, %g to %g m, and keeps away from %zu contacts",
+                            plan->written, campaign->least_ratio, campaign->most_ratio,
+                            limits.lowest_m, limits.highest_m, plan->avoid_count);
     return tree_failure(&campaign->tree, plan->place, "swaths",
                         "the %zu contacts to avoid in %s leave no room for images of %u x %u that "
                         "stay %u pixels away from them",

@@ -326,3 +326,61 @@ targets: [{class: ball, object: {shape: sphere, diameter: 0.5 m}}]
         shadow, middle = truth["shadow"], truth["column"]
         assert (shadow["column"] + 0.5 * shadow["columns"] < middle) == (side == "port")
         assert truth["slant_range_m"] == pytest.approx(abs(column + truth["column"] - NADIR) * 0.15, abs=0.3)
+
+
+@pytest.mark.parametrize("side", ["port", "starboard"])
+def test_images_are_limited_in_range_over_altitude(sonject, tmp_path, waterfall, side):
+    """Wherever the sonar is; they may begin in the water column, up to whose edge targets lie."""
+    (tmp_path / "pings.csv").write_text("row,altitude_m\n0,4\n30,7\n59,5\n")
+    (tmp_path / "base.yaml").write_text(f"""\
+sonject: 1
+input: {{path: both.tif, pings: pings.csv,
+         geometry: {{row_spacing: 0.1 m, column_spacing: 0.15 m, nadir_column: 203.5, side: {side}}}}}
+sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: from_file, resolution: 0.1 m}}
+""")
+    campaign = """\
+sonject_campaign: 1
+scene: base.yaml
+images: 40
+chip: {rows: 16, columns: 60, spread: 0.9, range_over_altitude: [1.1, 1.8]}
+swaths: [{path: both.tif}]
+targets: [{class: ball, object: {shape: sphere, diameter: 0.4 m}}]
+"""
+    (tmp_path / "campaign.yaml").write_text(campaign)
+    sonject.done("campaign", "campaign.yaml", "-o", "data")
+    ratios, begins, grounds = [], [], []
+    for record in records(tmp_path / "data"):
+        rows = record["swath"]["row"] + numpy.arange(16)
+        altitude = numpy.interp(rows, [0, 30, 59], [4, 7, 5]).mean()
+        columns = numpy.abs(record["swath"]["column"] + numpy.array([0, 29.5, 59]) - NADIR) * 0.15
+        ratios.append(columns[1] / altitude)
+        begins.append(columns.min() / altitude)
+        truth = json.loads((tmp_path / "data/all/truth" / f"{record['id']:08}.json").read_text())["objects"][0]
+        grounds.append(truth["ground_range_m"] / altitude)
+    assert 1.1 <= min(ratios) < 1.25 and 1.6 < max(ratios) <= 1.8
+    assert numpy.mean(numpy.array(begins) < 1) > 0.9 and min(grounds) < 0.35
+    for chip, words in (("[100, 200]", "no image within both.tif has its middle at 100 to 200 times the sonar's altitude, "
+                         "4 to 7 m, and keeps away from 0 contacts"),
+                        ("[0.5, 2]", "chip.range_over_altitude: must rise within 1...1000"),
+                        ("[3, 2]", "chip.range_over_altitude: must rise within 1...1000"),
+                        ("3", "chip.range_over_altitude: must be two numbers, [least, most]")):
+        (tmp_path / "campaign.yaml").write_text(campaign.replace("[1.1, 1.8]", chip))
+        assert_refused(sonject("campaign", "campaign.yaml", "-o", "none"), 3, words)
+
+
+def test_objects_of_whole_swaths_are_limited_in_range_over_altitude(sonject, tmp_path, line):
+    (tmp_path / "pings.csv").write_text("row,altitude_m\n0,5\n59,6\n")
+    text = CAMPAIGN.replace("columns: 60", "columns: all, spread: 1, range_over_altitude: [1.5, 2.5]")
+    sonject.done("campaign", write_campaign(tmp_path, text), "-o", "data")
+    for record in records(tmp_path / "data"):
+        truth = json.loads((tmp_path / "data/all/truth" / f"{record['id']:08}.json").read_text())["objects"][0]
+        # the object's column is that of its middle, whose highlight is nearer
+        assert 1.5 * 6 - 0.5 <= truth["slant_range_m"] <= 2.5 * 5 + 0.5
+
+
+def test_targets_in_layered_water_stay_behind_the_water_column(sonject, tmp_path, line):
+    (tmp_path / "pings.csv").write_text("row,altitude_m\n0,6\n59,6\n")
+    text = CAMPAIGN.replace("columns: 60", "columns: 60, range_over_altitude: [1.1, 2]")
+    layers = "medium: {layers: [{bottom: 0 m, sound_speed: 1500 m/s}, {bottom: 3 m, sound_speed: 1505 m/s}]}"
+    sonject.done("campaign", write_campaign(tmp_path, text, more=layers), "-o", "data")
+    assert all(0.15 * (record["swath"]["column"] + 0.5) > 6 for record in records(tmp_path / "data"))

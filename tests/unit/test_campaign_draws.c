@@ -151,6 +151,7 @@ static void test_images_lie_wherever_edges_contacts_and_ranges_let_them(void **s
     struct swath_plan swath;
     struct campaign campaign;
     int hits[60][90] = {{0}};
+    double altitudes[60];
     uint64_t places = 0;
     memset(&swath, 0, sizeof swath);
     memset(&campaign, 0, sizeof campaign);
@@ -167,7 +168,10 @@ static void test_images_lie_wherever_edges_contacts_and_ranges_let_them(void **s
     swath.layout.columns = 90;
     swath.avoid = boxes;
     swath.avoid_count = 3;
-    assert_int_equal(campaign_measure(&report, &campaign, 0, &geometry, 10.0), SONJECT_OK);
+    for (int i = 0; i < 60; i++)
+        altitudes[i] = 10.0;
+    assert_int_equal(campaign_measure(&report, &campaign, 0, &geometry, altitudes, true),
+                     SONJECT_OK);
     for (int i = 0; i < 200; i++)
         for (int j = 0; j < 200; j++) {
             uint64_t row, column;
