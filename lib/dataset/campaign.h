@@ -121,13 +121,14 @@ struct crop_places {
     struct region *boxes; /* those that it may not have, which may reach beyond, sorted by their
                              first column; owned */
     size_t box_count;
-    uint64_t places; /* 0: there is no room */
+    uint64_t places;                    /* 0: there is no room */
+    uint64_t block_rows, block_columns; /* of which chips begin at a multiple */
 };
 
 void crop_places_clear(struct crop_places *room);
 
 /* The place that two deviates of [0, 1) choose: rows by the number of places that they have, and
- * all places of a row alike. The room must have places. */
+ * all places of a row alike, set back to a block's first pixel. The room must have places. */
 void crop_sample(const struct crop_places *room, double along_track, double range, uint64_t *row,
                  uint64_t *column);
 
@@ -162,6 +163,7 @@ struct swath_plan {
     struct crop_places room;     /* once it is measured, as all below */
     uint64_t chip_rows, chip_columns;
     double first_object_column, last_object_column; /* where objects may lie */
+    int jpeg_quality; /* that images are coded with; 0: without loss */
     uint32_t split_number;
 };
 
@@ -185,6 +187,12 @@ enum design {
     DESIGN_RANDOM,
     DESIGN_STRATIFIED,
     DESIGN_GRID
+};
+
+/* Files of images. */
+enum image_format {
+    FORMAT_LOSSLESS, /* PNG or TIFF */
+    FORMAT_AS_INPUT  /* JPEG where the swath is one */
 };
 
 /* What becomes of a target that is seen less than it is to be. */
@@ -220,6 +228,7 @@ struct campaign {
     const char *scene_written; /* the tree's */
     uint64_t images, seed;
     uint32_t design;                  /* enum design */
+    uint32_t format;                  /* enum image_format */
     uint32_t chip_rows, chip_columns; /* 0: all of each swath */
     uint32_t edge, clearance;         /* pixels kept free at swaths' edges, around contacts */
     double spread;                    /* of the chip's sides, where objects may lie */

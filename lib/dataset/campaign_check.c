@@ -11,6 +11,7 @@
 #include "dataset/campaign.h"
 #include "inject/scene_hash.h"
 #include "swath/geometry_notes.h"
+#include "swath/jpeg_quality.h"
 
 #define TRIALS_MAX 20000 /* scenes, about as many milliseconds at the most */
 
@@ -78,6 +79,8 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
                                        trial.scene.array, &file));
     if (status == SONJECT_OK) {
         swath_file_layout(file, &swath->layout);
+        if (campaign->campaign.format == FORMAT_AS_INPUT)
+            swath->jpeg_quality = jpeg_quality(swath->path);
         status = measure_rows(campaign, number, &trial.scene, file);
     }
     swath_file_close(&file);

@@ -406,6 +406,8 @@ static const struct field campaign_fields[] = {
     {"outputs",
      "written beside image and truth: highlight, shadow, masks, influence, energy, field",
      .kind = FIELD_SPECIAL, .read = read_outputs, .unit = "list of words"},
+    {"format", "of images; as_input: JPEG where the swath is one, coded as that is",
+     WORD(format) = {[FORMAT_LOSSLESS] = "lossless", [FORMAT_AS_INPUT] = "as_input"}},
     {"labels", "beside COCO: yolo, voc", .kind = FIELD_SPECIAL, .read = read_outputs,
      .unit = "list of words"},
     {"empty", "fraction of images without any object", QUANTITY(empty, NUMBER), WITHIN(0.0, 1.0)},

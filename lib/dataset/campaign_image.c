@@ -310,16 +310,19 @@ static void take_alone(struct campaign_image *image, struct scene *scene, struct
 
 static sonject_status write_pixels(struct sonject_campaign *campaign, const struct scene *scene,
                                    struct swath *swath, struct injection_result *result,
-                                   const char *path)
+                                   int quality, const char *path)
 {
     static const char *const complex_names[] = {"real", "imag"};
     struct geometry_notes notes;
     void *stored = swath_stored_result(swath, result, &result->statistics.output_clipped);
     CHECK_MEMORY(campaign->report, stored, "an image");
     geometry_notes_init(&notes, &scene->sonar, &scene->geometry);
-    const sonject_status status = raster_file_write(campaign->report, path, &swath->layout,
-                                                    swath->is_complex ? complex_names : NULL,
-                                                    notes.attributes, notes.count, stored);
+    const sonject_status status =
+        quality > 0 ? raster_file_write_jpeg(campaign->report, path, &swath->layout,
+                                             notes.attributes, notes.count, stored, quality)
+                    : raster_file_write(campaign->report, path, &swath->layout,
+                                        swath->is_complex ? complex_names : NULL, notes.attributes,
+                                        notes.count, stored);
     free(stored);
     return status;
 }
@@ -390,6 +393,12 @@ static sonject_status write_record(struct sonject_campaign *campaign,
     return status;
 }
 
+static int jpeg_quality_of(const struct sonject_campaign *campaign,
+                           const struct campaign_image *image)
+{
+    return campaign->campaign.swaths[image->plan.swath].jpeg_quality;
+}
+
 static sonject_status write_file(struct sonject_campaign *campaign, struct campaign_image *image,
                                  struct image_parts *parts, enum output output, const char *path)
 {
@@ -398,14 +407,16 @@ static sonject_status write_file(struct sonject_campaign *campaign, struct campa
     const struct run_facts facts = {.scene = &parts->scene,
                                     .swath = &parts->swath,
                                     .result = result,
-                                    .image_name = parts->labels.file_name};
+                                    .image_name = parts->labels.file_name,
+                                    .jpeg_quality = jpeg_quality_of(campaign, image)};
     static const enum layer layers[OUTPUT_KINDS] = {
         [OUTPUT_HIGHLIGHT] = LAYER_HIGHLIGHT, [OUTPUT_SHADOW] = LAYER_SHADOW,
         [OUTPUT_MASKS] = LAYER_LABELS,        [OUTPUT_INFLUENCE] = LAYER_INFLUENCE,
         [OUTPUT_ENERGY] = LAYER_ENERGY,       [OUTPUT_FIELD] = LAYER_FIELD};
     switch (output) {
     case OUTPUT_IMAGE:
-        return write_pixels(campaign, &parts->scene, &parts->swath, result, path);
+        return write_pixels(campaign, &parts->scene, &parts->swath, result, facts.jpeg_quality,
+                            path);
     case OUTPUT_TRUTH:
         return write_truth(report, &facts, path);
     case OUTPUT_YOLO:
@@ -432,7 +443,7 @@ sonject_status campaign_image_write(struct sonject_campaign *campaign, struct ca
     take_alone(image, &parts.scene, &parts.swath);
     const struct raster_layout *layout = &parts.swath.layout;
     const bool is_grey = layout->type == PIXEL_UINT8 && !parts.swath.is_complex;
-    parts.extension = is_grey ? ".png" : ".tif";
+    parts.extension = jpeg_quality_of(campaign, image) > 0 ? ".jpg" : is_grey ? ".png" : ".tif";
     char image_name[IMAGE_NAME_CAPACITY];
     const struct label_request request = {
         &parts.scene,
@@ -466,7 +477,10 @@ static sonject_status check_record(const struct data_set *set, size_t split, uin
     snprintf(told, sizeof told, "%s", member_text(record, "xxh3"));
     json_object_del(record, "xxh3");
     CHECK(json_document_hash(set->report, record, JSON_COMPACT, hash));
-    image_file_name(id, OUTPUT_IMAGE, strstr(image, ".tif") ? ".tif" : ".png", name);
+    const char *extension = strstr(image, ".tif")   ? ".tif"
+                            : strstr(image, ".jpg") ? ".jpg"
+                                                    : ".png";
+    image_file_name(id, OUTPUT_IMAGE, extension, name);
     if (strcmp(told, hash) == 0 && strcmp(image, name) == 0 &&
         strcmp(member_text(record, "campaign_hash"), member_text(set->head, "hash")) == 0 &&
         strcmp(member_text(record, "split"), set->split_names[split]) == 0)

@@ -7,6 +7,7 @@
 #include "dataset/campaign.h"
 
 #define SWATH_STREAM 0x30000001u /* beyond those of distributions */
+#define JPEG_BLOCK   8           /* rows, columns that are coded together */
 #define SPLIT_OPEN   UINT32_MAX
 
 /* Swaths with one identity form a group, which is named after its first. */
@@ -229,6 +230,8 @@ void crop_sample(const struct crop_places *room, double along_track, double rang
     }
     *row += place / columns;
     free_columns(room, *row, part_of(columns, range), column);
+    *row -= *row % room->block_rows;
+    *column -= *column % room->block_columns;
 }
 
 /* What limits where images lie: the swath's geometry and the sonar's altitude over it. */
@@ -305,7 +308,9 @@ static void limit_ratios(const struct limits *limits, const struct swath_plan *p
         const uint64_t end = chips->first_row + (i + 1) * chips->rows / blocks;
         double lowest = HUGE_VAL, highest = 0.0;
         double low = (double)chips->first_column, high = (double)end_column - 1.0;
-        for (uint64_t row = first; row < end + plan->chip_rows - 1; row++) {
+        /* chips may be set back to a block's first row, and column */
+        const uint64_t set_back = room->block_rows - 1 < first ? room->block_rows - 1 : first;
+        for (uint64_t row = first - set_back; row < end + plan->chip_rows - 1; row++) {
             lowest = fmin(lowest, limits->altitudes_m[row]);
             highest = fmax(highest, limits->altitudes_m[row]);
         }
@@ -313,19 +318,35 @@ static void limit_ratios(const struct limits *limits, const struct swath_plan *p
                       campaign->least_ratio * highest, campaign->most_ratio * lowest, &low, &high);
         const uint64_t from = low <= high ? (uint64_t)low : end_column;
         const uint64_t to = low <= high ? (uint64_t)high + 1 : end_column;
-        room->boxes[room->box_count++] =
-            (struct region){first, chips->first_column, end - first, from - chips->first_column};
+        room->boxes[room->box_count++] = (struct region){
+            first, chips->first_column, end - first,
+            from > chips->first_column ? from - chips->first_column + room->block_columns - 1 : 0};
         room->boxes[room->box_count++] = (struct region){first, to, end - first, end_column - to};
     }
 }
 
-/* First pixels, along one axis, of chips that would touch a box. */
-static void forbid(const struct campaign *campaign, uint64_t chip, uint64_t first, uint64_t count,
-                   uint64_t *first_forbidden, uint64_t *forbidden)
+/* First pixels, along one axis, of chips that would touch a box, or, set back to a block's first,
+ * might. */
+static void forbid(const struct campaign *campaign, uint64_t block, uint64_t chip, uint64_t first,
+                   uint64_t count, uint64_t *first_forbidden, uint64_t *forbidden)
 {
     const uint64_t before = (uint64_t)campaign->clearance + chip - 1;
     *first_forbidden = first > before ? first - before : 0;
-    *forbidden = first + count + campaign->clearance - *first_forbidden;
+    *forbidden = first + count + campaign->clearance + block - 1 - *first_forbidden;
+}
+
+static void begin_at_block(uint64_t block, uint64_t *first, uint64_t *count)
+{
+    const uint64_t left_out = (block - *first % block) % block;
+    *first += left_out;
+    *count -= left_out < *count ? left_out : *count;
+}
+
+/* Of a side: chips of a JPEG begin where blocks do, so that what was coded once is coded alike
+ * again. What has all of a side keeps it. */
+static uint64_t block_of(const struct swath_plan *plan, uint32_t side)
+{
+    return plan->jpeg_quality > 0 && side > 0 ? JPEG_BLOCK : 1;
 }
 
 bool images_show_contacts(const struct campaign *campaign)
@@ -370,7 +391,12 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
             (unsigned)campaign->edge);
     struct region chips = {campaign->edge, first + campaign->edge, plan->layout.rows - rows + 1,
                            width - columns + 1};
-    const bool has_room = limit_ranges(&limits, plan, &chips);
+    const uint64_t block_rows = block_of(plan, campaign->chip_rows);
+    const uint64_t block_columns = block_of(plan, campaign->chip_columns);
+    bool has_room = limit_ranges(&limits, plan, &chips);
+    begin_at_block(block_rows, &chips.first_row, &chips.rows);
+    begin_at_block(block_columns, &chips.first_column, &chips.columns);
+    has_room = has_room && chips.rows > 0 && chips.columns > 0;
     if (!has_room && !campaign->has_range)
         return tree_failure(&campaign->tree, plan->place, "swaths",
                             "no image within %s begins beyond the sonar's altitude, up to %g m",
@@ -384,15 +410,17 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
     struct crop_places *room = &plan->room;
     crop_places_clear(room);
     room->chips = chips;
+    room->block_rows = block_rows;
+    room->block_columns = block_columns;
     room->box_count = images_show_contacts(campaign) ? 0 : plan->avoid_count;
     room->boxes = allocate_array(room->box_count + 2 * RATIO_BLOCKS + 1, sizeof *room->boxes);
     CHECK_MEMORY(report, room->boxes, "the places for images");
     for (size_t i = 0; i < room->box_count; i++) {
         const struct region *box = &plan->avoid[i];
         struct region *forbidden = &room->boxes[i];
-        forbid(campaign, plan->chip_rows, box->first_row, box->rows, &forbidden->first_row,
-               &forbidden->rows);
-        forbid(campaign, plan->chip_columns, box->first_column, box->columns,
+        forbid(campaign, block_rows, plan->chip_rows, box->first_row, box->rows,
+               &forbidden->first_row, &forbidden->rows);
+        forbid(campaign, block_columns, plan->chip_columns, box->first_column, box->columns,
                &forbidden->first_column, &forbidden->columns);
     }
     if (campaign->chip_columns > 0)

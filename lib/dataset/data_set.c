@@ -127,10 +127,13 @@ static json_t *head_of(const struct sonject_campaign *campaign, const struct dev
             json_append(&outputs, json_string(output_kinds[i].folder));
     for (size_t i = 0; i < plan->swath_count; i++) {
         const struct swath_plan *swath = &plan->swaths[i];
-        json_append(&swaths,
-                    JSON_OBJECT({"path", json_string(swath->written)},
-                                {"hash", json_string(campaign->swath_hashes[i])},
-                                {"split", json_string(plan->splits[swath->split_number].name)}));
+        json_append(
+            &swaths,
+            JSON_OBJECT({"path", json_string(swath->written)},
+                        {"hash", json_string(campaign->swath_hashes[i])},
+                        {"split", json_string(plan->splits[swath->split_number].name)},
+                        {"jpeg_quality", swath->jpeg_quality > 0 ? json_integer(swath->jpeg_quality)
+                                                                 : json_null()}));
     }
     return JSON_OBJECT(
         {"sonject_campaign", json_integer(FORMAT_VERSION)},

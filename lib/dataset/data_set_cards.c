@@ -75,9 +75,9 @@ static const char context[] =
 static const char *format_of(const char *name)
 {
     static const char *const types[][2] = {
-        {".png", "image/png"},        {".tif", "image/tiff"}, {".json", "application/json"},
-        {".xml", "application/xml"},  {".txt", "text/plain"}, {".html", "text/html"},
-        {".yaml", "application/yaml"}};
+        {".png", "image/png"},  {".tif", "image/tiff"},       {".json", "application/json"},
+        {".jpg", "image/jpeg"}, {".xml", "application/xml"},  {".txt", "text/plain"},
+        {".html", "text/html"}, {".yaml", "application/yaml"}};
     const char *extension = strrchr(name, '.');
     for (size_t i = 0; extension && i < COUNT(types); i++)
         if (strcmp(extension, types[i][0]) == 0)

@@ -71,6 +71,7 @@ struct run_facts {
     const char *image_name;
     uint32_t label_formats; /* sum of sonject_labels */
     double read_s, write_s, total_s;
+    int jpeg_quality; /* that the image is coded with; 0: without loss */
 };
 
 /* Each writes one file, whole or not at all. Errors: STORAGE, MEMORY. */

@@ -203,6 +203,8 @@ sonject_status write_truth(struct report *report, const struct run_facts *facts,
                     {"patch", place}, {"blending", blending_document(&facts->result->statistics)},
                     {"numbers", sources_document(facts->scene, &facts->result->statistics)},
                     {"objects", objects});
+    if (facts->jpeg_quality > 0)
+        json_add(&document, "jpeg_quality", json_integer(facts->jpeg_quality));
     return json_document_write(report, document, 12, path);
 }
 

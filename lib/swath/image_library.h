@@ -62,6 +62,7 @@ struct image_encoding {
     /* gives the pixels of rows first...end */
     sonject_status (*give_rows)(void *user, uint64_t first, uint64_t end, void *pixels);
     void *user;
+    int quality; /* of JPEG, 1...100; 0: as a whole swath's should be */
 };
 
 /* As raster_module's encode, of TIFF. */

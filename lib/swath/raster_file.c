@@ -25,6 +25,7 @@ struct patched_rows {
     const void *pixels;
     sonject_progress_function progress; /* may be NULL */
     void *user;
+    int quality; /* of a JPEG; 0: the finest */
 };
 
 static sonject_status give_rows(void *user, uint64_t first, uint64_t end, void *pixels)
@@ -58,8 +59,9 @@ static sonject_status encode(struct patched_rows *rows, const char *part, const 
                              const uint8_t *palette)
 {
     const struct raster_module *module = NULL;
-    const struct image_encoding encoding = {part,     name,    kind,      rows->layout, description,
-                                            is_drawn, palette, give_rows, rows};
+    const struct image_encoding encoding = {part,        name,         kind,    rows->layout,
+                                            description, is_drawn,     palette, give_rows,
+                                            rows,        rows->quality};
     CHECK(raster_module_find(rows->report, name, kind, &module));
     return module->encode(rows->report, &encoding);
 }
@@ -68,7 +70,7 @@ sonject_status raster_file_copy_with_patch(struct report *report, struct decoded
                                            enum image_kind kind, const struct swath_copy *copy)
 {
     struct patched_rows rows = {report,       source,         source->layout, copy->region,
-                                copy->pixels, copy->progress, copy->user};
+                                copy->pixels, copy->progress, copy->user,     0};
     const bool is_png = kind == IMAGE_PNG || kind == IMAGE_JPEG;
     return encode(&rows, copy->part, copy->path, is_png ? IMAGE_PNG : IMAGE_TIFF,
                   source->description, false, NULL);
@@ -168,14 +170,14 @@ static sonject_status write_rows(struct patched_rows *rows, const char *path,
     return status;
 }
 
-sonject_status raster_file_write(struct report *report, const char *path,
-                                 const struct raster_layout *layout,
-                                 const char *const *channel_names,
-                                 const struct raster_attribute *attributes, size_t attribute_count,
-                                 const void *pixels)
+static sonject_status write_raster(struct report *report, const char *path,
+                                   const struct raster_layout *layout,
+                                   const char *const *channel_names,
+                                   const struct raster_attribute *attributes,
+                                   size_t attribute_count, const void *pixels, int quality)
 {
     const struct region whole = {0, 0, layout->rows, layout->columns};
-    struct patched_rows rows = {report, NULL, *layout, &whole, pixels, NULL, NULL};
+    struct patched_rows rows = {report, NULL, *layout, &whole, pixels, NULL, NULL, quality};
     struct growing_text text = {0};
     for (uint32_t i = 0; channel_names && i < layout->channels; i++)
         growing_text_add(&text, "%s%s", i == 0 ? "channels=" : ",", channel_names[i]);
@@ -189,12 +191,30 @@ sonject_status raster_file_write(struct report *report, const char *path,
     return status;
 }
 
+sonject_status raster_file_write(struct report *report, const char *path,
+                                 const struct raster_layout *layout,
+                                 const char *const *channel_names,
+                                 const struct raster_attribute *attributes, size_t attribute_count,
+                                 const void *pixels)
+{
+    return write_raster(report, path, layout, channel_names, attributes, attribute_count, pixels,
+                        0);
+}
+
+sonject_status raster_file_write_jpeg(struct report *report, const char *path,
+                                      const struct raster_layout *layout,
+                                      const struct raster_attribute *attributes,
+                                      size_t attribute_count, const void *pixels, int quality)
+{
+    return write_raster(report, path, layout, NULL, attributes, attribute_count, pixels, quality);
+}
+
 sonject_status raster_file_write_placed(struct report *report, const char *path,
                                         const struct raster_layout *layout,
                                         const struct region *region, const void *pixels,
                                         const uint8_t *palette)
 {
-    struct patched_rows rows = {report, NULL, *layout, region, pixels, NULL, NULL};
+    struct patched_rows rows = {report, NULL, *layout, region, pixels, NULL, NULL, 0};
     return region_is_inside(layout, region)
                ? write_rows(&rows, path, "", true, palette)
                : report_failure(report, SONJECT_ERROR_STORAGE,

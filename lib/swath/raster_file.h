@@ -31,6 +31,12 @@ sonject_status raster_file_write(struct report *report, const char *path,
                                  const struct raster_attribute *attributes, size_t attribute_count,
                                  const void *pixels);
 
+/* The same of grey pixels of 8 bits as a JPEG of that quality, 1...100. */
+sonject_status raster_file_write_jpeg(struct report *report, const char *path,
+                                      const struct raster_layout *layout,
+                                      const struct raster_attribute *attributes,
+                                      size_t attribute_count, const void *pixels, int quality);
+
 /* Writes at path a raster that is 0 everywhere but in region, which gets pixels: masks of a swath
  * that may be larger than memory. palette: PNG_PALETTE_BYTES for the colours of a PNG of 8 bit
  * numbers, which are read as they were written; NULL: grey. Streams as raster_file_copy_with_patch

@@ -21,7 +21,7 @@ namespace
 constexpr uint64_t pixels_max = uint64_t(1) << 40;
 
 /* Coarser coding would show in the noise of every pixel of the swath, not only near the target. */
-constexpr const char *jpeg_quality = "jpeg:98";
+constexpr int finest_quality = 98;
 
 /* What keeps text attributes, as lines of "name=value": every format has it. */
 constexpr const char *description_name = "ImageDescription";
@@ -282,7 +282,8 @@ bool open_encoder(struct raster_output &output, const struct image_encoding &enc
         return false;
     OIIO::Filesystem::IOProxy *proxy = output.sink.get();
     spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    spec.attribute("Compression", jpeg_quality);
+    const int quality = encoding.quality > 0 ? encoding.quality : finest_quality;
+    spec.attribute("Compression", "jpeg:" + std::to_string(quality));
     if (*encoding.description)
         spec.attribute(description_name, encoding.description);
     output.encoder = OIIO::ImageOutput::create(format_name(encoding.kind));

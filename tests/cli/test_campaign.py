@@ -665,6 +665,70 @@ def test_objects_may_lie_at_the_border(ground, command):
         assert 0 <= min(axis) < 0.1 * CHIP and 0.9 * CHIP < max(axis) <= CHIP - 1
 
 
+def coded_shares(image, blocks, table):
+    """Of blocks of 8 x 8, the share of coefficients of the discrete cosine transform that lie at multiples of the
+    table, as they do where a JPEG was decoded; rounding to grey levels moves them by 0.29, five of which are allowed."""
+    angles = numpy.pi * numpy.outer(numpy.arange(8), 2 * numpy.arange(8) + 1) / 16
+    cosines = numpy.cos(angles) * numpy.where(numpy.arange(8) > 0, 0.5, 8**-0.5)[:, None]
+    levels = [cosines @ (image[row : row + 8, column : column + 8] - 128) @ cosines.T for row, column in blocks]
+    return [(numpy.abs(each - table * numpy.round(each / table)) < 5 * 0.29).mean() for each in levels]
+
+
+@pytest.mark.parametrize("quality", [40, 75])
+def test_images_of_a_jpeg_are_coded_as_it_is(ground, command, quality):
+    """Injected blocks have been through the same coding as the input's, so that nothing but the target tells them; what
+    was not injected comes out of the second coding as it was. Without loss injected blocks have no such past."""
+    pillow = pytest.importorskip("PIL.Image")
+    numbers = numpy.random.default_rng(20261126)
+    amplitudes = numbers.rayleigh(1, (200, 260))
+    levels = 140 + 80 * numpy.log10(amplitudes + numpy.roll(amplitudes, 1, 0))  # a quarter of a dB each
+    source = ground / f"coded{quality}.jpg"
+    pillow.fromarray(levels.clip(1, 255).astype("u1")).save(source, quality=quality)
+    swath = numpy.array(pillow.open(source)).astype(float)
+    table = numpy.reshape(pillow.open(source).quantization[0], (8, 8))
+    shares = {}
+    for form in ("as_input", "lossless"):
+        name = f"{form}{quality}"
+        done = command("campaign", "campaign.yaml", "-o", name, *[part for text in [
+            f"format={form}", f"swaths=[{{path: {source.name}, avoid: [{{row: 0, column: 100, rows: 9, columns: 50}}], "
+            "set: {input.transfer: {kind: decibel, parameter: 0.25}}}]",
+            "splits={all: 1}", "outputs=[influence]", "images=8", "chip.edge=3"] for part in ("--set", text)])
+        assert done.returncode == 0, done.stderr
+        found = {"input": [], "injected": [], "left": []}
+        for record in records(ground / name):
+            place = record["swath"]
+            image = numpy.array(pillow.open(ground / name / record["split"] / record["image"])).astype(float)
+            influence = numpy.array(pillow.open(ground / name / of_image(record, "influence", ".png"))) > 0
+            before = swath[place["row"] : place["row"] + CHIP, place["column"] : place["column"] + CHIP]
+            truth = json.loads((ground / name / of_image(record, "truth", ".json")).read_text())
+            if form == "lossless":
+                assert record["image"].endswith(".png") and "jpeg_quality" not in truth
+            else:
+                assert record["image"].endswith(".jpg") and truth["jpeg_quality"] == quality
+                assert place["row"] % 8 == 0 and place["column"] % 8 == 0
+                assert place["row"] >= 3 and (place["row"] >= 11 or place["column"] + CHIP <= 98 or place["column"] >= 152)
+            blocks = [(-place["row"] % 8 + 8 * i, -place["column"] % 8 + 8 * j) for i in range(7) for j in range(7)]
+            cut = [(block, image[block[0] : block[0] + 8, block[1] : block[1] + 8],
+                    influence[block[0] : block[0] + 8, block[1] : block[1] + 8]) for block in blocks]
+            # but blocks that the range of grey levels cuts
+            inside = [block for block, part, changed in cut if changed.all() and 0 < part.min() and part.max() < 255]
+            outside = [block for block, _, changed in cut if not changed.any()]
+            found["input"] += coded_shares(before, blocks, table)
+            found["injected"] += coded_shares(image, inside, table)
+            found["left"] += [numpy.abs(image - before)[row : row + 8, column : column + 8].mean() for row, column in outside]
+        shares[form] = found
+        # rounding twice may move a pixel by one
+        assert numpy.mean(found["left"]) < (0.1 if form == "as_input" else 1e-9)
+    assert len(shares["as_input"]["injected"]) > 20
+    assert numpy.mean(shares["as_input"]["input"]) > 0.99
+    assert numpy.mean(shares["as_input"]["injected"]) > 0.99
+    assert numpy.mean(shares["lossless"]["injected"]) < 0.5
+    head = json.loads((ground / f"as_input{quality}" / "campaign.json").read_text())
+    assert head["swaths"][0]["jpeg_quality"] == quality
+    card = json.loads((ground / f"as_input{quality}" / "croissant.json").read_text())
+    assert "image/jpeg" in [entry["encodingFormat"] for entry in card["distribution"]]
+
+
 def test_a_value_may_be_a_ratio_of_another(ground, command):
     """In the unit of that one; a ratio may be of a ratio."""
     body = ("targets=[{class: box, object: {shape: box}, draw: {length: {uniform: [40 cm, 80 cm]}, "

@@ -7,6 +7,8 @@
 
 #include <zlib.h>
 
+#include "swath/jpeg_quality.h"
+
 struct format {
     const char *name;
     const struct raster_layout *layout;
@@ -167,6 +169,23 @@ static void say_in_png(const char *path, const uint64_t sides[2], unsigned bits,
     png[25] = (unsigned char)colours;
     number_to_bytes(crc32(0, png + 12, 17), png + 29, 4, true);
     write_bytes(path, png, count);
+}
+
+static void the_quality_of_a_jpeg_is_that_it_was_written_with(void **state)
+{
+    const char *path = file_in("a.jpg");
+    const unsigned char *pixels = make_image(&grey8);
+    size_t count;
+    for (int quality = 10; quality <= 100; quality++) {
+        EXPECT_OK(&report, raster_file_write_jpeg(&report, path, &grey8, NULL, 0, pixels, quality));
+        assert_int_equal(jpeg_quality(path), quality);
+    }
+    const unsigned char *bytes = load(path, &count);
+    write_bytes(path, (const char *)bytes, 20); /* before its tables */
+    assert_int_equal(jpeg_quality(path), JPEG_QUALITY_UNTOLD);
+    EXPECT_OK(&report, write_image(file_in("a.png"), &grey8, pixels));
+    assert_int_equal(jpeg_quality(file_in("a.png")), 0);
+    assert_int_equal(jpeg_quality(file_in("absent.jpg")), 0);
 }
 
 static void png_and_jpeg_that_are_not_for_sonject_are_refused(void **state)
@@ -397,6 +416,7 @@ static void who_cancels_or_has_a_full_disk_gets_no_file(void **state)
 TEST_PROGRAM(NULL, NULL, CLEAN(what_is_written_comes_back), CLEAN(a_region_outside_is_refused),
              CLEAN(attributes_stay_in_copies_of_png_and_jpeg_which_are_png),
              CLEAN(what_a_format_does_not_hold_is_refused),
+             CLEAN(the_quality_of_a_jpeg_is_that_it_was_written_with),
              CLEAN(png_and_jpeg_that_are_not_for_sonject_are_refused),
              CLEAN(absurd_sides_are_refused), CLEAN(files_that_are_cut_short_or_damaged_do_no_harm),
              CLEAN(who_cancels_or_has_a_full_disk_gets_no_file))
