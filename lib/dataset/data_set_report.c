@@ -28,6 +28,11 @@ struct series {
     size_t count;
 };
 
+/* Numbers that images were made with, and where they may come from; as truth names both. */
+static const char *const number_names[] = {"transfer", "noise_floor_db", "looks", "altitude_m",
+                                           "seabed_lambert_db"};
+static const char *const source_names[] = {"scene", "calibration", "patch", "default", "fallback"};
+
 struct statistics_page {
     const struct data_set *set;
     struct series series[SERIES_MAX];
@@ -37,6 +42,7 @@ struct statistics_page {
     const json_t *classes;
     uint64_t every; /* image that is taken */
     uint64_t drawn_anew, difficult, clipped;
+    uint64_t sources[COUNT(number_names)][COUNT(source_names)]; /* images */
     struct growing_text reasons; /* of the first of these, as items of a list; owned */
 };
 
@@ -176,6 +182,32 @@ static void add_reason(struct statistics_page *page, uint64_t id, const json_t *
     growing_text_add(&page->reasons, "</li>\n");
 }
 
+static void add_sources(struct statistics_page *page, const json_t *numbers)
+{
+    for (size_t i = 0; i < COUNT(number_names); i++)
+        for (size_t k = 0; k < COUNT(source_names); k++)
+            page->sources[i][k] +=
+                strcmp(member_text(json_object_get(numbers, number_names[i]), "from"),
+                       source_names[k]) == 0;
+}
+
+static void write_sources(const struct statistics_page *page, struct growing_text *text)
+{
+    growing_text_add(text, "<h2>Numbers, and where they came from</h2>\n<p>Images whose number "
+                           "came from the scene or campaign, from a calibration, from their part "
+                           "of the swath, from nowhere (the key's default), or was taken since "
+                           "that part did not tell it. A swath's own come by "
+                           "input.calibration.</p>\n<table><tr><th>number</th>");
+    for (size_t k = 0; k < COUNT(source_names); k++)
+        growing_text_add(text, "<th>%s</th>", source_names[k]);
+    for (size_t i = 0; i < COUNT(number_names); i++) {
+        growing_text_add(text, "</tr>\n<tr><td>%s</td>", number_names[i]);
+        for (size_t k = 0; k < COUNT(source_names); k++)
+            growing_text_add(text, "<td>%llu</td>", (unsigned long long)page->sources[i][k]);
+    }
+    growing_text_add(text, "</tr>\n</table>\n");
+}
+
 static sonject_status add_image(struct statistics_page *page, size_t split, uint64_t id)
 {
     const struct data_set *set = page->set;
@@ -199,6 +231,7 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
     {
         page->difficult += json_is_true(json_object_get(entry, "difficult"));
     }
+    add_sources(page, json_object_get(truth, "numbers"));
     const json_t *objects = json_object_get(truth, "objects");
     if (json_array_size(objects) == 0)
         page->empty[split]++;
@@ -281,6 +314,7 @@ static void write_page(const struct statistics_page *page, struct growing_text *
         growing_text_add(text, "</td></tr>\n");
     }
     growing_text_add(text, "</table>\n");
+    write_sources(page, text);
     if (page->drawn_anew > 0)
         growing_text_add(text,
                          "<h2>Drawn anew</h2>\n<p>Of %llu images values were drawn anew, since "

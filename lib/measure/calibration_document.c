@@ -90,6 +90,9 @@ static void add_scene_keys(json_t **document, const struct calibration *found)
 {
     json_t *input = json_object(), *sonar = json_object(), *injection = json_object();
     add_section(&input, "transfer", transfer_keys(found));
+    if (found->returns.sides == WATER_BETWEEN || found->returns.sides == WATER_AT_RIGHT)
+        json_add(&input, "geometry",
+                 JSON_OBJECT({"nadir_column", number_of(found->returns.nadir_column)}));
     add_section(document, "input", input);
     if (!found->altitude_m.unseen)
         json_add(&sonar, "altitude", quantity(found->altitude_m.value, "m"));

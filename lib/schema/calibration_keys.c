@@ -60,11 +60,14 @@ static void note_taken(struct layer *layer, const struct tree_node *node)
     }
 }
 
-/* A curve of the scene's own has no parameter of another's. */
+/* A curve of the scene's own has no parameter of another's, nor a range of column 0 a nadir. */
 static bool is_hidden(const struct layer *layer, const struct tree_node *scene, const char *key)
 {
-    return strcmp(layer->path.text, "input.transfer") == 0 && tree_find(scene, "kind") &&
-           strcmp(key, "full_scale") != 0;
+    const char *path = layer->path.text;
+    return (strcmp(path, "input.transfer") == 0 && tree_find(scene, "kind") &&
+            strcmp(key, "full_scale") != 0) ||
+           (strcmp(path, "input.geometry") == 0 && tree_find(scene, "first_slant_range") &&
+            strcmp(key, "nadir_column") == 0);
 }
 
 /* Moves what the scene lacks from the calibration's section into its own. */

@@ -86,6 +86,7 @@ def test_water_columns_of_one_side_and_two(sonject, tmp_path):
         if sides == "two":
             nadir = told["nadir_column"]
             assert abs(nadir["value"] - (COLUMNS - 300 - 0.5)) < 3 * nadir["standard_error"] + 0.25
+            assert found["input"]["geometry"] == {"nadir_column": nadir["value"]}
         else:
             assert "one side" in told["nadir_column"]["not_seen"]
 

@@ -87,6 +87,17 @@ def test_a_curve_of_the_scenes_own_keeps_its_parameter(sonject, tmp_path):
                                    "full_scale": {"value": 230.0, "from": "calibration"}}
 
 
+def test_a_nadir_is_the_images_and_a_first_range_the_scenes(sonject, tmp_path):
+    scene(tmp_path, text=CALIBRATION.replace("input: {", "input: {geometry: {nadir_column: 99.5}, "))
+    geometry = "input.geometry={row_spacing: 5 cm, column_spacing: 2.5 cm, side: starboard}"
+    low = ("--set", "sonar.altitude=3 m", "--set")
+    taken = sonject("check", "scene.yaml", *low, geometry)
+    said = sonject("check", "scene.yaml", *low, geometry.replace("side", "nadir_column: 99.5, side"))
+    kept = sonject("check", "scene.yaml")
+    assert taken.returncode == said.returncode == kept.returncode == 0, taken.stderr + kept.stderr
+    assert taken.stdout == said.stdout != kept.stdout
+
+
 def test_a_floor_that_no_shadow_tells_is_named_a_fallback(sonject, tmp_path):
     scene(tmp_path)
     (tmp_path / "scene.yaml").write_text((SCENE % ("x", "altitude: 10 m")).replace("  calibration: x\n", ""))
@@ -181,6 +192,8 @@ targets: [{class: ball, object: {shape: sphere, diameter: 40 cm}}]
     kinds = {json.loads(path.read_text())["numbers"]["transfer"]["kind"]
              for path in (tmp_path / "whole").glob("*/truth/*.json")}
     assert kinds == {"schlick", "decibel"}
+    report = (tmp_path / "whole" / "report.html").read_text()
+    assert "<tr><td>transfer</td><td>0</td><td>4</td><td>0</td><td>0</td><td>0</td></tr>" in report
     assert {path.name for path in (tmp_path / "whole" / "calibrations").iterdir()} == {
         "0.yaml", "0.png", "1.yaml", "1.png"}
 
