@@ -33,6 +33,8 @@ TYPED = {
         "sonject elements scene.yaml -o series --set injection.mode=resynthesise",
     "sonject check SCENE.yaml": "sonject check scene.yaml",
     "sonject measure IMAGE": "sonject measure swath.tif",
+    "sonject calibrate SWATH": "sonject calibrate swath.tif --picture calibrated.png",
+    "sonject calibrate SWATH -o FILE": "sonject calibrate swath.tif -o calibrated.yaml",
     "sonject quicklook IMAGE -o PNG": "sonject quicklook whole/image.tif -o look.png",
     "sonject convert IN OUT": "sonject convert swath.tif swath.npy",
     "sonject convert --range-axis slant":
