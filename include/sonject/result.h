@@ -203,6 +203,7 @@ typedef struct sonject_statistics {
     double saturation_amplitude; /* infinite: none but the format's full scale */
     uint32_t noise_floor_source; /* sonject_source */
     uint32_t looks_source;       /* sonject_source */
+    double seabed_lambert;       /* mu of the seabed, as given or of its sediment */
 } sonject_statistics;
 
 /* statistics->struct_size must be set. Errors: ARGUMENT. */

@@ -70,6 +70,17 @@ static void tell_empty(struct report *report, const struct swath *swath)
                    ping_list_text(&swath->empty, text));
 }
 
+/* Where the model of sediments was not made for the frequency. */
+static void tell_sediment(struct report *report, const struct scene *scene)
+{
+    const double frequency_khz = 1e-3 * scene->sonar.centre_frequency_hz;
+    if (!isnan(scene->seabed.grain_size_phi) && !(frequency_khz >= 10.0 && frequency_khz <= 100.0))
+        report_log(report,
+                   "note: seabed.sediment: its model holds from 10 to 100 kHz, and tells little of "
+                   "%g kHz",
+                   frequency_khz);
+}
+
 /* Objects that nobody would find who labels the image, and those of which little but white is left.
  */
 static void tell_seen(struct report *report, const struct scene *scene,
@@ -163,6 +174,7 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
     tell_empty(report, swath);
     tell_calibration(report, scene);
     tell_noise_floor(report, scene, &result.statistics);
+    tell_sediment(report, scene);
     tell_seen(report, scene, &result);
     result.statistics.input_clipped = swath->clipped;
     facts->result = &result;

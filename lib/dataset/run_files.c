@@ -208,7 +208,7 @@ sonject_status write_truth(struct report *report, const struct run_facts *facts,
     return json_document_write(report, document, 12, path);
 }
 
-static json_t *options_document(const struct scene *scene)
+static json_t *options_document(const struct scene *scene, double lambert)
 {
     const sonject_injection_params *injection = &scene->injection;
     const bool resynthesises = injection->mode == SONJECT_MODE_RESYNTHESISE;
@@ -224,7 +224,7 @@ static json_t *options_document(const struct scene *scene)
         {"match_looks", injection->match_looks == 0.0 ? json_string("image")
                                                       : json_number(injection->match_looks)},
         {"match_saturation", json_string(matches_saturation ? "image" : "full_scale")},
-        {"seabed_lambert_db", json_number(10.0 * log10(scene->seabed.lambert))},
+        {"seabed_lambert_db", json_number(10.0 * log10(lambert))},
         JSON_COUNT(injection, interactions),
         {"estimator", json_string(is_brute ? "brute_force" : "connect")});
 }
@@ -295,7 +295,8 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
     json_t *document = JSON_OBJECT(
         {"sonject", json_string(sonject_version())}, {"scene_hash", json_string(facts->scene_hash)},
         {"seed", json_seed(facts->scene->injection.seed)},
-        {"device", device_document(facts->device)}, {"options", options_document(facts->scene)},
+        {"device", device_document(facts->device)},
+        {"options", options_document(facts->scene, facts->result->statistics.seabed_lambert)},
         {"band", band ? json_text(band) : json_null()},
         {"bands", band ? bands_document(facts->scene) : json_null()},
         {"image", json_text(facts->image_name)}, {"labels", labels_document(facts->label_formats)},

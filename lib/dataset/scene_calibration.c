@@ -158,8 +158,14 @@ json_t *sources_document(const struct scene *scene, const sonject_statistics *st
     json_add(&document, "looks", number_from(statistics->looks, statistics->looks_source));
     json_add(&document, "altitude_m",
              number_from(scene->sonar.altitude_m, scene_key_source(scene, "sonar.altitude")));
-    json_add(&document, "seabed_lambert_db",
-             number_from(10.0 * log10(scene->seabed.lambert),
-                         scene_key_source(scene, "seabed.lambert")));
+    const bool is_modelled = !isnan(scene->seabed.grain_size_phi);
+    json_add(
+        &document, "seabed_lambert_db",
+        number_from(10.0 * log10(statistics->seabed_lambert),
+                    scene_key_source(scene, is_modelled ? "seabed.sediment" : "seabed.lambert")));
+    if (is_modelled)
+        json_add(&document, "seabed_sediment",
+                 JSON_OBJECT({"grain_size_phi", json_number(scene->seabed.grain_size_phi)},
+                             {"model", json_string("APL-UW TR 9407")}));
     return document;
 }

@@ -289,6 +289,7 @@ static void fill_statistics(const struct tracer *tracer, const struct patch_leve
     statistics->form_s = echoes->form_s;
     statistics->inject_s = inject_s;
     statistics->noise_floor_db = 10.0 * log10(level->noise_ratio);
+    statistics->seabed_lambert = view_seabed_lambert(&tracer->view, tracer->scene);
     statistics->noise_floor_source =
         !tracer->scene->injection.estimate_noise
             ? scene_key_source(tracer->scene, "injection.noise_floor")

@@ -135,14 +135,14 @@ sonject_status patch_level_init(struct patch_level *level, struct report *report
         patch_level_clear(level);
         return status;
     }
+    const double lambert = view_seabed_lambert(view, scene);
     for (size_t j = 0; j < view->columns; j++)
-        level->cell_energy[j] = (float)seabed_cell_energy(view, response, scene->seabed.lambert,
+        level->cell_energy[j] = (float)seabed_cell_energy(view, response, lambert,
                                                           view_processor_range(view, (double)j));
-    level->noise_ratio =
-        scene->injection.estimate_noise
-            ? estimate_noise_floor(level->intensity, level->level, view->rows, view->columns,
-                                   &level->measures_noise)
-            : pow(10.0, scene->injection.noise_floor_db / 10.0);
+    level->noise_ratio = scene->injection.estimate_noise
+                             ? estimate_noise_floor(level->intensity, level->level, view->rows,
+                                                    view->columns, &level->measures_noise)
+                             : pow(10.0, scene->injection.noise_floor_db / 10.0);
     return SONJECT_OK;
 }
 
@@ -246,14 +246,15 @@ sonject_status set_target_levels(const struct tracer *tracer, struct echoes *ech
     double *gains = allocate_array(echoes->object_count, sizeof *gains);
     double mean = 0.0;
     bool is_scaled = false;
+    const double lambert = view_seabed_lambert(&tracer->view, scene);
     CHECK_MEMORY(tracer->report, gains, "the objects' levels");
     for (uint32_t i = 0; i < echoes->object_count; i++) {
         const struct object_echo *echo = &echoes->objects[i];
         /* over the seabed that the peak of the echo lies on */
         const double over_seabed =
             echo->peak_energy > 0.0
-                ? echo->peak_energy / seabed_cell_energy(&tracer->view, &tracer->response,
-                                                         scene->seabed.lambert, echo->peak_range_m)
+                ? echo->peak_energy / seabed_cell_energy(&tracer->view, &tracer->response, lambert,
+                                                         echo->peak_range_m)
                 : 0.0;
         const double grazing = ray_path_grazing(&tracer->view.water, tracer->objects[i].origin[1],
                                                 tracer->objects[i].origin[2]);
@@ -264,7 +265,7 @@ sonject_status set_target_levels(const struct tracer *tracer, struct echoes *ech
         truth->level_kind = scene->objects[i].level_kind;
         truth->level_gain_db = decibels(gains[i]);
         truth->over_seabed_db = decibels(gains[i] * over_seabed);
-        truth->seabed_strength_db = decibels(scene->seabed.lambert * sin(grazing) * sin(grazing));
+        truth->seabed_strength_db = decibels(lambert * sin(grazing) * sin(grazing));
     }
     for (size_t i = 0; is_scaled && i < echoes->rows * echoes->columns; i++)
         scale_pixel(echoes, gains, mean, i);

@@ -259,6 +259,7 @@ typedef struct sonject_seabed_params {
     uint32_t forward_rule;           /* sonject_forward_rule */
     sonject_material_params forward; /* its lambert: NaN stands for the seabed's own mu0. Its rough
                                         part is the same at every angle, smooth part or not */
+    double grain_size_phi; /* of the sediment that sets mu0 in place of lambert; NaN: none does */
 } sonject_seabed_params;
 
 /* Heights of the seabed over its mean plane z = 0, given as a grid: rows along-track, columns in

@@ -4,6 +4,7 @@
 
 #include "scene/placement.h"
 #include "scene/point_response.h"
+#include "scene/sediment.h"
 
 #define PI                  3.14159265358979323846
 #define BINS_PER_RESOLUTION 8    /* sharing between bins then errs by 0.05 dB at most */
@@ -141,6 +142,15 @@ double view_column_of_range(const struct patch_view *view, double processor_rang
 double view_ground_range(const struct patch_view *view, double processor_range_m)
 {
     return ray_path_ground_range(&view->water, processor_range_m / view->range_ratio);
+}
+
+double view_seabed_lambert(const struct patch_view *view, const struct scene *scene)
+{
+    const double middle = view_processor_range(view, 0.5 * (double)(view->columns - 1));
+    return isnan(scene->seabed.grain_size_phi)
+               ? scene->seabed.lambert
+               : sediment_lambert(scene->seabed.grain_size_phi, view->wavelength_m,
+                                  view_grazing(view, middle));
 }
 
 double view_grazing(const struct patch_view *view, double processor_range_m)

@@ -71,6 +71,9 @@ double view_ground_range(const struct patch_view *view, double processor_range_m
  */
 double view_grazing(const struct patch_view *view, double processor_range_m);
 
+/* The seabed's mu0: what the scene says, or its sediment at the patch's middle. */
+double view_seabed_lambert(const struct patch_view *view, const struct scene *scene);
+
 /* What refraction does to the energy of echoes of the seabed at a processor's slant range: 1 in
  * isovelocity water. */
 double view_refraction_gain(const struct patch_view *view, double processor_range_m);

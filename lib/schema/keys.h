@@ -263,6 +263,9 @@ sonject_status read_mesh(struct reader *reader, const struct tree_node *node, vo
 sonject_status read_user_shape(struct reader *reader, const struct tree_node *node,
                                void *structure);
 
+/* Whether names are the same but for '_' and '-' in place of blanks. */
+bool is_same_name(const char *given, const char *name);
+
 /* Take the name of a material, and of the seabed's, whose backscatter stays the seabed's own.
  * structure: a sonject_material_params. */
 sonject_status read_material_name(struct reader *reader, const struct tree_node *node,

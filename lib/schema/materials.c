@@ -34,8 +34,7 @@ static const struct named_material materials[] = {
     {"clay", 1.145, 0.9801, 0.00148, 1.0e-3, 1.9953e-3},
 };
 
-/* Whether names are the same but for '_' and '-' in place of blanks. */
-static bool is_same_name(const char *given, const char *name)
+bool is_same_name(const char *given, const char *name)
 {
     for (; *name; given++, name++) {
         const char letter = *given == '_' || *given == '-' ? ' ' : *given;

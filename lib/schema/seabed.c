@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "scene/sediment.h"
 #include "schema/keys.h"
 #include "swath/swath_file.h"
 
@@ -254,6 +255,53 @@ static void relate_seabed(struct check *check, const void *structure)
     relate_energy(check, "forward.", &seabed->forward, seabed->lambert);
 }
 
+/* ---- Sediments whose backscatter is modelled (scene/sediment.h). */
+
+static const struct {
+    const char *name;
+    double grain_size_phi; /* table 2 of the model's handbook */
+} sediments[] = {{"gravel", -1.0},   {"coarse sand", 0.5},    {"medium sand", 1.5},
+                 {"fine sand", 2.5}, {"very fine sand", 3.5}, {"silt", 6.0},
+                 {"clay", 9.0}};
+
+static sonject_status read_sediment(struct reader *reader, const struct tree_node *node,
+                                    void *structure)
+{
+    const char *names[COUNT(sediments)];
+    struct word_list list = {{0}, 0};
+    const char *name = read_text(reader, node);
+    if (!name)
+        return SONJECT_ERROR_INPUT;
+    for (size_t i = 0; i < COUNT(sediments); i++) {
+        if (is_same_name(name, sediments[i].name)) {
+            ((sonject_seabed_params *)structure)->grain_size_phi = sediments[i].grain_size_phi;
+            return SONJECT_OK;
+        }
+        names[i] = sediments[i].name;
+        list_word(&list, names[i]);
+    }
+    return refuse_word(reader, node, name, &list, nearest_word(name, names, list.count));
+}
+
+#define STRUCTURE sonject_seabed_params
+static const struct field sediment_fields[] = {
+    {"grain_size", "mean, in phi: -log2 of the diameter in mm", QUANTITY(grain_size_phi, NUMBER),
+     WITHIN(GRAIN_SIZE_LEAST_PHI, GRAIN_SIZE_MOST_PHI), NONE_IF_NAN, REQUIRED},
+};
+static const struct section sediment_section = {ROWS(sediment_fields)};
+#undef STRUCTURE
+
+static sonject_status finish_seabed(struct reader *reader, const struct tree_node *node,
+                                    void *structure)
+{
+    struct check check = check_at(reader, node);
+    if (is_given(node, "lambert") && is_given(node, "sediment"))
+        refuse_relation(reader, node, "lambert", "sediment",
+                        "the sediment tells it; remove one of the two");
+    relate_seabed(&check, structure);
+    return check.status;
+}
+
 /* 10^-2.7: Mackenzie's. 1/pi written in decimal digits must not be refused for its last bit. */
 #define STRUCTURE sonject_seabed_params
 static const struct field seabed_fields[] = {
@@ -261,6 +309,11 @@ static const struct field seabed_fields[] = {
      QUANTITY(lambert, LEVEL), WITHIN(0.0, (1.0 + 1e-12) / PI), .bounds = ABOVE_LEAST,
      .preset = 1.995262314968879e-3,
      .range = "above 0 and at most 1/pi (-4.97 dB), or the seabed returns more than it receives"},
+    {"sediment",
+     "sets lambert to what it returns at the patch's middle, by the model of APL-UW TR 9407 (10 to "
+     "100 kHz): gravel, coarse sand, medium sand, fine sand, very fine sand, silt, clay or "
+     "{grain_size: }",
+     .kind = FIELD_NAMED, .section = &sediment_section, .read = read_sediment},
     {"map", "reflectivity that resynthesise takes from the image; composites weight shadows by it",
      WORD(map) = {[SONJECT_MAP_INTENSITY] = "intensity",
                   [SONJECT_MAP_DESPECKLED] = "despeckled",
@@ -277,5 +330,5 @@ static const struct field seabed_fields[] = {
      .kind = FIELD_SPECIAL, .section = &relief_section, .is_list = true, .read = read_relief},
 };
 const struct section seabed_section = {ROWS(seabed_fields), .relations = relate_seabed,
-                                       .bytes = sizeof(STRUCTURE)};
+                                       .finish = finish_seabed, .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE

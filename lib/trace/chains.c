@@ -187,11 +187,11 @@ sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,
     return status;
 }
 
-static sonject_material_params seabed_material(const struct scene *scene)
+static sonject_material_params seabed_material(const struct tracer *tracer)
 {
-    sonject_material_params material = scene->seabed.forward;
+    sonject_material_params material = tracer->scene->seabed.forward;
     if (isnan(material.lambert))
-        material.lambert = scene->seabed.lambert;
+        material.lambert = view_seabed_lambert(&tracer->view, tracer->scene);
     return material;
 }
 
@@ -199,7 +199,7 @@ static void chain_record_init(struct chain_record *record, const struct chain_tr
                               const struct tracer *tracer, const struct target_spheres *spheres)
 {
     const struct scene *scene = tracer->scene;
-    const sonject_material_params seabed = seabed_material(scene);
+    const sonject_material_params seabed = seabed_material(tracer);
     const bool is_brute_force = scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE;
     memset(record, 0, sizeof *record);
     record->interactions = (int32_t)scene->injection.interactions;
@@ -249,7 +249,7 @@ static struct most_sent most_sent_by_surfaces(const struct chain_trace *trace,
                                               const struct tracer *tracer, const float *map)
 {
     const struct scene *scene = tracer->scene;
-    const sonject_material_params seabed = seabed_material(scene);
+    const sonject_material_params seabed = seabed_material(tracer);
     const sonject_material_params sea_surface = surface_material(&scene->surface);
     struct most_sent most = {1e-12, 1e-12}; /* that an exponent exists */
     double brightest = 1.0;

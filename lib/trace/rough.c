@@ -167,7 +167,8 @@ static void choose_quanta(struct rough_trace *trace, const struct tracer *tracer
     const double wavefront =
         (double)fan->strip_width * fan->elevation_step * 2.0 * fan->reference_range;
     const double beam = has_beam(trace) ? beam_largest_weight(tracer, fan) : 1.0;
-    const double most = beam * wavefront * fmax(brightest, tracer->scene->seabed.lambert * seabed);
+    const double most = beam * wavefront *
+                        fmax(brightest, view_seabed_lambert(&tracer->view, tracer->scene) * seabed);
     fan->quanta = power_of_two_below(ldexp(1.0, 44) / most);
     trace->energy_of_quantum = view_energy_scale(&tracer->view) / fan->quanta;
 }
@@ -202,7 +203,7 @@ static sonject_status init_fan(struct rough_trace *trace, struct tracer *tracer,
          patch_rays_init(&trace->launch.rays, &trace->launch.fan.table, tracer, &trace->grid));
     trace->launch.fan.stream = STREAM_ROUGH_RAYS;
     aspects_record_init(&trace->launch.fan, tracer, &trace->grid);
-    trace->launch.fan.seabed_lambert = (float)tracer->scene->seabed.lambert;
+    trace->launch.fan.seabed_lambert = (float)view_seabed_lambert(&tracer->view, tracer->scene);
     return status;
 }
 

@@ -84,7 +84,7 @@ SIZES = {
     "sonject_quicklook_params": 80,
     "sonject_run_params": 48,
     "sonject_scene_read_params": 32,
-    "sonject_statistics": 216,
+    "sonject_statistics": 224,
 }
 
 

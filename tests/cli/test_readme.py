@@ -203,6 +203,7 @@ FRAGMENTS = {
     "{kind: table, file: pulse.csv}": ("sonar.pulse", [], []),
     "sonar.kind: real": ("", ["sonar.array={length: 1 m}"], []),
     "aperture: none": ("sonar.", [], []),
+    "seabed.sediment: medium sand": ("", [], []),
 }
 # A campaign's, and what ends where a value would begin.
 OTHER_FRAGMENTS = {"labels: [yolo, voc]", "target:", "visible: {highlight: 1.2 dB, shadow: -2.3 dB}"}

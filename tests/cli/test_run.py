@@ -1,6 +1,7 @@
 """Whole runs: what they leave, and what happens when they are stopped."""
 
 import json
+import math
 import os
 import pathlib
 import pty
@@ -171,6 +172,24 @@ def test_bands_go_to_folders_of_their_names(sonject, scene, tmp_path):
     assert contents(tmp_path / "low")["image.tif"] != contents(tmp_path / "high")["image.tif"]
     assert "already" in sonject.done("run", scene, "-o", "both", *bands).stderr
     assert_refused(sonject("check", scene, *bands), 3, "bands", "choose one of low, high")
+
+
+def test_a_sediment_is_the_lambert_that_it_tells(sonject, scene, tmp_path):
+    """Medium sand at 100 kHz: -29.8 dB at 10 deg, -24.2 dB at 20 deg by the model's handbook (table 3)."""
+    sonject.done("run", scene, "-o", "sand", "--set", "seabed.sediment=medium sand", "--quiet")
+    numbers = json.loads((tmp_path / "sand" / "truth.json").read_text())["numbers"]
+    told = numbers["seabed_lambert_db"]["value"]
+    assert numbers["seabed_sediment"] == {"grain_size_phi": 1.5, "model": "APL-UW TR 9407"}
+    (ball,) = json.loads((tmp_path / "sand" / "truth.json").read_text())["objects"]
+    grazing = math.radians(ball["grazing_deg"])
+    assert 15 < ball["grazing_deg"] < 25
+    assert told + 20 * math.log10(math.sin(grazing)) == pytest.approx(
+        numpy.interp(ball["grazing_deg"], [10, 20, 40], [-29.8, -24.2, -21.7]), abs=0.7)
+    sonject.done("run", scene, "-o", "number", "--set", f"seabed.lambert={told:.12f} dB", "--quiet")
+    one, other = (images.read_tiff(tmp_path / name / "energy.tif") for name in ("sand", "number"))
+    assert abs(one - other).max() < 1e-5 * one.max()
+    answer = sonject("run", scene, "-o", "high", "--set", "seabed.sediment=silt", "--set", "sonar.frequency=300 kHz")
+    assert "its model holds from 10 to 100 kHz" in answer.stderr
 
 
 def test_verbose_tells_what_happens_to_an_8_bit_swath(sonject, scene, tmp_path):

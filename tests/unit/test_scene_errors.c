@@ -229,6 +229,12 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
          ":8:23: objects[0].fouling.albedo: must be 0...10 dB, not 12\n"
          ":8:38: objects[0].fouling.relief: must be at most half of relief_length, 0.05 m, but is "
          "0.03 m"},
+        {START INPUT "sonar: {frequency: 10e3, bandwidth: 1e3, altitude: 10}\n"
+                     "seabed: {lambert: -20 dB, sediment: {grain_size: 10}}\n",
+         ":4:50: seabed.sediment.grain_size: must be -1...9, not 10"},
+        {START INPUT "sonar: {frequency: 10e3, bandwidth: 1e3, altitude: 10}\n"
+                     "seabed: {lambert: -20 dB, sediment: silt}\n",
+         ":4:19: seabed.lambert: the sediment tells it; remove one of the two"},
         {MATERIAL "stele\n", ":7:15: objects[0].material: 'stele' is not one of " KNOWN_MATERIALS
                              "; did you mean 'steel'?"},
         {MATERIAL "{reflection: 0.5, lambert: 0.05, glossy: {albedo: 0.2}}\n",
