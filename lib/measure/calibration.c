@@ -285,7 +285,8 @@ static void tell_curve(struct calibration *found)
     const struct curve_fit *fit = &found->fits[found->family];
     found->parameter.value = fit->parameter;
     found->parameter.error = fit->parameter * fit->parameter_error;
-    found->shape.how = "what pixels 4 to 7 apart have in common in plain tiles; other ground has more";
+    found->shape.how =
+        "what pixels 4 to 7 apart have in common in plain tiles; other ground has more";
     found->looks.value = fmax(1.0, found->looks.value);
     if (fit->texture > 0.0) {
         found->shape.value = 1.0 / fit->texture;

@@ -41,7 +41,7 @@ def test_the_same_swath_tells_the_same_in_every_form(sonject, tmp_path):
     (tmp_path / "made.png").write_bytes(png_bytes(made.numbers))
     answers = [calibrated(sonject, name) for name in ("made.npy", "made.png", "floats.npy")]
     for answer in answers:
-        del answer["measured"]["swath"]
+        del answer["measured"]["swath"], answer["measured"]["swath_xxh3"]
     assert answers[0] == answers[1] == answers[2]
 
 

@@ -50,4 +50,4 @@ def test_what_is_no_swath_is_refused():
     with pytest.raises(sonject.SonjectError):
         sonject.calibrate(numpy.full((64, 64), numpy.nan, numpy.float32))
     with pytest.raises(TypeError):
-        sonject.calibrate(numpy.array(["a"]))
+        sonject.calibrate(numpy.full((64, 64), "a"))
