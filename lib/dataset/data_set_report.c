@@ -41,7 +41,7 @@ struct statistics_page {
     uint64_t empty[CAMPAIGN_SPLITS_MAX], clutter_alone[CAMPAIGN_SPLITS_MAX];
     const json_t *classes;
     uint64_t every; /* image that is taken */
-    uint64_t drawn_anew, difficult, clipped;
+    uint64_t drawn_anew, difficult, clipped, unseen;
     uint64_t sources[COUNT(number_names)][COUNT(source_names)]; /* images */
     struct growing_text reasons; /* of the first of these, as items of a list; owned */
 };
@@ -162,6 +162,7 @@ static sonject_status add_object(struct statistics_page *page, size_t split, con
         if (strcmp(json_string_value(name), member_text(object, "class")) == 0)
             page->counts[split * json_array_size(page->classes) + i]++;
     }
+    page->unseen += json_is_false(json_object_get(object, "visible"));
     page->clipped += json_number_value(json_object_get(object, "highlight_clipped")) > CLIPPED_MUCH;
     for (i = 0; is_taken && i < COUNT(values); i++) {
         const json_t *value = json_object_get(object, values[i].key);
@@ -327,6 +328,11 @@ static void write_page(const struct statistics_page *page, struct growing_text *
                          "<p>%llu targets are seen less than they are to be, and marked "
                          "difficult.</p>\n",
                          (unsigned long long)page->difficult);
+    if (page->unseen > 0)
+        growing_text_add(text,
+                         "<p>%llu objects are not seen at all: seabed, noise or others hide "
+                         "them.</p>\n",
+                         (unsigned long long)page->unseen);
     if (page->clipped > 0)
         growing_text_add(
             text,

@@ -280,6 +280,19 @@ def test_images_without_targets_come_as_often_as_asked(ground, command):
     assert '  0: "155"\n' in (ground / "shares" / "data.yaml").read_text()  # a name, no number
 
 
+def test_the_report_counts_what_is_not_seen(ground, command):
+    """As truth of each image does."""
+    done = command("campaign", "campaign.yaml", "-o", "unseen", "--set", "outputs=[]", "--set", "labels=[]", "--set",
+                   "targets=[{class: ball, object: {shape: sphere, diameter: 5 cm, burial: {proud: 3 mm}, level: {over_seabed: -30 dB}}}]",
+                   "--set", "draw={seabed.lambert: {uniform: [-30 dB, -24 dB]}}", "--set", "clutter.number=1")
+    assert done.returncode == 0, done.stderr
+    truths = [json.loads(path.read_text()) for path in (ground / "unseen").glob("*/truth/*.json")]
+    page = (ground / "unseen" / "report.html").read_text()
+    seen = [each["visible"] for truth in truths for each in truth["objects"]]
+    unseen = seen.count(False)
+    assert 0 < unseen != sum(seen) and f"<p>{unseen} objects are not seen at all" in page
+
+
 def test_a_finished_data_set_is_left_alone(command, whole):
     before = {path: path.stat().st_mtime_ns for path in files_below(whole)}
     answer = command("campaign", "campaign.yaml", "-o", "whole")
