@@ -25,6 +25,7 @@ struct measure_options {
     bool finds;
     struct number_argument find_contrast;
     struct whole_argument find_most;
+    bool range_to_left;
     const char *truth;
     struct number_argument row_spacing, column_spacing;
     const char *compared;
@@ -59,6 +60,9 @@ static const struct argument arguments[] = {
      ARGUMENT_NUMBER, false, MEMBER(find_contrast)},
     {"--find-most", NULL, "N", "contacts, 1...100000 (100)", ARGUMENT_WHOLE, false,
      MEMBER(find_most)},
+    {"--range-to-left", NULL, NULL,
+     "range grows to the left, as in the port half of an image of two sides; truth tells it",
+     ARGUMENT_FLAG, false, MEMBER(range_to_left)},
     {"--row-spacing", NULL, "M", "of contacts' lengths in metres", ARGUMENT_NUMBER, false,
      MEMBER(row_spacing)},
     {"--column-spacing", NULL, "M", "likewise, of slant range", ARGUMENT_NUMBER, false,
@@ -163,6 +167,7 @@ static bool fill_contacts(const struct measure_options *options, sonject_measure
     params->box_count = (uint32_t)options->boxes.count;
     params->find_contrast_db = options->find_contrast.value; /* 0: as usual */
     params->find_most = (uint32_t)options->find_most.value;
+    params->range_to_left = options->range_to_left;
     params->row_spacing_m = options->row_spacing.value;
     params->column_spacing_m = options->column_spacing.value;
     return true;
@@ -203,6 +208,8 @@ static const char *conflict(const struct measure_options *options)
         return "measure: --compare takes two files of measures, and no options of an image";
     if (has_spacing && !wants_contacts(options))
         return "measure: --row-spacing and --column-spacing are for --box, --truth and --find";
+    if (options->range_to_left && !wants_contacts(options))
+        return "measure: --range-to-left is for --box, --truth and --find";
     if ((options->compared || wants_contacts(options)) &&
         (options->wants_seam || options->before || options->influence || options->labels))
         return "measure: contacts and the seam are measured one at a time";

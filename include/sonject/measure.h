@@ -38,7 +38,8 @@ typedef struct sonject_measure_params {
     double find_contrast_db;  /* a contact's brightest mean of 3 x 3 pixels is at least so far over
                                  the seabed within some 64 pixels of it; 6...100, 0: 12 */
     uint32_t find_most;       /* of the contacts that are looked for, the brightest; 0: 100 */
-    uint32_t reserved;        /* 0 */
+    uint32_t range_to_left;   /* 1: range grows to the left, as in the port half of an image of two
+                                 sides; 0: to the right, or as truth tells */
 } sonject_measure_params;
 
 /* What an image says of its seabed, and the seam of an injection. */

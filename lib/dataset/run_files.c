@@ -200,6 +200,8 @@ sonject_status write_truth(struct report *report, const struct run_facts *facts,
         json_append(&objects, object_document(facts, i));
     json_t *document =
         JSON_OBJECT({"image", json_text(facts->image_name)}, {"range_axis", json_string("slant")},
+                    {"range_grows",
+                     json_string(geometry_is_reversed(&facts->scene->geometry) ? "left" : "right")},
                     {"patch", place}, {"blending", blending_document(&facts->result->statistics)},
                     {"numbers", sources_document(facts->scene, &facts->result->statistics)},
                     {"objects", objects});

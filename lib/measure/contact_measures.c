@@ -258,6 +258,7 @@ struct contact_list {
     sonject_box *boxes; /* owned */
     size_t count;
     double row_spacing_m, column_spacing_m;
+    bool is_reversed; /* range grows to the left */
 };
 
 static sonject_status bad_truth(struct report *report, const char *path, const char *what)
@@ -326,8 +327,36 @@ static sonject_status take_truth(struct contact_list *list, struct report *repor
             list->column_spacing_m = width / json_number_value(json_object_get(box, "columns"));
         list->count++;
     }
+    const char *grows = json_string_value(json_object_get(truth, "range_grows"));
+    list->is_reversed = list->is_reversed || (grows && strcmp(grows, "left") == 0);
     json_decref(truth);
     return status;
+}
+
+static void turn_box(sonject_box *box, size_t columns)
+{
+    if (box->rows > 0)
+        box->first_column = columns - box->first_column - box->columns;
+}
+
+/* So that range grows to the right, as contacts are measured. Boxes outside stay what they are, to
+ * be refused. */
+static void turn_image(const struct contact_list *list, struct measured *intensities)
+{
+    const size_t columns = intensities->columns;
+    for (size_t row = 0; row < intensities->rows; row++) {
+        float *line = intensities->amplitudes + row * columns;
+        for (size_t i = 0; i < columns / 2; i++) {
+            const float kept = line[i];
+            line[i] = line[columns - 1 - i];
+            line[columns - 1 - i] = kept;
+        }
+    }
+    for (size_t i = 0; i < list->count; i++) {
+        sonject_box *box = &list->boxes[i];
+        if (box->first_column < columns && box->columns <= columns - box->first_column)
+            turn_box(box, columns);
+    }
 }
 
 static json_t *box_document(const sonject_box *box)
@@ -409,6 +438,7 @@ static sonject_status take_boxes(struct contact_list *list, struct report *repor
 {
     list->row_spacing_m = params->row_spacing_m;
     list->column_spacing_m = params->column_spacing_m;
+    list->is_reversed = params->range_to_left != 0;
     list->boxes = allocate_array((size_t)params->box_count + 1, sizeof *list->boxes);
     CHECK_MEMORY(report, list->boxes, "boxes");
     if (params->box_count > 0)
@@ -418,9 +448,9 @@ static sonject_status take_boxes(struct contact_list *list, struct report *repor
 }
 
 sonject_status measure_listed_contacts(struct report *report, const sonject_measure_params *params,
-                                       const struct measured *intensities, char **text)
+                                       struct measured *intensities, char **text)
 {
-    struct contact_list list = {NULL, 0, 0.0, 0.0};
+    struct contact_list list = {NULL, 0, 0.0, 0.0, false};
     struct contact_image image;
     sonject_contact_measures *measures = NULL;
     size_t left_off = 0;
@@ -430,6 +460,8 @@ sonject_status measure_listed_contacts(struct report *report, const sonject_meas
     const bool looks = !params->truth && list.count == 0;
     size_t count = looks ? params->find_most : list.count;
     if (status == SONJECT_OK) {
+        if (list.is_reversed)
+            turn_image(&list, intensities);
         measures = allocate_array(count, sizeof *measures);
         status = measures ? contact_image_create(&image, report, intensities->amplitudes,
                                                  intensities->rows, intensities->columns)
@@ -440,6 +472,11 @@ sonject_status measure_listed_contacts(struct report *report, const sonject_meas
                        : measure_list(report, &list, &image, measures));
     THEN(status, contacts_add_visibility(report, &image, measures, count));
     THEN(status, contacts_add_seabed(report, &image, measures, count));
+    for (size_t i = 0; status == SONJECT_OK && list.is_reversed && i < count; i++) {
+        turn_box(&measures[i].box, intensities->columns);
+        turn_box(&measures[i].highlight, intensities->columns);
+        turn_box(&measures[i].shadow, intensities->columns);
+    }
     THEN(status,
          write_list(report, params->image ? params->image : "", measures, count, left_off, text));
     contact_image_clear(&image);

@@ -60,9 +60,9 @@ sonject_status read_amplitudes(struct report *report, const sonject_measure_para
                                const struct image_options *options, struct measured *measured);
 
 /* Contacts of intensities as JSON: sonject_measure_contacts. Parameters have no zeros left that
- * stand for something else. */
+ * stand for something else. intensities: turned about where range grows to the left. */
 sonject_status measure_listed_contacts(struct report *report, const sonject_measure_params *params,
-                                       const struct measured *intensities, char **text);
+                                       struct measured *intensities, char **text);
 
 /* One contact of intensities: sonject_measure_contact. */
 sonject_status measure_one_contact(struct report *report, const float *intensity, size_t rows,

@@ -8,7 +8,7 @@ import pytest
 
 import images
 from conftest import assert_refused
-from measured_images import read_png
+from measured_images import measured, read_png, read_xtf
 
 ROWS, COLUMNS = 60, 200
 GEOMETRY = "{row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.075 m}"
@@ -384,3 +384,73 @@ def test_targets_in_layered_water_stay_behind_the_water_column(sonject, tmp_path
     layers = "medium: {layers: [{bottom: 0 m, sound_speed: 1500 m/s}, {bottom: 3 m, sound_speed: 1505 m/s}]}"
     sonject.done("campaign", write_campaign(tmp_path, text, more=layers), "-o", "data")
     assert all(0.15 * (record["swath"]["column"] + 0.5) > 6 for record in records(tmp_path / "data"))
+
+
+def test_contacts_of_a_port_half_are_measured_as_others(sonject, tmp_path, waterfall):
+    """By truth, by boxes, and where they are looked for; boxes are in the image's own pixels."""
+    for folder in run_sides(sonject, tmp_path, "port"):
+        (tmp_path / f"{folder.name}.json").write_bytes((folder / "truth.json").read_bytes())
+    one = json.loads((tmp_path / "one.json").read_text())["objects"]
+    # the halves alone, since what the other shows is seabed, too
+    pixels = images.read_tiff(tmp_path / "both" / "image.tif")[:, :204]
+    (tmp_path / "half.tif").write_bytes(images.tiff_bytes(numpy.ascontiguousarray(pixels)))
+    (tmp_path / "turned.tif").write_bytes(images.tiff_bytes(numpy.ascontiguousarray(pixels[:, ::-1])))
+    box = one[0]["box"]
+
+    def corners(column):
+        return f"{box['row'] - 8},{column - 12},{box['rows'] + 16},{box['columns'] + 24}"
+
+    ways = [(["--truth", "both.json"], ["--truth", "one.json"]),
+            (["--range-to-left", "--box", corners(mirrored("port", box["column"], box["columns"]))],
+             ["--box", corners(box["column"])]),
+            (["--range-to-left", "--find", "--find-contrast", "9"], ["--find", "--find-contrast", "9"])]
+    for left, right in ways:
+        found, expected = (json.loads(sonject.done("measure", image, *options).stdout)["contacts"]
+                           for image, options in (("half.tif", left), ("turned.tif", right)))
+        assert len(found) == len(expected) > 0
+        for a, b in zip(found, expected):
+            for key, value in b.items():
+                if key.endswith("_box") and value:
+                    value = {**value, "column": mirrored("port", value["column"], value["columns"])}
+                assert a[key] == value or key == "image"
+        assert any(contact["shadow_box"] for contact in expected)
+    answer = sonject("measure", "half.tif", "--range-to-left")
+    assert answer.returncode == 2 and "--range-to-left is for --box, --truth and --find" in answer.stderr
+    assert_refused(sonject("measure", "half.tif", "--range-to-left", "--box", "0,200,5,9"), 3, "is not inside the image")
+
+
+def test_a_measured_line_of_two_sides_is_as_its_recording(sonject, tmp_path):
+    """The Iver2's port and starboard side by side, with its altitudes in a table."""
+    line = measured("sidescan/scotsman-iver2.xtf")
+    (tmp_path / "line.xtf").write_bytes(line.read_bytes())
+    sides = []
+    for channel in ("port", "starboard"):
+        sonject.done("convert", "line.xtf", f"{channel}.npy", "--channel", channel)
+        sides.append(numpy.load(tmp_path / f"{channel}.npy"))
+    (tmp_path / "line.tif").write_bytes(images.tiff_bytes(numpy.hstack([sides[0][:, ::-1], sides[1]])))
+    _, altitudes = read_xtf(line)
+    (tmp_path / "pings.csv").write_text("row,altitude_m\n" + "".join(
+        f"{row},{altitude!r}\n" for row, altitude in enumerate(altitudes.tolist()) if altitude > 0 or row == 0)
+        .replace("0,0.0\n", f"0,{altitudes[1].item()!r}\n", 1))
+    text = """\
+sonject: 1
+input: {{path: {}, {} geometry: {{row_spacing: 15 cm, column_spacing: 2.9277 cm, {}, side: {}}}}}
+patch: {{row: 20, column: {}, rows: 120, columns: 600}}
+sonar: {{frequency: 600 kHz, bandwidth: 25 kHz, altitude: from_file}}
+objects: [{{name: can, shape: cylinder, length: 1 m, diameter: 0.4 m, heading: 30 deg, burial: 0 m}}]
+"""
+    for number, side in enumerate(("port", "starboard")):
+        (tmp_path / "xtf.yaml").write_text(text.format("line.xtf", f"channel: {side},", "first_slant_range: 0.014639 m",
+                                                       side, 240))
+        (tmp_path / "tif.yaml").write_text(text.format("line.tif", "pings: pings.csv,",
+                                                       "nadir_column: 1023.5, first_slant_range: 0.0000005 m", side,
+                                                       1024 - 840 if side == "port" else 1024 + 240))
+        for kind in ("xtf", "tif"):
+            sonject.done("run", f"{kind}.yaml", "-o", f"{kind}-{side}")
+        sonject.done("convert", f"xtf-{side}/image.xtf", "after.npy", "--channel", side)
+        expected, found = numpy.load(tmp_path / "after.npy"), images.read_tiff(tmp_path / f"tif-{side}" / "image.tif")
+        half = found[:, 1023::-1] if side == "port" else found[:, 1024:]
+        changed = expected != sides[number]
+        assert changed.sum() > 300
+        # the numbers of first slant range differ by roundings alone
+        assert (half != expected).sum() < 0.002 * changed.sum()
