@@ -232,6 +232,8 @@ bool material_named(const char *name, sonject_material_params *material);
 
 /* Name number index of all that material_named knows, NULL beyond the last. Static. */
 const char *material_name(uint32_t index);
+/* Of a sediment, in phi; NaN: it is none. index: of a name. */
+double material_grain_size(uint32_t index);
 
 /* The seabed, whose reflectivity comes from the measured image: the plane z = 0, or a relief about
  * it. */

@@ -1,5 +1,7 @@
 /* Materials: what surfaces do with sound, by name or key by key; the seabed's and the sea surface's
  * among them. */
+#include <math.h>
+
 #include "schema/keys.h"
 
 #include <stdio.h>
@@ -15,6 +17,7 @@ struct named_material {
     double density_ratio, speed_ratio, loss; /* to sea water's 1025 kg/m3 and 1500 m/s */
     double roughness_m;                      /* order of magnitude */
     double lambert;
+    double grain_size_phi; /* of a sediment; NaN: it is none */
 };
 
 /* Objects: densities and compressional speeds of the order that handbooks of acoustics give; fluids
@@ -22,16 +25,16 @@ struct named_material {
  * "APL-UW High-Frequency Ocean Environmental Acoustic Models Handbook", TR 9407 (1994), table 2, as
  * commonly tabulated; their Lambert part is Mackenzie's. */
 static const struct named_material materials[] = {
-    {"concrete", 2.3, 2.1, 0.01, 1.0e-3, 0.063},
-    {"rubber", 1.1, 1.03, 0.05, 0.5e-3, 0.02},
-    {"wood", 0.9, 1.3, 0.02, 1.0e-3, 0.05},
-    {"rock", 2.5, 2.5, 0.01, 5.0e-3, 0.1},
-    {"gravel", 2.492, 1.3370, 0.01705, 20.0e-3, 1.9953e-3},
-    {"coarse sand", 2.231, 1.2503, 0.01638, 10.0e-3, 1.9953e-3},
-    {"medium sand", 1.845, 1.1782, 0.01624, 5.0e-3, 1.9953e-3},
-    {"fine sand", 1.451, 1.1073, 0.01602, 3.0e-3, 1.9953e-3},
-    {"silt", 1.149, 0.9873, 0.00386, 2.0e-3, 1.9953e-3},
-    {"clay", 1.145, 0.9801, 0.00148, 1.0e-3, 1.9953e-3},
+    {"concrete", 2.3, 2.1, 0.01, 1.0e-3, 0.063, NAN},
+    {"rubber", 1.1, 1.03, 0.05, 0.5e-3, 0.02, NAN},
+    {"wood", 0.9, 1.3, 0.02, 1.0e-3, 0.05, NAN},
+    {"rock", 2.5, 2.5, 0.01, 5.0e-3, 0.1, NAN},
+    {"gravel", 2.492, 1.3370, 0.01705, 20.0e-3, 1.9953e-3, -1.0},
+    {"coarse sand", 2.231, 1.2503, 0.01638, 10.0e-3, 1.9953e-3, 0.5},
+    {"medium sand", 1.845, 1.1782, 0.01624, 5.0e-3, 1.9953e-3, 1.5},
+    {"fine sand", 1.451, 1.1073, 0.01602, 3.0e-3, 1.9953e-3, 2.5},
+    {"silt", 1.149, 0.9873, 0.00386, 2.0e-3, 1.9953e-3, 6.0},
+    {"clay", 1.145, 0.9801, 0.00148, 1.0e-3, 1.9953e-3, 9.0},
 };
 
 bool is_same_name(const char *given, const char *name)
@@ -69,6 +72,11 @@ bool material_named(const char *name, sonject_material_params *material)
 const char *material_name(uint32_t index)
 {
     return index == 0 ? "steel" : index <= COUNT(materials) ? materials[index - 1].name : NULL;
+}
+
+double material_grain_size(uint32_t index)
+{
+    return index == 0 ? NAN : materials[index - 1].grain_size_phi;
 }
 
 sonject_status read_material_name(struct reader *reader, const struct tree_node *node,

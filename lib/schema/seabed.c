@@ -257,28 +257,27 @@ static void relate_seabed(struct check *check, const void *structure)
 
 /* ---- Sediments whose backscatter is modelled (scene/sediment.h). */
 
-static const struct {
-    const char *name;
-    double grain_size_phi; /* table 2 of the model's handbook */
-} sediments[] = {{"gravel", -1.0},   {"coarse sand", 0.5},    {"medium sand", 1.5},
-                 {"fine sand", 2.5}, {"very fine sand", 3.5}, {"silt", 6.0},
-                 {"clay", 9.0}};
+#define SEDIMENTS_MAX 32
 
 static sonject_status read_sediment(struct reader *reader, const struct tree_node *node,
                                     void *structure)
 {
-    const char *names[COUNT(sediments)];
+    const char *names[SEDIMENTS_MAX];
     struct word_list list = {{0}, 0};
     const char *name = read_text(reader, node);
+    const char *known;
     if (!name)
         return SONJECT_ERROR_INPUT;
-    for (size_t i = 0; i < COUNT(sediments); i++) {
-        if (is_same_name(name, sediments[i].name)) {
-            ((sonject_seabed_params *)structure)->grain_size_phi = sediments[i].grain_size_phi;
+    for (uint32_t i = 0; (known = material_name(i)) != NULL; i++) {
+        const double grain_size_phi = material_grain_size(i);
+        if (isnan(grain_size_phi) || list.count == SEDIMENTS_MAX)
+            continue;
+        if (is_same_name(name, known)) {
+            ((sonject_seabed_params *)structure)->grain_size_phi = grain_size_phi;
             return SONJECT_OK;
         }
-        names[i] = sediments[i].name;
-        list_word(&list, names[i]);
+        names[list.count] = known;
+        list_word(&list, known);
     }
     return refuse_word(reader, node, name, &list, nearest_word(name, names, list.count));
 }
@@ -311,7 +310,7 @@ static const struct field seabed_fields[] = {
      .range = "above 0 and at most 1/pi (-4.97 dB), or the seabed returns more than it receives"},
     {"sediment",
      "sets lambert to what it returns at the patch's middle, by the model of APL-UW TR 9407 (10 to "
-     "100 kHz): gravel, coarse sand, medium sand, fine sand, very fine sand, silt, clay or "
+     "100 kHz): gravel, coarse sand, medium sand, fine sand, silt, clay or "
      "{grain_size: }",
      .kind = FIELD_NAMED, .section = &sediment_section, .read = read_sediment},
     {"map", "reflectivity that resynthesise takes from the image; composites weight shadows by it",

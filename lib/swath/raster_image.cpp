@@ -283,7 +283,9 @@ bool open_encoder(struct raster_output &output, const struct image_encoding &enc
     OIIO::Filesystem::IOProxy *proxy = output.sink.get();
     spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     const int quality = encoding.quality > 0 ? encoding.quality : finest_quality;
-    spec.attribute("Compression", "jpeg:" + std::to_string(quality));
+    char compression[32];
+    std::snprintf(compression, sizeof compression, "jpeg:%d", quality);
+    spec.attribute("Compression", compression);
     if (*encoding.description)
         spec.attribute(description_name, encoding.description);
     output.encoder = OIIO::ImageOutput::create(format_name(encoding.kind));

@@ -153,7 +153,7 @@ CLAIM(weak_faces_echo_in_proportion)
     const struct sight sight = lay_dihedral(sea, 0.2, 0.15, false, 0.0);
     const double complex strong = further_echo(sea, 0, 1, sight.range);
     for (uint32_t part = 0; part < 2; part++)
-        sea_object(sea, part)->material.reflection = 1e-3;
+        sea->bench->placements[part].material.reflection = 1e-3;
     const double complex weak = further_echo(sea, 0, 1, sight.range) / 1e-6;
     expect_close("level of weak faces", cabs(weak / strong), 1.0, 3e-4);
     expect_close("phase of weak faces, rad", carg(weak / strong), 0.0, 3e-4);
