@@ -10,6 +10,7 @@
     ROW(trace)                                                                                     \
     ROW(form)                                                                                      \
     ROW(campaign)                                                                                  \
+    ROW(fit)                                                                                       \
     ROW(merge)                                                                                     \
     ROW(check)                                                                                     \
     ROW(measure)                                                                                   \

@@ -108,6 +108,39 @@ SONJECT_API sonject_status sonject_campaign_run(sonject_context *context,
 SONJECT_API sonject_status sonject_campaign_merge(sonject_context *context, const char *folder,
                                                   sonject_progress_function progress, void *user);
 
+/* What boxes of contacts are around, where their class does not tell: the class names shadow and
+ * highlight do. */
+typedef enum sonject_label_part {
+    SONJECT_LABELS_BOTH = 0, /* highlight and shadow */
+    SONJECT_LABELS_HIGHLIGHT = 1,
+    SONJECT_LABELS_SHADOW = 2
+} sonject_label_part;
+
+typedef struct sonject_campaign_fit_params {
+    uint32_t struct_size;
+    uint32_t part; /* sonject_label_part */
+    /* Real contacts, ten or more: a COCO file (.json); a .csv file with the columns image, row,
+     * column, rows, columns; a folder of YOLO's texts or of VOC's XML; or a .yaml file of published
+     * quantiles of extents. Images are read as the campaign's scene reads its swaths; geometry and
+     * altitude are the image's own where it tells them, and a swath's own keys hold for an image
+     * with its file name. */
+    const char *contacts;
+    const char *fitted; /* the campaign file to write, in the folder of the one that is fitted; a
+                           page and its picture come beside it: ".html", ".png" */
+} sonject_campaign_fit_params;
+
+/* Fits a campaign to real contacts: moves what its targets draw of length, width, height and level
+ * over the seabed, and the noise floor, until contacts that it injects measure as the real ones do;
+ * sets chip.slant_range and visible from the contacts. What cannot be told from contacts stays as
+ * it is: classes' shares, headings, burial, materials, fixed sizes. Some 720 images are made. path,
+ * params: as of sonject_campaign_read. The same inputs give the same bytes. progress may be NULL.
+ * Errors: ARGUMENT, INPUT (fewer than ten contacts, labels that cannot be read, ...), DEVICE,
+ * STORAGE, MEMORY, UNSUPPORTED, CANCELLED; then no file is written. */
+SONJECT_API sonject_status sonject_campaign_fit(sonject_context *context, const char *path,
+                                                const sonject_scene_read_params *params,
+                                                const sonject_campaign_fit_params *fit_params,
+                                                sonject_progress_function progress, void *user);
+
 SONJECT_END_DECLARATIONS
 
 #endif

@@ -7,33 +7,9 @@
 #include "api/handles.h"
 #include "base/memory.h"
 #include "dataset/campaign.h"
+#include "dataset/fit.h"
 #include "schema/scene_file.h"
 #include "schema/yaml_tree.h"
-
-static sonject_status take_classes(struct sonject_campaign *campaign)
-{
-    const struct campaign *plan = &campaign->campaign;
-    uint32_t number;
-    for (size_t i = 0; i < plan->target_count + plan->clutter_count; i++) {
-        const struct item *item =
-            i < plan->target_count ? &plan->targets[i] : &plan->clutter[i - plan->target_count];
-        CHECK(class_names_take(&campaign->classes, campaign->report, item->class_name, &number));
-    }
-    return SONJECT_OK;
-}
-
-static sonject_status open_campaign(struct sonject_campaign *campaign, const char *path,
-                                    const char *const *overrides, size_t count)
-{
-    struct campaign *plan = &campaign->campaign;
-    CHECK(campaign_read(campaign->report, path, overrides, count, plan));
-    CHECK(scene_file_load(campaign->report, plan->scene_path, &campaign->scene_text,
-                          &campaign->scene_bytes));
-    CHECK(take_classes(campaign));
-    campaign->swath_hashes = allocate_array(plan->swath_count, sizeof *campaign->swath_hashes);
-    CHECK_MEMORY(campaign->report, campaign->swath_hashes, "the campaign");
-    return campaign_check(campaign);
-}
 
 sonject_status sonject_campaign_read(sonject_context *context, const char *path,
                                      const sonject_scene_read_params *params,
@@ -48,30 +24,17 @@ sonject_status sonject_campaign_read(sonject_context *context, const char *path,
     CHECK(scene_read_params_take(report, path, params, &taken));
     if (taken.text)
         return report_failure(report, SONJECT_ERROR_ARGUMENT, "a campaign is read from its file");
-    struct sonject_campaign *made = allocate_array(1, sizeof *made);
-    CHECK_MEMORY(report, made, "a campaign");
-    made->report = report;
-    made->allows_user_shapes = taken.allows_user_shapes != 0;
-    const sonject_status status = open_campaign(made, path, taken.overrides, taken.override_count);
-    if (status != SONJECT_OK)
-        sonject_campaign_release(&made);
-    *campaign = made;
-    return status;
+    const struct campaign_source source = {.path = path,
+                                           .overrides = taken.overrides,
+                                           .override_count = taken.override_count,
+                                           .allows_user_shapes = taken.allows_user_shapes != 0};
+    return campaign_open(report, &source, campaign);
 }
 
 void sonject_campaign_release(sonject_campaign **campaign)
 {
-    if (!campaign || !*campaign)
-        return;
-    campaign_clear(&(*campaign)->campaign);
-    swath_store_close(&(*campaign)->store);
-    mesh_store_clear(&(*campaign)->meshes);
-    class_names_clear(&(*campaign)->classes);
-    json_decref((*campaign)->inputs);
-    free((*campaign)->scene_text);
-    free((*campaign)->swath_hashes);
-    free(*campaign);
-    *campaign = NULL;
+    if (campaign)
+        campaign_close(campaign);
 }
 
 sonject_status sonject_campaign_image_count(const sonject_campaign *campaign, uint64_t *count)
@@ -227,4 +190,32 @@ sonject_status sonject_campaign_merge(sonject_context *context, const char *fold
     if (!folder || !folder[0])
         return null_argument(&context->report, "folder");
     return campaign_merge(&context->report, folder, progress, user);
+}
+
+sonject_status sonject_campaign_fit(sonject_context *context, const char *path,
+                                    const sonject_scene_read_params *params,
+                                    const sonject_campaign_fit_params *fit_params,
+                                    sonject_progress_function progress, void *user)
+{
+    sonject_scene_read_params taken;
+    sonject_campaign_fit_params fit;
+    CHECK(context_begin_call(context));
+    context_watch(context, &progress, &user);
+    struct report *report = &context->report;
+    CHECK(scene_read_params_take(report, path, params, &taken));
+    CHECK(params_take(report, &fit, sizeof fit, fit_params, sizeof fit, "fit parameters"));
+    if (taken.text)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT, "a campaign is read from its file");
+    if (!fit.contacts || !fit.contacts[0])
+        return null_argument(report, "contacts");
+    if (!fit.fitted || !fit.fitted[0])
+        return null_argument(report, "fitted");
+    if (fit.part > SONJECT_LABELS_SHADOW)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT, "part must be 0 to 2, not %u",
+                              (unsigned)fit.part);
+    const struct campaign_source source = {.path = path,
+                                           .overrides = taken.overrides,
+                                           .override_count = taken.override_count,
+                                           .allows_user_shapes = taken.allows_user_shapes != 0};
+    return campaign_fit(report, &context->device, &source, &fit, progress, user);
 }

@@ -235,6 +235,7 @@ struct campaign {
     double nearest_range_m, farthest_range_m;
     double least_ratio, most_ratio; /* of range over altitude; 0: any */
     double empty, clutter_alone;
+    bool has_one_target; /* in each image, and nothing else, whatever the file says */
     double visible_highlight_db, visible_shadow_db; /* of targets: at least, at most; NaN: any */
     uint32_t faint;                                 /* enum faint */
     uint32_t outputs;                               /* bits of enum output */
@@ -251,10 +252,10 @@ struct campaign {
     struct tree tree; /* of the file, overrides included: places point into it */
 };
 
-/* Reads a campaign file with overrides "key.path=value" of it. campaign: for campaign_clear, also
- * on failure. Errors: INPUT, STORAGE, MEMORY. */
-sonject_status campaign_read(struct report *report, const char *path, const char *const *overrides,
-                             size_t count, struct campaign *campaign);
+/* Reads a campaign file with overrides "key.path=value" of it. text: what stands for the file's own
+ * text, or NULL. campaign: for campaign_clear, also on failure. Errors: INPUT, STORAGE, MEMORY. */
+sonject_status campaign_read(struct report *report, const char *path, const char *text,
+                             const char *const *overrides, size_t count, struct campaign *campaign);
 void campaign_clear(struct campaign *campaign);
 
 /* Whether key, which is at place and path, is one of the scene (or of an object) that a campaign
@@ -365,6 +366,21 @@ struct sonject_campaign {
     struct swath_store store;
     struct mesh_store meshes; /* of scenes whose mesh_store it is */
 };
+
+/* How a campaign is opened. */
+struct campaign_source {
+    const char *path, *text; /* as of campaign_read */
+    const char *const *overrides;
+    size_t override_count;
+    bool allows_user_shapes;
+    bool has_one_target; /* in each image, and nothing else */
+};
+
+/* Reads and checks a campaign. On success *campaign is for campaign_close; on failure NULL. Errors:
+ * INPUT, STORAGE, UNSUPPORTED, MEMORY. */
+sonject_status campaign_open(struct report *report, const struct campaign_source *source,
+                             struct sonject_campaign **campaign);
+void campaign_close(struct sonject_campaign **campaign);
 
 /* Reads the scene that a plan describes. scene: initialised and empty; on failure it is left empty.
  * are_relations: as in struct scene_source. Errors: as sonject_scene_read, with the place in the

@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "dataset/campaign.h"
 #include "inject/scene_hash.h"
+#include "schema/scene_file.h"
 #include "swath/geometry_notes.h"
 #include "swath/jpeg_quality.h"
 
@@ -239,4 +240,61 @@ sonject_status campaign_check_id(const struct sonject_campaign *campaign, uint64
     return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
                           "there is no image %llu: the campaign has %llu, counted from 0",
                           (unsigned long long)id, (unsigned long long)campaign->campaign.images);
+}
+
+static sonject_status take_classes(struct sonject_campaign *campaign)
+{
+    const struct campaign *plan = &campaign->campaign;
+    uint32_t number;
+    for (size_t i = 0; i < plan->target_count + plan->clutter_count; i++) {
+        const struct item *item =
+            i < plan->target_count ? &plan->targets[i] : &plan->clutter[i - plan->target_count];
+        CHECK(class_names_take(&campaign->classes, campaign->report, item->class_name, &number));
+    }
+    return SONJECT_OK;
+}
+
+static sonject_status fill(struct sonject_campaign *campaign, const struct campaign_source *source)
+{
+    struct campaign *plan = &campaign->campaign;
+    CHECK(campaign_read(campaign->report, source->path, source->text, source->overrides,
+                        source->override_count, plan));
+    if (source->has_one_target) {
+        plan->empty = plan->clutter_alone = 0.0;
+        plan->has_one_target = true;
+    }
+    CHECK(scene_file_load(campaign->report, plan->scene_path, &campaign->scene_text,
+                          &campaign->scene_bytes));
+    CHECK(take_classes(campaign));
+    campaign->swath_hashes = allocate_array(plan->swath_count, sizeof *campaign->swath_hashes);
+    CHECK_MEMORY(campaign->report, campaign->swath_hashes, "the campaign");
+    return campaign_check(campaign);
+}
+
+sonject_status campaign_open(struct report *report, const struct campaign_source *source,
+                             struct sonject_campaign **campaign)
+{
+    *campaign = allocate_array(1, sizeof **campaign);
+    CHECK_MEMORY(report, *campaign, "a campaign");
+    (*campaign)->report = report;
+    (*campaign)->allows_user_shapes = source->allows_user_shapes;
+    const sonject_status status = fill(*campaign, source);
+    if (status != SONJECT_OK)
+        campaign_close(campaign);
+    return status;
+}
+
+void campaign_close(struct sonject_campaign **campaign)
+{
+    if (!*campaign)
+        return;
+    campaign_clear(&(*campaign)->campaign);
+    swath_store_close(&(*campaign)->store);
+    mesh_store_clear(&(*campaign)->meshes);
+    class_names_clear(&(*campaign)->classes);
+    json_decref((*campaign)->inputs);
+    free((*campaign)->scene_text);
+    free((*campaign)->swath_hashes);
+    free(*campaign);
+    *campaign = NULL;
 }

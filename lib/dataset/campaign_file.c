@@ -441,11 +441,11 @@ static sonject_status fill_campaign(struct tree *tree, const char *const *overri
     return read_section(&reader, &campaign_section, &tree->root, campaign);
 }
 
-sonject_status campaign_read(struct report *report, const char *path, const char *const *overrides,
-                             size_t count, struct campaign *campaign)
+sonject_status campaign_read(struct report *report, const char *path, const char *text,
+                             const char *const *overrides, size_t count, struct campaign *campaign)
 {
-    char *text = NULL;
-    size_t bytes;
+    char *read = NULL;
+    size_t bytes = text ? strlen(text) : 0;
     memset(campaign, 0, sizeof *campaign);
     campaign->seed = 1;
     campaign->design = DESIGN_STRATIFIED;
@@ -463,16 +463,18 @@ sonject_status campaign_read(struct report *report, const char *path, const char
     campaign->path = copy_text(path);
     campaign->folder = path_folder(path);
     CHECK_MEMORY(report, campaign->path && campaign->folder, "the campaign");
-    if (!file_exists(path))
-        return input_failure(report, path, "there is no such campaign file; check its name");
-    CHECK(file_read_whole(report, path, TREE_BYTES_MAX, &text, &bytes));
+    if (!text) {
+        if (!file_exists(path))
+            return input_failure(report, path, "there is no such campaign file; check its name");
+        CHECK(file_read_whole(report, path, TREE_BYTES_MAX, &read, &bytes));
+    }
     struct mistakes mistakes = {0};
     struct tree *tree = &campaign->tree;
     tree_init(tree, report, campaign->path);
     tree->mistakes = &mistakes;
     report->message[0] = 0;
-    sonject_status status = tree_parse(tree, text, bytes);
-    free(text);
+    sonject_status status = tree_parse(tree, text ? text : read, bytes);
+    free(read);
     THEN(status, fill_campaign(tree, overrides, count, campaign));
     tree->mistakes = NULL;
     return mistakes_tell(&mistakes, report, status);

@@ -387,7 +387,7 @@ static uint32_t clutter_objects(struct drawing *drawing)
 {
     const struct campaign *campaign = drawing->campaign;
     const uint32_t category = drawing->plan->category;
-    if (category == CATEGORY_EMPTY || campaign->clutter_count == 0)
+    if (category == CATEGORY_EMPTY || campaign->clutter_count == 0 || campaign->has_one_target)
         return 0;
     const uint32_t count = draw_number(drawing, &campaign->clutter_number);
     return category == CATEGORY_CLUTTER && count == 0 ? 1 : count;
@@ -418,7 +418,7 @@ static uint32_t choose_objects(struct drawing *drawing, const struct item *trial
     uint32_t count = 0;
     if (has_target)
         items[count++] = &campaign->targets[category - CATEGORY_TARGET];
-    if (has_target && drawing->trial == NO_TRIAL)
+    if (has_target && drawing->trial == NO_TRIAL && !campaign->has_one_target)
         for (const uint32_t end = draw_number(drawing, &campaign->target_number); count < end;
              count++)
             items[count] = choose_item(drawing, campaign->targets, campaign->target_count, count);

@@ -231,21 +231,30 @@ static sonject_status contacts_add_seabed(struct report *report, const struct co
     return status;
 }
 
+sonject_status measure_placed_contact(struct report *report, const float *intensity, size_t rows,
+                                      size_t columns, const struct contact_place *place,
+                                      double row_spacing_m, double column_spacing_m,
+                                      sonject_contact_measures *found)
+{
+    struct contact_image image;
+    sonject_status status = contact_image_create(&image, report, intensity, rows, columns);
+    THEN(status, contact_measure(report, &image, place, row_spacing_m, column_spacing_m, found));
+    THEN(status, contacts_add_visibility(report, &image, found, 1));
+    THEN(status, contacts_add_seabed(report, &image, found, 1));
+    contact_image_clear(&image);
+    return status;
+}
+
 sonject_status measure_one_contact(struct report *report, const float *intensity, size_t rows,
                                    size_t columns, const sonject_box *box, double row_spacing_m,
                                    double column_spacing_m, sonject_contact_measures *found)
 {
     const sonject_box whole = {0, 0, rows, columns};
     struct contact_place place;
-    struct contact_image image;
     CHECK(place_in_box(report, box ? box : &whole, rows, columns, &place));
     place.is_near = !box;
-    sonject_status status = contact_image_create(&image, report, intensity, rows, columns);
-    THEN(status, contact_measure(report, &image, &place, row_spacing_m, column_spacing_m, found));
-    THEN(status, contacts_add_visibility(report, &image, found, 1));
-    THEN(status, contacts_add_seabed(report, &image, found, 1));
-    contact_image_clear(&image);
-    return status;
+    return measure_placed_contact(report, intensity, rows, columns, &place, row_spacing_m,
+                                  column_spacing_m, found);
 }
 
 /* ---- Contacts of boxes, of a truth.json or looked for, as JSON. */

@@ -69,6 +69,12 @@ sonject_status measure_one_contact(struct report *report, const float *intensity
                                    size_t columns, const sonject_box *box, double row_spacing_m,
                                    double column_spacing_m, sonject_contact_measures *found);
 
+/* The same where its place is known: boxes inside the image. */
+sonject_status measure_placed_contact(struct report *report, const float *intensity, size_t rows,
+                                      size_t columns, const struct contact_place *place,
+                                      double row_spacing_m, double column_spacing_m,
+                                      sonject_contact_measures *found);
+
 /* Two files of contacts: sonject_compare_contacts. */
 sonject_status compare_contact_files(struct report *report, const char *first, const char *second,
                                      char **text);

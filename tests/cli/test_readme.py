@@ -59,7 +59,7 @@ TYPED = {
 # Commands of ours that other tests run: shapes in code, the campaign that is an example, and what
 # hands shards out.
 ELSEWHERE = re.compile(
-    r"sonject run tools/scenes/user_shape\.yaml|sonject campaign tools/campaigns/|for i in 1 2 3; do "
+    r"sonject run tools/scenes/user_shape\.yaml|sonject campaign tools/campaigns/|sonject fit |for i in 1 2 3; do "
     r"sonject seabed|parallel |condor_submit |dask |sbatch |python3 |scontrol |array=.* run ")
 
 
@@ -204,9 +204,13 @@ FRAGMENTS = {
     "sonar.kind: real": ("", ["sonar.array={length: 1 m}"], []),
     "aperture: none": ("sonar.", [], []),
     "seabed.sediment: medium sand": ("", [], []),
+    "side: port": ("input.geometry.", [], []),
 }
 # A campaign's, and what ends where a value would begin.
-OTHER_FRAGMENTS = {"labels: [yolo, voc]", "target:", "visible: {highlight: 1.2 dB, shadow: -2.3 dB}"}
+OTHER_FRAGMENTS = {
+    "labels: [yolo, voc]", "target:", "visible: {highlight: 1.2 dB, shadow: -2.3 dB}", "chip.spread: 1",
+    "chip: {rows: all, columns: all}", "draw: {table: bodies.csv}", "{file: bodies.csv, weight: count}",
+    "format: as_input", "contacts: 80", "quantiles: [0.1, 0.5, 0.9]", "shadow_along: [0.5 m, 0.9 m, 1.8 m]"}
 
 
 def test_fragments_of_scene_files_are_read(project):

@@ -173,7 +173,8 @@ static void test_campaign_files_tell_all(void **state)
         "draw: {sonar.frequncy: 3}\n";
     write_file(folder, "campaign.yaml", text, strlen(text));
     strcpy(path, file_in(folder, "campaign.yaml"));
-    assert_int_equal(campaign_read(&folder->report, path, NULL, 0, &campaign), SONJECT_ERROR_INPUT);
+    assert_int_equal(campaign_read(&folder->report, path, NULL, NULL, 0, &campaign),
+                     SONJECT_ERROR_INPUT);
     campaign_clear(&campaign);
     unlink(path);
     expected[0] = 0;

@@ -23,10 +23,10 @@ from .actions import (
     absorption, calibrate, check, convert, element_layout, element_series, form, inject, measure,
     measure_contact, merge, quicklook, run, run_elements, trace,
 )
-from .campaign import Campaign, merge_campaign
+from .campaign import Campaign, fit_campaign, merge_campaign
 from .context import Context, Progress, default_context, devices
 from .enumerations import (
-    ConvertAxis, LabelFormat, RangeAxis, Samples, SeriesForm, Status,
+    ConvertAxis, LabelFormat, LabelPart, RangeAxis, Samples, SeriesForm, Status,
 )
 from .errors import Cancelled, SonjectError
 from .result import Result
@@ -40,10 +40,10 @@ def version() -> str:
 
 __all__ = [
     "Box", "Campaign", "CampaignImage", "Cancelled", "ContactMeasures", "Context", "ConvertAxis",
-    "Device", "ElementLayout", "LabelFormat", "Measurement", "ObjectTruth",
+    "Device", "ElementLayout", "LabelFormat", "LabelPart", "Measurement", "ObjectTruth",
     "Progress", "RangeAxis", "Result", "Samples", "Scene", "SeriesForm", "SonjectError",
     "Statistics", "Status", "absorption", "calibrate", "check", "convert",
     "default_context", "devices", "element_layout", "element_series", "form", "inject", "keys",
-    "measure", "measure_contact", "merge", "merge_campaign", "quicklook", "run", "run_elements", "trace",
+    "fit_campaign", "measure", "measure_contact", "merge", "merge_campaign", "quicklook", "run", "run_elements", "trace",
     "version",
 ]

@@ -5,14 +5,15 @@ from __future__ import annotations
 import ctypes
 import operator
 import os
-from typing import Any, Iterator, Optional, Tuple
+from typing import Any, Iterator, Optional, Tuple, Union
 
 from . import _interface as s
 from ._classes import CampaignImage as CampaignImage
 from ._values import (
-    Overrides, PathLike, file_name, filled, given, initialised, override_texts, shard_values,
+    Overrides, PathLike, choice, file_name, filled, given, initialised, override_texts, shard_values,
 )
 from .context import Context, Handle, Progress, ProgressBridge, default_context
+from .enumerations import LabelPart
 from .result import Result
 from .scene import Scene
 
@@ -154,3 +155,32 @@ def merge_campaign(
     """
     context = default_context() if context is None else context
     context.work("sonject_campaign_merge", context, file_name("folder", folder), progress=progress)
+
+
+def fit_campaign(
+    path: PathLike,
+    contacts: PathLike,
+    fitted: PathLike,
+    overrides: Overrides = (),
+    *,
+    boxes: Union[str, LabelPart] = "both",
+    progress: Optional[Progress] = None,
+    context: Optional[Context] = None,
+    allows_user_shapes: bool = False,
+) -> None:
+    """Writes a campaign file like the one at path whose targets measure as real contacts do.
+
+    contacts: as sonject fit takes them: a COCO file, a .csv file, a folder of YOLO's or VOC's labels,
+    or a .yaml file of quantiles. fitted: the file to write, in path's folder; a page comes beside it.
+    boxes: what labels are around where their class does not tell: both, highlight or shadow.
+    """
+    context = default_context() if context is None else context
+    texts = override_texts(overrides)
+    consent = bool(allows_user_shapes)
+    params = filled(s.sonject_scene_read_params, allows_user_shapes=consent, override_count=len(texts),
+                    overrides=ctypes.cast(texts, ctypes.POINTER(ctypes.c_char_p)))
+    fit_params = filled(s.sonject_campaign_fit_params, part=choice("boxes", LabelPart, boxes),
+                        contacts=file_name("contacts", contacts),
+                        fitted=file_name("fitted", fitted))
+    context.work("sonject_campaign_fit", context, file_name("path", path), ctypes.byref(params),
+                 ctypes.byref(fit_params), progress=progress)

@@ -1,0 +1,417 @@
+/* A campaign fitted to contacts: rounds of chips that are made, measured as the real contacts are,
+ * and told what to draw next. */
+#include "dataset/fit.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sonject/version.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/text.h"
+
+#define CONTACTS_LEAST 10
+#define CLEAR_LEAST    24 /* contacts of a round */
+#define PAD_MOST       16.0
+#define PAD_CLEAR      0.75 /* pixels */
+#define RANGES_LEAST   1.05 /* farthest over nearest, for the chips to be limited to them */
+
+static int compare_numbers(const void *a, const void *b)
+{
+    double x, y;
+    memcpy(&x, a, sizeof x);
+    memcpy(&y, b, sizeof y);
+    return (x > y) - (x < y);
+}
+
+/* The value below which a share of those that are numbers lies, which are sorted; NaN: there are
+ * none. */
+static double quantile_of(double *values, size_t count, double share)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < count; i++)
+        if (isfinite(values[i]))
+            values[n++] = values[i];
+    qsort(values, n, sizeof *values, compare_numbers);
+    return n > 0 ? sorted_quantile(values, n, share) : NAN;
+}
+
+/* ---- Real contacts. */
+
+static sonject_status measure_real(struct fit *fit)
+{
+    const struct contact_set *set = &fit->set;
+    fit->real = allocate_array(set->count, sizeof *fit->real);
+    CHECK_MEMORY(fit->report, fit->real, "contacts");
+    for (size_t i = 0; i < set->count; i++) {
+        const struct labelled_contact *contact = &set->contacts[i];
+        const char *image = set->images[contact->image];
+        struct contact_chip chip;
+        sonject_status status = contact_chip_read(fit->campaign, image, &contact->box, &chip);
+        THEN(status, contact_chip_measure(fit->report, &chip, contact->part, &fit->real[i]));
+        const bool is_shown = status == SONJECT_OK && fit->real_chip_count < FIT_SHOWN &&
+                              i * FIT_SHOWN / set->count >= fit->real_chip_count;
+        if (is_shown)
+            fit->real_chips[fit->real_chip_count++] = chip;
+        else
+            contact_chip_clear(&chip);
+        if (status != SONJECT_OK)
+            return status;
+        fit->real_count++;
+    }
+    return SONJECT_OK;
+}
+
+/* A member of what contacts show. extents: count of them, stride bytes apart. values: room. */
+static double quantile_of_member(const struct contact_extents *extents, size_t stride, size_t count,
+                                 size_t member, double share, double *values)
+{
+    for (size_t i = 0; i < count; i++)
+        memcpy(&values[i], (const char *)extents + i * stride + member, sizeof *values);
+    return quantile_of(values, count, share);
+}
+
+/* Where chips may lie and how well targets are to be seen, as contacts do and are. */
+static sonject_status take_contacts(struct fit *fit)
+{
+    CHECK(measure_real(fit));
+    const size_t count = fit->real_count;
+    const double share = count >= 30 ? 0.05 : 1.0 / ((double)count + 1.0);
+    double *values = allocate_array(count, sizeof *values);
+    CHECK_MEMORY(fit->report, values, "contacts");
+#define OF_REAL(member, share)                                                                     \
+    quantile_of_member(fit->real, sizeof *fit->real, count,                                        \
+                       offsetof(struct contact_extents, member), share, values)
+    fit->selection.highlight_db = OF_REAL(highlight_visibility_db, share);
+    fit->selection.shadow_db = OF_REAL(shadow_visibility_db, 1.0 - share);
+    const double nearest = OF_REAL(slant_range_m, 0.05);
+    const double farthest = OF_REAL(slant_range_m, 0.95);
+#undef OF_REAL
+    free(values);
+    if (farthest > RANGES_LEAST * nearest) {
+        fit->selection.nearest_range_m = nearest;
+        fit->selection.farthest_range_m = farthest;
+    }
+    return quantile_goals(fit->report, fit->real, count, fit->goals);
+}
+
+/* Goals of published quantiles. */
+static void take_quantiles(struct fit *fit)
+{
+    static const enum extent extents[] = {EXTENT_HIGHLIGHT_ALONG, EXTENT_HIGHLIGHT_SLANT,
+                                          EXTENT_SHADOW_ALONG, EXTENT_SHADOW_SLANT};
+    const struct extent_quantiles *told = &fit->set.quantiles;
+    for (size_t k = 0; k < COUNT(extents); k++) {
+        struct quantile_goal *goal = &fit->goals[extents[k]];
+        double values[QUANTILES_MAX];
+        for (size_t i = 0; i < told->count; i++) {
+            values[i] = log(told->extents_m[k][i]);
+            if (!isfinite(values[i]))
+                continue;
+            goal->level[goal->levels] = told->levels[i];
+            goal->value[goal->levels++] = values[i];
+        }
+        const double half =
+            goal->levels > 1 ? 0.5 * (goal->value[goal->levels - 1] - goal->value[0]) : 0.5;
+        for (size_t i = 0; i < goal->levels; i++)
+            goal->error[i] = quantile_error(goal->level[i], half, told->contacts);
+    }
+}
+
+/* ---- Rounds. */
+
+/* Opens the campaign as it is to be now, with as many images as a round has, each with a target. */
+static sonject_status open_round(struct fit *fit, uint32_t round, struct sonject_campaign **opened)
+{
+    const struct campaign *campaign = &fit->campaign->campaign;
+    const size_t given = fit->source.override_count;
+    struct fitted_selection selection = fit->selection;
+    char images[32], seed[48];
+    char *text = NULL;
+    const char **overrides = allocate_array(given + 3, sizeof *overrides);
+    CHECK_MEMORY(fit->report, overrides, "the fit");
+    if (given > 0)
+        memcpy(overrides, fit->source.overrides, given * sizeof *overrides);
+    snprintf(images, sizeof images, "images=%d", FIT_CHIPS);
+    snprintf(seed, sizeof seed, "seed=%llu",
+             (unsigned long long)((campaign->seed + round) & 0xffffffffu));
+    overrides[given] = images;
+    overrides[given + 1] = seed;
+    overrides[given + 2] = "design=stratified";
+    if (round == 0) /* its levels may be such that none is seen */
+        selection.highlight_db = selection.shadow_db = NAN;
+    *opened = NULL;
+    sonject_status status = fit_draws_text(&fit->draws, fit->report, &selection, "", &text);
+    if (status == SONJECT_OK) {
+        struct campaign_source source = fit->source;
+        source.text = text;
+        source.overrides = overrides;
+        source.override_count = given + 3;
+        source.has_one_target = true;
+        status = campaign_open(fit->report, &source, opened);
+        if (status == SONJECT_OK) /* what is faint is left out, not drawn anew: time is limited */
+            (*opened)->campaign.faint = FAINT_DIFFICULT;
+    }
+    free(text);
+    free(overrides);
+    return status;
+}
+
+/* The campaign's first round, where its swaths reach the contacts' ranges; else without these. */
+static sonject_status open_first(struct fit *fit, struct sonject_campaign **opened)
+{
+    const double nearest = fit->selection.nearest_range_m;
+    sonject_status status = open_round(fit, 0, opened);
+    if (status != SONJECT_ERROR_INPUT || !isfinite(nearest))
+        return status;
+    fit->selection.nearest_range_m = fit->selection.farthest_range_m = NAN;
+    fit->has_no_such_ranges = true;
+    return open_round(fit, 0, opened);
+}
+
+static void note_drawn(const struct campaign_image *image, struct drawn_contact *contact)
+{
+    const sonject_object_truth *truth = image->result.objects;
+    const double proud = truth->overall_height_m - fmax(truth->burial_m, 0.0);
+    double *drawn = contact->drawn;
+    drawn[FITTED_LENGTH] = log(truth->overall_length_m);
+    drawn[FITTED_WIDTH] = log(truth->overall_width_m);
+    drawn[FITTED_HEIGHT] = log(fmax(proud, 1e-3));
+    drawn[FITTED_LEVEL] = truth->over_seabed_db;
+    drawn[FITTED_FLOOR] = image->result.statistics.noise_floor_db;
+    contact->heading_rad = image->scene.objects[0].heading_rad;
+    memcpy(contact->now, drawn, sizeof contact->now);
+}
+
+static sonject_status make_contact(struct fit *fit, struct device *device,
+                                   struct sonject_campaign *campaign, uint64_t id, uint32_t round)
+{
+    struct campaign_image image;
+    struct contact_chip chip = {0};
+    struct drawn_contact *contact = &fit->made[fit->made_count];
+    bool is_seen = false;
+    memset(&image, 0, sizeof image);
+    sonject_status status = campaign_image_make(device, campaign, id, NULL, NULL, &image);
+    THEN(status, contact_chip_of_image(fit->report, &image, fit->part, fit->pad, &chip, &is_seen));
+    if (status == SONJECT_OK && is_seen && isfinite(image.result.objects->over_seabed_db)) {
+        const sonject_object_truth *truth = image.result.objects;
+        contact->round = round;
+        contact->is_faint =
+            truth->highlight_visibility_db < campaign->campaign.visible_highlight_db ||
+            truth->shadow_visibility_db > campaign->campaign.visible_shadow_db;
+        note_drawn(&image, contact);
+        status = contact_chip_measure(fit->report, &chip, fit->part, &contact->shown);
+        fit->made_count += status == SONJECT_OK;
+        if (round + 1 == FIT_ROUNDS && !contact->is_faint && fit->made_chip_count < FIT_SHOWN) {
+            fit->made_chips[fit->made_chip_count++] = chip;
+            chip.intensity = NULL;
+        }
+    }
+    contact_chip_clear(&chip);
+    campaign_image_clear(&image);
+    return status;
+}
+
+/* What the first round shows becomes the draws that the campaign lacks. */
+static sonject_status learn_from_first(struct fit *fit)
+{
+    struct fit_draws *draws = &fit->draws;
+    const size_t count = fit->made_count;
+    double *values = allocate_array(count + 1, sizeof *values);
+    CHECK_MEMORY(fit->report, values, "the fit");
+    for (size_t i = 0; i < count; i++)
+        values[i] = fit->made[i].drawn[FITTED_LEVEL];
+    draws->level_db[0] = quantile_of(values, count, 0.1);
+    draws->level_db[1] = quantile_of(values, count, 0.9);
+    for (size_t i = 0; i < count; i++)
+        values[i] = fit->made[i].drawn[FITTED_FLOOR];
+    draws->floor_db = quantile_of(values, count, 0.5);
+    draws->has_added = count > 0;
+    free(values);
+    return SONJECT_OK;
+}
+
+/* Pixels by which labels are wider than what shows, in the mean. */
+static double mean_pad(const struct contact_extents *extents, size_t stride, size_t count)
+{
+    double sum = 0.0;
+    double seen = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        double pad;
+        memcpy(&pad,
+               (const char *)extents + i * stride + offsetof(struct contact_extents, pad_pixels),
+               sizeof pad);
+        sum += isfinite(pad) ? pad : 0.0;
+        seen += isfinite(pad) ? 1.0 : 0.0;
+    }
+    return seen > 0.0 ? sum / seen : 0.0;
+}
+
+/* Labels of injected contacts become as wide as those of real ones, where the last round's, from
+ * the first-th contact on, were clearly not. */
+static void widen_labels(struct fit *fit, size_t first)
+{
+    const double wider =
+        mean_pad(fit->real, sizeof *fit->real, fit->real_count) -
+        mean_pad(&fit->made[first].shown, sizeof *fit->made, fit->made_count - first);
+    if (fit->real_count > 0 && fabs(wider) > PAD_CLEAR)
+        fit->pad = (uint64_t)fmin(fmax((double)fit->pad + round(wider), 0.0), PAD_MOST);
+}
+
+/* Moves the draws, and what all contacts made so far have drawn with them. */
+static sonject_status move_draws(struct fit *fit, uint32_t round, struct move_prior *prior)
+{
+    struct draw_move moves[FITTED_KINDS];
+    CHECK(fit_moves(fit->report, fit->made, fit->made_count, fit->goals, prior, moves));
+    for (size_t k = 0; k < FITTED_KINDS; k++) {
+        if (round + 2 == FIT_ROUNDS) { /* half of the last move is chance */
+            moves[k].shift *= 0.5;
+            moves[k].stretch = sqrt(moves[k].stretch);
+        }
+        prior->shift[k] += moves[k].shift;
+        prior->stretch[k] += log(moves[k].stretch);
+        for (size_t i = 0; i < fit->made_count; i++)
+            fit->made[i].now[k] = draw_moved(&moves[k], fit->made[i].now[k]);
+    }
+    fit_draws_move(&fit->draws, moves);
+    return SONJECT_OK;
+}
+
+/* Leaves faint contacts out, from the first-th on, as labellers do; unless nearly all are: then
+ * their draws are far off. */
+static void leave_out_faint(struct fit *fit, size_t first)
+{
+    size_t kept = first;
+    for (size_t i = first; i < fit->made_count; i++)
+        kept += !fit->made[i].is_faint;
+    if (kept < first + CLEAR_LEAST)
+        return;
+    kept = first;
+    for (size_t i = first; i < fit->made_count; i++)
+        if (!fit->made[i].is_faint)
+            fit->made[kept++] = fit->made[i];
+    fit->made_count = kept;
+}
+
+static sonject_status run_round(struct fit *fit, struct device *device, uint32_t round,
+                                sonject_progress_function progress, void *user)
+{
+    struct sonject_campaign *campaign;
+    char stage[64];
+    sonject_status status =
+        round == 0 ? open_first(fit, &campaign) : open_round(fit, round, &campaign);
+    snprintf(stage, sizeof stage, "round %u of %d", (unsigned)round + 1, FIT_ROUNDS);
+    for (uint64_t id = 0; status == SONJECT_OK && id < FIT_CHIPS; id++) {
+        const double done = ((double)round + (double)id / FIT_CHIPS) / FIT_ROUNDS;
+        if (progress && progress(user, done, stage) != 0)
+            status = SONJECT_CANCELLED;
+        THEN(status, make_contact(fit, device, campaign, id, round));
+    }
+    campaign_close(&campaign);
+    return status;
+}
+
+static sonject_status run_rounds(struct fit *fit, struct device_slot *slot,
+                                 sonject_progress_function progress, void *user)
+{
+    struct device *device;
+    struct move_prior prior = {.contacts = fit->real_count > 0 ? (double)fit->real_count
+                                                               : fit->set.quantiles.contacts};
+    CHECK(device_slot_open(fit->report, slot, &device));
+    fit->made = allocate_array((size_t)FIT_ROUNDS * FIT_CHIPS, sizeof *fit->made);
+    CHECK_MEMORY(fit->report, fit->made, "the fit");
+    for (uint32_t round = 0; round < FIT_ROUNDS; round++) {
+        const size_t first = fit->made_count;
+        CHECK(run_round(fit, device, round, progress, user));
+        leave_out_faint(fit, first);
+        if (round == 0)
+            CHECK(learn_from_first(fit));
+        else
+            widen_labels(fit, first);
+        if (round + 1 < FIT_ROUNDS)
+            CHECK(move_draws(fit, round, &prior));
+    }
+    return SONJECT_OK;
+}
+
+/* ---- The whole. */
+
+static sonject_status check_fitted(const struct fit *fit, const char *fitted)
+{
+    char *folder = path_folder(fitted);
+    CHECK_MEMORY(fit->report, folder, "the fit");
+    const bool is_same = strcmp(folder, fit->campaign->campaign.folder) == 0;
+    free(folder);
+    if (!is_same)
+        return input_failure(fit->report, fitted,
+                             "must lie in the folder of %s, from which the names of its files are "
+                             "meant",
+                             fit->source.path);
+    if (strcmp(fitted, fit->source.path) == 0)
+        return input_failure(fit->report, fitted,
+                             "is the campaign that is fitted; choose another name");
+    return SONJECT_OK;
+}
+
+static sonject_status read_all(struct fit *fit, const sonject_campaign_fit_params *params)
+{
+    CHECK(campaign_open(fit->report, &fit->source, &fit->campaign));
+    CHECK(check_fitted(fit, params->fitted));
+    CHECK(fit_draws_find(&fit->draws, fit->report, &fit->campaign->campaign));
+    CHECK(contact_set_read(fit->report, params->contacts, params->part, &fit->set));
+    if (fit->set.quantiles.count > 0) {
+        take_quantiles(fit);
+        return SONJECT_OK;
+    }
+    if (fit->set.count < CONTACTS_LEAST)
+        return input_failure(fit->report, params->contacts,
+                             "has %zu contacts; a fit needs %d or more", fit->set.count,
+                             CONTACTS_LEAST);
+    return take_contacts(fit);
+}
+
+static sonject_status write_all(const struct fit *fit, const char *fitted, const char *contacts)
+{
+    char comment[512];
+    char *text;
+    const char *slash = strrchr(contacts, '/');
+    snprintf(comment, sizeof comment,
+             "# Fitted by sonject %s to %.200s: draws of sizes, levels and the noise floor.\n",
+             sonject_version(), slash && slash[1] ? slash + 1 : contacts);
+    CHECK(fit_draws_text(&fit->draws, fit->report, &fit->selection, comment, &text));
+    sonject_status status = fit_page_write(fit, fitted);
+    THEN(status, file_write_whole(fit->report, fitted, text, strlen(text)));
+    free(text);
+    return status;
+}
+
+sonject_status campaign_fit(struct report *report, struct device_slot *slot,
+                            const struct campaign_source *source,
+                            const sonject_campaign_fit_params *params,
+                            sonject_progress_function progress, void *user)
+{
+    struct fit *fit = allocate_array(1, sizeof *fit);
+    CHECK_MEMORY(report, fit, "the fit");
+    fit->report = report;
+    fit->source = *source;
+    fit->part = params->part;
+    fit->selection = (struct fitted_selection){NAN, NAN, NAN, NAN};
+    sonject_status status = read_all(fit, params);
+    THEN(status, run_rounds(fit, slot, progress, user));
+    THEN(status, write_all(fit, params->fitted, params->contacts));
+    for (size_t i = 0; i < FIT_SHOWN; i++) {
+        contact_chip_clear(&fit->real_chips[i]);
+        contact_chip_clear(&fit->made_chips[i]);
+    }
+    fit_draws_clear(&fit->draws);
+    campaign_close(&fit->campaign);
+    contact_set_clear(&fit->set);
+    free(fit->real);
+    free(fit->made);
+    free(fit);
+    return status;
+}

@@ -1,0 +1,318 @@
+/* Contacts cut out of their images and measured: real ones where somebody has labelled them, and
+ * injected ones as they would be labelled. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/text.h"
+#include "dataset/fit.h"
+#include "measure/measures.h"
+#include "schema/scene_file.h"
+#include "swath/geometry_notes.h"
+
+#define CHIP_MARGIN  64 /* pixels around a label, of which the seabed's level is taken */
+#define LABEL_MARGIN 2  /* pixels around a label that are searched, too */
+#define SHADOW_REACH                                                                               \
+    128                /* columns behind a highlight's label in which its shadow is looked for     \
+                        */
+#define SHADOW_ROWS 6  /* by which it may be wider */
+#define ECHO_REACH  24 /* columns before a shadow's label in which its highlight lies */
+
+void contact_chip_clear(struct contact_chip *chip)
+{
+    free(chip->intensity);
+    memset(chip, 0, sizeof *chip);
+}
+
+/* The part of an image of rows x columns around a label. */
+static struct window_box chip_window(const sonject_box *label, size_t rows, size_t columns)
+{
+    const struct window_box box = window_box_of(label);
+    return box_with_margin(&box, CHIP_MARGIN, rows, columns);
+}
+
+/* Intensities of a window of pixels of rows of so many columns. */
+static sonject_status cut_chip(struct report *report, const float *pixels, bool is_complex,
+                               size_t columns, const struct window_box *window,
+                               const sonject_box *label, struct contact_chip *chip)
+{
+    chip->rows = window->rows;
+    chip->columns = window->columns;
+    chip->label = *label;
+    chip->label.first_row -= window->first_row;
+    chip->label.first_column -= window->first_column;
+    chip->intensity = allocate_array(window->rows, window->columns * sizeof *chip->intensity);
+    CHECK_MEMORY(report, chip->intensity, "a contact");
+    for (size_t i = 0; i < window->rows * window->columns; i++) {
+        const size_t k = (window->first_row + i / window->columns) * columns +
+                         window->first_column + i % window->columns;
+        chip->intensity[i] =
+            is_complex ? pixels[2 * k] * pixels[2 * k] + pixels[2 * k + 1] * pixels[2 * k + 1]
+                       : pixels[k] * pixels[k];
+    }
+    return SONJECT_OK;
+}
+
+static const char *file_name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* The campaign's swath of that file, whose keys are its image's; by name where no path is the
+ * same. */
+static const struct swath_plan *swath_of_image(const struct campaign *campaign, const char *image)
+{
+    const struct swath_plan *found = NULL;
+    for (size_t i = 0; i < campaign->swath_count; i++) {
+        const struct swath_plan *swath = &campaign->swaths[i];
+        if (strcmp(swath->path, image) == 0)
+            return swath;
+        if (strcmp(file_name_of(swath->path), file_name_of(image)) == 0)
+            found = swath;
+    }
+    return found;
+}
+
+/* The campaign's scene for an image of which nothing is injected into. patch: NULL, all of it. */
+static sonject_status read_image_scene(struct sonject_campaign *campaign, const char *image,
+                                       const struct window_box *patch, bool tells_geometry,
+                                       bool tells_altitude, struct scene *scene)
+{
+    const struct swath_plan *swath = swath_of_image(&campaign->campaign, image);
+    const size_t keys = swath ? swath->key_count : 0;
+    const struct tree_node path = {.kind = TREE_TEXT, .is_quoted = true, .text = (char *)image};
+    struct growing_text input = {NULL, 0, 0, false};
+    char patch_text[160];
+    size_t count = 0;
+    const char **overrides = allocate_array(keys + 5, sizeof *overrides);
+    growing_text_add(&input, "input.path=");
+    tree_write_flow(&path, &input);
+    char *input_text = growing_text_end(&input);
+    sonject_status status = overrides && input_text
+                                ? SONJECT_OK
+                                : report_out_of_memory(campaign->report, "a contact's scene");
+    if (status == SONJECT_OK) {
+        for (size_t i = 0; i < keys; i++)
+            overrides[count++] = swath->keys[i];
+        const size_t moved = count;
+        overrides[count++] = "objects=[]";
+        overrides[count++] = input_text;
+        if (tells_geometry)
+            overrides[count++] = "input.geometry=from_file";
+        if (tells_altitude)
+            overrides[count++] = "sonar.altitude=from_file";
+        if (patch) {
+            snprintf(patch_text, sizeof patch_text,
+                     "patch={row: %zu, column: %zu, rows: %zu, columns: %zu}", patch->first_row,
+                     patch->first_column, patch->rows, patch->columns);
+            overrides[count++] = patch_text;
+        }
+        const struct scene_source source = {.path = campaign->campaign.scene_path,
+                                            .text = campaign->scene_text,
+                                            .overrides = overrides,
+                                            .override_count = count,
+                                            .moved_folder = campaign->campaign.folder,
+                                            .moved_overrides = moved,
+                                            .allows_user_shapes = campaign->allows_user_shapes};
+        scene_init(scene);
+        status = scene_source_read(&source, campaign->report, scene);
+    }
+    free(overrides);
+    free(input_text);
+    return status;
+}
+
+/* What an image says of itself. */
+static sonject_status describe_image(struct sonject_campaign *campaign, const char *image,
+                                     struct raster_layout *layout, bool *tells_geometry,
+                                     bool *tells_altitude)
+{
+    struct scene scene;
+    struct swath_file *file = NULL;
+    CHECK(read_image_scene(campaign, image, NULL, false, false, &scene));
+    sonject_status status =
+        swath_file_open_array(campaign->report, image, scene.channel, scene.array, &file);
+    if (status == SONJECT_OK) {
+        struct noted_geometry noted;
+        sonject_geometry_params told;
+        swath_file_layout(file, layout);
+        geometry_notes_read(file, &noted);
+        *tells_geometry = geometry_notes_tell(&noted, &told);
+        *tells_altitude = isfinite(noted.altitude_m);
+    }
+    swath_file_close(&file);
+    scene_clear(&scene);
+    return status;
+}
+
+sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *image,
+                                 const sonject_box *label, struct contact_chip *chip)
+{
+    struct raster_layout layout = {0};
+    struct scene scene;
+    struct swath swath;
+    bool tells_geometry = false;
+    bool tells_altitude = false;
+    memset(chip, 0, sizeof *chip);
+    CHECK(describe_image(campaign, image, &layout, &tells_geometry, &tells_altitude));
+    if (label->first_row >= layout.rows || label->rows > layout.rows - label->first_row ||
+        label->first_column >= layout.columns ||
+        label->columns > layout.columns - label->first_column)
+        return input_failure(campaign->report, image,
+                             "has %llu x %llu pixels, and a label's box at row %llu, column %llu "
+                             "is not inside",
+                             (unsigned long long)layout.rows, (unsigned long long)layout.columns,
+                             (unsigned long long)label->first_row,
+                             (unsigned long long)label->first_column);
+    const struct window_box window =
+        chip_window(label, (size_t)layout.rows, (size_t)layout.columns);
+    const struct window_box all = {0, 0, window.rows, window.columns};
+    sonject_box inner = *label;
+    inner.first_row -= window.first_row;
+    inner.first_column -= window.first_column;
+    CHECK(read_image_scene(campaign, image, &window, tells_geometry, tells_altitude, &scene));
+    sonject_status status = swath_open_stored(campaign->report, &scene, &campaign->store, &swath);
+    if (status == SONJECT_OK) {
+        const sonject_geometry_params *geometry = &scene.geometry;
+        status = cut_chip(campaign->report, swath.pixels, swath.is_complex, all.columns, &all,
+                          &inner, chip);
+        chip->row_spacing_m = geometry->row_spacing_m;
+        chip->column_spacing_m = geometry->column_spacing_m;
+        chip->first_slant_range_m = geometry->first_slant_range_m +
+                                    (double)window.first_column * geometry->column_spacing_m;
+        chip->altitude_m = scene.sonar.altitude_m;
+        swath_close(&swath);
+    }
+    scene_clear(&scene);
+    return status;
+}
+
+sonject_status contact_chip_of_image(struct report *report, const struct campaign_image *image,
+                                     uint32_t part, uint64_t pad, struct contact_chip *chip,
+                                     bool *is_seen)
+{
+    const struct injection_result *result = &image->result;
+    const sonject_object_truth *truth = result->objects;
+    const sonject_box *box = part == LABELLED_HIGHLIGHT ? &truth->highlight
+                             : part == LABELLED_SHADOW  ? &truth->shadow
+                                                        : &truth->both;
+    memset(chip, 0, sizeof *chip);
+    *is_seen = box->rows > 0;
+    if (!*is_seen)
+        return SONJECT_OK;
+    const struct window_box tight = window_box_of(box);
+    const struct window_box padded =
+        box_with_margin(&tight, (size_t)pad, result->rows, result->columns);
+    const sonject_box label = {padded.first_row, padded.first_column, padded.rows, padded.columns};
+    const struct window_box window = chip_window(&label, result->rows, result->columns);
+    const sonject_geometry_params *geometry = &image->scene.geometry;
+    CHECK(cut_chip(report, result->image, result->is_complex, result->columns, &window, &label,
+                   chip));
+    chip->row_spacing_m = geometry->row_spacing_m;
+    chip->column_spacing_m = geometry->column_spacing_m;
+    chip->first_slant_range_m =
+        geometry->first_slant_range_m +
+        (double)(image->plan.chip.first_column + window.first_column) * geometry->column_spacing_m;
+    chip->altitude_m = image->scene.sonar.altitude_m;
+    return SONJECT_OK;
+}
+
+/* Where the contact of a label is looked for. */
+static struct contact_place place_of_label(const struct contact_chip *chip, uint32_t part)
+{
+    const struct window_box label = window_box_of(&chip->label);
+    struct contact_place place = {0};
+    place.box = box_with_margin(&label, LABEL_MARGIN, chip->rows, chip->columns);
+    place.bright = place.box;
+    if (part == LABELLED_HIGHLIGHT) {
+        const size_t end = place.box.first_column + place.box.columns + SHADOW_REACH;
+        place.box = box_with_margin(&label, SHADOW_ROWS, chip->rows, chip->columns);
+        place.box.columns = (end < chip->columns ? end : chip->columns) - place.box.first_column;
+        place.is_near = true;
+    } else if (part == LABELLED_SHADOW) {
+        const size_t before =
+            place.box.first_column < ECHO_REACH ? place.box.first_column : ECHO_REACH;
+        place.box.first_column -= before;
+        place.box.columns += before;
+        place.bright = place.box;
+    }
+    return place;
+}
+
+/* The height over a level seabed that hides what lies between these slant ranges. */
+static double height_of_shadow(double altitude_m, double first_m, double end_m)
+{
+    const double near = sqrt(first_m * first_m - altitude_m * altitude_m);
+    const double far = sqrt(end_m * end_m - altitude_m * altitude_m);
+    return altitude_m * (far - near) / far;
+}
+
+static void fill_extents(const struct contact_chip *chip, const sonject_contact_measures *measures,
+                         struct contact_extents *extents)
+{
+    const double row = chip->row_spacing_m;
+    const double column = chip->column_spacing_m;
+    const double middle =
+        chip->first_slant_range_m + column * ((double)measures->highlight.first_column +
+                                              0.5 * (double)measures->highlight.columns);
+    const double end = chip->first_slant_range_m +
+                       column * (double)(measures->shadow.first_column + measures->shadow.columns);
+    const double ground =
+        middle > chip->altitude_m ? 1.0 / sqrt(1.0 - pow(chip->altitude_m / middle, 2.0)) : NAN;
+    double *of = extents->of;
+    of[EXTENT_HIGHLIGHT_ALONG] = measures->highlight_along_m;
+    of[EXTENT_HIGHLIGHT_RANGE] = measures->highlight_range_m * ground;
+    of[EXTENT_SHADOW_ALONG] = measures->shadow_along_m;
+    of[EXTENT_SHADOW_HEIGHT] =
+        height_of_shadow(chip->altitude_m, end - measures->shadow_range_m, end);
+    of[EXTENT_AXIS_LENGTH] = measures->axis_length_m;
+    of[EXTENT_AXIS_WIDTH] = measures->axis_width_m;
+    of[EXTENT_HIGHLIGHT_ROWS] = (double)measures->highlight.rows * row;
+    of[EXTENT_HIGHLIGHT_COLUMNS] = (double)measures->highlight.columns * column * ground;
+    of[EXTENT_SHADOW_ROWS] = (double)measures->shadow.rows * row;
+    of[EXTENT_HIGHLIGHT_SLANT] = measures->highlight_range_m;
+    of[EXTENT_SHADOW_SLANT] = measures->shadow_range_m;
+    for (int i = 0; i < EXTENT_LENGTHS; i++)
+        of[i] = of[i] > 1e-3 ? log(of[i]) : NAN;
+    of[EXTENT_HIGHLIGHT_LEVEL] = measures->highlight_contrast_db;
+    of[EXTENT_SHADOW_LEVEL] = measures->shadow_contrast_db;
+    extents->highlight_visibility_db = measures->highlight_visibility_db;
+    extents->shadow_visibility_db = measures->shadow_visibility_db;
+}
+
+sonject_status contact_chip_measure(struct report *report, const struct contact_chip *chip,
+                                    uint32_t part, struct contact_extents *extents)
+{
+    const struct contact_place place = place_of_label(chip, part);
+    sonject_contact_measures measures;
+    for (int i = 0; i < EXTENT_KINDS; i++)
+        extents->of[i] = NAN;
+    extents->highlight_visibility_db = extents->shadow_visibility_db = extents->pad_pixels = NAN;
+    extents->slant_range_m =
+        chip->first_slant_range_m + chip->column_spacing_m * ((double)chip->label.first_column +
+                                                              0.5 * (double)chip->label.columns);
+    const sonject_status status =
+        measure_placed_contact(report, chip->intensity, chip->rows, chip->columns, &place,
+                               chip->row_spacing_m, chip->column_spacing_m, &measures);
+    if (status == SONJECT_ERROR_INPUT) {
+        report->message[0] = '\0';
+        return SONJECT_OK; /* the seabed about it is black */
+    }
+    if (status != SONJECT_OK)
+        return status;
+    fill_extents(chip, &measures, extents);
+    const struct window_box highlight = window_box_of(&measures.highlight);
+    const struct window_box shadow = window_box_of(&measures.shadow);
+    const struct window_box both = highlight.rows == 0 ? shadow
+                                   : shadow.rows == 0  ? highlight
+                                                       : box_around(&highlight, &shadow);
+    const size_t rows = part == LABELLED_HIGHLIGHT ? highlight.rows
+                        : part == LABELLED_SHADOW  ? shadow.rows
+                                                   : both.rows;
+    if (rows > 0)
+        extents->pad_pixels = 0.5 * ((double)chip->label.rows - (double)rows);
+    return SONJECT_OK;
+}

@@ -1,0 +1,373 @@
+#include "measure/draw_fit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+#define MOVES      (2 * FITTED_KINDS) /* shifts, then logarithms of stretches */
+#define RELATIONS  3                  /* of sizes to each other */
+#define RESIDUALS  (EXTENT_KINDS * QUANTILES_MAX + MOVES + RELATIONS)
+#define TERMS      (FITTED_KINDS + 1) /* of a response: a constant comes first */
+#define STEPS_MAX  60
+#define SEEN_LEAST 8    /* contacts that show an extent, for it to be compared */
+#define RIDGE      1e-5 /* of the weights' sum, so that what was not varied has no response */
+#define NEAR_LEAST 0.5  /* nearness of contacts that are compared */
+
+/* How far a round may go: natural logarithms of sizes, dB, and logarithms of stretches. */
+static const double most[MOVES] = {0.7, 0.7, 0.7, 20.0, 8.0, 0.5, 0.5, 0.5, 0.5, 0.5};
+
+/* How far draws may have moved since contacts were made, for these to be compared still. */
+static const double near[FITTED_KINDS] = {0.3, 0.3, 0.3, 3.0, 3.0};
+
+/* How far the campaign's own values are believed, standard deviations of all moves; and the ratio
+ * of sizes to each other. */
+static const double believed[MOVES] = {1.0, 1.0, 1.0, 15.0, 10.0, 0.3, 0.3, 0.3, 0.5, 0.5};
+#define BELIEVED_RATIO 0.6
+
+static int compare_numbers(const void *a, const void *b)
+{
+    double x, y;
+    memcpy(&x, a, sizeof x);
+    memcpy(&y, b, sizeof y);
+    return (x > y) - (x < y);
+}
+
+double sorted_quantile(const double *sorted, size_t count, double share)
+{
+    const double place = share * (double)(count - 1);
+    const size_t below = (size_t)fmin(floor(place), (double)(count - 1));
+    const size_t above = below + 1 < count ? below + 1 : below;
+    return sorted[below] + (place - (double)below) * (sorted[above] - sorted[below]);
+}
+
+/* The standard normal distribution's quantile, after Hastings (1955), to 4.5e-4. */
+static double normal_deviate(double share)
+{
+    const double tail = fmin(share, 1.0 - share);
+    const double t = sqrt(-2.0 * log(tail));
+    const double z = t - (2.515517 + t * (0.802853 + t * 0.010328)) /
+                             (1.0 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
+    return share < 0.5 ? -z : z;
+}
+
+double quantile_error(double share, double middle_half, double count)
+{
+    const double z = normal_deviate(share);
+    const double deviation = fmax(middle_half / 1.349, 0.05);
+    const double density = exp(-0.5 * z * z) / sqrt(2.0 * 3.14159265358979323846);
+    return deviation * sqrt(share * (1.0 - share) / count) / density;
+}
+
+/* Shares that so many contacts tell. */
+static size_t choose_levels(size_t count, double *levels)
+{
+    static const double many[] = {0.05, 0.15, 0.25, 0.375, 0.5, 0.625, 0.75, 0.85, 0.95};
+    static const double some[] = {0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9};
+    static const double few[] = {0.2, 0.35, 0.5, 0.65, 0.8};
+    const double *chosen = count >= 100 ? many : count >= 30 ? some : few;
+    const size_t chosen_count = count >= 100 ? COUNT(many) : count >= 30 ? COUNT(some) : COUNT(few);
+    memcpy(levels, chosen, chosen_count * sizeof *levels);
+    return chosen_count;
+}
+
+sonject_status quantile_goals(struct report *report, const struct contact_extents *contacts,
+                              size_t count, struct quantile_goal *goals)
+{
+    double *seen = allocate_array(count + 1, sizeof *seen);
+    CHECK_MEMORY(report, seen, "contacts");
+    for (size_t k = 0; k < EXTENT_KINDS; k++) {
+        struct quantile_goal *goal = &goals[k];
+        size_t n = 0;
+        memset(goal, 0, sizeof *goal);
+        for (size_t i = 0; i < count; i++)
+            if (isfinite(contacts[i].of[k]))
+                seen[n++] = contacts[i].of[k];
+        /* the two slant extents say of contacts in images what others say better */
+        if (n < SEEN_LEAST || k == EXTENT_HIGHLIGHT_SLANT || k == EXTENT_SHADOW_SLANT)
+            continue;
+        qsort(seen, n, sizeof *seen, compare_numbers);
+        const double half = sorted_quantile(seen, n, 0.75) - sorted_quantile(seen, n, 0.25);
+        goal->levels = choose_levels(n, goal->level);
+        for (size_t j = 0; j < goal->levels; j++) {
+            goal->value[j] = sorted_quantile(seen, n, goal->level[j]);
+            goal->error[j] = quantile_error(goal->level[j], half, (double)n);
+        }
+    }
+    free(seen);
+    return SONJECT_OK;
+}
+
+/* ---- How what is shown follows from what is drawn. */
+
+/* Extents along and across the track of an ellipse of that length and width in plan, in place of
+ * these two; the rest as it is. Extents of contacts follow these more nearly than sizes. */
+static void project(const double *drawn, double heading_rad, double *projected)
+{
+    const double length = exp(drawn[FITTED_LENGTH]);
+    const double width = exp(drawn[FITTED_WIDTH]);
+    const double c = cos(heading_rad);
+    const double s = sin(heading_rad);
+    memcpy(projected, drawn, FITTED_KINDS * sizeof *projected);
+    projected[0] = log(hypot(length * c, width * s));
+    projected[1] = log(hypot(length * s, width * c));
+}
+
+/* Solves a x = b for a symmetric positive matrix of n x n, by Cholesky's factors, in place. False
+ * where it is none. */
+static bool solve_symmetric(double *a, double *b, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j <= i; j++) {
+            double sum = a[i * n + j];
+            for (size_t k = 0; k < j; k++)
+                sum -= a[i * n + k] * a[j * n + k];
+            if (i == j && !(sum > 0.0))
+                return false;
+            a[i * n + j] = i == j ? sqrt(sum) : sum / a[j * n + j];
+        }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < i; k++)
+            b[i] -= a[i * n + k] * b[k];
+        b[i] /= a[i * n + i];
+    }
+    for (size_t i = n; i-- > 0;) {
+        for (size_t k = i + 1; k < n; k++)
+            b[i] -= a[k * n + i] * b[k];
+        b[i] /= a[i * n + i];
+    }
+    return true;
+}
+
+/* How near contacts were made to where draws are now: 1, and less the farther these have moved. */
+static double nearness(const struct drawn_contact *contact)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < FITTED_KINDS; k++)
+        sum += pow((contact->now[k] - contact->drawn[k]) / near[k], 2.0);
+    return exp(-0.5 * sum);
+}
+
+/* The slopes of an extent over what is drawn, by weighted least squares. */
+static void find_response(const struct drawn_contact *contacts, size_t count, size_t extent,
+                          double response[FITTED_KINDS])
+{
+    double a[TERMS * TERMS] = {0.0};
+    double b[TERMS] = {0.0};
+    double total = 0.0;
+    double varied = 0.0; /* of the floor */
+    for (size_t i = 0; i < count; i++) {
+        const double y = contacts[i].shown.of[extent];
+        const double weight = nearness(&contacts[i]);
+        double x[TERMS] = {1.0};
+        if (!isfinite(y))
+            continue;
+        project(contacts[i].drawn, contacts[i].heading_rad, x + 1);
+        for (size_t j = 0; j < TERMS; j++) {
+            b[j] += weight * x[j] * y;
+            for (size_t k = 0; k < TERMS; k++)
+                a[j * TERMS + k] += weight * x[j] * x[k];
+        }
+        total += weight;
+        varied =
+            fmax(varied, fabs(contacts[i].drawn[FITTED_FLOOR] - contacts[0].drawn[FITTED_FLOOR]));
+    }
+    for (size_t j = 1; j < TERMS; j++)
+        a[j * TERMS + j] += RIDGE * total;
+    memset(response, 0, FITTED_KINDS * sizeof *response);
+    if (solve_symmetric(a, b, TERMS))
+        memcpy(response, b + 1, FITTED_KINDS * sizeof *response);
+    /* The noise is in all shadows alike, and hardly in anything else. */
+    if (extent != EXTENT_SHADOW_LEVEL)
+        response[FITTED_FLOOR] = 0.0;
+    else if (varied < 0.5)
+        response[FITTED_FLOOR] = 1.0;
+}
+
+/* ---- Moves. */
+
+struct move_fit {
+    const struct drawn_contact **contacts; /* that are compared; owned */
+    size_t count;
+    const struct quantile_goal *goals;
+    const struct move_prior *prior;
+    double centre[FITTED_KINDS];
+    double response[EXTENT_KINDS][FITTED_KINDS];
+    double *shown; /* room for count values; owned */
+    double trust;  /* of the prior: its deviations are so many times as large */
+};
+
+static double moved(const struct move_fit *fit, const double *moves, size_t kind, double value)
+{
+    return fit->centre[kind] + moves[kind] +
+           exp(moves[FITTED_KINDS + kind]) * (value - fit->centre[kind]);
+}
+
+/* Differences of quantiles, over their errors. Returns their number. */
+static size_t add_extent_residuals(const struct move_fit *fit, const double *moves, size_t extent,
+                                   double *residuals)
+{
+    const struct quantile_goal *goal = &fit->goals[extent];
+    size_t n = 0;
+    for (size_t i = 0; i < fit->count; i++) {
+        const struct drawn_contact *contact = fit->contacts[i];
+        double drawn[FITTED_KINDS], before[FITTED_KINDS], after[FITTED_KINDS];
+        double shown = contact->shown.of[extent];
+        if (!isfinite(shown))
+            continue;
+        for (size_t k = 0; k < FITTED_KINDS; k++)
+            drawn[k] = moved(fit, moves, k, contact->now[k]);
+        project(contact->drawn, contact->heading_rad, before);
+        project(drawn, contact->heading_rad, after);
+        for (size_t k = 0; k < FITTED_KINDS; k++)
+            shown += fit->response[extent][k] * (after[k] - before[k]);
+        fit->shown[n++] = shown;
+    }
+    if (n < SEEN_LEAST)
+        return 0;
+    qsort(fit->shown, n, sizeof *fit->shown, compare_numbers);
+    const double half = sorted_quantile(fit->shown, n, 0.75) - sorted_quantile(fit->shown, n, 0.25);
+    for (size_t j = 0; j < goal->levels; j++) {
+        const double error = hypot(goal->error[j], quantile_error(goal->level[j], half, (double)n));
+        residuals[j] = (sorted_quantile(fit->shown, n, goal->level[j]) - goal->value[j]) / error /
+                       sqrt(0.5 * (double)goal->levels);
+    }
+    return goal->levels;
+}
+
+static size_t find_residuals(const struct move_fit *fit, const double *moves, double *residuals)
+{
+    const struct move_prior *prior = fit->prior;
+    double sizes[FITTED_KINDS];
+    size_t count = 0;
+    size_t compared = 0;
+    for (size_t k = 0; k < EXTENT_KINDS; k++)
+        compared += fit->goals[k].levels > 0;
+    for (size_t k = 0; k < EXTENT_KINDS; k++) {
+        const size_t added =
+            fit->goals[k].levels ? add_extent_residuals(fit, moves, k, residuals + count) : 0;
+        /* extents are no independent witnesses: eleven count as some six */
+        for (size_t j = 0; j < added; j++)
+            residuals[count + j] *= sqrt(fmin(1.0, 6.0 / (double)compared));
+        count += added;
+    }
+    for (size_t k = 0; k < FITTED_KINDS; k++) {
+        sizes[k] = prior->shift[k] + moves[k];
+        residuals[count++] = sizes[k] / (believed[k] * fit->trust);
+        residuals[count++] = (prior->stretch[k] + moves[FITTED_KINDS + k]) /
+                             (believed[FITTED_KINDS + k] * fit->trust);
+    }
+    residuals[count++] = (sizes[FITTED_LENGTH] - sizes[FITTED_WIDTH]) / BELIEVED_RATIO;
+    residuals[count++] = (sizes[FITTED_WIDTH] - sizes[FITTED_HEIGHT]) / BELIEVED_RATIO;
+    residuals[count++] = (sizes[FITTED_LENGTH] - sizes[FITTED_HEIGHT]) / BELIEVED_RATIO;
+    return count;
+}
+
+static double sum_of_squares(const double *values, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++)
+        sum += values[i] * values[i];
+    return sum;
+}
+
+/* Levenberg's and Marquardt's steps within the limits of a round. buffers: RESIDUALS times
+ * MOVES + 2. */
+static void descend(const struct move_fit *fit, double *moves, double *buffers)
+{
+    double *now = buffers;
+    double *tried = buffers + RESIDUALS;
+    double *slopes = tried + RESIDUALS; /* MOVES of RESIDUALS */
+    double damping = 1e-2;
+    size_t count = find_residuals(fit, moves, now);
+    double cost = sum_of_squares(now, count);
+    for (int step = 0; step < STEPS_MAX && damping < 1e6; step++) {
+        double a[MOVES * MOVES], b[MOVES], next[MOVES];
+        for (size_t i = 0; i < MOVES; i++) {
+            const double nudge = 0.02 * most[i];
+            memcpy(next, moves, sizeof next);
+            next[i] += moves[i] > 0.0 ? -nudge : nudge;
+            find_residuals(fit, next, slopes + i * RESIDUALS);
+            for (size_t j = 0; j < count; j++)
+                slopes[i * RESIDUALS + j] =
+                    (slopes[i * RESIDUALS + j] - now[j]) / (next[i] - moves[i]);
+        }
+        for (size_t i = 0; i < MOVES; i++) {
+            b[i] = 0.0;
+            for (size_t j = 0; j < count; j++)
+                b[i] -= slopes[i * RESIDUALS + j] * now[j];
+            for (size_t k = 0; k < MOVES; k++) {
+                a[i * MOVES + k] = 0.0;
+                for (size_t j = 0; j < count; j++)
+                    a[i * MOVES + k] += slopes[i * RESIDUALS + j] * slopes[k * RESIDUALS + j];
+            }
+            a[i * MOVES + i] *= 1.0 + damping;
+        }
+        if (!solve_symmetric(a, b, MOVES))
+            return;
+        for (size_t i = 0; i < MOVES; i++)
+            next[i] = fmin(fmax(moves[i] + b[i], -most[i]), most[i]);
+        count = find_residuals(fit, next, tried);
+        const double next_cost = sum_of_squares(tried, count);
+        const bool is_better = next_cost < cost;
+        const bool is_done = fabs(cost - next_cost) < 1e-6 * cost;
+        if (is_better) {
+            memcpy(moves, next, sizeof next);
+            memcpy(now, tried, count * sizeof *now);
+            cost = next_cost;
+        }
+        damping *= is_better ? 0.3 : 4.0;
+        if (is_done)
+            return;
+    }
+}
+
+double draw_moved(const struct draw_move *move, double value)
+{
+    return move->centre + move->shift + move->stretch * (value - move->centre);
+}
+
+/* The contacts that are compared, what is drawn of them in the mean, and how it shows. */
+static void prepare(struct move_fit *fit, const struct drawn_contact *contacts, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (nearness(&contacts[i]) > NEAR_LEAST)
+            fit->contacts[fit->count++] = &contacts[i];
+    for (size_t k = 0; k < FITTED_KINDS; k++)
+        for (size_t i = 0; i < fit->count; i++)
+            fit->centre[k] += fit->contacts[i]->now[k] / (double)fit->count;
+    for (size_t k = 0; k < EXTENT_KINDS; k++)
+        find_response(contacts, count, k, fit->response[k]);
+}
+
+sonject_status fit_moves(struct report *report, const struct drawn_contact *contacts, size_t count,
+                         const struct quantile_goal *goals, const struct move_prior *prior,
+                         struct draw_move *moves)
+{
+    struct move_fit fit = {.goals = goals, .prior = prior};
+    double found[MOVES] = {0.0};
+    fit.contacts = allocate_array(count + 1, sizeof *fit.contacts);
+    fit.shown = allocate_array(count + 1, sizeof *fit.shown);
+    double *buffers = allocate_array((MOVES + 2) * RESIDUALS, sizeof *buffers);
+    sonject_status status =
+        fit.contacts && fit.shown && buffers ? SONJECT_OK : report_out_of_memory(report, "the fit");
+    if (status == SONJECT_OK) {
+        /* few contacts tell little of what differs from the campaign's own */
+        fit.trust = prior->contacts >= 100.0 ? 1.0 : prior->contacts >= 30.0 ? 0.7 : 0.45;
+        prepare(&fit, contacts, count);
+        if (fit.count < SEEN_LEAST)
+            status = report_failure(report, SONJECT_ERROR_INPUT,
+                                    "of the injected contacts hardly any is seen; give the "
+                                    "campaign's targets levels over the seabed (level: "
+                                    "{over_seabed: })");
+    }
+    if (status == SONJECT_OK)
+        descend(&fit, found, buffers);
+    for (size_t k = 0; k < FITTED_KINDS; k++)
+        moves[k] = (struct draw_move){fit.centre[k], found[k], exp(found[FITTED_KINDS + k])};
+    free(fit.contacts);
+    free(fit.shown);
+    free(buffers);
+    return status;
+}

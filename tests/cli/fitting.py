@@ -1,0 +1,73 @@
+"""Campaigns on seabeds that sonject makes, to fit and to be found by a fit."""
+
+import json
+
+import numpy
+
+SCENE = """\
+sonject: 1
+input:
+  geometry: {row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 30 m}
+sonar: {frequency: 300 kHz, bandwidth: 20 kHz, altitude: 8 m, resolution: 6 cm, response: hamming}
+"""
+
+# Each kind's draws, lowest and highest: what a user starts with, and what the contacts are made by.
+START = {"length": (1.4, 3.2), "width": (0.8, 1.8), "height": (0.4, 0.9)}
+HIDDEN = {"length": (0.9, 2.0), "width": (0.45, 1.0), "height": (0.25, 0.6), "level": (9, 19), "floor": -15}
+
+CAMPAIGN = """\
+sonject_campaign: 1
+scene: scene.yaml
+images: {images}
+seed: {seed}
+chip: {{rows: {rows}, columns: {columns}, edge: 4, spread: 0.3}}
+empty: 0 # all have a target
+{visible}
+splits: {{all: 1}}
+swaths: [{{path: seabed_1.tif}}, {{path: seabed_2.tif}}]
+draw: # of all
+  objects[].heading: {{uniform: [0 deg, 360 deg]}}
+  objects[].burial.fraction: {{uniform: [0, 0.3]}}
+  {floor}
+targets:
+{targets}"""
+
+TARGET = """\
+  - class: {shape}
+    object: {{shape: {shape}}}
+    draw:
+      length: {{log_uniform: [{length[0]} m, {length[1]} m]}} # overall
+      width: {{log_uniform: [{width[0]} m, {width[1]} m]}}
+      height: {{log_uniform: [{height[0]} m, {height[1]} m]}}
+      {level}
+"""
+
+
+def make_seabeds(sonject, rows=300, columns=500):
+    for number in (1, 2):
+        sonject.done("seabed", "-o", f"seabed_{number}.tif", "--seed", number, "--rows", rows, "--columns", columns,
+                     "--ripple-contrast", "0.1", "--row-spacing", "0.05", "--column-spacing", "0.05")
+
+
+def campaign(draws, images, seed, rows=96, columns=160, shapes=("box", "ellipsoid")):
+    level = draws.get("level")
+    floor = draws.get("floor")
+    return CAMPAIGN.format(
+        images=images, seed=seed, rows=rows, columns=columns,
+        visible="visible: {highlight: 1.2 dB, shadow: -2.3 dB}" if level else "# whether it is seen or not",
+        floor=f"injection.noise_floor: {floor} dB" if floor else "",
+        targets="".join(
+            TARGET.format(shape=shape, level=f"level.over_seabed: {{uniform: [{level[0]} dB, {level[1]} dB]}}"
+                          if level else "", **{key: draws[key] for key in ("length", "width", "height")})
+            for shape in shapes))
+
+
+def drawn(folder):
+    """Medians of what the images of a data set show: length, width, proud height, level and floor."""
+    values = []
+    for path in sorted((folder / "all" / "truth").glob("*.json")):
+        truth = json.loads(path.read_text())
+        thing = truth["objects"][0]
+        values.append((thing["length_m"], thing["width_m"], thing["body_height_m"] - thing["burial_m"],
+                       thing["level"]["over_seabed_db"], truth["blending"]["noise_floor_db"]))
+    return numpy.median(numpy.array(values, float), axis=0)

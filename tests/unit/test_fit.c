@@ -1,0 +1,188 @@
+/* Draws moved towards contacts in a world whose laws are known, and a campaign's file with new
+ * numbers in their places. */
+#define _POSIX_C_SOURCE 200809L /* mkdtemp */
+
+#include "claims.h"
+
+#include "dataset/fit.h"
+#include "scene_folder.h"
+
+#define CONTACTS 400
+#define ROUNDS   6
+
+/* ---- A world where contacts show their sizes, some noise, and their levels. */
+
+/* What is drawn: centres, and half widths of uniform distributions about them. */
+struct draws_of_world {
+    double centre[FITTED_KINDS], half[FITTED_KINDS];
+};
+
+static double noise(uint64_t seed, uint32_t stream, uint64_t index, double deviation)
+{
+    double sum = -6.0; /* of twelve uniform numbers: normal enough */
+    for (uint32_t i = 0; i < 12; i++)
+        sum += uniform_number(seed, 100 + 12 * stream + i, index);
+    return deviation * sum;
+}
+
+static void show(const struct draws_of_world *draws, uint64_t seed, uint64_t index,
+                 struct drawn_contact *contact)
+{
+    double *of = contact->shown.of;
+    for (uint32_t k = 0; k < FITTED_KINDS; k++)
+        contact->drawn[k] = contact->now[k] =
+            draws->centre[k] +
+            draws->half[k] * (2.0 * stratified_number(seed, k, index, CONTACTS) - 1.0);
+    const double heading = 2.0 * PI * stratified_number(seed, 20, index, CONTACTS);
+    const double length = exp(contact->drawn[FITTED_LENGTH]);
+    const double width = exp(contact->drawn[FITTED_WIDTH]);
+    const double along = log(hypot(length * cos(heading), width * sin(heading)));
+    const double across = log(hypot(length * sin(heading), width * cos(heading)));
+    contact->heading_rad = heading;
+    for (int i = 0; i < EXTENT_KINDS; i++)
+        of[i] = NAN;
+    of[EXTENT_SHADOW_ALONG] = along + noise(seed, 1, index, 0.1);
+    of[EXTENT_HIGHLIGHT_ALONG] = along + noise(seed, 2, index, 0.1);
+    of[EXTENT_HIGHLIGHT_RANGE] = across + noise(seed, 3, index, 0.2) - 0.5;
+    of[EXTENT_SHADOW_HEIGHT] = contact->drawn[FITTED_HEIGHT] + noise(seed, 4, index, 0.1);
+    of[EXTENT_HIGHLIGHT_LEVEL] = contact->drawn[FITTED_LEVEL] - 3.0 + noise(seed, 5, index, 1.0);
+    of[EXTENT_SHADOW_LEVEL] = contact->drawn[FITTED_FLOOR] + noise(seed, 6, index, 1.0);
+}
+
+static void draws_reach_what_made_the_contacts(void **state)
+{
+    const struct draws_of_world hidden = {{-0.3, -1.0, -1.5, 13.0, -14.0},
+                                          {0.4, 0.4, 0.5, 5.0, 0.0}};
+    struct draws_of_world now = {{0.3, -0.6, -0.8, 30.0, -22.0}, {0.6, 0.4, 0.5, 3.0, 0.0}};
+    struct report report = {.message = ""};
+    static struct drawn_contact made[ROUNDS * CONTACTS];
+    static struct contact_extents real[CONTACTS];
+    struct quantile_goal goals[EXTENT_KINDS];
+    struct move_prior prior = {.contacts = CONTACTS};
+    (void)state;
+    for (uint64_t i = 0; i < CONTACTS; i++) {
+        struct drawn_contact contact;
+        show(&hidden, 1, i, &contact);
+        real[i] = contact.shown;
+    }
+    EXPECT_OK(&report, quantile_goals(&report, real, CONTACTS, goals));
+    assert_int_equal(goals[EXTENT_SHADOW_ALONG].levels, 9);
+    assert_int_equal(goals[EXTENT_AXIS_LENGTH].levels, 0); /* nobody shows it */
+    for (uint32_t round = 0; round < ROUNDS; round++) {
+        struct draw_move moves[FITTED_KINDS];
+        const size_t count = (round + 1) * (size_t)CONTACTS;
+        for (uint64_t i = 0; i < CONTACTS; i++)
+            show(&now, 10 + round, i, &made[round * CONTACTS + i]);
+        EXPECT_OK(&report, fit_moves(&report, made, count, goals, &prior, moves));
+        for (size_t k = 0; k < FITTED_KINDS; k++) {
+            prior.shift[k] += moves[k].shift;
+            prior.stretch[k] += log(moves[k].stretch);
+            now.centre[k] = draw_moved(&moves[k], now.centre[k]);
+            now.half[k] *= moves[k].stretch;
+            for (size_t i = 0; i < count; i++)
+                made[i].now[k] = draw_moved(&moves[k], made[i].now[k]);
+        }
+    }
+    /* Means of 400 contacts of such spreads have standard errors of 0.02 (sizes of which headings
+     * show now one, now the other: twice as much), 0.15 dB and 0.05 dB; four of them, and what the
+     * belief in the campaign's own values leaves. */
+    static const double tolerances[FITTED_KINDS] = {0.12, 0.12, 0.08, 0.8, 0.5};
+    for (size_t k = 0; k < FITTED_KINDS; k++) {
+        print_message("%zu: %.3f of %.3f, half %.3f of %.3f\n", k, now.centre[k], hidden.centre[k],
+                      now.half[k], hidden.half[k]);
+        assert_true(fabs(now.centre[k] - hidden.centre[k]) < tolerances[k]);
+    }
+    assert_true(fabs(now.half[FITTED_LEVEL] - 5.0) < 1.0);
+}
+
+static void a_median_has_the_error_of_statistics(void **state)
+{
+    (void)state;
+    /* of a normal distribution: sqrt(pi / 2) of the mean's */
+    const double error = quantile_error(0.5, 2.0 * 0.67449 * 3.0, 100.0);
+    assert_true(fabs(error - 0.3 * sqrt(PI / 2.0)) < 1e-3);
+    /* and at 5 %: sqrt(0.05 * 0.95) / phi(1.6449) */
+    const double tail = quantile_error(0.05, 2.0 * 0.67449, 1.0);
+    assert_true(fabs(tail - sqrt(0.0475) / 0.10314) < 0.01);
+}
+
+/* ---- Files. */
+
+static const char block_file[] =
+    "# mines of ours\n"
+    "sonject_campaign: 1\n"
+    "scene: s.yaml\n"
+    "images: 10 # a few\n"
+    "chip:\n"
+    "  rows: 64\n"
+    "  columns: 64\n"
+    "swaths: [{path: a.tif}]\n"
+    "targets:\n"
+    "  - class: \"m\xc3\xbcll\" # \xc3\xbc\n"
+    "    object: {shape: box, height: 2 m}\n"
+    "    draw:\n"
+    "      length: {log_uniform: [100 cm, 400 cm]} # of all\n"
+    "      heading: 30 deg\n"
+    "  - {class: \"t\xc3\xbcn\", object: {shape: cylinder}, "
+    "draw: {length: 2, diameter: {of: length, uniform: [0.25, 0.5]}}}\n";
+
+static const char moved_file[] =
+    "# fitted\n"
+    "# mines of ours\n"
+    "sonject_campaign: 1\n"
+    "scene: s.yaml\n"
+    "images: 10 # a few\n"
+    "chip:\n"
+    "  slant_range: [30 m, 60.5 m]\n"
+    "  rows: 64\n"
+    "  columns: 64\n"
+    "swaths: [{path: a.tif}]\n"
+    "targets:\n"
+    "  - class: \"m\xc3\xbcll\" # \xc3\xbc\n"
+    "    object: {shape: box, height: 2 m}\n"
+    "    draw:\n"
+    "      level.over_seabed: {uniform: [12 dB, 24 dB]}\n"
+    "      length: {log_uniform: [50 cm, 200 cm]} # of all\n"
+    "      heading: 30 deg\n"
+    "  - {class: \"t\xc3\xbcn\", object: {shape: cylinder}, draw: {level.over_seabed: {uniform: "
+    "[12 dB, "
+    "24 dB]}, length: 1, diameter: {of: length, uniform: [0.125, 0.25]}}}\n"
+    "draw: {injection.noise_floor: -15 dB}\n"
+    "visible: {highlight: 1.2 dB, shadow: -2.3 dB, otherwise: redraw}\n";
+
+static void a_fitted_file_is_the_users_own_with_other_numbers(void **state)
+{
+    struct scene_folder *folder = *state;
+    struct report *report = &folder->report;
+    /* lengths halve; widths and heights fall to a quarter; levels spread to twice their width */
+    const struct draw_move moves[FITTED_KINDS] = {{0.0, log(0.5), 1.0},
+                                                  {0.0, log(0.25), 1.0},
+                                                  {0.0, log(0.25), 1.0},
+                                                  {21.0, -3.0, 2.0},
+                                                  {-22.0, 7.0, 1.0}};
+    static struct campaign campaign;
+    struct fit_draws draws;
+    char *text;
+    memset(&draws, 0, sizeof draws);
+    write_file(folder, "campaign.yaml", block_file, strlen(block_file));
+    EXPECT_OK(report,
+              campaign_read(report, file_in(folder, "campaign.yaml"), NULL, NULL, 0, &campaign));
+    EXPECT_OK(report, fit_draws_find(&draws, report, &campaign));
+    assert_string_equal(draws.unchanged.characters, "targets[0].draw.heading\n");
+    draws.level_db[0] = 18.0;
+    draws.level_db[1] = 24.0;
+    draws.floor_db = -22.0;
+    draws.has_added = true;
+    fit_draws_move(&draws, moves);
+    const struct fitted_selection selection = {1.2, -2.3, 30.0, 60.5};
+    EXPECT_OK(report, fit_draws_text(&draws, report, &selection, "# fitted\n", &text));
+    assert_string_equal(text, moved_file);
+    free(text);
+    fit_draws_clear(&draws);
+    campaign_clear(&campaign);
+    unlink(file_in(folder, "campaign.yaml"));
+}
+
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(draws_reach_what_made_the_contacts),
+             TEST(a_median_has_the_error_of_statistics),
+             TEST(a_fitted_file_is_the_users_own_with_other_numbers))
