@@ -234,7 +234,7 @@ static const struct key_case {
     {"medium.profile.sound_speeds", "[1.48 km/s, 1500]", L(DOUBLE, 0, speed_mps), .number = 1480.0,
      .other = "medium.profile={heights: [4 m, 12 m]}"},
     {"seabed.lambert", "0.25", S(DOUBLE, seabed.lambert), .number = 0.25},
-    {"seabed.sediment", "very_fine-sand", S(DOUBLE, seabed.grain_size_phi), .number = 3.5},
+    {"seabed.sediment", "medium_sand", S(DOUBLE, seabed.grain_size_phi), .number = 1.5},
     {"seabed.sediment.grain_size", "4.25", S(DOUBLE, seabed.grain_size_phi), .number = 4.25},
     {"seabed.map", "despeckled", S(U32, seabed.map), .number = SONJECT_MAP_DESPECKLED},
     {"surface.depth", "20 m", S(DOUBLE, surface.water_depth_m), .number = 20.0},
