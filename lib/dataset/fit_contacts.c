@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "dataset/fit.h"
 #include "measure/measures.h"
+#include "scene/geometry.h"
 #include "schema/scene_file.h"
 #include "swath/geometry_notes.h"
 
@@ -125,6 +126,17 @@ static sonject_status read_image_scene(struct sonject_campaign *campaign, const 
     return status;
 }
 
+/* Contacts are measured with their shadows to the right. Errors: INPUT. */
+static sonject_status check_direction(struct report *report, const char *image,
+                                      const sonject_geometry_params *geometry)
+{
+    if (!geometry_is_reversed(geometry))
+        return SONJECT_OK;
+    return input_failure(report, image,
+                         "shows range growing to the left, in which contacts are not measured; fit "
+                         "to those of the other side (input.geometry.side: starboard)");
+}
+
 /* What an image says of itself. */
 static sonject_status describe_image(struct sonject_campaign *campaign, const char *image,
                                      struct raster_layout *layout, bool *tells_geometry,
@@ -133,8 +145,8 @@ static sonject_status describe_image(struct sonject_campaign *campaign, const ch
     struct scene scene;
     struct swath_file *file = NULL;
     CHECK(read_image_scene(campaign, image, NULL, false, false, &scene));
-    sonject_status status =
-        swath_file_open_array(campaign->report, image, scene.channel, scene.array, &file);
+    sonject_status status = check_direction(campaign->report, image, &scene.geometry);
+    THEN(status, swath_file_open_array(campaign->report, image, scene.channel, scene.array, &file));
     if (status == SONJECT_OK) {
         struct noted_geometry noted;
         sonject_geometry_params told;
@@ -181,8 +193,7 @@ sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *
                           &inner, chip);
         chip->row_spacing_m = geometry->row_spacing_m;
         chip->column_spacing_m = geometry->column_spacing_m;
-        chip->first_slant_range_m = geometry->first_slant_range_m +
-                                    (double)window.first_column * geometry->column_spacing_m;
+        chip->first_slant_range_m = geometry_range(geometry, (double)window.first_column);
         chip->altitude_m = scene.sonar.altitude_m;
         swath_close(&swath);
     }
@@ -203,6 +214,7 @@ sonject_status contact_chip_of_image(struct report *report, const struct campaig
     *is_seen = box->rows > 0;
     if (!*is_seen)
         return SONJECT_OK;
+    CHECK(check_direction(report, image->scene.input_path, &image->scene.geometry));
     const struct window_box tight = window_box_of(box);
     const struct window_box padded =
         box_with_margin(&tight, (size_t)pad, result->rows, result->columns);
@@ -214,8 +226,7 @@ sonject_status contact_chip_of_image(struct report *report, const struct campaig
     chip->row_spacing_m = geometry->row_spacing_m;
     chip->column_spacing_m = geometry->column_spacing_m;
     chip->first_slant_range_m =
-        geometry->first_slant_range_m +
-        (double)(image->plan.chip.first_column + window.first_column) * geometry->column_spacing_m;
+        geometry_range(geometry, (double)(image->plan.chip.first_column + window.first_column));
     chip->altitude_m = image->scene.sonar.altitude_m;
     return SONJECT_OK;
 }

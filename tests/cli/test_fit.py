@@ -57,3 +57,13 @@ def test_what_cannot_be_fitted_is_told(sonject, folder, contacts, output, messag
     done = sonject("fit", "start.yaml", "contacts.csv", "-o", output)
     assert done.returncode == 3 and message in done.stderr
     assert sorted(path.name for path in folder.iterdir()) == before
+
+
+def test_range_that_grows_to_the_left_is_refused(sonject, folder):
+    (folder / "contacts.csv").write_text("image,row,column,rows,columns\n" + "seabed_1.tif,5,5,9,20\n" * 10)
+    text = (folder / "scene.yaml").read_text().replace("first_slant_range: 30 m", "first_slant_range: 0 m, "
+                                                       "nadir_column: 480, side: port")
+    (folder / "scene.yaml").write_text(text)
+    done = sonject("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml")
+    assert done.returncode == 3 and "seabed_1.tif: shows range growing to the left" in done.stderr
+    assert not (folder / "fitted.yaml").exists()
