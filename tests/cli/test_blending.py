@@ -144,7 +144,8 @@ def test_sidescan(sonject, tmp_path):
     (tmp_path / "scene.yaml").write_text(scene_text(
         positions, path="port.tif", patch=patch, row_spacing="12 cm",
         column_spacing="2.928 cm", first_range="1.5 cm", transfer="",
-        sonar=f"{{frequency: 600 kHz, bandwidth: 30 kHz, altitude: {altitude:.2f} m}}"))
+        sonar=f"{{frequency: 600 kHz, bandwidth: 30 kHz, altitude: {altitude:.2f} m, "
+              "response: rectangular}"))  # whose side lobes leave a band to judge
     sonject.done("run", "scene.yaml", "-o", "out", "--quiet")
     out = tmp_path / "out"
     before, after = (
