@@ -100,7 +100,7 @@ static struct candidate *find_candidates(const struct stored_swath *swath,
         next->unevenness = first_returns_cover(water, &place, swath->columns)
                                ? INFINITY
                                : unevenness(swath, next->row, next->column, side, ceiling);
-        *count += isfinite(next->unevenness);
+        *count += isfinite(next->unevenness) ? 1 : 0;
     }
     return list;
 }
