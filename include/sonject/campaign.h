@@ -135,7 +135,7 @@ typedef struct sonject_campaign_fit_params {
  * it is: classes' shares, headings, burial, materials, fixed sizes. Some 720 images are made. path,
  * params: as of sonject_campaign_read. The same inputs give the same bytes. progress may be NULL.
  * Errors: ARGUMENT, INPUT (fewer than ten contacts, labels that cannot be read, ...), DEVICE,
- * STORAGE, MEMORY, UNSUPPORTED, CANCELLED; then no file is written. */
+ * STORAGE, MEMORY, UNSUPPORTED, CANCELLED; then fit_params->fitted is not written. */
 SONJECT_API sonject_status sonject_campaign_fit(sonject_context *context, const char *path,
                                                 const sonject_scene_read_params *params,
                                                 const sonject_campaign_fit_params *fit_params,
