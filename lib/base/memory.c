@@ -78,3 +78,10 @@ char *growing_text_end(struct growing_text *text)
     free(text->characters);
     return NULL;
 }
+
+int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}

@@ -39,6 +39,9 @@ void growing_text_add(struct growing_text *text, const char *format, ...) REPORT
 /* The text, for free(); NULL where memory was out. */
 char *growing_text_end(struct growing_text *text);
 
+/* For qsort: the smallest first. */
+int compare_doubles(const void *a, const void *b);
+
 #ifdef __cplusplus
 }
 #endif

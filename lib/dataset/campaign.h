@@ -14,6 +14,7 @@
 #include "inject/injection.h"
 #include "inject/swath.h"
 #include "schema/keys.h"
+#include "schema/scene_file.h"
 #include "schema/tables.h"
 
 #define CAMPAIGN_IMAGES_MAX  10000000 /* ids have eight digits */
@@ -381,6 +382,12 @@ struct campaign_source {
 sonject_status campaign_open(struct report *report, const struct campaign_source *source,
                              struct sonject_campaign **campaign);
 void campaign_close(struct sonject_campaign **campaign);
+
+/* Reads the campaign's base scene for an image file. source: overrides, with room for one more, and
+ * what else is asked for; the rest is filled in. scene: as of campaign_read_scene. Errors: as
+ * sonject_scene_read. */
+sonject_status campaign_read_base(struct sonject_campaign *campaign, const char *image,
+                                  struct scene_source *source, struct scene *scene);
 
 /* Reads the scene that a plan describes. scene: initialised and empty; on failure it is left empty.
  * are_relations: as in struct scene_source. Errors: as sonject_scene_read, with the place in the

@@ -101,39 +101,42 @@ static void place_message(struct sonject_campaign *campaign, const struct image_
     mistakes_tell(&mistakes, campaign->report, SONJECT_ERROR_INPUT);
 }
 
+sonject_status campaign_read_base(struct sonject_campaign *campaign, const char *image,
+                                  struct scene_source *source, struct scene *scene)
+{
+    const struct tree_node path = {.kind = TREE_TEXT, .is_quoted = true, .text = (char *)image};
+    struct growing_text input = {NULL, 0, 0, false};
+    growing_text_add(&input, "input.path=");
+    tree_write_flow(&path, &input);
+    char *text = growing_text_end(&input);
+    CHECK_MEMORY(campaign->report, text, "an image's scene");
+    source->overrides[source->override_count++] = text;
+    source->path = campaign->campaign.scene_path;
+    source->text = campaign->scene_text;
+    source->moved_folder = campaign->campaign.folder;
+    source->allows_user_shapes = campaign->allows_user_shapes;
+    const sonject_status status = scene_source_read(source, campaign->report, scene);
+    free(text);
+    return status;
+}
+
 sonject_status campaign_read_scene(struct sonject_campaign *campaign, const struct image_plan *plan,
                                    struct scene *scene, bool *are_relations)
 {
-    const struct swath_plan *swath = &campaign->campaign.swaths[plan->swath];
-    const struct tree_node path = {.kind = TREE_TEXT, .is_quoted = true, .text = swath->path};
-    struct growing_text input = {NULL, 0, 0, false};
-    const char **overrides = allocate_array(plan->key_count + 1, sizeof *overrides);
-    growing_text_add(&input, "input.path=");
-    tree_write_flow(&path, &input);
-    char *input_text = growing_text_end(&input);
-    sonject_status status = overrides && input_text
-                                ? SONJECT_OK
-                                : report_out_of_memory(campaign->report, "an image's scene");
-    if (status == SONJECT_OK) {
-        for (size_t i = 0; i < plan->key_count; i++)
-            overrides[i] = plan->keys[i].text;
-        overrides[plan->key_count] = input_text;
-        const struct scene_source source = {
-            .path = campaign->campaign.scene_path,
-            .text = campaign->scene_text,
-            .overrides = overrides,
-            .override_count = plan->key_count + 1,
-            .moved_folder = campaign->campaign.folder,
-            .moved_overrides = plan->key_count,
-            .made_calibration = campaign->calibrations ? campaign->calibrations[plan->swath] : NULL,
-            .allows_user_shapes = campaign->allows_user_shapes,
-            .are_relations = are_relations};
-        status = scene_source_read(&source, campaign->report, scene);
-        if (status != SONJECT_OK)
-            place_message(campaign, plan);
-    }
-    free(overrides);
-    free(input_text);
+    struct scene_source source = {
+        .overrides = allocate_array(plan->key_count + 1, sizeof *source.overrides),
+        .override_count = plan->key_count,
+        .moved_overrides = plan->key_count,
+        .made_calibration = campaign->calibrations ? campaign->calibrations[plan->swath] : NULL,
+        .are_relations = are_relations};
+    CHECK_MEMORY(campaign->report, source.overrides, "an image's scene");
+    for (size_t i = 0; i < plan->key_count; i++)
+        source.overrides[i] = plan->keys[i].text;
+    const sonject_status status =
+        campaign_read_base(campaign, campaign->campaign.swaths[plan->swath].path, &source, scene);
+    if (status != SONJECT_OK)
+        place_message(campaign, plan);
+    free(source.overrides);
     return status;
 }
 

@@ -20,14 +20,6 @@
 #define PAD_CLEAR      0.75 /* pixels */
 #define RANGES_LEAST   1.05 /* farthest over nearest, for the chips to be limited to them */
 
-static int compare_numbers(const void *a, const void *b)
-{
-    double x, y;
-    memcpy(&x, a, sizeof x);
-    memcpy(&y, b, sizeof y);
-    return (x > y) - (x < y);
-}
-
 /* The value below which a share of those that are numbers lies, which are sorted; NaN: there are
  * none. */
 static double quantile_of(double *values, size_t count, double share)
@@ -36,7 +28,7 @@ static double quantile_of(double *values, size_t count, double share)
     for (size_t i = 0; i < count; i++)
         if (isfinite(values[i]))
             values[n++] = values[i];
-    qsort(values, n, sizeof *values, compare_numbers);
+    qsort(values, n, sizeof *values, compare_doubles);
     return n > 0 ? sorted_quantile(values, n, share) : NAN;
 }
 

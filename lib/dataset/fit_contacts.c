@@ -77,52 +77,33 @@ static const struct swath_plan *swath_of_image(const struct campaign *campaign, 
     return found;
 }
 
-/* The campaign's scene for an image of which nothing is injected into. patch: NULL, all of it. */
+/* The campaign's scene for an image that nothing is injected into. patch: NULL, all of it. */
 static sonject_status read_image_scene(struct sonject_campaign *campaign, const char *image,
                                        const struct window_box *patch, bool tells_geometry,
                                        bool tells_altitude, struct scene *scene)
 {
     const struct swath_plan *swath = swath_of_image(&campaign->campaign, image);
     const size_t keys = swath ? swath->key_count : 0;
-    const struct tree_node path = {.kind = TREE_TEXT, .is_quoted = true, .text = (char *)image};
-    struct growing_text input = {NULL, 0, 0, false};
     char patch_text[160];
-    size_t count = 0;
-    const char **overrides = allocate_array(keys + 5, sizeof *overrides);
-    growing_text_add(&input, "input.path=");
-    tree_write_flow(&path, &input);
-    char *input_text = growing_text_end(&input);
-    sonject_status status = overrides && input_text
-                                ? SONJECT_OK
-                                : report_out_of_memory(campaign->report, "a contact's scene");
-    if (status == SONJECT_OK) {
-        for (size_t i = 0; i < keys; i++)
-            overrides[count++] = swath->keys[i];
-        const size_t moved = count;
-        overrides[count++] = "objects=[]";
-        overrides[count++] = input_text;
-        if (tells_geometry)
-            overrides[count++] = "input.geometry=from_file";
-        if (tells_altitude)
-            overrides[count++] = "sonar.altitude=from_file";
-        if (patch) {
-            snprintf(patch_text, sizeof patch_text,
-                     "patch={row: %zu, column: %zu, rows: %zu, columns: %zu}", patch->first_row,
-                     patch->first_column, patch->rows, patch->columns);
-            overrides[count++] = patch_text;
-        }
-        const struct scene_source source = {.path = campaign->campaign.scene_path,
-                                            .text = campaign->scene_text,
-                                            .overrides = overrides,
-                                            .override_count = count,
-                                            .moved_folder = campaign->campaign.folder,
-                                            .moved_overrides = moved,
-                                            .allows_user_shapes = campaign->allows_user_shapes};
-        scene_init(scene);
-        status = scene_source_read(&source, campaign->report, scene);
+    struct scene_source source = {.overrides = allocate_array(keys + 5, sizeof *source.overrides),
+                                  .moved_overrides = keys};
+    CHECK_MEMORY(campaign->report, source.overrides, "a contact's scene");
+    for (size_t i = 0; i < keys; i++)
+        source.overrides[source.override_count++] = swath->keys[i];
+    source.overrides[source.override_count++] = "objects=[]";
+    if (tells_geometry)
+        source.overrides[source.override_count++] = "input.geometry=from_file";
+    if (tells_altitude)
+        source.overrides[source.override_count++] = "sonar.altitude=from_file";
+    if (patch) {
+        snprintf(patch_text, sizeof patch_text,
+                 "patch={row: %zu, column: %zu, rows: %zu, columns: %zu}", patch->first_row,
+                 patch->first_column, patch->rows, patch->columns);
+        source.overrides[source.override_count++] = patch_text;
     }
-    free(overrides);
-    free(input_text);
+    scene_init(scene);
+    const sonject_status status = campaign_read_base(campaign, image, &source, scene);
+    free(source.overrides);
     return status;
 }
 

@@ -64,14 +64,6 @@ static size_t list_values(const struct fit *fit, size_t extent, enum series seri
     return kept;
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    double x, y;
-    memcpy(&x, a, sizeof x);
-    memcpy(&y, b, sizeof y);
-    return (x > y) - (x < y);
-}
-
 /* The share of each bin: bars for real contacts, steps for injected ones. */
 static void write_series(struct growing_text *text, const double *values, size_t count, double low,
                          double high, enum series series)
@@ -111,7 +103,7 @@ static void write_histogram(const struct fit *fit, size_t extent, double *values
         const size_t n = list_values(fit, extent, (enum series)series, values);
         if (n == 0)
             continue;
-        qsort(values, n, sizeof *values, compare_numbers);
+        qsort(values, n, sizeof *values, compare_doubles);
         low = fmin(low, sorted_quantile(values, n, 0.02));
         high = fmax(high, sorted_quantile(values, n, 0.98));
     }
@@ -144,7 +136,7 @@ static void write_unmatched(const struct fit *fit, double *values, struct growin
         double farthest = 0.0;
         if (goal->levels == 0 || n == 0)
             continue;
-        qsort(values, n, sizeof *values, compare_numbers);
+        qsort(values, n, sizeof *values, compare_doubles);
         const double half = sorted_quantile(values, n, 0.75) - sorted_quantile(values, n, 0.25);
         const double middle = sorted_quantile(values, n, 0.5);
         for (size_t i = 0; i < goal->levels; i++) {

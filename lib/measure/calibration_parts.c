@@ -27,13 +27,6 @@
 #define ROUNDING_MOST   0.05  /* of the floor */
 #define LOWEST_SHARE    0.05  /* of pixels that may lie at the lowest number */
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double middle_of(double *values, size_t count)
 {
     qsort(values, count, sizeof *values, compare_doubles);

@@ -157,13 +157,6 @@ static double tile_quantile(const struct fitting *fit, size_t tile, double share
     return fit->places[edge - 1] + t * (fit->places[edge] - fit->places[edge - 1]);
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Levels by the tiles' medians; returns the median spread between their quartiles. */
 static double start_levels(struct fitting *fit, const double logs[2])
 {

@@ -26,14 +26,6 @@ static const double near[FITTED_KINDS] = {0.3, 0.3, 0.3, 3.0, 3.0};
 static const double believed[MOVES] = {1.0, 1.0, 1.0, 15.0, 10.0, 0.3, 0.3, 0.3, 0.5, 0.5};
 #define BELIEVED_RATIO 0.6
 
-static int compare_numbers(const void *a, const void *b)
-{
-    double x, y;
-    memcpy(&x, a, sizeof x);
-    memcpy(&y, b, sizeof y);
-    return (x > y) - (x < y);
-}
-
 double sorted_quantile(const double *sorted, size_t count, double share)
 {
     const double place = share * (double)(count - 1);
@@ -87,7 +79,7 @@ sonject_status quantile_goals(struct report *report, const struct contact_extent
         /* the two slant extents say of contacts in images what others say better */
         if (n < SEEN_LEAST || k == EXTENT_HIGHLIGHT_SLANT || k == EXTENT_SHADOW_SLANT)
             continue;
-        qsort(seen, n, sizeof *seen, compare_numbers);
+        qsort(seen, n, sizeof *seen, compare_doubles);
         const double half = sorted_quantile(seen, n, 0.75) - sorted_quantile(seen, n, 0.25);
         goal->levels = choose_levels(n, goal->level);
         for (size_t j = 0; j < goal->levels; j++) {
@@ -226,7 +218,7 @@ static size_t add_extent_residuals(const struct move_fit *fit, const double *mov
     }
     if (n < SEEN_LEAST)
         return 0;
-    qsort(fit->shown, n, sizeof *fit->shown, compare_numbers);
+    qsort(fit->shown, n, sizeof *fit->shown, compare_doubles);
     const double half = sorted_quantile(fit->shown, n, 0.75) - sorted_quantile(fit->shown, n, 0.25);
     for (size_t j = 0; j < goal->levels; j++) {
         const double error = hypot(goal->error[j], quantile_error(goal->level[j], half, (double)n));

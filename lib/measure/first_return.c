@@ -128,13 +128,6 @@ static sonject_status find_side(struct report *report, const float *intensity, s
     return status;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The middle of the darkest columns, all those about the darkest one whose mean levels over the
  * rows are nearer to its than to the median; a transmitted pulse amid them counts, too. */
 static sonject_status find_darkest(struct report *report, const float *intensity, size_t rows,

@@ -11,13 +11,6 @@
 #define HALVINGS          40
 #define SLOPE_STEP        0.05 /* of the parameter's logarithm */
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 struct contrast_work {
     const struct plain_tiles *tiles;
     const struct stored_swath *swath;

@@ -304,19 +304,12 @@ static void set_neighbours(const struct trial *trial, const struct meeting *met,
     }
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static sonject_status judge_angles(const struct trial *trial, double *angles,
                                    struct shape_check *check)
 {
     if (check->compared == 0)
         return SONJECT_OK;
-    qsort(angles, check->compared, sizeof *angles, compare_numbers);
+    qsort(angles, check->compared, sizeof *angles, compare_doubles);
     size_t far_off = 0;
     for (size_t i = 0; i < check->compared; i++)
         far_off += angles[i] > SHAPE_CHECK_ANGLE_DEG;

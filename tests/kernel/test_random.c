@@ -1,5 +1,7 @@
 /* kernels/random.h and the deviates of image_formation.h. */
 #include "claims.h"
+
+#include "base/memory.h"
 #include "image_formation.h"
 #include "layout.h"
 
@@ -161,13 +163,6 @@ static void test_third_uniform(void **state)
     /* a term has variance 1/144 */
     assert_true(fabs(with_first) < 4.0 * sqrt(COUNT / 144.0));
     assert_true(fabs(with_second) < 4.0 * sqrt(COUNT / 144.0));
-}
-
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 /* Unit mean square, circular, exponential intensity (Kolmogorov-Smirnov at the 6e-5 level that 4

@@ -256,12 +256,6 @@ static const double complex *speckle_of(double ray_scale, uint64_t seed)
     return field;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Intensities on a lattice of at least 3 resolutions: mean, contrast, Kolmogorov-Smirnov. */
 static void expect_exponential(const double complex *field)
 {
