@@ -46,6 +46,8 @@ static sonject_status take_geometry(struct report *report, struct conversion *co
         geometry->column_spacing_m = options->geometry.column_spacing_m;
         geometry->first_along_track_m = options->geometry.first_along_track_m;
         geometry->first_range_m = options->geometry.first_slant_range_m;
+        geometry->nadir_column =
+            options->geometry.nadir_column > 0.0 ? options->geometry.nadir_column : NAN;
         geometry->side = options->geometry.side;
         geometry->knows_side = true;
     }

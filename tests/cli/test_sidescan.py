@@ -254,6 +254,9 @@ patch: {row: 0, column: 0, rows: 40, columns: 100}
     assert_refused(sonject("quicklook", "both/energy.tif", "-o", "b.png", "--range-axis", "ground"), 3,
                    "has range that grows to the left")
     assert_refused(sonject("convert", "both/energy.tif", "b.tif", "--range-axis", "ground"), 3, "has a nadir column")
+    sonject.done("convert", "both/energy.tif", "b.tif", "--row-spacing", 0.1, "--column-spacing", 0.15,
+                 "--first-range", 9.075)
+    assert b"nadir_column" not in (tmp_path / "b.tif").read_bytes()
 
 
 @pytest.mark.parametrize("geometry, patch, words", [

@@ -14,6 +14,10 @@ def test_an_array_becomes_an_image_and_comes_back(tmp_path):
     assert b"sonject:first_slant_range_m=5\n" in (tmp_path / "b.tif").read_bytes()
     sonject.convert(tmp_path / "b.tif", tmp_path / "c.npy", samples=sonject.Samples.FLOAT32,
                     scale=0.5)
+    sonject.convert(tmp_path / "b.tif", tmp_path / "d.tif",
+                    geometry={**geometry, "first_slant_range": 0.0, "nadir_column": 1.5})
+    told = (tmp_path / "d.tif").read_bytes()
+    assert b"sonject:first_slant_range_m=0\n" in told and b"sonject:nadir_column=1.5\n" in told
     back = numpy.load(tmp_path / "c.npy")
     assert back.dtype == numpy.float32 and numpy.array_equal(back, pixels / 2)
 
