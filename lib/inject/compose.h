@@ -118,9 +118,9 @@ sonject_status compose_looks(struct tracer *tracer, double looks, const struct p
                              const struct window *window, struct injection_result *result);
 
 /* Masks, boxes and levels of every object: fills result's masks and objects (allocated), in the
- * view's row order. Errors: MEMORY. */
+ * view's row order. The input's empty rows are in no mask or box. Errors: MEMORY. */
 sonject_status find_truth(const struct tracer *tracer, const struct patch_level *level,
-                          const struct image_match *match, const struct echoes *echoes,
-                          struct injection_result *result);
+                          const struct image_match *match, const struct injection_input *input,
+                          const struct echoes *echoes, struct injection_result *result);
 
 #endif

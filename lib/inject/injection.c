@@ -358,7 +358,7 @@ static sonject_status form_and_compose(struct prepared *prepared,
     THEN(status, compose(tracer, match, level, &echoes, pixels, input->is_complex, result));
     if (status == SONJECT_OK && tracer->scene->injection.mode == SONJECT_MODE_RESYNTHESISE)
         status = compare_seabed(tracer->report, &echoes, level, result);
-    THEN(status, find_truth(tracer, level, match, &echoes, result));
+    THEN(status, find_truth(tracer, level, match, input, &echoes, result));
     if (status == SONJECT_OK) {
         tell_match(match, &tracer->response, &result->statistics);
         fill_statistics(tracer, level, &echoes, clock_seconds() - start, result);

@@ -13,6 +13,7 @@
 #include "inject/impulses.h"
 #include "scene/placement.h"
 #include "scene/scene.h"
+#include "swath/recording.h"
 #include "trace/tracer.h"
 
 /* The patch that objects are put into. Linear; row 0 is the image's. */
@@ -22,6 +23,8 @@ struct injection_input {
     bool is_complex;
     bool is_made;        /* by sonject, so that it is what the sonar's parameters say */
     const float *pixels; /* rows x columns amplitudes, or pairs of real and imaginary part */
+    const struct ping_list *empty; /* the swath's rows in the patch where nothing was heard, which
+                                      show no object; NULL: none */
     double ceiling; /* amplitude from which on the image's file stores its largest number; 0: not
                        known */
     struct checkpoint *checkpoint; /* how tracing is cut; NULL: not at all */

@@ -277,9 +277,6 @@ void swath_leave_empty(const struct swath *swath, struct injection_result *resul
             result->statistics.changed_pixels -= result->influence[first + k] != 0;
         memset(swath->pixels + row * line, 0, line * sizeof(float));
         memset(result->image + row * line, 0, line * sizeof(float));
-        memset(result->highlight + first, 0, result->columns);
-        memset(result->shadow + first, 0, result->columns);
-        memset(result->labels + first, 0, result->columns);
         memset(result->influence + first, 0, result->columns);
     }
 }
@@ -425,6 +422,7 @@ struct injection_input swath_input(const struct swath *swath)
     input.is_complex = swath->is_complex;
     input.is_made = swath->is_made;
     input.pixels = swath->pixels;
+    input.empty = &swath->empty;
     if (!swath->is_made && !swath->is_complex)
         input.ceiling = transfer_ceiling(&swath->transfer, swath->layout.type, swath->is_whole);
     return input;

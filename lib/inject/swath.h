@@ -27,7 +27,7 @@ struct swath {
     struct track track;        /* of a recording */
     struct ping_list skipped;  /* of a recording's pings, those that make no row */
     struct ping_list empty;    /* rows of the swath in the patch that hold nothing but 0; pixels has
-                                  the nearest other row's in their place */
+                                  the row's above that is not, else below, in their place */
     uint64_t clipped;          /* pixels at full scale */
     char identity[HASH_TEXT_CAPACITY]; /* of the swath's size and the patch's pixels; if made, of
                                           all pixels */
@@ -66,7 +66,7 @@ void *swath_stored_result(const struct swath *swath, const struct injection_resu
 /* The patch, as an injection takes it; its pixels stay the swath's. */
 struct injection_input swath_input(const struct swath *swath);
 
-/* Takes the swath's empty rows out of the result's image and masks, and out of the patch. */
+/* Takes the swath's empty rows out of what the result changes, and out of the patch. */
 void swath_leave_empty(const struct swath *swath, struct injection_result *result);
 
 /* Pings or rows for messages: "3, 5, 17 and 8 more". */

@@ -70,7 +70,7 @@ static float intensity_at(const struct injection_result *result, size_t i)
 }
 
 static void find_object(const struct patch_level *level, double ceiling,
-                        const struct echoes *echoes, uint32_t number,
+                        const struct echoes *echoes, const bool *is_empty, uint32_t number,
                         struct injection_result *result)
 {
     const struct object_echo *echo = &echoes->objects[number];
@@ -81,8 +81,8 @@ static void find_object(const struct patch_level *level, double ceiling,
     double energy = 0.0;
     double dominant = 0.0;
     for (size_t row = 0; echo->energy && row < echoes->rows; row++)
-        for (size_t column = echo->first_column; column < echo->first_column + echo->columns;
-             column++) {
+        for (size_t column = echo->first_column;
+             !is_empty[row] && column < echo->first_column + echo->columns; column++) {
             const size_t i = row * echoes->columns + column;
             const struct pixel_levels levels = levels_at(level, echoes, echo, row, column);
             energy += levels.own;
@@ -255,9 +255,11 @@ static struct window_box box_within(const sonject_box *box, const struct window_
     return inner;
 }
 
-/* How the object shows amid the image's own speckle, behind so many columns of water. */
+/* How the object shows amid the image's own speckle, behind so many columns of water; empty rows
+ * are no seabed. */
 static sonject_status see_object(struct report *report, const struct injection_result *result,
-                                 size_t water_columns, sonject_object_truth *truth)
+                                 size_t water_columns, const bool *is_empty,
+                                 sonject_object_truth *truth)
 {
     const struct window_box box = window_box_of(&truth->both);
     const struct window_box wide =
@@ -280,6 +282,8 @@ static sonject_status see_object(struct report *report, const struct injection_r
         if (water_columns > wide.first_column)
             image.seabed_columns[row] = water_columns - wide.first_column;
         memcpy(image.taken + row * wide.columns, result->labels + first, wide.columns);
+        if (is_empty[wide.first_row + row])
+            memset(image.taken + row * wide.columns, 1, wide.columns);
         for (size_t column = 0; column < wide.columns; column++)
             intensity[row * wide.columns + column] = intensity_at(result, first + column);
     }
@@ -293,7 +297,8 @@ static sonject_status see_object(struct report *report, const struct injection_r
 
 static sonject_status measure_objects(const struct tracer *tracer, const struct patch_level *level,
                                       const struct speckle_statistics *speckle,
-                                      const struct echoes *echoes, struct injection_result *result)
+                                      const struct echoes *echoes, const bool *is_empty,
+                                      struct injection_result *result)
 {
     sonject_status status = SONJECT_OK;
     for (uint32_t i = 0; status == SONJECT_OK && i < echoes->object_count; i++) {
@@ -306,18 +311,25 @@ static sonject_status measure_objects(const struct tracer *tracer, const struct 
         if (!truth->is_visible)
             continue;
         status = measure_object(tracer, level, speckle, echoes, i, truth);
-        THEN(status, see_object(tracer->report, result, view_water_columns(&tracer->view), truth));
+        THEN(status, see_object(tracer->report, result, view_water_columns(&tracer->view), is_empty,
+                                truth));
     }
     return status;
 }
 
 sonject_status find_truth(const struct tracer *tracer, const struct patch_level *level,
-                          const struct image_match *match, const struct echoes *echoes,
-                          struct injection_result *result)
+                          const struct image_match *match, const struct injection_input *input,
+                          const struct echoes *echoes, struct injection_result *result)
 {
+    bool *is_empty = allocate_array(echoes->rows, sizeof *is_empty);
+    CHECK_MEMORY(tracer->report, is_empty, "the truth");
+    for (uint64_t i = 0; input->empty && i < input->empty->count; i++) {
+        const size_t row = (size_t)(input->empty->numbers[i] - (uint64_t)input->first_row);
+        is_empty[tracer->view.is_mirrored ? echoes->rows - 1 - row : row] = true;
+    }
     for (uint32_t i = 0; i < echoes->object_count; i++) {
         locate(tracer, i, &result->objects[i]);
-        find_object(level, match->ceiling, echoes, i, result);
+        find_object(level, match->ceiling, echoes, is_empty, i, result);
     }
     /* a pixel where another object's echo stands in the shadow is a highlight */
     for (size_t i = 0; i < echoes->rows * echoes->columns; i++)
@@ -325,5 +337,8 @@ sonject_status find_truth(const struct tracer *tracer, const struct patch_level 
             result->shadow[i] = 0;
     for (uint32_t i = 0; i < echoes->object_count; i++)
         find_visible_shadow(level, echoes, i, result);
-    return measure_objects(tracer, level, &match->seabed, echoes, result);
+    const sonject_status status =
+        measure_objects(tracer, level, &match->seabed, echoes, is_empty, result);
+    free(is_empty);
+    return status;
 }

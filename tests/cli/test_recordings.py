@@ -328,6 +328,14 @@ def test_empty_rows_stay_as_they_are_and_are_named(sonject, tmp_path, sides):
              for name in ("highlight", "shadow", "labels", "influence")]
     assert all(mask[29].any() and not mask[[28, 30, 31]].any() for mask in masks[-2:])
     assert not any(mask[[28, 30, 31]].any() for mask in masks)
+    found, labelled = truth["objects"][0], json.loads((tmp_path / "out" / "coco.json").read_text())["annotations"][0]
+    assert not labelled["occluded"]
+    for key, mask in zip(("highlight", "shadow"), masks):
+        rows, columns = numpy.nonzero(mask)
+        box = found[key]
+        assert [rows.min(), numpy.ptp(rows) + 1, columns.min(), numpy.ptp(columns) + 1] == [
+            box[side] for side in ("row", "rows", "column", "columns")]
+        assert found[f"{key}_pixels"] == len(rows)
     # levels and floors are measured where something was heard
     shown = pixels.copy()
     shown[10] = shown[11] = pixels[12]
