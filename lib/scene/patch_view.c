@@ -146,7 +146,8 @@ double view_ground_range(const struct patch_view *view, double processor_range_m
 
 double view_seabed_lambert(const struct patch_view *view, const struct scene *scene)
 {
-    const double middle = view_processor_range(view, 0.5 * (double)(view->columns - 1));
+    const double first = fmax(view->first_range_m, view_bottom_range(view));
+    const double middle = 0.5 * (first + view_processor_range(view, (double)(view->columns - 1)));
     return isnan(scene->seabed.grain_size_phi)
                ? scene->seabed.lambert
                : sediment_lambert(scene->seabed.grain_size_phi, view->wavelength_m,

@@ -71,7 +71,7 @@ double view_ground_range(const struct patch_view *view, double processor_range_m
  */
 double view_grazing(const struct patch_view *view, double processor_range_m);
 
-/* The seabed's mu0: what the scene says, or its sediment at the patch's middle. */
+/* The seabed's mu0: what the scene says, or its sediment at the middle of the patch's seabed. */
 double view_seabed_lambert(const struct patch_view *view, const struct scene *scene);
 
 /* What refraction does to the energy of echoes of the seabed at a processor's slant range: 1 in

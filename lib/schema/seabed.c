@@ -309,8 +309,8 @@ static const struct field seabed_fields[] = {
      .preset = 1.995262314968879e-3,
      .range = "above 0 and at most 1/pi (-4.97 dB), or the seabed returns more than it receives"},
     {"sediment",
-     "sets lambert to what it returns at the patch's middle, by the model of APL-UW TR 9407 (10 to "
-     "100 kHz): gravel, coarse sand, medium sand, fine sand, silt, clay or "
+     "sets lambert to what it returns at the middle of the patch's seabed, by the model of APL-UW "
+     "TR 9407 (10 to 100 kHz): gravel, coarse sand, medium sand, fine sand, silt, clay or "
      "{grain_size: }",
      .kind = FIELD_NAMED, .section = &sediment_section, .read = read_sediment},
     {"map", "reflectivity that resynthesise takes from the image; composites weight shadows by it",

@@ -1,5 +1,6 @@
 /* Backscatter of sediments against the values that the model's own handbook tabulates. */
 #include "claims.h"
+#include "scene/patch_view.h"
 #include "scene/sediment.h"
 
 #define ANGLES 15
@@ -103,5 +104,28 @@ static void test_lambert_is_that_at_the_angle(void **state)
     assert_true(sediment_lambert(0.5, 0.5, 0.5 * PI) <= 1.0 / PI);
 }
 
+/* Of a patch from range 0 on, what lies behind the bottom's first return is seabed. */
+static void test_lambert_is_that_of_the_seabed_in_view(void **state)
+{
+    struct report report = {{0}, NULL, NULL};
+    static struct water_layer layer = {0.0, 1500.0, 1.0};
+    static const struct water water = {&layer, 1, 1500.0};
+    static const double first_m[] = {0.0, 12.0};
+    static const double middle_m[] = {0.5 * (10.0 + 16.0), 12.0 + 8.0};
+    for (int i = 0; i < 2; i++) {
+        struct scene scene;
+        struct patch_view view;
+        scene_init(&scene);
+        scene.sonar.altitude_m = 10.0;
+        scene.seabed.grain_size_phi = 1.5;
+        scene.geometry.column_spacing_m = 0.05;
+        scene.geometry.first_slant_range_m = first_m[i];
+        EXPECT_OK(&report, patch_view_init(&view, &report, &scene, &water, 0.0, 0.0, 9, 321));
+        const double expected = sediment_lambert(1.5, view.wavelength_m, asin(10.0 / middle_m[i]));
+        assert_true(fabs(view_seabed_lambert(&view, &scene) / expected - 1.0) < 1e-9);
+    }
+}
+
 TEST_PROGRAM(NULL, NULL, TEST(test_the_handbooks_table), TEST(test_grain_sizes),
-             TEST(test_lambert_is_that_at_the_angle))
+             TEST(test_lambert_is_that_at_the_angle),
+             TEST(test_lambert_is_that_of_the_seabed_in_view))
