@@ -51,6 +51,7 @@ struct opening {
     uint32_t source_count;
     double speed_mps; /* 0 before the first ping */
     uint32_t kind;    /* of the first ping's samples */
+    bool has_units;   /* some ping has a position, which tells all positions' units */
 };
 
 static bool is_jsf(struct swath_file *file, const unsigned char *head, size_t count)
@@ -135,6 +136,7 @@ static sonject_status check_kind(struct opening *opening, const unsigned char *h
 {
     const struct swath_file *file = opening->file;
     const uint64_t rows = file->layout.rows;
+    const uint64_t number = rows + file->recording.empty.count;
     const uint32_t kind = word_at(head, 34, 2);
     if (kind >= KIND_COMPRESSED)
         return input_failure(opening->report, file->path,
@@ -147,30 +149,32 @@ static sonject_status check_kind(struct opening *opening, const unsigned char *h
     if (word_at(head, 220, 2) > 1)
         return input_failure(opening->report, file->path,
                              "ping %llu is in several packets, which sonject does not join",
-                             (unsigned long long)rows);
+                             (unsigned long long)number);
     if (rows > 0 && kind != opening->kind)
         return input_failure(opening->report, file->path,
                              "ping %llu has samples of kind %u, the pings before it of kind %u: "
                              "cut the file there",
-                             (unsigned long long)rows, kind, opening->kind);
+                             (unsigned long long)number, kind, opening->kind);
     opening->kind = kind;
     return SONJECT_OK;
 }
 
 /* Positions in other units than the first are passed over. */
-static void read_position(struct swath_file *file, const unsigned char *head,
+static void read_position(struct opening *opening, const unsigned char *head,
                           struct recorded_ping *ping)
 {
+    struct recording *recording = &opening->file->recording;
     const uint32_t units = word_at(head, 88, 2);
     const double unit = units == UNITS_MM    ? 1e-3
                         : units == UNITS_ARC ? 1e-4 / 60.0
                         : units == UNITS_DM  ? 0.1
                                              : 0.0;
     const bool is_geographic = units == UNITS_ARC;
-    if (file->layout.rows == 0)
-        file->recording.is_geographic = is_geographic;
-    if (!(word_at(head, 30, 2) & HAS_POSITION) || is_geographic != file->recording.is_geographic)
+    if (!(word_at(head, 30, 2) & HAS_POSITION) || !(unit > 0.0) ||
+        (opening->has_units && is_geographic != recording->is_geographic))
         return;
+    opening->has_units = true;
+    recording->is_geographic = is_geographic;
     ping->easting = unit * signed_at(head, 80, 4);
     ping->northing = unit * signed_at(head, 84, 4);
 }
@@ -200,7 +204,7 @@ static sonject_status add_ping(struct opening *opening, const struct message *me
         .slant_range_m =
             (float)(0.5 * opening->speed_mps * (delay_s + interval_s * (double)samples)),
         .weight = signed_at(head, 168, 2)};
-    read_position(file, head, &ping);
+    read_position(opening, head, &ping);
     return recording_add(opening->report, file, &ping, message->place + sizeof head, samples);
 }
 

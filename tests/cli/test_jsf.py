@@ -144,14 +144,15 @@ def test_geometry_is_the_pings(sonject, tmp_path, sides):
     step = 0.1 / (1852 * 60) * 600000
     for units, places in ((1, [(100 * row, 5) for row in range(ROWS)]), (3, [(5, row) for row in range(ROWS)]),
                           (2, [(9.0, 600000 * 60 + step * row) for row in range(ROWS)])):
+        # what units a position is in that is not valid does not count
         data = b"".join(recordings.jsf_ping(line, 1, speed=1450.0 + row / 100, delay=20, position=place,
-                                            units=units, spacing=0.145)
+                                            units=units if row else 3 - units % 2, spacing=0.145,
+                                            valid=0x49 if row else 0x48)
                         for row, (line, place) in enumerate(zip(sides[1], places)))
         (tmp_path / "line.jsf").write_bytes(data)
         answer = sonject.done("check", write_scene(tmp_path, "line.jsf"))
-        length = {1: 4.0, 2: 4.0, 3: 4.0}[units]
         assert "slant range 11.67...28.93 m, starboard" in answer.stdout
-        assert float(re.search("([0-9.]+) m along-track", answer.stdout)[1]) == pytest.approx(length, abs=0.02)
+        assert float(re.search("([0-9.]+) m along-track", answer.stdout)[1]) == pytest.approx(4.0, abs=0.02)
 
 
 def test_headings_place_targets(sonject, tmp_path, sides):
