@@ -409,6 +409,12 @@ char *path_absolute(const char *path)
     return whole;
 }
 
+const char *path_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 char *path_folder(const char *path)
 {
     const char *slash = strrchr(path, '/');

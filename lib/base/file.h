@@ -129,6 +129,9 @@ char *path_absolute(const char *path);
 /* The folder part of path ("" if none), to be given to free(). */
 char *path_folder(const char *path);
 
+/* What follows the folder part, within path. */
+const char *path_name(const char *path);
+
 /* The path of the file of that name: in the folder sonject beside the library (beside the program,
  * where the library is part of it); right beside it, as in Python's package and where it was built;
  * or where sonject was installed. Tests are told where (MODULE_FOLDER). To be given to free(); NULL

@@ -62,6 +62,9 @@ sonject_status data_set_record(const struct data_set *set, size_t split, uint64_
 sonject_status data_set_has_image(const struct data_set *set, size_t split, uint64_t id,
                                   char changed[PATH_CAPACITY], bool *has);
 
+/* Adds text as HTML shows it. */
+void add_escaped(struct growing_text *text, const char *raw);
+
 /* Write contact_sheet.png and report.html from images that are all there. Errors: as
  * data_set_finish. */
 sonject_status write_contact_sheet(const struct data_set *set);

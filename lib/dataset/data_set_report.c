@@ -46,7 +46,7 @@ struct statistics_page {
     struct growing_text reasons; /* of the first of these, as items of a list; owned */
 };
 
-static void add_escaped(struct growing_text *text, const char *raw)
+void add_escaped(struct growing_text *text, const char *raw)
 {
     for (; *raw; raw++)
         if (strchr("<>&\"'", *raw))

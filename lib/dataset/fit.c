@@ -190,11 +190,8 @@ static sonject_status make_contact(struct fit *fit, struct device *device,
     sonject_status status = campaign_image_make(device, campaign, id, NULL, NULL, &image);
     THEN(status, contact_chip_of_image(fit->report, &image, fit->part, fit->pad, &chip, &is_seen));
     if (status == SONJECT_OK && is_seen && isfinite(image.result.objects->over_seabed_db)) {
-        const sonject_object_truth *truth = image.result.objects;
         contact->round = round;
-        contact->is_faint =
-            truth->highlight_visibility_db < campaign->campaign.visible_highlight_db ||
-            truth->shadow_visibility_db > campaign->campaign.visible_shadow_db;
+        contact->is_faint = image.is_faint[0];
         note_drawn(&image, contact);
         status = contact_chip_measure(fit->report, &chip, fit->part, &contact->shown);
         fit->made_count += status == SONJECT_OK;
@@ -254,11 +251,40 @@ static void widen_labels(struct fit *fit, size_t first)
         fit->pad = (uint64_t)fmin(fmax((double)fit->pad + round(wider), 0.0), PAD_MOST);
 }
 
+/* The middle value of what real contacts show less that of injected ones; 0: it is not compared. */
+static double middle_difference(const struct fit *fit, size_t extent, double *values)
+{
+    const struct quantile_goal *goal = &fit->goals[extent];
+    for (size_t i = 0; i < fit->made_count; i++)
+        values[i] = fit->made[i].shown.of[extent];
+    const double made = quantile_of(values, fit->made_count, 0.5);
+    for (size_t i = 0; i < goal->levels; i++)
+        if (goal->level[i] == 0.5 && isfinite(made))
+            return goal->value[i] - made;
+    return 0.0;
+}
+
+/* The first move, of levels alone: while these are far off, highlights tell little of sizes. */
+static sonject_status move_levels(const struct fit *fit, struct draw_move *moves)
+{
+    static const struct draw_move none = {0.0, 0.0, 1.0};
+    double *values = allocate_array(fit->made_count + 1, sizeof *values);
+    CHECK_MEMORY(fit->report, values, "the fit");
+    for (size_t k = 0; k < FITTED_KINDS; k++)
+        moves[k] = none;
+    moves[FITTED_LEVEL].shift = middle_difference(fit, EXTENT_HIGHLIGHT_LEVEL, values);
+    moves[FITTED_FLOOR].shift = middle_difference(fit, EXTENT_SHADOW_LEVEL, values);
+    free(values);
+    return SONJECT_OK;
+}
+
 /* Moves the draws, and what all contacts made so far have drawn with them. */
 static sonject_status move_draws(struct fit *fit, uint32_t round, struct move_prior *prior)
 {
     struct draw_move moves[FITTED_KINDS];
-    CHECK(fit_moves(fit->report, fit->made, fit->made_count, fit->goals, prior, moves));
+    CHECK(round == 0
+              ? move_levels(fit, moves)
+              : fit_moves(fit->report, fit->made, fit->made_count, fit->goals, prior, moves));
     for (size_t k = 0; k < FITTED_KINDS; k++) {
         if (round + 2 == FIT_ROUNDS) { /* half of the last move is chance */
             moves[k].shift *= 0.5;
@@ -368,12 +394,11 @@ static sonject_status read_all(struct fit *fit, const sonject_campaign_fit_param
 
 static sonject_status write_all(const struct fit *fit, const char *fitted, const char *contacts)
 {
-    char comment[512];
+    char comment[512], name[200];
     char *text;
-    const char *slash = strrchr(contacts, '/');
     snprintf(comment, sizeof comment,
-             "# Fitted by sonject %s to %.200s: draws of sizes, levels and the noise floor.\n",
-             sonject_version(), slash && slash[1] ? slash + 1 : contacts);
+             "# Fitted by sonject %s to %s: draws of sizes, levels and the noise floor.\n",
+             sonject_version(), text_excerpt(name, sizeof name, path_name(contacts)));
     CHECK(fit_draws_text(&fit->draws, fit->report, &fit->selection, comment, &text));
     sonject_status status = fit_page_write(fit, fitted);
     THEN(status, file_write_whole(fit->report, fitted, text, strlen(text)));

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "dataset/fit.h"
@@ -56,12 +57,6 @@ static sonject_status cut_chip(struct report *report, const float *pixels, bool 
     return SONJECT_OK;
 }
 
-static const char *file_name_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* The campaign's swath of that file, whose keys are its image's; by name where no path is the
  * same. */
 static const struct swath_plan *swath_of_image(const struct campaign *campaign, const char *image)
@@ -71,7 +66,7 @@ static const struct swath_plan *swath_of_image(const struct campaign *campaign, 
         const struct swath_plan *swath = &campaign->swaths[i];
         if (strcmp(swath->path, image) == 0)
             return swath;
-        if (strcmp(file_name_of(swath->path), file_name_of(image)) == 0)
+        if (strcmp(path_name(swath->path), path_name(image)) == 0)
             found = swath;
     }
     return found;

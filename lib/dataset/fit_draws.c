@@ -123,9 +123,10 @@ static sonject_status find_in_section(struct fit_draws *draws, struct report *re
         const char *key = entry->key + (is_of_objects ? strlen(OF_OBJECTS) : 0);
         const struct distribution *distribution = NULL;
         struct fitted_number like = {.unit_scale = 1.0};
-        for (size_t k = 0; k < list->count; k++)
-            if (list->list[k].key && strcmp(list->list[k].key, key) == 0)
-                distribution = &list->list[k];
+        const struct draws *own = item || is_of_objects ? list : &draws->campaign->draws;
+        for (size_t k = 0; k < own->count; k++)
+            if (own->list[k].key && strcmp(own->list[k].key, key) == 0)
+                distribution = &own->list[k];
         snprintf(like.key, sizeof like.key, "%s.%s", path, entry->key);
         if (item && strcmp(key, "level.target_strength") == 0)
             return tree_failure(&draws->campaign->tree, entry->place, like.key,
@@ -169,16 +170,8 @@ sonject_status fit_draws_find(struct fit_draws *draws, struct report *report,
     draws->floor_db = NAN;
     CHECK(file_read_whole(report, campaign->path, TREE_BYTES_MAX, &draws->text, &bytes));
     draws->lacks_floor = !draws_have_key(&campaign->draws, FLOOR_KEY);
-    if (drawn) {
+    if (drawn)
         CHECK(find_in_section(draws, report, drawn, "draw", &campaign->object_draws, NULL));
-        const struct tree_entry *entry = tree_find(drawn, FLOOR_KEY);
-        struct fitted_number like = {
-            .unit_scale = 1.0, .kinds = BIT(FITTED_FLOOR), .key = "draw." FLOOR_KEY};
-        for (size_t k = 0; entry && k < campaign->draws.count; k++)
-            if (strcmp(campaign->draws.list[k].key, FLOOR_KEY) == 0)
-                CHECK(add_distribution(draws, report, &entry->value, &campaign->draws.list[k],
-                                       &like));
-    }
     for (uint32_t i = 0; i < campaign->target_count; i++) {
         const struct item *item = &campaign->targets[i];
         const struct tree_node *node = section_of(&targets->value.entries[i].value, "draw");
@@ -303,6 +296,10 @@ static sonject_status replace_scalar(struct splice_list *list, struct report *re
                                      const char *text, const struct tree_node *node,
                                      const char *value)
 {
+    if (node->place.override)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "--set %s gives what a fit writes: write it into the campaign's file",
+                              node->place.override);
     const size_t offset = offset_of(text, node->place);
     return add_splice(list, report, offset, scalar_length(text + offset, node), value);
 }
@@ -316,12 +313,14 @@ static sonject_status insert_key(struct splice_list *list, struct report *report
     const char *text = draws->text;
     const struct tree_node *root = &draws->campaign->tree.root;
     const struct tree_entry *first = &section->entries[0];
+    if (section->place.override || first->place.override)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "--set %s gives what a fit writes: write it into the campaign's file",
+                              first->place.override ? first->place.override
+                                                    : section->place.override);
     const size_t offset = offset_of(text, first->place);
     char line[160];
-    size_t before = offset;
-    while (before > 0 && text[before - 1] == ' ')
-        before--;
-    const bool is_flow = before > 0 && strchr("{,", text[before - 1]) != NULL;
+    const bool is_flow = text[offset_of(text, section->place)] == '{';
     if (!is_flow && section == root) {
         const size_t end = strlen(text);
         snprintf(line, sizeof line, "%s%s\n", end > 0 && text[end - 1] != '\n' ? "\n" : "", pair);

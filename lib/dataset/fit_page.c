@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "dataset/data_set.h"
 #include "dataset/fit.h"
 #include "image/canvas.h"
 #include "measure/contacts.h"
@@ -244,10 +245,10 @@ static sonject_status write_page(const struct fit *fit, const char *picture, con
             write_histogram(fit, k, values, &text);
     write_unmatched(fit, values, &text);
     write_moves(fit, &text);
-    growing_text_add(&text,
-                     "<h2>Chips</h2>\n<p>Real contacts above, injected ones below.</p>\n"
-                     "<p><img src=\"%s\" alt=\"chips\"></p>\n</body></html>\n",
-                     picture);
+    growing_text_add(&text, "<h2>Chips</h2>\n<p>Real contacts above, injected ones below.</p>\n"
+                            "<p><img src=\"");
+    add_escaped(&text, picture);
+    growing_text_add(&text, "\" alt=\"chips\"></p>\n</body></html>\n");
     free(values);
     return growing_text_write(fit->report, &text, path);
 }
@@ -316,13 +317,11 @@ static sonject_status write_picture(const struct fit *fit, const char *path)
 
 sonject_status fit_page_write(const struct fit *fit, const char *fitted)
 {
-    const char *slash = strrchr(fitted, '/');
-    const char *dot = strrchr(slash ? slash : fitted, '.');
+    const char *dot = strrchr(path_name(fitted), '.');
     const int stem = (int)(dot ? dot - fitted : (long)strlen(fitted));
     char path[PATH_CAPACITY], picture[PATH_CAPACITY];
     CHECK(path_in(fit->report, picture, "", "%.*s.png", stem, fitted));
     CHECK(path_in(fit->report, path, "", "%.*s.html", stem, fitted));
     CHECK(write_picture(fit, picture));
-    const char *name = strrchr(picture, '/');
-    return write_page(fit, name ? name + 1 : picture, path);
+    return write_page(fit, path_name(picture), path);
 }

@@ -91,13 +91,15 @@ static sonject_status texture_share(struct report *report, const struct calibrat
     const size_t side = tiles->side, pixels = side * side;
     double *logs = allocate_array(pixels, sizeof *logs);
     double sums[2] = {0.0, 0.0}, squares[2] = {0.0, 0.0}, variance = 0.0;
+    /* a stored 0 has no logarithm but where it is one itself */
+    const double least = tiles->edges[tiles->edges[0] > 0.0 || family == CURVE_DECIBEL ? 0 : 1];
     CHECK_MEMORY(report, logs, "a calibration");
     for (size_t tile = 0; tile < tiles->count; tile++) {
         double mean = 0.0, own = 0.0, along[2] = {0.0, 0.0};
         for (size_t i = 0; i < pixels; i++) {
             const size_t at =
                 (tiles->rows[tile] + i / side) * swath->columns + tiles->columns[tile] + i % side;
-            const double value = fmax((double)swath->values[at], found->tiles.edges[0]);
+            const double value = fmax((double)swath->values[at], least);
             logs[i] = curve_log_intensity(family, found->fits[family].parameter,
                                           curve_full_scale(found, swath), value);
             mean += logs[i] / (double)pixels;
@@ -361,6 +363,7 @@ static void forget_curve(struct calibration *found)
     for (int family = 0; family < CURVE_FAMILIES; family++)
         curve_fit_clear(&found->fits[family]);
     plain_tiles_clear(&found->tiles);
+    memset(&found->parameter, 0, sizeof found->parameter);
     memset(&found->looks, 0, sizeof found->looks);
     memset(&found->shape, 0, sizeof found->shape);
 }

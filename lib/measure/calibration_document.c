@@ -40,6 +40,12 @@ static json_t *number_of(double value)
                                                              : json_number(rounded(value));
 }
 
+/* A column of the swath, to halves: four digits would not tell those of wide swaths. */
+static json_t *column_of(double column)
+{
+    return json_number(0.5 * round(2.0 * column));
+}
+
 static json_t *quantity(double value, const char *unit)
 {
     char number[DIGITS + 16], text[DIGITS + 24];
@@ -67,9 +73,10 @@ static json_t *seen(const struct estimate *estimate, const char *unit)
 static json_t *transfer_keys(const struct calibration *found)
 {
     json_t *transfer = json_object();
-    if (!found->transfer_kind.unseen) {
+    const bool has_parameter = found->transfer.kind >= SONJECT_TRANSFER_DECIBEL;
+    if (!found->transfer_kind.unseen && !(has_parameter && found->parameter.unseen)) {
         json_add(&transfer, "kind", json_text(kind_words[found->transfer.kind]));
-        if (found->transfer.kind >= SONJECT_TRANSFER_DECIBEL)
+        if (has_parameter)
             json_add(&transfer, "parameter", number_of(found->transfer.parameter));
     }
     if (!found->full_scale.unseen)
@@ -92,7 +99,7 @@ static void add_scene_keys(json_t **document, const struct calibration *found)
     add_section(&input, "transfer", transfer_keys(found));
     if (found->returns.sides == WATER_BETWEEN || found->returns.sides == WATER_AT_RIGHT)
         json_add(&input, "geometry",
-                 JSON_OBJECT({"nadir_column", number_of(found->returns.nadir_column)}));
+                 JSON_OBJECT({"nadir_column", column_of(found->returns.nadir_column)}));
     add_section(document, "input", input);
     if (!found->altitude_m.unseen)
         json_add(&sonar, "altitude", quantity(found->altitude_m.value, "m"));
@@ -190,7 +197,10 @@ json_t *calibration_document(const struct calibration *found, const char *path, 
     json_add(&measured, "noise_floor", seen(&found->noise_floor_db, "dB"));
     if (found->returns.sides != WATER_UNSEEN)
         json_add(&measured, "sides", json_text(side_words[found->returns.sides]));
-    json_add(&measured, "nadir_column", seen(&found->nadir_column, NULL));
+    json_t *nadir = seen(&found->nadir_column, NULL);
+    if (!found->nadir_column.unseen)
+        json_add(&nadir, "value", column_of(found->nadir_column.value));
+    json_add(&measured, "nadir_column", nadir);
     json_add(&measured, "altitude", seen(&found->altitude_m, "m"));
     if (found->returns.columns)
         json_add(&measured, "first_return", numbers(found->returns.columns, found->rows));

@@ -96,12 +96,11 @@ static sonject_status write_results(struct report *report, const sonject_calibra
                                     const struct calibration *found, char **text)
 {
     char hash[HASH_TEXT_CAPACITY];
-    const char *name = params->image ? strrchr(params->image, '/') : NULL;
     *text = NULL;
     if (params->image)
         CHECK(file_hash(report, params->image, hash));
     /* the folder is whoever's: the same swath tells the same anywhere */
-    json_t *document = calibration_document(found, name ? name + 1 : params->image,
+    json_t *document = calibration_document(found, params->image ? path_name(params->image) : NULL,
                                             params->image ? hash : NULL, params->channel);
     sonject_status status = SONJECT_OK;
     if (!params->as_json)

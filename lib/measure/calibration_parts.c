@@ -11,7 +11,8 @@
 
 /* Response. */
 #define FAINTEST_CORRELATION 0.02
-#define FAR_LAG              8     /* from here on speckle is forgotten */
+#define FAR_LAG              8   /* from here on speckle is forgotten */
+#define WIDTH_MOST           5.5 /* pixels: wider ones are still correlated at lags 8 to 11 */
 #define WIDTH_BIAS           0.015 /* plain tiles are chosen by what speckle they happen to have, too */
 #define UNEVEN_MOST          2.0  /* of the tiles' median variance */
 #define PEAK_MOST            14.0 /* over a tile's mean; brighter pixels are no speckle */
@@ -177,8 +178,8 @@ static sonject_status find_response(struct report *report, struct calibration *f
         higher[lag] = lag == 0 ? 1.0 : correlation[lag] + errors[lag];
     width->value = width_of(correlation);
     width->error = hypot(fabs(width_of(higher) - width->value), WIDTH_BIAS * width->value);
-    if (!isfinite(width->value) || !isfinite(width->error))
-        width->unseen = "the correlation does not fall off within 11 pixels";
+    if (!isfinite(width->value) || !isfinite(width->error) || width->value > WIDTH_MOST)
+        width->unseen = "wider than 5.5 pixels: the correlation does not fall off within 8";
     return SONJECT_OK;
 }
 

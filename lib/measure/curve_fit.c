@@ -378,7 +378,7 @@ sonject_status curve_fit_find(struct report *report, const struct plain_tiles *t
     fitting->moves[1] = isnan(looks);
     double logs[2] = {fitting->moves[0] ? 0.0 : log(parameter),
                       fitting->moves[1] ? 0.0 : log(looks)};
-    double errors[2];
+    double errors[2] = {0.0};
     choose_start(fitting, 1.0, logs);
     const double likelihood = climb(fitting, logs);
     if (fitting->moves[0] && fitting->moves[1]) { /* curve and looks make a long ridge */

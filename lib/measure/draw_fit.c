@@ -46,6 +46,9 @@ static double normal_deviate(double share)
 
 double quantile_error(double share, double middle_half, double count)
 {
+    /* the outermost values of so many lie about there */
+    const double outermost = 0.5 / fmax(count, 2.0);
+    share = fmin(fmax(share, outermost), 1.0 - outermost);
     const double z = normal_deviate(share);
     const double deviation = fmax(middle_half / 1.349, 0.05);
     const double density = exp(-0.5 * z * z) / sqrt(2.0 * 3.14159265358979323846);
@@ -190,10 +193,16 @@ struct move_fit {
     double trust;  /* of the prior: its deviations are so many times as large */
 };
 
-static double moved(const struct move_fit *fit, const double *moves, size_t kind, double value)
+double draw_moved(const struct draw_move *move, double value)
 {
-    return fit->centre[kind] + moves[kind] +
-           exp(moves[FITTED_KINDS + kind]) * (value - fit->centre[kind]);
+    return move->centre + move->shift + move->stretch * (value - move->centre);
+}
+
+static void moves_as_steps(const struct move_fit *fit, const double *moves,
+                           struct draw_move steps[FITTED_KINDS])
+{
+    for (size_t k = 0; k < FITTED_KINDS; k++)
+        steps[k] = (struct draw_move){fit->centre[k], moves[k], exp(moves[FITTED_KINDS + k])};
 }
 
 /* Differences of quantiles, over their errors. Returns their number. */
@@ -201,7 +210,9 @@ static size_t add_extent_residuals(const struct move_fit *fit, const double *mov
                                    double *residuals)
 {
     const struct quantile_goal *goal = &fit->goals[extent];
+    struct draw_move steps[FITTED_KINDS];
     size_t n = 0;
+    moves_as_steps(fit, moves, steps);
     for (size_t i = 0; i < fit->count; i++) {
         const struct drawn_contact *contact = fit->contacts[i];
         double drawn[FITTED_KINDS], before[FITTED_KINDS], after[FITTED_KINDS];
@@ -209,7 +220,7 @@ static size_t add_extent_residuals(const struct move_fit *fit, const double *mov
         if (!isfinite(shown))
             continue;
         for (size_t k = 0; k < FITTED_KINDS; k++)
-            drawn[k] = moved(fit, moves, k, contact->now[k]);
+            drawn[k] = draw_moved(&steps[k], contact->now[k]);
         project(contact->drawn, contact->heading_rad, before);
         project(drawn, contact->heading_rad, after);
         for (size_t k = 0; k < FITTED_KINDS; k++)
@@ -315,11 +326,6 @@ static void descend(const struct move_fit *fit, double *moves, double *buffers)
     }
 }
 
-double draw_moved(const struct draw_move *move, double value)
-{
-    return move->centre + move->shift + move->stretch * (value - move->centre);
-}
-
 /* The contacts that are compared, what is drawn of them in the mean, and how it shows. */
 static void prepare(struct move_fit *fit, const struct drawn_contact *contacts, size_t count)
 {
@@ -356,8 +362,7 @@ sonject_status fit_moves(struct report *report, const struct drawn_contact *cont
     }
     if (status == SONJECT_OK)
         descend(&fit, found, buffers);
-    for (size_t k = 0; k < FITTED_KINDS; k++)
-        moves[k] = (struct draw_move){fit.centre[k], found[k], exp(found[FITTED_KINDS + k])};
+    moves_as_steps(&fit, found, moves);
     free(fit.contacts);
     free(fit.shown);
     free(buffers);

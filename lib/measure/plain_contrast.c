@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "measure/calibration.h"
+#include "measure/contacts.h"
 
 #define RAYLEIGH_CONTRAST 0.5227 /* standard deviation over mean, sqrt(4 / pi - 1) */
 #define HALVINGS          40
@@ -73,13 +74,6 @@ static double solve(struct contrast_work *work, double low, double high, double 
     return found;
 }
 
-static int compare_unevenness(const void *a, const void *b)
-{
-    const float x = *(const float *)a;
-    const float y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 sonject_status find_by_contrast(struct report *report, const struct plain_tiles *tiles,
                                 const struct stored_swath *swath, double full_scale,
                                 enum curve_family family, struct curve_fit *fit)
@@ -99,7 +93,7 @@ sonject_status find_by_contrast(struct report *report, const struct plain_tiles 
         double plainer_error;
         const double found = solve(&work, low, high, &fit->parameter_error);
         memcpy(sorted, tiles->unevenness, tiles->count * sizeof *sorted);
-        qsort(sorted, tiles->count, sizeof *sorted, compare_unevenness);
+        qsort(sorted, tiles->count, sizeof *sorted, compare_floats);
         work.most_uneven = sorted[tiles->count / 2];
         /* what the seabed's own unevenness does to it, the plainer half of the tiles tells */
         const double plainer = solve(&work, low, high, &plainer_error);

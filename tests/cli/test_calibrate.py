@@ -74,6 +74,8 @@ def test_water_columns_of_one_side_and_two(sonject, tmp_path):
     spacing = ("--row-spacing", "0.1", "--column-spacing", "0.05", "--first-range", "0.025")
     for name, numbers, sides in (("right", right, "one, range grows to the right"),
                                  ("left", left, "one, range grows to the left"),
+                                 ("wide", numpy.hstack([Made("amplitude", seed=7).numbers, left]),
+                                  "one, range grows to the left"),
                                  ("both", numpy.hstack([left[:, 300:], right]), "two")):
         numpy.save(tmp_path / f"{name}.npy", numbers)
         found = calibrated(sonject, f"{name}.npy", *spacing)
@@ -89,6 +91,8 @@ def test_water_columns_of_one_side_and_two(sonject, tmp_path):
             assert found["input"]["geometry"] == {"nadir_column": nadir["value"]}
         else:
             assert "one side" in told["nadir_column"]["not_seen"]
+        if sides.endswith("left"):  # of wide swaths, too, to the half
+            assert found["input"]["geometry"] == {"nadir_column": numbers.shape[1] - 0.5}
 
 
 def test_yaml_says_what_json_says(sonject, tmp_path):

@@ -102,8 +102,18 @@ static void a_median_has_the_error_of_statistics(void **state)
     const double error = quantile_error(0.5, 2.0 * 0.67449 * 3.0, 100.0);
     assert_true(fabs(error - 0.3 * sqrt(PI / 2.0)) < 1e-3);
     /* and at 5 %: sqrt(0.05 * 0.95) / phi(1.6449) */
-    const double tail = quantile_error(0.05, 2.0 * 0.67449, 1.0);
+    const double tail = 10.0 * quantile_error(0.05, 2.0 * 0.67449, 100.0);
     assert_true(fabs(tail - sqrt(0.0475) / 0.10314) < 0.01);
+}
+
+/* The least and the largest of ten are known but roughly, not infinitely ill. */
+static void ends_of_published_quantiles_have_errors(void **state)
+{
+    (void)state;
+    for (int end = 0; end <= 1; end++) {
+        const double error = quantile_error(end, 1.0, 10.0);
+        assert_true(error > quantile_error(0.5, 1.0, 10.0) && error < 10.0);
+    }
 }
 
 /* ---- Files. */
@@ -183,6 +193,70 @@ static void a_fitted_file_is_the_users_own_with_other_numbers(void **state)
     unlink(file_in(folder, "campaign.yaml"));
 }
 
+static char *fitted_text(struct scene_folder *folder, const char *file, const char *override,
+                         char unchanged[200])
+{
+    static struct campaign campaign;
+    static const struct draw_move moves[FITTED_KINDS] = {
+        {0.0, 0.0, 1.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 1.0}, {0.0, 1.0, 1.0}, {0.0, 2.0, 1.0}};
+    static const struct fitted_selection selection = {1.2, -2.3, 30.0, 60.5};
+    struct report *report = &folder->report;
+    struct fit_draws draws;
+    char *text = NULL;
+    memset(&draws, 0, sizeof draws);
+    write_file(folder, "campaign.yaml", file, strlen(file));
+    EXPECT_OK(report, campaign_read(report, file_in(folder, "campaign.yaml"), NULL, &override,
+                                    override ? 1 : 0, &campaign));
+    EXPECT_OK(report, fit_draws_find(&draws, report, &campaign));
+    snprintf(unchanged, 200, "%s", draws.unchanged.characters ? draws.unchanged.characters : "");
+    fit_draws_move(&draws, moves);
+    fit_draws_text(&draws, report, &selection, "", &text);
+    fit_draws_clear(&draws);
+    campaign_clear(&campaign);
+    unlink(file_in(folder, "campaign.yaml"));
+    return text;
+}
+
+/* Sections in braces go on over lines, and the whole file may be one. */
+static const char flow_file[] = "{sonject_campaign: 1, scene: s.yaml, images: 10,\n"
+                                " chip: {\n  rows: 64, columns: 64},\n"
+                                " swaths: [{path: a.tif}],\n"
+                                " draw: {injection.noise_floor: {uniform: [-20 dB, -18 dB]}},\n"
+                                " targets: [{class: tin, object: {shape: sphere, diameter: 1},\n"
+                                "  draw: {level.over_seabed: 12 dB}}]}\n";
+
+static void what_is_in_braces_stays_so(void **state)
+{
+    struct scene_folder *folder = *state;
+    char unchanged[200];
+    char *text = fitted_text(folder, flow_file, NULL, unchanged);
+    assert_string_equal(text, "{visible: {highlight: 1.2 dB, shadow: -2.3 dB, otherwise: redraw}, "
+                              "sonject_campaign: 1, scene: s.yaml, images: 10,\n"
+                              " chip: {\n  slant_range: [30 m, 60.5 m], rows: 64, columns: 64},\n"
+                              " swaths: [{path: a.tif}],\n"
+                              " draw: {injection.noise_floor: {uniform: [-18 dB, -16 dB]}},\n"
+                              " targets: [{class: tin, object: {shape: sphere, diameter: 1},\n"
+                              "  draw: {level.over_seabed: 13 dB}}]}\n");
+    assert_string_equal(unchanged, ""); /* the noise floor is moved */
+    free(text);
+}
+
+static void what_overrides_give_is_not_written_over(void **state)
+{
+    static const char *const overrides[] = {"visible={highlight: 3 dB, shadow: -1 dB}",
+                                            "chip.slant_range=[20 m, 90 m]",
+                                            "chip={rows: 64, columns: 64}"};
+    struct scene_folder *folder = *state;
+    for (size_t i = 0; i < COUNT(overrides); i++) {
+        char unchanged[200];
+        assert_null(fitted_text(folder, flow_file, overrides[i], unchanged));
+        assert_non_null(strstr(folder->report.message, "gives what a fit writes"));
+        assert_memory_equal(folder->report.message, "--set ", 6);
+    }
+}
+
 TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(draws_reach_what_made_the_contacts),
              TEST(a_median_has_the_error_of_statistics),
-             TEST(a_fitted_file_is_the_users_own_with_other_numbers))
+             TEST(ends_of_published_quantiles_have_errors),
+             TEST(a_fitted_file_is_the_users_own_with_other_numbers),
+             TEST(what_is_in_braces_stays_so), TEST(what_overrides_give_is_not_written_over))

@@ -111,13 +111,15 @@ inline void merge_campaign(const context &context, const std::string &folder,
     });
 }
 
-/* Writes a campaign file whose targets measure as real contacts do; see sonject_campaign_fit. */
+/* Writes a campaign file whose targets measure as real contacts do; see sonject_campaign_fit.
+ * reading: overrides, and whether code is allowed; nullptr: neither. */
 inline void fit_campaign(const context &context, const std::string &path,
                          const sonject_campaign_fit_params &params,
+                         const sonject_scene_read_params *reading = nullptr,
                          const progress &callback = progress())
 {
     detail::tell_progress(context.get(), callback, [&](sonject_progress_function tell, void *user) {
-        return sonject_campaign_fit(context.get(), path.c_str(), nullptr, &params, tell, user);
+        return sonject_campaign_fit(context.get(), path.c_str(), reading, &params, tell, user);
     });
 }
 
