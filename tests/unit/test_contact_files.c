@@ -656,8 +656,27 @@ static void test_quantiles_that_are_wrong(void **state)
                    "%/q.yml:3:15: shadow_range: must be a list of 1 to 32 numbers that rise");
 }
 
+/* A folder within a fresh one, since images are looked for beside it, too. */
+static int make_labels_folder(void **state)
+{
+    if (make_temporary_folder(state) != 0)
+        return 1;
+    struct temporary_folder *folder = *state;
+    strcat(folder->path, "/labels");
+    return mkdir(folder->path, 0700);
+}
+
+static int remove_labels_folder(void **state)
+{
+    char outer[TEMPORARY_CAPACITY];
+    const struct temporary_folder *folder = *state;
+    const size_t length = strlen(folder->path) - strlen("/labels");
+    snprintf(outer, sizeof outer, "%.*s", (int)length, folder->path);
+    return remove_temporary_folder(state) != 0 || rmdir(outer) != 0;
+}
+
 #define IN_FOLDER(test)                                                                            \
-    cmocka_unit_test_setup_teardown(test, make_temporary_folder, remove_temporary_folder)
+    cmocka_unit_test_setup_teardown(test, make_labels_folder, remove_labels_folder)
 
 TEST_PROGRAM(NULL, NULL, IN_FOLDER(test_coco), IN_FOLDER(test_coco_that_is_wrong),
              IN_FOLDER(test_tables), IN_FOLDER(test_tables_that_are_wrong),
