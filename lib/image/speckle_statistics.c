@@ -115,23 +115,17 @@ static bool measure_block(const struct block_view *block, double results[BLOCK_V
     return true;
 }
 
-static double middle(double *values, size_t count)
-{
-    qsort(values, count, sizeof *values, compare_doubles);
-    return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
-}
-
 /* Median of one value over the blocks; its standard error from the median deviation, as of normal
  * values: 1.2533 * 1.4826 times that over the root of their number. scratch: count. */
-static double median_of(const double *blocks, size_t count, size_t value, double *scratch,
-                        double *error)
+static double block_median(const double *blocks, size_t count, size_t value, double *scratch,
+                           double *error)
 {
     for (size_t i = 0; i < count; i++)
         scratch[i] = blocks[i * BLOCK_VALUES + value];
-    const double median = middle(scratch, count);
+    const double median = median_of(scratch, count);
     for (size_t i = 0; i < count; i++)
         scratch[i] = fabs(blocks[i * BLOCK_VALUES + value] - median);
-    *error = 1.2533 * 1.4826 * middle(scratch, count) / sqrt((double)count);
+    *error = 1.2533 * 1.4826 * median_of(scratch, count) / sqrt((double)count);
     return median;
 }
 
@@ -174,14 +168,15 @@ static void summarise(const double *blocks, size_t count, double *scratch,
 {
     double along[SPECKLE_LAGS], range[SPECKLE_LAGS];
     double error, contrast_error, along_error, range_error;
-    statistics->amplitude_contrast = median_of(blocks, count, AMPLITUDE_CONTRAST, scratch, &error);
-    const double contrast = median_of(blocks, count, ROW_LAG(0), scratch, &contrast_error);
+    statistics->amplitude_contrast =
+        block_median(blocks, count, AMPLITUDE_CONTRAST, scratch, &error);
+    const double contrast = block_median(blocks, count, ROW_LAG(0), scratch, &contrast_error);
     for (size_t lag = 0; lag < SPECKLE_LAGS; lag++) {
-        along[lag] = median_of(blocks, count, ROW_LAG(lag), scratch, &error);
-        range[lag] = median_of(blocks, count, COLUMN_LAG(lag), scratch, &error);
+        along[lag] = block_median(blocks, count, ROW_LAG(lag), scratch, &error);
+        range[lag] = block_median(blocks, count, COLUMN_LAG(lag), scratch, &error);
     }
-    median_of(blocks, count, ROW_LAG(1), scratch, &along_error);
-    median_of(blocks, count, COLUMN_LAG(1), scratch, &range_error);
+    block_median(blocks, count, ROW_LAG(1), scratch, &along_error);
+    block_median(blocks, count, COLUMN_LAG(1), scratch, &range_error);
     if (!(contrast > CONTRAST_LEAST))
         return;
     const double texture = 0.5 * (texture_of(along) + texture_of(range));

@@ -170,6 +170,12 @@ void mean_and_deviation(const float *values, size_t count, double *mean, double 
     *deviation = sqrt(sum / (double)count);
 }
 
+double median_of(double *values, size_t count)
+{
+    qsort(values, count, sizeof *values, compare_doubles);
+    return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+}
+
 /* What is left in the deepest shadow of the patch is noise: ambient and receiver noise, and the
  * sidelobes and echoes by other ways that fill real shadows. The darkest block of 7 x 7 pixels
  * finds it: large enough to average speckle (some twenty looks, so the smallest of many is perhaps

@@ -19,6 +19,9 @@ sonject_status local_mean(struct report *report, const float *values, size_t row
  */
 void mean_and_deviation(const float *values, size_t count, double *mean, double *deviation);
 
+/* Sorts the values; count > 0. */
+double median_of(double *values, size_t count);
+
 /* Noise floor over the local mean, as an energy ratio, from the darkest block of about 7 x 7 pixels
  * of the patch; at least 0.001 (-30 dB). Where it is above 0.01 (-20 dB) there is no shadow in the
  * patch and the darkest block is merely seabed: then 0.0056 (-22.5 dB), and *is_measured is false.

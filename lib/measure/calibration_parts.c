@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "image/statistics.h"
 
 #define DECIBELS 4.3429448190325182 /* of one neper of intensity */
 #define CLEARLY  3.0                /* standard errors */
@@ -28,16 +29,10 @@
 #define ROUNDING_MOST   0.05  /* of the floor */
 #define LOWEST_SHARE    0.05  /* of pixels that may lie at the lowest number */
 
-static double middle_of(double *values, size_t count)
-{
-    qsort(values, count, sizeof *values, compare_doubles);
-    return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
-}
-
 static double median_level(const struct calibration *found, double *scratch)
 {
     memcpy(scratch, found->fits[found->family].levels, found->tiles.count * sizeof *scratch);
-    return middle_of(scratch, found->tiles.count);
+    return median_of(scratch, found->tiles.count);
 }
 
 /* Intensities over a level. Values that are whole numbers go by a table. */
@@ -466,7 +461,7 @@ static double return_error(const double *columns, size_t rows, double *scratch)
 {
     for (size_t i = 1; i + 1 < rows; i++)
         scratch[i - 1] = fabs(columns[i - 1] - 2.0 * columns[i] + columns[i + 1]);
-    return rows < 3 ? NAN : 1.4826 * middle_of(scratch, rows - 2) / sqrt(6.0);
+    return rows < 3 ? NAN : 1.4826 * median_of(scratch, rows - 2) / sqrt(6.0);
 }
 
 /* scratch: as many as there are rows. */
@@ -490,7 +485,7 @@ static void tell_water(struct calibration *found, double *scratch)
     }
     const double error = return_error(returns->columns, found->rows, scratch);
     memcpy(scratch, returns->columns, found->rows * sizeof *scratch);
-    const double columns = middle_of(scratch, found->rows);
+    const double columns = median_of(scratch, found->rows);
     const bool knows_first = returns->sides != WATER_BETWEEN && found->first_slant_range_m >= 0.0;
     const double first = knows_first ? found->first_slant_range_m / found->column_spacing_m : 0.5;
     if (!(found->column_spacing_m > 0.0)) {

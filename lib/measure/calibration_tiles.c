@@ -47,7 +47,7 @@ static void copy_part(const struct stored_swath *swath, size_t row, size_t colum
                side * sizeof *part);
 }
 
-static float median_of(float *values, size_t count)
+static float median_of_floats(float *values, size_t count)
 {
     qsort(values, count, sizeof *values, compare_floats);
     return 0.5f * (values[(count - 1) / 2] + values[count / 2]);
@@ -64,7 +64,7 @@ static float unevenness(const struct stored_swath *swath, size_t row, size_t col
     size_t blank = 0, clipped = 0;
     for (size_t i = 0; i < PARTS * PARTS; i++) {
         copy_part(swath, row + i / PARTS * part, column + i % PARTS * part, part, pixels);
-        const double median = median_of(pixels, part * part);
+        const double median = median_of_floats(pixels, part * part);
         sum += median;
         squares += median * median;
     }
