@@ -17,7 +17,7 @@
 #include "base/text.h"
 #include "dataset/run.h"
 
-#define FORMAT_VERSION 2
+#define FORMAT_VERSION 3
 #define HEAD_FILE      "campaign.json"
 #define LAST_FILE      "dataset.json"
 

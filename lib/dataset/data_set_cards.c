@@ -18,8 +18,19 @@ static size_t split_named(const struct data_set *set, const char *name, const ch
     return i;
 }
 
+/* The first or last split that is none of two; split_count: all are. */
+static size_t split_but(const struct data_set *set, size_t one, size_t other, bool is_last)
+{
+    size_t found = set->split_count;
+    for (size_t i = 0; i < set->split_count; i++)
+        if (i != one && i != other && (is_last || found == set->split_count))
+            found = i;
+    return found;
+}
+
 /* Trainers want splits called train and val: where none is called so these are the first and the
- * last. Names of folders are meant from the file's own. */
+ * last that have no other use, val else that of tests. Names of folders are meant from the file's
+ * own. */
 sonject_status write_yolo_card(const struct data_set *set)
 {
     struct growing_text text = {NULL, 0, 0, false};
@@ -27,10 +38,17 @@ sonject_status write_yolo_card(const struct data_set *set)
     size_t i;
     const json_t *name;
     const size_t count = set->split_count;
-    const size_t train = split_named(set, "train", "training") % count;
-    const size_t named = split_named(set, "val", "validation");
     const size_t test = split_named(set, "test", "testing");
-    const size_t val = named < count ? named : test < count && count < 3 ? test : count - 1;
+    size_t val = split_named(set, "val", "validation");
+    size_t train = split_named(set, "train", "training");
+    if (train == count)
+        train = split_but(set, test, val, false);
+    if (train == count) /* there is nothing else */
+        train = val < count ? val : test;
+    if (val == count)
+        val = split_but(set, test, train, true);
+    if (val == count)
+        val = test < count ? test : train;
     CHECK(path_in(set->report, path, set->folder, "data.yaml"));
     growing_text_add(&text, "# Targets injected by sonject, for trainers of YOLO: "
                             "yolo train data=data.yaml\n");

@@ -239,6 +239,18 @@ def test_trainers_of_yolo_find_images_and_labels(whole):
     assert names == dict(enumerate([*TARGETS, "stone"]))
 
 
+@pytest.mark.parametrize("splits, train, val, test", [
+    ("test: 0.2, learn: 0.8", "learn", "test", "test"), ("validation: 0.2, a: 0.6, test: 0.2", "a", "validation", "test"),
+    ("val: 0.5, test: 0.5", "val", "val", "test"), ("a: 0.5, test: 0.2, b: 0.3", "a", "b", "test")])
+def test_trainers_of_yolo_learn_from_no_test(ground, command, splits, train, val, test):
+    name = splits.replace(": ", "").replace(", ", "")
+    done = command("campaign", "campaign.yaml", "-o", name, "--set", f"splits={{{splits}}}", "--set", "images=5",
+                   "--set", "chip={rows: 16, columns: 16}")
+    assert done.returncode == 0, done.stderr
+    assert f"\ntrain: {train}/images\nval: {val}/images\ntest: {test}/images\n" in (
+        ground / name / "data.yaml").read_text()
+
+
 def test_croissant_lists_files_and_records(whole):
     """What mlcroissant asks for besides was tried with it: it finds no error, and reads all records."""
     card = json.loads((whole / "croissant.json").read_text())
@@ -400,7 +412,7 @@ def test_a_head_that_was_tampered_with_is_refused(command, whole, ground):
                    {"swaths": None}, {"swaths": [{"path": "\u202e"}]}, {"sonject_campaign": "2"}):
         (ground / "odd" / "campaign.json").write_text(json.dumps({**head, **change}))
         assert_refused(command("merge", "odd"), 3, "odd/campaign.json", "damaged")
-    (ground / "odd" / "campaign.json").write_text(json.dumps({**head, "sonject_campaign": 1}))
+    (ground / "odd" / "campaign.json").write_text(json.dumps({**head, "sonject_campaign": 2}))
     assert_refused(command("merge", "odd"), 2, "odd: is of another version of sonject")
 
 
