@@ -326,7 +326,9 @@ static const struct field chip_fields[] = {
     {"columns", "of each image; all: those of its swath", .kind = FIELD_SPECIAL,
      .read = read_columns, .unit = "whole number, or all", REQUIRED},
     {"edge", "pixels that images stay away from swaths' edges", COUNT32(edge, 0, UINT32_MAX / 4)},
-    {"clearance", "pixels that images stay away from contacts to avoid",
+    {"clearance",
+     "pixels that images stay away from contacts to avoid; objects' middles, where rows or columns "
+     "are all",
      COUNT32(clearance, 0, UINT32_MAX / 4)},
     {"spread", "part of the sides in which objects lie, about the middle, 0 to 1",
      QUANTITY(spread, NUMBER), WITHIN(0.0, 1.0)},

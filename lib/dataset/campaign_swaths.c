@@ -335,18 +335,52 @@ static void forbid(const struct campaign *campaign, uint64_t block, uint64_t chi
     *forbidden = first + count + campaign->clearance + block - 1 - *first_forbidden;
 }
 
-static void begin_at_block(uint64_t block, uint64_t *first, uint64_t *count)
+/* Leaves out what lies before a block of which the first pixel beyond the edge is the first. */
+static void begin_at_block(uint64_t block, uint32_t edge, uint64_t *first, uint64_t *count)
 {
-    const uint64_t left_out = (block - *first % block) % block;
+    const uint64_t left_out = (block - (*first + edge) % block) % block;
     *first += left_out;
     *count -= left_out < *count ? left_out : *count;
 }
 
-/* Of a side: chips of a JPEG begin where blocks do, so that what was coded once is coded alike
- * again. What has all of a side keeps it. */
-static uint64_t block_of(const struct swath_plan *plan, uint32_t side)
+/* First pixels, along one axis, of chips in which a box takes all places that objects may have:
+ * they keep away from it by themselves where images show it. low, high: where objects lie in a
+ * chip. */
+static void forbid_covered(const struct campaign *campaign, uint64_t block, double low, double high,
+                           uint64_t first, uint64_t count, uint64_t *first_forbidden,
+                           uint64_t *forbidden)
 {
-    return plan->jpeg_quality > 0 && side > 0 ? JPEG_BLOCK : 1;
+    const double middle = 0.5 * (low + high), half = 0.5 * campaign->spread * (high - low);
+    const double box = (double)first, clearance = (double)campaign->clearance;
+    const double from = fmax(0.0, floor(box - clearance - (middle - half)) + 1.0);
+    const double end = ceil(box + (double)count + clearance - (middle + half));
+    *first_forbidden = (uint64_t)from;
+    *forbidden = end > from ? (uint64_t)(end - from) + block - 1 : 0;
+}
+
+/* The first pixels that a box to avoid leaves to no chip. */
+static struct region forbid_box(const struct campaign *campaign, const struct swath_plan *plan,
+                                const struct region *box)
+{
+    const struct crop_places *room = &plan->room;
+    struct region forbidden;
+    if (!images_show_contacts(campaign)) {
+        forbid(campaign, room->block_rows, plan->chip_rows, box->first_row, box->rows,
+               &forbidden.first_row, &forbidden.rows);
+        forbid(campaign, room->block_columns, plan->chip_columns, box->first_column, box->columns,
+               &forbidden.first_column, &forbidden.columns);
+        return forbidden;
+    }
+    double low = 0.0, high = (double)(plan->chip_columns - 1);
+    if (campaign->chip_columns == 0) {
+        low = fmax(low, plan->first_object_column - (double)room->chips.first_column);
+        high = fmin(high, plan->last_object_column - (double)room->chips.first_column);
+    }
+    forbid_covered(campaign, room->block_rows, 0.0, (double)(plan->chip_rows - 1), box->first_row,
+                   box->rows, &forbidden.first_row, &forbidden.rows);
+    forbid_covered(campaign, room->block_columns, low, high, box->first_column, box->columns,
+                   &forbidden.first_column, &forbidden.columns);
+    return forbidden;
 }
 
 bool images_show_contacts(const struct campaign *campaign)
@@ -371,17 +405,25 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
         limits.lowest_m = fmin(limits.lowest_m, altitudes_m[row]);
         limits.highest_m = fmax(limits.highest_m, altitudes_m[row]);
     }
-    plan->chip_rows = side_of(campaign->chip_rows, plan->layout.rows, campaign->edge);
-    uint64_t first, width;
+    uint64_t top = 0, height = plan->layout.rows, first, width;
     if (!geometry_side(geometry, plan->layout.columns, &first, &width))
         return tree_failure(&campaign->tree, plan->place, "swaths",
                             "nadir_column %g leaves none of the %llu columns of %s to the side",
                             geometry->nadir_column, (unsigned long long)plan->layout.columns,
                             plan->written);
+    /* chips of a JPEG begin where blocks do, so that what was coded once is coded alike again */
+    const uint64_t block = plan->jpeg_quality > 0 ? JPEG_BLOCK : 1;
+    const uint64_t block_rows = campaign->chip_rows > 0 ? block : 1;
+    const uint64_t block_columns = campaign->chip_columns > 0 ? block : 1;
+    if (campaign->chip_rows == 0)
+        begin_at_block(block, campaign->edge, &top, &height);
+    if (campaign->chip_columns == 0)
+        begin_at_block(block, campaign->edge, &first, &width);
+    plan->chip_rows = side_of(campaign->chip_rows, height, campaign->edge);
     plan->chip_columns = side_of(campaign->chip_columns, width, campaign->edge);
     const uint64_t rows = plan->chip_rows + 2 * (uint64_t)campaign->edge;
     const uint64_t columns = plan->chip_columns + 2 * (uint64_t)campaign->edge;
-    if (plan->layout.rows < rows || width < columns)
+    if (height < rows || width < columns)
         return tree_failure(
             &campaign->tree, plan->place, "swaths",
             "%s has %llu x %llu pixels, too few for images of %llu x %llu that stay %u "
@@ -389,14 +431,19 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
             plan->written, (unsigned long long)plan->layout.rows, (unsigned long long)width,
             (unsigned long long)plan->chip_rows, (unsigned long long)plan->chip_columns,
             (unsigned)campaign->edge);
-    struct region chips = {campaign->edge, first + campaign->edge, plan->layout.rows - rows + 1,
+    struct region chips = {top + campaign->edge, first + campaign->edge, height - rows + 1,
                            width - columns + 1};
-    const uint64_t block_rows = block_of(plan, campaign->chip_rows);
-    const uint64_t block_columns = block_of(plan, campaign->chip_columns);
     bool has_room = limit_ranges(&limits, plan, &chips);
-    begin_at_block(block_rows, &chips.first_row, &chips.rows);
-    begin_at_block(block_columns, &chips.first_column, &chips.columns);
+    begin_at_block(block_rows, 0, &chips.first_row, &chips.rows);
+    begin_at_block(block_columns, 0, &chips.first_column, &chips.columns);
     has_room = has_room && chips.rows > 0 && chips.columns > 0;
+    if (!has_room && campaign->chip_columns == 0 && campaign->least_ratio > 0.0)
+        return tree_failure(&campaign->tree, plan->place, "swaths",
+                            "no place within %s is at %g to %g times the sonar's altitude, %g to "
+                            "%g m%s",
+                            plan->written, campaign->least_ratio, campaign->most_ratio,
+                            limits.lowest_m, limits.highest_m,
+                            campaign->has_range ? ", and within chip.slant_range" : "");
     if (!has_room && !campaign->has_range)
         return tree_failure(&campaign->tree, plan->place, "swaths",
                             "no image within %s begins beyond the sonar's altitude, up to %g m",
@@ -412,17 +459,16 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
     room->chips = chips;
     room->block_rows = block_rows;
     room->block_columns = block_columns;
-    room->box_count = images_show_contacts(campaign) ? 0 : plan->avoid_count;
-    room->boxes = allocate_array(room->box_count + 2 * RATIO_BLOCKS + 1, sizeof *room->boxes);
+    room->boxes = allocate_array(plan->avoid_count + 2 * RATIO_BLOCKS + 1, sizeof *room->boxes);
     CHECK_MEMORY(report, room->boxes, "the places for images");
-    for (size_t i = 0; i < room->box_count; i++) {
-        const struct region *box = &plan->avoid[i];
-        struct region *forbidden = &room->boxes[i];
-        forbid(campaign, block_rows, plan->chip_rows, box->first_row, box->rows,
-               &forbidden->first_row, &forbidden->rows);
-        forbid(campaign, block_columns, plan->chip_columns, box->first_column, box->columns,
-               &forbidden->first_column, &forbidden->columns);
-    }
+    if (images_show_contacts(campaign) && plan->avoid_count > 0 && campaign->clearance == 0)
+        report_log(
+            report,
+            "note: chip.clearance is 0: objects may reach into contacts to avoid in %s, from "
+            "which their middles alone keep away",
+            plan->written);
+    for (; room->box_count < plan->avoid_count; room->box_count++)
+        room->boxes[room->box_count] = forbid_box(campaign, plan, &plan->avoid[room->box_count]);
     if (campaign->chip_columns > 0)
         limit_ratios(&limits, plan, room);
     qsort(room->boxes, room->box_count, sizeof *room->boxes, compare_starts);
@@ -440,8 +486,8 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
                             plan->written, campaign->least_ratio, campaign->most_ratio,
                             limits.lowest_m, limits.highest_m, plan->avoid_count);
     return tree_failure(&campaign->tree, plan->place, "swaths",
-                        "the %zu contacts to avoid in %s leave no room for images of %u x %u that "
-                        "stay %u pixels away from them",
-                        plan->avoid_count, plan->written, (unsigned)campaign->chip_rows,
-                        (unsigned)campaign->chip_columns, (unsigned)campaign->clearance);
+                        "the %zu contacts to avoid in %s leave no room for images of %llu x %llu "
+                        "that stay %u pixels away from them",
+                        plan->avoid_count, plan->written, (unsigned long long)plan->chip_rows,
+                        (unsigned long long)plan->chip_columns, (unsigned)campaign->clearance);
 }

@@ -641,13 +641,26 @@ def test_images_may_be_whole_swaths_with_several_targets(ground, command, settin
     assert json.loads((ground / name / "campaign.json").read_text())["columns"] == "all"
 
 
+def test_images_with_a_contact_across_the_line_lie_where_objects_may(ground, command):
+    settings = ["--set", "chip.columns=all", "--set", "empty=0",
+                "--set", f"swaths[0].avoid=[{{row: 0, column: 0, rows: 60, columns: {COLUMNS}}}]"]
+    done = command("campaign", "campaign.yaml", "-o", "across", *settings)
+    assert done.returncode == 0 and "note" not in done.stderr, done.stderr
+    near = command("campaign", "campaign.yaml", "-o", "near", *settings, "--set", "chip.clearance=0", "--set", "images=3")
+    assert near.returncode == 0 and near.stderr.count("note: chip.clearance is 0") == 1
+    first = [record["swath"]["row"] for record in records(ground / "across")
+             if record["swath"]["path"] == "swath0.png"]
+    # the middle 0.4 of 64 rows ends at the chip's row 44.1, the box with its clearance at row 62
+    assert first and min(first) >= 18
+
+
 def test_of_several_targets_the_faint_ones_alone_are_drawn_anew(ground, command):
-    """Where they are not, they alone are difficult."""
+    """Where they are not, they alone are difficult. All else stays where it is."""
     visible = "visible={highlight: 6 dB, shadow: -1 dB, otherwise: %s}"
-    levels, are_seen = {}, {}
+    levels, are_seen, places = {}, {}, {}
     for otherwise in ("difficult", "redraw"):
         done = command("campaign", "campaign.yaml", "-o", f"two_{otherwise}", "--set", visible % otherwise, *FAINT,
-                       "--set", "targets_per_image=2", "--set", "chip.spread=0.6")
+                       "--set", "targets_per_image=3", "--set", "chip.spread=0.6")
         assert done.returncode == 0, done.stderr
         for record in records(ground / f"two_{otherwise}"):
             truths = json.loads((ground / f"two_{otherwise}" / of_image(record, "truth", ".json")).read_text())["objects"]
@@ -752,6 +765,26 @@ def test_images_of_a_jpeg_are_coded_as_it_is(ground, command, quality):
     assert head["swaths"][0]["jpeg_quality"] == quality
     card = json.loads((ground / f"as_input{quality}" / "croissant.json").read_text())
     assert "image/jpeg" in [entry["encodingFormat"] for entry in card["distribution"]]
+
+
+@pytest.mark.parametrize("settings, place", [
+    (["chip.columns=all"], {"column": 8, "columns": 240 - 3 - 8}),
+    (["chip.rows=all", "chip.columns=all", "swaths[0].set={input.geometry.nadir_column: 100, input.geometry.side: starboard, "
+      "input.geometry.first_slant_range: 0 m, sonar.altitude: 0.5 m}"],
+     {"row": 8, "rows": 200 - 3 - 8, "column": 104, "columns": 240 - 3 - 104})])
+def test_images_of_all_of_a_jpeg_begin_where_its_blocks_do(ground, command, settings, place):
+    pillow = pytest.importorskip("PIL.Image")
+    levels = numpy.random.default_rng(20261127).rayleigh(40, (200, 240))
+    pillow.fromarray(levels.clip(1, 255).astype("u1")).save(ground / "lines.jpg", quality=60)
+    name = f"lines{len(settings)}"
+    done = command("campaign", "campaign.yaml", "-o", name, *[part for text in [
+        "format=as_input", "swaths=[{path: lines.jpg}]", "splits={all: 1}", "images=2", "chip.edge=3", *settings]
+        for part in ("--set", text)])
+    assert done.returncode == 0, done.stderr
+    for record in records(ground / name):
+        assert record["swath"]["row"] % 8 == 0 and place.items() <= record["swath"].items()
+        image = numpy.array(pillow.open(ground / name / record["split"] / record["image"]))
+        assert image.shape == (record["swath"]["rows"], record["swath"]["columns"])
 
 
 def test_a_value_may_be_a_ratio_of_another(ground, command):
@@ -927,7 +960,11 @@ HOSTILE = [
     (["chip.rows=200"], "swath0.png", "too few for images of 200 x 64"),
     (["swaths[0].avoid=[{row: 0, column: 0, rows: 1099511627776, columns: 1099511627776}]"],
      "swath0.png", "leave no room"),
+    (["chip.rows=all", "chip.columns=all",
+      f"swaths[0].avoid=[{{row: 0, column: 0, rows: {ROWS}, columns: {COLUMNS}}}]"], "swath0.png",
+     f"no room for images of {ROWS} x {COLUMNS}"),
     (["chip.slant_range=[60 m, 70 m]"], "swath0.png", "60 to 70 m"),
+    (["chip.columns=all", "chip.range_over_altitude=[8, 9]"], "swath0.png", "8 to 9 times the sonar's altitude"),
     (["swaths[1].path=swath0.png", "swaths[2].path=swath0.png"], "too few for 2 splits", "swath"),
     (["swaths[1].path=swath0.png", "swaths[0].split=train", "swaths[1].split=test"],
      "same image", "swath0.png"),
