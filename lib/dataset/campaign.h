@@ -305,6 +305,14 @@ struct plan_key {
     const char *table;       /* the campaign's; NULL: none */
 };
 
+#define OBJECTS_OF_IMAGE 64 /* more than there are */
+
+/* Where objects lie in a chip. */
+struct object_places {
+    double rows[OBJECTS_OF_IMAGE], columns[OBJECTS_OF_IMAGE];
+    bool are_kept[OBJECTS_OF_IMAGE]; /* of the attempt before */
+};
+
 /* One image: which swath, where, and what of the scene is drawn how. */
 struct image_plan {
     uint64_t id;
@@ -314,6 +322,7 @@ struct image_plan {
     uint64_t seed;
     uint32_t object_count;
     uint32_t target_count; /* of these, the first */
+    struct object_places places;
     struct plan_key *keys; /* owned; names of files in them are meant from the campaign's folder */
     size_t key_count;
 };
@@ -324,7 +333,11 @@ struct image_plan {
 struct attempts {
     uint32_t of_all;
     uint32_t of_targets[CAMPAIGN_TARGETS_MAX];
+    struct object_places places; /* that objects have where single targets are drawn anew */
 };
+
+/* All values and places are to be drawn anew. */
+void attempts_next(struct attempts *attempts);
 
 /* The plan of image id, below campaign->images. Where draws were given up values and places of
  * objects are others; all else of it stays. plan: for image_plan_clear, also on failure. Errors:

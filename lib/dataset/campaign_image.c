@@ -140,12 +140,12 @@ sonject_status campaign_read_scene(struct sonject_campaign *campaign, const stru
     return status;
 }
 
-/* Keeps the first line of the report's message. */
-static void keep_reason(const struct report *report, char reason[REASON_CAPACITY])
+/* Keeps the first reason's first line; what goes on has not failed. */
+static void keep_reason(struct report *report, const char *why, char reason[REASON_CAPACITY])
 {
     if (!*reason)
-        snprintf(reason, REASON_CAPACITY, "%.*s", (int)strcspn(report->message, "\n"),
-                 report->message);
+        snprintf(reason, REASON_CAPACITY, "%.*s", (int)strcspn(why, "\n"), why);
+    report->message[0] = '\0';
 }
 
 void campaign_forget_calibrations(struct sonject_campaign *campaign)
@@ -183,7 +183,7 @@ sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t i
                                    struct attempts *attempts, char reason[REASON_CAPACITY],
                                    struct image_plan *plan, struct scene *scene)
 {
-    for (;; attempts->of_all++) {
+    for (;; attempts_next(attempts)) {
         bool are_relations = false;
         sonject_status status =
             image_plan_make(campaign->report, &campaign->campaign, id, attempts, plan);
@@ -194,7 +194,7 @@ sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t i
         }
         if (status != SONJECT_ERROR_INPUT || !are_relations || attempts->of_all + 1 >= ATTEMPTS_MAX)
             return status;
-        keep_reason(campaign->report, reason);
+        keep_reason(campaign->report, campaign->report->message, reason);
         image_plan_clear(plan);
     }
 }
@@ -226,25 +226,32 @@ static bool is_faint(const struct campaign *campaign, const sonject_object_truth
             !(truth->shadow_visibility_db <= campaign->visible_shadow_db));
 }
 
-/* Finds the targets that are seen less than they are to be. Where some are, the report's message
- * becomes the reason to draw anew; of several targets those alone are. */
+/* Finds the targets that are seen less than they are to be; false: there are none. next: of several
+ * targets those alone are drawn anew, and all others keep their places. */
 static bool find_faint(const struct sonject_campaign *campaign, struct campaign_image *image,
-                       struct attempts *next)
+                       struct attempts *next, char why[REASON_CAPACITY])
 {
     const struct image_plan *plan = &image->plan;
+    struct object_places places = plan->places;
     bool are_some = false;
+    for (uint32_t i = 0; i < plan->object_count; i++)
+        places.are_kept[i] = true;
     for (uint32_t i = 0; i < plan->target_count; i++) {
         const sonject_object_truth *truth = &image->result.objects[i];
         image->is_faint[i] = is_faint(&campaign->campaign, truth);
         if (!image->is_faint[i])
             continue;
         are_some = true;
+        places.are_kept[i] = false;
         next->of_targets[i] += plan->target_count > 1;
-        report_failure(campaign->report, SONJECT_ERROR_INPUT,
-                       "the target is seen too little: highlight %.1f dB, shadow %.1f dB",
-                       truth->highlight_visibility_db, truth->shadow_visibility_db);
+        snprintf(why, REASON_CAPACITY,
+                 "the target is seen too little: highlight %.1f dB, shadow %.1f dB",
+                 truth->highlight_visibility_db, truth->shadow_visibility_db);
     }
-    next->of_all += are_some && plan->target_count == 1;
+    if (plan->target_count > 1)
+        next->places = places;
+    else if (are_some)
+        attempts_next(next);
     return are_some;
 }
 
@@ -264,8 +271,10 @@ sonject_status campaign_image_make(struct device *device, struct sonject_campaig
         THEN(status, make_attempt(device, campaign, progress, user, image, &is_drawn));
         const uint32_t given_up = attempts.of_all + redrawn;
         struct attempts next = attempts;
-        next.of_all += is_drawn;
-        if (status == SONJECT_OK && find_faint(campaign, image, &next))
+        char too_faint[REASON_CAPACITY];
+        if (is_drawn)
+            attempts_next(&next);
+        if (status == SONJECT_OK && find_faint(campaign, image, &next, too_faint))
             is_drawn = campaign->campaign.faint == FAINT_REDRAW && given_up + 1 < ATTEMPTS_MAX;
         if (!is_drawn || given_up + 1 >= ATTEMPTS_MAX) {
             image->attempts = given_up;
@@ -274,7 +283,8 @@ sonject_status campaign_image_make(struct device *device, struct sonject_campaig
         }
         redrawn += next.of_all == attempts.of_all;
         attempts = next;
-        keep_reason(campaign->report, reason);
+        keep_reason(campaign->report, status == SONJECT_OK ? too_faint : campaign->report->message,
+                    reason);
         campaign_image_clear(image);
         memset(image, 0, sizeof *image);
     }

@@ -21,8 +21,7 @@ enum {
     STREAM_CHIP_COLUMN = 0x33000000 /* likewise */
 };
 
-#define OBJECTS_OF_IMAGE 64 /* more than there are */
-#define NO_TRIAL         UINT32_MAX
+#define NO_TRIAL UINT32_MAX
 
 /* What a plan is drawn with. */
 struct drawing {
@@ -35,7 +34,6 @@ struct drawing {
     uint32_t attempt;      /* of what is drawn now; 0: the first */
     uint64_t index, count; /* of the image among those of its category */
     uint64_t cell;         /* of the grid, what is left of it */
-    double rows[OBJECTS_OF_IMAGE], columns[OBJECTS_OF_IMAGE]; /* where objects lie */
     uint32_t objects;
 };
 
@@ -52,6 +50,13 @@ static void drawing_init(struct drawing *drawing, struct report *report,
     drawing->trial = trial;
     drawing->attempts = *attempts;
     drawing->attempt = attempts->of_all;
+    plan->places = attempts->places;
+}
+
+void attempts_next(struct attempts *attempts)
+{
+    attempts->of_all++;
+    memset(&attempts->places, 0, sizeof attempts->places);
 }
 
 /* Before the swath is measured only its scene is of use. */
@@ -307,8 +312,19 @@ static bool is_free(const struct drawing *drawing, double row, double column)
     return true;
 }
 
+/* The distance of a place from the nearest object that has one; infinite where none has. */
+static double distance_to_others(const struct drawing *drawing, double row, double column)
+{
+    const struct object_places *places = &drawing->plan->places;
+    double nearest = HUGE_VAL;
+    for (uint32_t j = 0; j < OBJECTS_OF_IMAGE; j++)
+        if (j < drawing->objects || places->are_kept[j])
+            nearest = fmin(nearest, hypot(row - places->rows[j], column - places->columns[j]));
+    return nearest;
+}
+
 /* A place in the middle part of the chip: the first candidate for the first object, for others the
- * one that is farthest from all before. False: all are taken by contacts. */
+ * one that is farthest from all that have theirs. False: all are taken by contacts. */
 static bool try_place(struct drawing *drawing, uint64_t seed)
 {
     const struct campaign *campaign = drawing->campaign;
@@ -318,21 +334,20 @@ static bool try_place(struct drawing *drawing, uint64_t seed)
     const double offset = (double)chip->first_column;
     const double first = fmax(0.0, swath->first_object_column - offset);
     const double last = fmin((double)(chip->columns - 1), swath->last_object_column - offset);
+    const uint32_t candidates = isinf(distance_to_others(drawing, 0.0, 0.0)) ? 1 : CANDIDATES;
     double farthest = -1.0;
-    for (uint32_t i = 0; i < (number > 0 ? CANDIDATES : 1u); i++) {
+    for (uint32_t i = 0; i < candidates; i++) {
         const uint64_t index = (drawing->plan->id * OBJECTS_OF_IMAGE + number) * CANDIDATES + i;
         const double u = uniform_number(seed, STREAM_OBJECT_ROW, index) - 0.5;
         const double v = uniform_number(seed, STREAM_OBJECT_COLUMN, index) - 0.5;
         const double row =
             0.5 * (double)(chip->rows - 1) + campaign->spread * (double)(chip->rows - 1) * u;
         const double column = first + 0.5 * (last - first) + campaign->spread * (last - first) * v;
-        double nearest = HUGE_VAL;
-        for (uint32_t j = 0; j < number; j++)
-            nearest = fmin(nearest, hypot(row - drawing->rows[j], column - drawing->columns[j]));
+        const double nearest = distance_to_others(drawing, row, column);
         if (nearest > farthest && is_free(drawing, row, column)) {
             farthest = nearest;
-            drawing->rows[number] = row;
-            drawing->columns[number] = column;
+            drawing->plan->places.rows[number] = row;
+            drawing->plan->places.columns[number] = column;
         }
     }
     return farthest >= 0.0;
@@ -342,7 +357,9 @@ static void place_object(struct drawing *drawing)
 {
     const uint64_t seed = attempt_seed(drawing, drawing->campaign->seed);
     uint64_t tries = 0;
-    while (tries < PLACES_MAX && !try_place(drawing, seed ^ (UINT64_C(0xA0761D6478BD642F) * tries)))
+    const bool is_kept = drawing->plan->places.are_kept[drawing->objects];
+    while (!is_kept && tries < PLACES_MAX &&
+           !try_place(drawing, seed ^ (UINT64_C(0xA0761D6478BD642F) * tries)))
         tries++;
     if (tries == PLACES_MAX && drawing->status == SONJECT_OK)
         drawing->status = report_failure(
@@ -362,8 +379,9 @@ static void write_object(struct drawing *drawing, const struct item *item,
     char row[32], column[32];
     begin_object(drawing, number);
     place_object(drawing);
-    text_of_number(row, sizeof row, (double)chip->first_row + drawing->rows[number], 9);
-    text_of_number(column, sizeof column, (double)chip->first_column + drawing->columns[number], 9);
+    const struct object_places *places = &drawing->plan->places;
+    text_of_number(row, sizeof row, (double)chip->first_row + places->rows[number], 9);
+    text_of_number(column, sizeof column, (double)chip->first_column + places->columns[number], 9);
     growing_text_add(text, "%s{\"class\": ", number > 0 ? ", " : "");
     tree_write_flow(&class_name, text);
     growing_text_add(text, ", \"position\": {\"row\": %s, \"column\": %s}%s%s", row, column,

@@ -79,6 +79,17 @@ def test_the_scene_of_an_image_is_one_to_inject(campaign):
     assert 64 * 0.35 - 1 <= truth.row <= 64 * 0.65 and truth.is_visible
 
 
+def test_what_did_not_fail_leaves_no_message(campaign, tmp_path):
+    """Be it seen too little, or drawn anew before it fitted."""
+    context = sonject.Context()
+    for number, settings in enumerate([
+            {"visible": {"highlight": "90 dB", "otherwise": "difficult"}},
+            {"visible": {"highlight": "90 dB"}}, {"visible": {"highlight": "3 dB"}}]):
+        made = sonject.Campaign(tmp_path / "campaign.yaml", {"images": 3, "empty": 0, **settings}, context=context)
+        assert made.run(tmp_path / f"faint{number}")
+        assert context._library.sonject_context_message(context._pointer) == b""
+
+
 def test_a_data_set_is_made_once(campaign, tmp_path):
     whole, _ = campaign
     seen = []
