@@ -100,8 +100,10 @@ const struct verb convert_verb = {
     .second_offset = MEMBER(output),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes = "OUT is .tif, .png, .npy or .h5; with --into FILE it is of FILE's format,\n"
-             "XTF, JSF and MATLAB too. Samples that a new type cannot hold are refused, never cut.",
+    .notes =
+        "OUT is .tif, .png, .npy or .h5; with --into FILE it is of FILE's format,\n"
+        "XTF, JSF and MATLAB too. Samples that a new type cannot hold are refused, never cut;\n"
+        "numbers beyond a JSF file's 16 bits alone are cut to its largest.",
     .options_size = sizeof(struct convert_options),
     .work = work,
 };

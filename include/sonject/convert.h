@@ -47,10 +47,10 @@ typedef struct sonject_convert_params {
 /* Converts a file. Geometry that is known goes with the samples where the format keeps texts (all
  * but .npy; a line of the log tells of it). Channel and array are those of
  * `input`, and of `into` where that has several. Doubles become floats. Refused (INPUT): samples
- * that the new type cannot hold, formats that cannot hold the samples as they are, a range axis of
- * an input that does not tell its own, and whatever would do nothing. The output appears whole or
- * not at all. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED (a format that this build
- * lacks), CANCELLED. */
+ * that the new type cannot hold (numbers beyond a JSF file's 16 bits are cut), formats that cannot
+ * hold the samples as they are, a range axis of an input that does not tell its own, and whatever
+ * would do nothing. The output appears whole or not at all. Errors: ARGUMENT, INPUT, STORAGE,
+ * MEMORY, UNSUPPORTED (a format that this build lacks), CANCELLED. */
 SONJECT_API sonject_status sonject_convert(sonject_context *context,
                                            const sonject_convert_params *params);
 

@@ -45,7 +45,8 @@ static json_t *image_document(const struct scene *scene, const struct injection_
         {"first_slant_range_m",
          json_number(
              fmin(geometry_range(geometry, input->first_column),
-                  geometry_range(geometry, input->first_column + (double)(input->columns - 1))))});
+                  geometry_range(geometry, input->first_column + (double)(input->columns - 1))))},
+        {"range_grows", json_string(geometry_is_reversed(geometry) ? "left" : "right")});
 }
 
 static json_t *series_document(const struct scene *scene, const struct injection_input *input,

@@ -250,6 +250,8 @@ sonject_status impulse_export_publish(struct impulse_export *export, const struc
         hdf5_write_text(export->file, "scene", facts->scene_hash) &&
         hdf5_write_text(export->file, "image_path", scene->input_path ? scene->input_path : "") &&
         hdf5_write_text(export->file, "image_xxhash", facts->image_hash) &&
+        hdf5_write_text(export->file, "side",
+                        scene->geometry.side == SONJECT_SIDE_PORT ? "port" : "starboard") &&
         write_facts(export->file, scene, input, facts) &&
         H5Fflush(export->file, H5F_SCOPE_GLOBAL) >= 0;
     sonject_status status = is_whole ? SONJECT_OK : cannot_write(export);

@@ -79,7 +79,8 @@ sonject_status check_response_fits(const struct tracer *tracer, const struct tra
  *
  *   /                  attributes: sonject (version), scene (hash of all that tracing depends on),
  *                      seed, the image's path, hash, rows and columns, what the grids were laid
- *                      for, the patch in the swath, and what was counted; units in their names
+ *                      for, side (port or starboard), the patch in the swath, and what was counted;
+ *                      units in their names
  *   /seabed            energy; in_view where the patch is resynthesised   (m^2)
  *   /objects/NUMBER    energy (m^2), footprint (rays), lost (m^2); objects count from 0
  *   /glints/PART       real, imaginary (m); parts count from 0 over all objects; only smooth ones
@@ -92,7 +93,9 @@ sonject_status check_response_fits(const struct tracer *tracer, const struct tra
  * Each set of lines has the attributes of its grid (scene/patch_view.h): strips_per_row,
  * bins_per_pixel, first_strip, strips, first_bin, bins; its datasets are strips x bins of 32-bit
  * floats with an attribute units, in chunks of whole strips of about 1 MB, shuffled and deflated.
- * Rows are the view's: of images to starboard the last row comes first (patch_view.h). */
+ * Rows are the view's: of images to starboard the last row comes first (patch_view.h). So are
+ * columns: bins go outwards in range, from the image's right to its left to port of a nadir_column
+ * above 0. */
 struct impulse_export;
 
 struct export_facts {

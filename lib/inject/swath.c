@@ -36,9 +36,9 @@ static sonject_status choose_patch(struct report *report, const struct scene *sc
                            scene->geometry.side == SONJECT_SIDE_PORT ? "port" : "starboard"),
             "input.geometry.nadir_column");
     patch->first_row = asked->first_row;
-    patch->first_column = asked->columns ? asked->first_column : first + asked->first_column;
-    patch->rows = asked->rows ? asked->rows : layout->rows - asked->first_row;
-    patch->columns = asked->columns ? asked->columns : columns - asked->first_column;
+    patch->first_column = asked->columns ? asked->first_column : first;
+    patch->rows = asked->rows ? asked->rows : layout->rows;
+    patch->columns = asked->columns ? asked->columns : columns;
     if (asked->first_row >= layout->rows || asked->first_column >= layout->columns ||
         !region_is_inside(layout, patch))
         return report_failure(
@@ -216,29 +216,43 @@ static bool is_zero(const unsigned char *bytes, size_t count)
     return i == count;
 }
 
+/* Whether columns of a row hold nothing but 0. line: room for them; whole: as of read_patch. */
+static sonject_status find_zeros(struct report *report, struct swath_file *file, const void *whole,
+                                 const struct swath *swath, const struct region *columns,
+                                 unsigned char *line, bool *are_zeros)
+{
+    const size_t pixel = stored_bytes(swath);
+    const uint64_t first = columns->first_row * swath->layout.columns + columns->first_column;
+    if (!whole && columns->columns > 0)
+        CHECK(swath_file_read(report, file, columns, line));
+    *are_zeros = is_zero(whole ? (const unsigned char *)whole + (size_t)first * pixel : line,
+                         (size_t)columns->columns * pixel);
+    return SONJECT_OK;
+}
+
 /* A row that is dark in the patch alone is a ping all the same. whole: as of read_patch. */
 static sonject_status find_empty_rows(struct report *report, struct swath_file *file,
                                       const void *whole, struct swath *swath)
 {
-    const size_t pixel = stored_bytes(swath);
-    const size_t patch_bytes = (size_t)swath->patch.columns * pixel;
-    const size_t row_bytes = (size_t)swath->layout.columns * pixel;
-    unsigned char *line = allocate_array(row_bytes, 1);
+    const size_t patch_bytes = (size_t)swath->patch.columns * stored_bytes(swath);
+    const uint64_t end = swath->patch.first_column + swath->patch.columns;
+    unsigned char *line = allocate_array((size_t)swath->layout.columns, stored_bytes(swath));
     sonject_status status = SONJECT_OK;
     swath->empty.numbers = allocate_array((size_t)swath->patch.rows, sizeof(uint64_t));
     if (!line || !swath->empty.numbers)
         status = report_out_of_memory(report, "the patch");
     for (size_t i = 0; status == SONJECT_OK && i < swath->patch.rows; i++) {
-        const struct region row = {swath->patch.first_row + i, 0, 1, swath->layout.columns};
+        const uint64_t row = swath->patch.first_row + i;
+        const struct region left = {row, 0, 1, swath->patch.first_column};
+        const struct region right = {row, end, 1, swath->layout.columns - end};
+        bool are_zeros = true;
         if (!is_zero((unsigned char *)swath->stored + i * patch_bytes, patch_bytes))
             continue;
-        if (whole)
-            memcpy(line, (const unsigned char *)whole + (size_t)row.first_row * row_bytes,
-                   row_bytes);
-        else
-            status = swath_file_read(report, file, &row, line);
-        if (status == SONJECT_OK && is_zero(line, row_bytes))
-            swath->empty.numbers[swath->empty.count++] = row.first_row;
+        status = find_zeros(report, file, whole, swath, &left, line, &are_zeros);
+        if (are_zeros)
+            THEN(status, find_zeros(report, file, whole, swath, &right, line, &are_zeros));
+        if (status == SONJECT_OK && are_zeros)
+            swath->empty.numbers[swath->empty.count++] = row;
     }
     free(line);
     return status;

@@ -108,7 +108,6 @@ static sonject_status take_keys(struct layer *layer, const char *file)
         strcmp(version->value.text, "1") != 0)
         return tree_failure(own, version ? version->place : own->root.place, "sonject_calibration",
                             "must be 1: is it a file of sonject calibrate?");
-    growing_text_add(&layer->taken, "%s", "");
     for (size_t i = 0; i < own->root.count; i++) {
         struct tree_entry *entry = &own->root.entries[i];
         bool is_known = false;

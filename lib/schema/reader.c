@@ -458,9 +458,9 @@ sonject_status read_section(struct reader *reader, const struct section *section
     }
     if (!reading_ends(status) && section->choice)
         status = settle(reader, node, status, check_choice_given(reader, section, node));
-    if (!reading_ends(status) && section->finish) {
+    if (!reading_ends(status) && section->finish)
         status = settle(reader, node, status, section->finish(reader, node, structure));
-    } else if (!reading_ends(status) && section->relations) {
+    if (!reading_ends(status) && section->relations) {
         struct check check = check_at(reader, node);
         section->relations(&check, structure);
     }

@@ -4,7 +4,8 @@
  * subsystem and channel; subsystem 0 is a sub-bottom profiler. Samples are envelopes, or analytic
  * signals as pairs, of 16 bits that a power of two scales ping by ping: where pings differ in it
  * they are shown as floats, 1 being the finest ping's step. Ranges come from the first ping's sound
- * speed. What samples of 16 bits cannot hold is cut when they are written.
+ * speed. Numbers beyond what samples of 16 bits hold are cut when they are written; what is not a
+ * number is refused.
  *
  * Refused: a file that is cut short or damaged, no sidescan channel, no channel as chosen or
  * several (lists them), other kinds of samples, compressed ones, pings in several packets, pings

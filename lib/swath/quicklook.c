@@ -101,10 +101,11 @@ static sonject_status to_ground_range(struct report *report, const char *path, e
         return input_failure(report, path,
                              "does not say where its columns lie: give row spacing, column spacing "
                              "and first slant range");
-    if (frame->column_spacing_m < 0.0)
-        return input_failure(report, path,
-                             "has range that grows to the left, of which only a slant range axis "
-                             "can be drawn");
+    if (frame->column_spacing_m < 0.0 || frame->first_range_m < 0.0)
+        return input_failure(
+            report, path,
+            "has columns to the left of its nadir, of which only a slant range axis "
+            "can be drawn");
     if (!(altitude > 0.0))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "a ground range axis needs the altitude: give --altitude");

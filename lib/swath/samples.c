@@ -89,7 +89,7 @@ static bool store(const struct stored_samples *stored, enum stored_type type, do
         (isnan(old) && isnan(number)))
         return !is_whole(type) || old <= most;
     number /= scale_of(stored);
-    if (is_whole(type) && stored->clips)
+    if (is_whole(type) && stored->clips && !isnan(number))
         number = fmin(fmax(number, least), most);
     if (is_whole(type) && !(number >= least && number <= (double)(float)most))
         return false;
@@ -134,7 +134,9 @@ static sonject_status refuse_sample(struct report *report, const char *path,
     char why[80] = "beyond what float32 holds: scale the array";
     if (!writes && is_whole(type))
         snprintf(why, sizeof why, "more than its array's type holds");
-    if (writes)
+    if (writes && isnan(number))
+        snprintf(why, sizeof why, "not a number, which the file cannot hold");
+    else if (writes)
         snprintf(why, sizeof why, "%.9g, more than the file's largest number of %.10g", number,
                  largest_of(stored, type));
     else if (number < 0.0 && is_whole(type))

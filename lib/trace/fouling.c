@@ -84,8 +84,6 @@ void fouling_record_init(struct fouling_record *record, const struct tracer *tra
 
 double fouling_brightest(const struct tracer *tracer, uint32_t part)
 {
-    const uint32_t object = tracer->placements[part].object;
-    return object_is_fouled(tracer, object)
-               ? peak_of(fouling_of(tracer, object)) * (double)FACET_BRIGHTEST
-               : 1.0;
+    const sonject_fouling_params *fouling = fouling_of(tracer, tracer->placements[part].object);
+    return peak_of(fouling) * (fouling->relief_m > 0.0 ? (double)FACET_BRIGHTEST : 1.0);
 }

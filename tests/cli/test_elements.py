@@ -22,7 +22,7 @@ def test_files_hold_the_series(sonject, scene, tmp_path):
     assert (facts["image"]["rows"], facts["image"]["columns"]) == (ROWS, COLUMNS)
     assert facts["array"]["hydrophone_length_m"] == 0.05  # twice the resolution
     assert facts["array"]["first_hydrophone_m"] == -0.025
-    assert facts["heard"] == "targets"
+    assert facts["heard"] == "targets" and facts["image"]["range_grows"] == "right"
     # the ball stands on the seabed point in the middle: its glint comes from 25 cm before its centre
     peak = facts["first_time_s"] + numpy.abs(series[0, 0]).argmax() / facts["sampling_rate_hz"]
     ground = math.sqrt((25 + 0.025 * (COLUMNS - 1) / 2) ** 2 - 10**2)

@@ -137,6 +137,10 @@ def test_pings_are_weighed(sonject, tmp_path, sides, is_analytic):
     assert numpy.array_equal(back, expected)
     untouched, _ = samples_of((tmp_path / "back.jsf").read_bytes(), 1)
     assert numpy.array_equal(untouched, port)
+    other[7, 8] = numpy.nan
+    numpy.save(tmp_path / "b.npy", (other[..., 0] + 1j * other[..., 1]).astype("c8") if is_analytic else other)
+    assert_refused(sonject("convert", "b.npy", "nan.jsf", "--into", "line.jsf", "--channel", "port"), 3,
+                   "the sample at row 7, column 8 is not a number, which the file cannot hold")
 
 
 def test_geometry_is_the_pings(sonject, tmp_path, sides):

@@ -1,7 +1,9 @@
 """Sidescan as it comes: images whose geometry changes from row to row, two sides in one, and what lies
 under the sonar."""
 
+import csv
 import json
+import xml.etree.ElementTree
 
 import numpy
 import pytest
@@ -215,7 +217,7 @@ def test_a_side_of_two_is_as_one_by_itself(sonject, tmp_path, waterfall, side):
         layers = [images.read_tiff(folder / f"{name}.tif") for folder in (one, both)]
         assert numpy.array_equal(layers[1][:, turn], layers[0])
     truths = [json.loads((folder / "truth.json").read_text()) for folder in (one, both)]
-    for found, expected in zip(truths[1]["objects"], truths[0]["objects"]):
+    for found, expected in zip(truths[1]["objects"], truths[0]["objects"], strict=True):
         assert found["column"] == pytest.approx(mirrored(side, expected["column"]), abs=1e-6)
         for key in ("row", "along_track_m", "slant_range_m", "ground_range_m", "highlight_cut", "shadow_visible",
                     "target_strength_db", "highlight_contrast_db", "shadow_visibility_db", "position"):
@@ -227,10 +229,20 @@ def test_a_side_of_two_is_as_one_by_itself(sonject, tmp_path, waterfall, side):
             for key in ("slant_range_m", "width_m", "ground_range_m", "along_track_m"):
                 assert found[box][key] == pytest.approx(expected[box][key], rel=1e-9)
     found, expected = (json.loads((folder / "coco.json").read_text())["annotations"] for folder in (both, one))
-    for a, b in zip(found, expected):
+    for a, b in zip(found, expected, strict=True):
         x, y, width, height = b["bbox"]
         assert a["bbox"] == [mirrored(side, x, width), y, width, height] and a["area"] == b["area"]
-    for a, b in zip((both / "image.txt").read_text().splitlines(), (one / "image.txt").read_text().splitlines()):
+    found, expected = (list(csv.DictReader((folder / "contacts.csv").open())) for folder in (both, one))
+    for a, b in zip(found, expected, strict=True):
+        assert float(a["column"]) == pytest.approx(mirrored(side, float(b["column"])), abs=1e-6)
+        assert int(a["box_column"]) == mirrored(side, int(b["box_column"]), int(b["box_columns"]))
+    found, expected = (list(xml.etree.ElementTree.parse(folder / "image.xml").iter("bndbox")) for folder in (both, one))
+    for a, b in zip(found, expected, strict=True):
+        first, last = (int(b.find(name).text) for name in ("xmin", "xmax"))
+        assert int(a.find("xmin").text) == 1 + mirrored(side, first - 1, last - first + 1)
+        assert int(a.find("xmax").text) == int(a.find("xmin").text) + last - first
+    for a, b in zip((both / "image.txt").read_text().splitlines(), (one / "image.txt").read_text().splitlines(),
+                    strict=True):
         a, b = (numpy.array(line.split(), float) for line in (a, b))
         middle = mirrored(side, b[1] * waterfall[side == "starboard"].shape[1], 0)
         assert a[1] * 400 == pytest.approx(middle, abs=1e-3) and a[2] == pytest.approx(b[2])
@@ -252,7 +264,20 @@ patch: {row: 0, column: 0, rows: 40, columns: 100}
     assert f"slant range {last - 99 * 0.15:.2f}...{last:.2f} m, port" in sonject.done("check", "taken.yaml").stdout
     sonject.done("quicklook", "both/energy.tif", "-o", "a.png", "--transfer", "intensity")
     assert_refused(sonject("quicklook", "both/energy.tif", "-o", "b.png", "--range-axis", "ground"), 3,
-                   "has range that grows to the left")
+                   "has columns to the left of its nadir")
+    # 204 columns of port, and 196 of starboard: ranges from -30.525 m on
+    (tmp_path / "whole.png").write_bytes(images.png_bytes(numpy.ones((ROWS, 400)), b"""\
+sonject:row_spacing_m=0.1
+sonject:column_spacing_m=0.15
+sonject:first_along_track_m=0
+sonject:first_slant_range_m=0
+sonject:nadir_column=203.5
+sonject:altitude_m=6
+sonject:side=starboard
+sonject:range_axis=slant"""))
+    sonject.done("quicklook", "whole.png", "-o", "a.png")
+    assert_refused(sonject("quicklook", "whole.png", "-o", "b.png", "--range-axis", "ground"), 3,
+                   "has columns to the left of its nadir")
     assert_refused(sonject("convert", "both/energy.tif", "b.tif", "--range-axis", "ground"), 3, "has a nadir column")
     sonject.done("convert", "both/energy.tif", "b.tif", "--row-spacing", 0.1, "--column-spacing", 0.15,
                  "--first-range", 9.075)
