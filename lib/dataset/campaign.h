@@ -443,6 +443,8 @@ sonject_status campaign_image_make(struct device *device, struct sonject_campaig
                                    struct campaign_image *image);
 void campaign_image_clear(struct campaign_image *image);
 
+#define CALIBRATIONS_FOLDER "calibrations" /* in the folder of a run */
+
 /* Of a run that has ended. */
 void campaign_forget_calibrations(struct sonject_campaign *campaign);
 

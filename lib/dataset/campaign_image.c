@@ -163,7 +163,7 @@ static sonject_status calibrate_plan(struct sonject_campaign *campaign,
 {
     char path[PATH_CAPACITY], folder[PATH_CAPACITY], name[24];
     struct mesh_store *meshes = scene->mesh_store;
-    CHECK(path_in(campaign->report, folder, campaign->folder, "calibrations"));
+    CHECK(path_in(campaign->report, folder, campaign->folder, CALIBRATIONS_FOLDER));
     snprintf(name, sizeof name, "%lu", (unsigned long)plan->swath);
     CHECK(scene_calibrate(campaign->report, scene, folder, name, true, path));
     if (!campaign->calibrations)

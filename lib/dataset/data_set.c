@@ -51,17 +51,20 @@ static sonject_status each_folder(struct report *report, const char *folder, con
     return SONJECT_OK;
 }
 
-/* Files named as images are, and the folder where that is all. */
-static sonject_status remove_images(struct report *report, const char *path)
+/* Files that numbers name, as those of images and calibrations, and the folder where that is all.
+ */
+static sonject_status remove_numbered(struct report *report, const char *path)
 {
     struct folder_names list;
     char file[PATH_CAPACITY];
     if (folder_names_read(&list, report, path, "") != SONJECT_OK)
         return SONJECT_OK;
-    for (size_t i = 0; i < list.count; i++)
-        if (strspn(list.names[i], "0123456789") == 8 && list.names[i][8] == '.' &&
+    for (size_t i = 0; i < list.count; i++) {
+        const size_t digits = strspn(list.names[i], "0123456789");
+        if (digits > 0 && list.names[i][digits] == '.' &&
             path_in(report, file, path, "%s", list.names[i]) == SONJECT_OK)
             file_discard(file);
+    }
     folder_names_clear(&list);
     rmdir(path);
     return SONJECT_OK;
@@ -93,8 +96,10 @@ static void remove_all(const struct data_set *set)
     for (size_t i = 0; i < count; i++)
         discard(set->folder, documents[i]);
     discard(set->folder, "times.json");
+    if (path_in(&ignored, path, set->folder, CALIBRATIONS_FOLDER) == SONJECT_OK)
+        remove_numbered(&ignored, path);
     for (size_t i = 0; i < set->split_count; i++) {
-        each_folder(&ignored, set->folder, set->split_names[i], UINT32_MAX, remove_images);
+        each_folder(&ignored, set->folder, set->split_names[i], UINT32_MAX, remove_numbered);
         if (path_in(&ignored, path, set->folder, "%s", set->split_names[i]) == SONJECT_OK) {
             discard(path, "coco.json");
             rmdir(path);

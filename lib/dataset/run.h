@@ -115,9 +115,10 @@ json_t *device_document(const struct device *device);
 
 #define CALIBRATION_NAME "calibration"
 
-/* Makes folder/name.yaml of the scene's image, and a picture beside it, unless it is there; one of
- * another image is made anew if it may be replaced. path gets its name. Processes that make it at
- * the same time make the same. Errors: as of sonject_calibrate. */
+/* Makes folder/name.yaml of the scene's image, and a picture beside it, unless it is there; one
+ * that was made for another image, channel, array or geometry or by another version, or was
+ * changed, is made anew if it may be replaced. path gets its name. Processes that make it at the
+ * same time make the same. Errors: as of sonject_calibrate. */
 sonject_status scene_calibrate(struct report *report, const struct scene *scene, const char *folder,
                                const char *name, bool replaces, char path[PATH_CAPACITY]);
 

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <sonject/version.h>
+
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
@@ -12,25 +14,49 @@
 #include "measure/calibration.h"
 #include "schema/scene_file.h"
 
-#define CALIBRATION_BYTES_MAX ((size_t)16 << 20)
+#define MADE_FOR "  made_for: " /* the last line, among what was measured */
 
-/* Whether the file is there, and of that image. */
-static sonject_status is_of_image(struct report *report, const char *path, const char *hash,
-                                  const char *channel, bool *is_it)
+/* The line that tells what the calibration of a scene is made for and that its text is as it was
+ * written. Errors: MEMORY. */
+static sonject_status made_for_line(struct report *report, const struct scene *scene,
+                                    const char *swath_hash, const char *text, size_t bytes,
+                                    char line[sizeof MADE_FOR + HASH_TEXT_CAPACITY])
 {
-    char line[2 * HASH_TEXT_CAPACITY];
+    const double geometry[] = {scene->geometry.row_spacing_m, scene->geometry.column_spacing_m,
+                               scene->geometry.first_slant_range_m};
+    char digits[HASH_TEXT_CAPACITY];
+    struct hash *hash = hash_begin();
+    CHECK_MEMORY(report, hash, "a hash");
+    hash_add_text(hash, sonject_version());
+    hash_add_text(hash, swath_hash);
+    hash_add_text(hash, scene->array ? scene->array : "");
+    hash_add(hash, &scene->channel, sizeof scene->channel);
+    hash_add(hash, geometry, sizeof geometry);
+    hash_add(hash, text, bytes);
+    hash_end(hash, digits);
+    snprintf(line, sizeof MADE_FOR + HASH_TEXT_CAPACITY, MADE_FOR "%s\n", digits);
+    return SONJECT_OK;
+}
+
+/* Whether the file is there, made for that scene, and not changed. */
+static sonject_status is_made_for(struct report *report, const char *path,
+                                  const struct scene *scene, const char *swath_hash, bool *is_it)
+{
+    char line[sizeof MADE_FOR + HASH_TEXT_CAPACITY];
+    const size_t length = sizeof line - 1;
     char *text = NULL;
     size_t bytes;
     *is_it = false;
     if (!file_exists(path))
         return SONJECT_OK;
-    CHECK(file_read_whole(report, path, CALIBRATION_BYTES_MAX, &text, &bytes));
-    snprintf(line, sizeof line, "\n  swath_xxh3: %s\n", hash);
-    *is_it = strstr(text, line) != NULL;
-    snprintf(line, sizeof line, "\n  channel: %s\n", channel ? channel : "");
-    *is_it = *is_it && (!channel || strstr(text, line));
+    CHECK(file_read_whole(report, path, TREE_BYTES_MAX, &text, &bytes));
+    sonject_status status = SONJECT_OK;
+    if (bytes > length) {
+        status = made_for_line(report, scene, swath_hash, text, bytes - length, line);
+        *is_it = status == SONJECT_OK && memcmp(text + bytes - length, line, length) == 0;
+    }
     free(text);
-    return SONJECT_OK;
+    return status;
 }
 
 static const char *channel_text(int32_t channel, char text[16])
@@ -47,6 +73,8 @@ sonject_status scene_calibrate(struct report *report, const struct scene *scene,
                                const char *name, bool replaces, char path[PATH_CAPACITY])
 {
     char hash[HASH_TEXT_CAPACITY], channel[16], picture[PATH_CAPACITY];
+    char line[sizeof MADE_FOR + HASH_TEXT_CAPACITY];
+    struct growing_text made = {NULL, 0, 0, false};
     char *text = NULL;
     bool is_it = false;
     CHECK(path_in(report, path, folder, "%s.yaml", name));
@@ -58,16 +86,21 @@ sonject_status scene_calibrate(struct report *report, const struct scene *scene,
                                              .image = scene->input_path,
                                              .channel = channel_text(scene->channel, channel),
                                              .array = scene->array,
-                                             .picture = picture,
-                                             .output = path};
-    CHECK(is_of_image(report, path, hash, params.channel, &is_it));
+                                             .picture = picture};
+    CHECK(is_made_for(report, path, scene, hash, &is_it));
     if (is_it || (file_exists(path) && !replaces))
         return SONJECT_OK;
     CHECK(folder_make(report, folder));
     CHECK(calibrate_image(report, &params, &options, NULL, &text));
+    sonject_status status = made_for_line(report, scene, hash, text, strlen(text), line);
+    if (status == SONJECT_OK) {
+        growing_text_add(&made, "%s%s", text, line);
+        status = growing_text_write(report, &made, path);
+    }
     free(text);
-    report_log(report, "note: calibration made: %s, with a picture beside it", path);
-    return SONJECT_OK;
+    if (status == SONJECT_OK)
+        report_log(report, "note: calibration made: %s, with a picture beside it", path);
+    return status;
 }
 
 sonject_status calibrated_scene_read(struct report *report, const struct scene_source *source,

@@ -13,6 +13,8 @@
 #define WHOLE_MOST 1e6 /* whole numbers, such as a ceiling, stay as they are */
 #define LINE_WIDTH 96
 #define LOOKS_KEPT 64.0 /* that injection.match.looks takes at most */
+#define RETURNS_MOST                                                                               \
+    20000 /* first returns that are told; a scene's reader takes TREE_NODES_MAX values */
 
 static const char *const kind_words[] = {"amplitude", "intensity", "decibel", "gamma", "schlick"};
 static const char *const family_words[] = {
@@ -111,10 +113,11 @@ static void add_scene_keys(json_t **document, const struct calibration *found)
     add_section(document, "injection", injection);
 }
 
-static json_t *numbers(const double *values, size_t count)
+/* Each every-th number. */
+static json_t *numbers(const double *values, size_t count, size_t every)
 {
     json_t *list = json_array();
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i += every)
         json_append(&list, number_of(values[i]));
     return list;
 }
@@ -154,7 +157,7 @@ static json_t *measured_response(const struct estimate *width, const double *cor
     if (!width->unseen && spacing_m > 0.0)
         json_add(&object, "metres", number_of(width->value * spacing_m));
     if (correlation[0] > 0.0)
-        json_add(&object, "correlation", numbers(correlation, CALIBRATION_LAGS));
+        json_add(&object, "correlation", numbers(correlation, CALIBRATION_LAGS, 1));
     return object;
 }
 
@@ -164,9 +167,9 @@ static json_t *measured_gain(const struct calibration *found)
     const size_t bands = found->gain_bands;
     for (size_t band = 0; band < bands; band++)
         middles[band] = ((double)band + 0.5) * (double)found->columns / (double)bands - 0.5;
-    return JSON_OBJECT({"columns", numbers(middles, bands)},
-                       {"decibels", numbers(found->gain_db, bands)},
-                       {"standard_error", numbers(found->gain_error_db, bands)});
+    return JSON_OBJECT({"columns", numbers(middles, bands, 1)},
+                       {"decibels", numbers(found->gain_db, bands, 1)},
+                       {"standard_error", numbers(found->gain_error_db, bands, 1)});
 }
 
 json_t *calibration_document(const struct calibration *found, const char *path, const char *hash,
@@ -202,8 +205,11 @@ json_t *calibration_document(const struct calibration *found, const char *path, 
         json_add(&nadir, "value", column_of(found->nadir_column.value));
     json_add(&measured, "nadir_column", nadir);
     json_add(&measured, "altitude", seen(&found->altitude_m, "m"));
-    if (found->returns.columns)
-        json_add(&measured, "first_return", numbers(found->returns.columns, found->rows));
+    if (found->returns.columns) {
+        const size_t every = (found->rows - 1) / RETURNS_MOST + 1;
+        json_add(&measured, "first_return_every", json_count(every));
+        json_add(&measured, "first_return", numbers(found->returns.columns, found->rows, every));
+    }
     if (!found->transfer_kind.unseen)
         json_add(&measured, "gain", measured_gain(found));
     json_add(&document, "measured", measured);

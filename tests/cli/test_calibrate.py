@@ -80,7 +80,7 @@ def test_water_columns_of_one_side_and_two(sonject, tmp_path):
         numpy.save(tmp_path / f"{name}.npy", numbers)
         found = calibrated(sonject, f"{name}.npy", *spacing)
         told = found["measured"]
-        assert told["sides"] == sides
+        assert told["sides"] == sides and told["first_return_every"] == 1
         off = numpy.abs(numpy.array(told["first_return"]) - water)
         assert numpy.mean(off <= 2) > 0.95, (name, numpy.sort(off)[-40:])
         assert told["altitude"]["value"] == pytest.approx(0.05 * (numpy.median(water) + 0.5), abs=0.06)
@@ -93,6 +93,18 @@ def test_water_columns_of_one_side_and_two(sonject, tmp_path):
             assert "one side" in told["nadir_column"]["not_seen"]
         if sides.endswith("left"):  # of wide swaths, too, to the half
             assert found["input"]["geometry"] == {"nadir_column": numbers.shape[1] - 0.5}
+
+
+def test_first_returns_of_long_swaths_are_told_of_some_pings(sonject, tmp_path):
+    """So few that a scene can read them."""
+    water = numpy.where(numpy.arange(41000) < 30000, 60, 70)
+    random = numpy.random.default_rng(3)
+    numbers = random.rayleigh(30, (len(water), 160)) * (numpy.arange(160) >= water[:, None])
+    numpy.save(tmp_path / "long.npy", numpy.round(numbers).astype(numpy.uint8))
+    told = calibrated(sonject, "long.npy")["measured"]
+    assert told["first_return_every"] == 3 and len(told["first_return"]) == 13667
+    off = numpy.abs(numpy.array(told["first_return"]) - water[::3])
+    assert numpy.mean(off <= 2) > 0.95
 
 
 def test_yaml_says_what_json_says(sonject, tmp_path):

@@ -167,6 +167,24 @@ def test_shards_share_it_and_other_images_have_their_own(sonject, tmp_path):
     assert numbers["transfer"]["kind"] == "decibel"
 
 
+def test_one_of_another_scene_or_that_was_changed_is_made_anew(sonject, tmp_path):
+    scene(tmp_path, calibration="auto")
+    run_document(sonject, tmp_path)
+    made = (tmp_path / "out" / "calibration.yaml").read_text()
+    assert made.count("made_for: ") == 1
+    for folder, kept, geometry, is_same in (
+            ("kept", made, GEOMETRY, True),
+            ("changed", made.replace("kind: schlick", "kind: gamma"), GEOMETRY, True),
+            ("other", made, GEOMETRY.replace("5 cm", "6 cm", 1), False)):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "calibration.yaml").write_text(kept)
+        (tmp_path / folder / "calibration.png").write_bytes((tmp_path / "out/calibration.png").read_bytes())
+        answer = sonject("run", "scene.yaml", "-o", folder, "--set", f"input.geometry={geometry}")
+        assert answer.returncode == 0, answer.stderr
+        assert ("calibration made" in answer.stderr) == (folder != "kept")
+        assert ((tmp_path / folder / "calibration.yaml").read_text() == made) == is_same
+
+
 def test_campaigns_make_one_for_each_swath(sonject, tmp_path):
     scene(tmp_path, calibration="auto")
     (tmp_path / "other.png").write_bytes(png_bytes(Made("decibel", bits=8).numbers))
@@ -196,6 +214,17 @@ targets: [{class: ball, object: {shape: sphere, diameter: 40 cm}}]
     assert "<tr><td>transfer</td><td>0</td><td>4</td><td>0</td><td>0</td><td>0</td></tr>" in report
     assert {path.name for path in (tmp_path / "whole" / "calibrations").iterdir()} == {
         "0.yaml", "0.png", "1.yaml", "1.png"}
+    # whoever goes on has the numbers that the images there have, and another campaign has none of them
+    calibration = tmp_path / "whole" / "calibrations" / "0.yaml"
+    calibration.write_text(calibration.read_text().replace("noise_floor: -", "noise_floor: -1"))
+    for record in (tmp_path / "whole").glob("*/records/*.json"):
+        record.unlink()
+    assert sonject("campaign", "campaign.yaml", "-o", "whole").returncode == 0
+    assert contents(tmp_path / "whole") == contents(tmp_path / "parts")
+    (tmp_path / "scene.yaml").write_text(
+        (SCENE % ("swath.yaml", "altitude: 10 m")).split("patch:")[0])
+    assert sonject("campaign", "campaign.yaml", "-o", "whole", "--overwrite").returncode == 0
+    assert not (tmp_path / "whole" / "calibrations").exists()
 
 
 def test_a_kill_leaves_no_part_of_it(tmp_path):
@@ -207,7 +236,8 @@ def test_a_kill_leaves_no_part_of_it(tmp_path):
         process.send_signal(signal.SIGKILL)
         process.wait()
         if (tmp_path / "out" / "calibration.yaml").exists():
-            assert (tmp_path / "out" / "calibration.yaml").read_text().rstrip().endswith("]")
+            assert (tmp_path / "out" / "calibration.yaml").read_text().splitlines()[-1].startswith(
+                "  made_for: ")
     subprocess.run([COMMAND, "run", "scene.yaml", "-o", "out"], cwd=tmp_path, check=True,
                    capture_output=True)
     assert not [name for name in os.listdir(tmp_path / "out") if ".part" in name]
