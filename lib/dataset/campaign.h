@@ -151,6 +151,10 @@ struct item {
     struct tree_place place;
 };
 
+struct object_columns {
+    double first, last; /* there are none where first is above */
+};
+
 struct swath_plan {
     char *path;          /* to open; owned */
     const char *written; /* as the campaign file has it; its tree's */
@@ -163,8 +167,10 @@ struct swath_plan {
     struct raster_layout layout; /* once it is opened */
     struct crop_places room;     /* once it is measured, as all below */
     uint64_t chip_rows, chip_columns;
-    double first_object_column, last_object_column; /* where objects may lie */
-    int jpeg_quality; /* that images are coded with; 0: without loss */
+    struct object_columns objects;        /* where these may lie in any image */
+    struct object_columns *block_objects; /* and in images that begin in a block of rows, where
+                                             their range over altitude is limited; owned; or NULL */
+    int jpeg_quality;                     /* that images are coded with; 0: without loss */
     uint32_t split_number;
 };
 
@@ -293,6 +299,9 @@ sonject_status campaign_split(struct report *report, struct campaign *campaign,
 sonject_status campaign_measure(struct report *report, struct campaign *campaign, size_t swath,
                                 const sonject_geometry_params *geometry, const double *altitudes_m,
                                 bool may_show_water);
+
+/* Where objects may lie in a chip that begins at that row. */
+struct object_columns objects_of_chip(const struct swath_plan *plan, uint64_t first_row);
 
 /* Whether images have all rows or columns of swaths, so that contacts to avoid are in them: then
  * objects keep away from them instead. */

@@ -504,6 +504,7 @@ static void clear_swath(struct swath_plan *swath)
     free(swath->keys);
     free(swath->path);
     free(swath->split);
+    free(swath->block_objects);
     free(swath->avoid);
     crop_places_clear(&swath->room);
 }

@@ -73,8 +73,10 @@ static const struct field swath_fields[] = {
     {"path", "image file", .kind = FIELD_SPECIAL, .read = read_swath_path, REQUIRED},
     {"split", "that all of its images are in", TEXT(split)},
     {"set", "keys of the scene for this swath", .kind = FIELD_SPECIAL, .read = read_swath_keys},
-    {"avoid", "boxes of contacts that images are not to show", .kind = FIELD_SPECIAL,
-     .read = read_avoid},
+    {"avoid",
+     "boxes of contacts that images are not to show; that they may show and objects keep away "
+     "from, where rows or columns are all",
+     .kind = FIELD_SPECIAL, .read = read_avoid},
 };
 static const struct section swath_section = {ROWS(swath_fields)};
 #undef STRUCTURE

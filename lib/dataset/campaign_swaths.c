@@ -266,7 +266,8 @@ static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, s
     const double half = has_all ? 0.0 : 0.5 * (double)(campaign->chip_columns - 1);
     const double end =
         (double)chips->first_column + (double)(has_all ? plan->chip_columns : chips->columns) - 1.0;
-    const bool shows_water = limits->shows_water && !has_all;
+    const bool has_ratio = campaign->least_ratio > 0.0;
+    const bool shows_water = has_all ? has_ratio : limits->shows_water; /* objects have a ratio */
     const double bottom =
         geometry_column(geometry, shows_water ? limits->lowest_m : limits->highest_m);
     double low = (double)chips->first_column;
@@ -278,13 +279,10 @@ static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, s
     if (campaign->has_range)
         limit_columns(limits, half, campaign->nearest_range_m, campaign->farthest_range_m, &low,
                       &high);
-    if (has_all && campaign->least_ratio > 0.0)
-        limit_columns(limits, half, campaign->least_ratio * limits->highest_m,
-                      campaign->most_ratio * limits->lowest_m, &low, &high);
-    plan->first_object_column = has_all ? low : is_reversed ? 0.0 : floor(bottom) + 1.0;
-    plan->last_object_column = has_all       ? high
-                               : is_reversed ? ceil(bottom) - 1.0
-                                             : (double)plan->layout.columns;
+    plan->objects.first = has_all ? low : is_reversed ? 0.0 : floor(bottom) + 1.0;
+    plan->objects.last = has_all       ? high
+                         : is_reversed ? ceil(bottom) - 1.0
+                                       : (double)plan->layout.columns;
     if (!has_all && low <= high) {
         chips->columns = (uint64_t)(high - low) + 1;
         chips->first_column = (uint64_t)low;
@@ -294,35 +292,101 @@ static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, s
 
 #define RATIO_BLOCKS 64 /* of rows, over which the altitude is taken from its least to its most */
 
-/* Forbids first pixels of chips whose range over altitude is beyond the limits: two boxes for each
- * block of rows, behind the room's others. */
-static void limit_ratios(const struct limits *limits, const struct swath_plan *plan,
-                         struct crop_places *room)
+/* Blocks of first rows of chips are whole blocks of a JPEG. */
+static uint64_t jpeg_blocks(const struct crop_places *room)
+{
+    return (room->chips.rows + room->block_rows - 1) / room->block_rows;
+}
+
+static uint64_t ratio_blocks(const struct crop_places *room)
+{
+    const uint64_t units = jpeg_blocks(room);
+    return units < RATIO_BLOCKS ? units : RATIO_BLOCKS;
+}
+
+static uint64_t first_row_of(const struct crop_places *room, uint64_t block)
+{
+    const uint64_t units = block * jpeg_blocks(room) / ratio_blocks(room);
+    const uint64_t rows = units * room->block_rows;
+    return room->chips.first_row + (rows < room->chips.rows ? rows : room->chips.rows);
+}
+
+struct object_columns objects_of_chip(const struct swath_plan *plan, uint64_t first_row)
+{
+    const struct crop_places *room = &plan->room;
+    if (!plan->block_objects)
+        return plan->objects;
+    const uint64_t unit = (first_row - room->chips.first_row) / room->block_rows;
+    return plan->block_objects[((unit + 1) * ratio_blocks(room) - 1) / jpeg_blocks(room)];
+}
+
+/* Narrows columns, of objects or of chips' first pixels, to those that are within the limits of
+ * range over altitude in chips that begin in a block of rows. */
+static void limit_ratio(const struct limits *limits, const struct swath_plan *plan, uint64_t block,
+                        double half, struct object_columns *columns)
 {
     const struct campaign *campaign = limits->campaign;
-    const struct region *chips = &room->chips;
-    const uint64_t blocks = chips->rows < RATIO_BLOCKS ? chips->rows : RATIO_BLOCKS;
-    const uint64_t end_column = chips->first_column + chips->columns;
-    for (uint64_t i = 0; campaign->least_ratio > 0.0 && i < blocks; i++) {
-        const uint64_t first = chips->first_row + i * chips->rows / blocks;
-        const uint64_t end = chips->first_row + (i + 1) * chips->rows / blocks;
-        double lowest = HUGE_VAL, highest = 0.0;
-        double low = (double)chips->first_column, high = (double)end_column - 1.0;
-        /* chips may be set back to a block's first row, and column */
-        const uint64_t set_back = room->block_rows - 1 < first ? room->block_rows - 1 : first;
-        for (uint64_t row = first - set_back; row < end + plan->chip_rows - 1; row++) {
-            lowest = fmin(lowest, limits->altitudes_m[row]);
-            highest = fmax(highest, limits->altitudes_m[row]);
-        }
-        limit_columns(limits, 0.5 * (double)(plan->chip_columns - 1),
-                      campaign->least_ratio * highest, campaign->most_ratio * lowest, &low, &high);
-        const uint64_t from = low <= high ? (uint64_t)low : end_column;
-        const uint64_t to = low <= high ? (uint64_t)high + 1 : end_column;
-        room->boxes[room->box_count++] = (struct region){
-            first, chips->first_column, end - first,
-            from > chips->first_column ? from - chips->first_column + room->block_columns - 1 : 0};
-        room->boxes[room->box_count++] = (struct region){first, to, end - first, end_column - to};
+    const uint64_t end = first_row_of(&plan->room, block + 1) + plan->chip_rows - 1;
+    double lowest = HUGE_VAL, highest = 0.0;
+    for (uint64_t row = first_row_of(&plan->room, block); row < end; row++) {
+        lowest = fmin(lowest, limits->altitudes_m[row]);
+        highest = fmax(highest, limits->altitudes_m[row]);
     }
+    limit_columns(limits, half, campaign->least_ratio * highest, campaign->most_ratio * lowest,
+                  &columns->first, &columns->last);
+}
+
+static void forbid_block(struct crop_places *room, uint64_t block, uint64_t column,
+                         uint64_t columns)
+{
+    const uint64_t first = first_row_of(room, block);
+    room->boxes[room->box_count++] =
+        (struct region){first, column, first_row_of(room, block + 1) - first, columns};
+}
+
+/* Forbids first pixels of chips whose range over altitude is beyond the limits: two boxes for each
+ * block of rows, behind the room's others. */
+static void limit_ratios(const struct limits *limits, struct swath_plan *plan)
+{
+    struct crop_places *room = &plan->room;
+    const struct region *chips = &room->chips;
+    const double half = 0.5 * (double)(plan->chip_columns - 1);
+    const uint64_t end = chips->first_column + chips->columns;
+    for (uint64_t i = 0; i < ratio_blocks(room); i++) {
+        struct object_columns columns = {(double)chips->first_column, (double)end - 1.0};
+        limit_ratio(limits, plan, i, half, &columns);
+        const bool is_empty = columns.first > columns.last;
+        const uint64_t from = is_empty ? end : (uint64_t)columns.first;
+        const uint64_t to = is_empty ? end : (uint64_t)columns.last + 1;
+        forbid_block(
+            room, i, chips->first_column,
+            from > chips->first_column ? from - chips->first_column + room->block_columns - 1 : 0);
+        forbid_block(room, i, to, end - to);
+    }
+}
+
+/* The same of objects, where images have all columns; forbids chips in which they have none. */
+static sonject_status limit_objects(struct report *report, const struct limits *limits,
+                                    struct swath_plan *plan)
+{
+    struct object_columns any = {HUGE_VAL, -1.0};
+    free(plan->block_objects);
+    plan->block_objects = allocate_array(RATIO_BLOCKS, sizeof *plan->block_objects);
+    CHECK_MEMORY(report, plan->block_objects, "the places for objects");
+    for (uint64_t i = 0; i < ratio_blocks(&plan->room); i++) {
+        struct object_columns *columns = &plan->block_objects[i];
+        *columns = plan->objects;
+        limit_ratio(limits, plan, i, 0.0, columns);
+        if (columns->first > columns->last) {
+            forbid_block(&plan->room, i, plan->room.chips.first_column, plan->room.chips.columns);
+            continue;
+        }
+        any.first = fmin(any.first, columns->first);
+        any.last = fmax(any.last, columns->last);
+    }
+    if (any.first <= any.last)
+        plan->objects = any;
+    return SONJECT_OK;
 }
 
 /* First pixels, along one axis, of chips that would touch a box, or, set back to a block's first,
@@ -373,8 +437,8 @@ static struct region forbid_box(const struct campaign *campaign, const struct sw
     }
     double low = 0.0, high = (double)(plan->chip_columns - 1);
     if (campaign->chip_columns == 0) {
-        low = fmax(low, plan->first_object_column - (double)room->chips.first_column);
-        high = fmin(high, plan->last_object_column - (double)room->chips.first_column);
+        low = fmax(low, plan->objects.first - (double)room->chips.first_column);
+        high = fmin(high, plan->objects.last - (double)room->chips.first_column);
     }
     forbid_covered(campaign, room->block_rows, 0.0, (double)(plan->chip_rows - 1), box->first_row,
                    box->rows, &forbidden.first_row, &forbidden.rows);
@@ -437,13 +501,6 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
     begin_at_block(block_rows, 0, &chips.first_row, &chips.rows);
     begin_at_block(block_columns, 0, &chips.first_column, &chips.columns);
     has_room = has_room && chips.rows > 0 && chips.columns > 0;
-    if (!has_room && campaign->chip_columns == 0 && campaign->least_ratio > 0.0)
-        return tree_failure(&campaign->tree, plan->place, "swaths",
-                            "no place within %s is at %g to %g times the sonar's altitude, %g to "
-                            "%g m%s",
-                            plan->written, campaign->least_ratio, campaign->most_ratio,
-                            limits.lowest_m, limits.highest_m,
-                            campaign->has_range ? ", and within chip.slant_range" : "");
     if (!has_room && !campaign->has_range)
         return tree_failure(&campaign->tree, plan->place, "swaths",
                             "no image within %s begins beyond the sonar's altitude, up to %g m",
@@ -467,10 +524,13 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
             "note: chip.clearance is 0: objects may reach into contacts to avoid in %s, from "
             "which their middles alone keep away",
             plan->written);
-    for (; room->box_count < plan->avoid_count; room->box_count++)
-        room->boxes[room->box_count] = forbid_box(campaign, plan, &plan->avoid[room->box_count]);
-    if (campaign->chip_columns > 0)
-        limit_ratios(&limits, plan, room);
+    const bool has_ratio = campaign->least_ratio > 0.0;
+    if (has_ratio && campaign->chip_columns > 0)
+        limit_ratios(&limits, plan);
+    else if (has_ratio)
+        CHECK(limit_objects(report, &limits, plan));
+    for (size_t i = 0; i < plan->avoid_count; i++)
+        room->boxes[room->box_count++] = forbid_box(campaign, plan, &plan->avoid[i]);
     qsort(room->boxes, room->box_count, sizeof *room->boxes, compare_starts);
     uint64_t column;
     for (uint64_t row = chips.first_row, end; row < chips.first_row + chips.rows; row = end) {
@@ -479,12 +539,14 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
     }
     if (room->places > 0)
         return SONJECT_OK;
-    if (campaign->least_ratio > 0.0)
+    if (has_ratio)
         return tree_failure(&campaign->tree, plan->place, "swaths",
-                            "no image within %s has its middle at %g to %g times the sonar's "
-                            "altitude, %g to %g m, and keeps away from %zu contacts",
-                            plan->written, campaign->least_ratio, campaign->most_ratio,
-                            limits.lowest_m, limits.highest_m, plan->avoid_count);
+                            "no image within %s has %s at %g to %g times the sonar's altitude, %g "
+                            "to %g m, and keeps away from %zu contacts",
+                            plan->written,
+                            campaign->chip_columns > 0 ? "its middle" : "places for objects",
+                            campaign->least_ratio, campaign->most_ratio, limits.lowest_m,
+                            limits.highest_m, plan->avoid_count);
     return tree_failure(&campaign->tree, plan->place, "swaths",
                         "the %zu contacts to avoid in %s leave no room for images of %llu x %llu "
                         "that stay %u pixels away from them",

@@ -332,8 +332,9 @@ static bool try_place(struct drawing *drawing, uint64_t seed)
     const struct swath_plan *swath = &campaign->swaths[drawing->plan->swath];
     const uint32_t number = drawing->objects;
     const double offset = (double)chip->first_column;
-    const double first = fmax(0.0, swath->first_object_column - offset);
-    const double last = fmin((double)(chip->columns - 1), swath->last_object_column - offset);
+    const struct object_columns columns = objects_of_chip(swath, chip->first_row);
+    const double first = fmax(0.0, columns.first - offset);
+    const double last = fmin((double)(chip->columns - 1), columns.last - offset);
     const uint32_t candidates = isinf(distance_to_others(drawing, 0.0, 0.0)) ? 1 : CANDIDATES;
     double farthest = -1.0;
     for (uint32_t i = 0; i < candidates; i++) {

@@ -397,13 +397,21 @@ targets: [{class: ball, object: {shape: sphere, diameter: 0.4 m}}]
 
 
 def test_objects_of_whole_swaths_are_limited_in_range_over_altitude(sonject, tmp_path, line):
-    (tmp_path / "pings.csv").write_text("row,altitude_m\n0,5\n59,6\n")
+    """Over those of the image's rows, whatever those of others; not where there is no such range."""
+    (tmp_path / "pings.csv").write_text("row,altitude_m\n0,4\n40,7\n41,40\n59,40\n")
     text = CAMPAIGN.replace("columns: 60", "columns: all, spread: 1, range_over_altitude: [1.5, 2.5]")
-    sonject.done("campaign", write_campaign(tmp_path, text), "-o", "data")
+    sonject.done("campaign", write_campaign(tmp_path, text.replace("images: 12", "images: 24")), "-o", "data")
+    ranges = []
     for record in records(tmp_path / "data"):
         truth = json.loads((tmp_path / "data/all/truth" / f"{record['id']:08}.json").read_text())["objects"][0]
+        first, last = 4 + 3 / 40 * (record["swath"]["row"] + numpy.array([0, 15]))
+        assert last < 7.01
         # the object's column is that of its middle, whose highlight is nearer
-        assert 1.5 * 6 - 0.5 <= truth["slant_range_m"] <= 2.5 * 5 + 0.5
+        assert 1.5 * last - 0.5 <= truth["slant_range_m"] <= 2.5 * first + 0.5
+        ranges.append(truth["slant_range_m"])
+    assert min(ranges) < 9 and max(ranges) > 12
+    answer = sonject("campaign", "campaign.yaml", "-o", "none", "--set", "chip.range_over_altitude=[10, 11]")
+    assert_refused(answer, 3, "no image within line.tif has places for objects at 10 to 11 times")
 
 
 def test_targets_in_layered_water_stay_behind_the_water_column(sonject, tmp_path, line):
