@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/json_document.h"
 #include "base/sha256.h"
 #include "dataset/data_set.h"
@@ -106,12 +107,10 @@ static const char *format_of(const char *name)
 static sonject_status add_file(json_t **list, const struct data_set *set, const char *name)
 {
     char path[PATH_CAPACITY], digest[SHA256_TEXT_CAPACITY], size[32];
-    json_t *entry = NULL;
+    struct file_identity identity;
     CHECK(path_in(set->report, path, set->folder, "%s", name));
-    CHECK(file_entry(set->report, path, name, false, &entry));
-    snprintf(size, sizeof size, "%llu B",
-             (unsigned long long)json_integer_value(json_object_get(entry, "bytes")));
-    json_decref(entry);
+    CHECK(file_identify(set->report, path, &identity));
+    snprintf(size, sizeof size, "%llu B", (unsigned long long)identity.bytes);
     CHECK(file_sha256(set->report, path, digest));
     json_append(list,
                 JSON_OBJECT({"@type", json_string("cr:FileObject")}, {"@id", json_string(name)},
