@@ -358,6 +358,13 @@ bool file_exists(const char *path)
     return stat(path, &facts) == 0;
 }
 
+bool paths_are_same(const char *a, const char *b)
+{
+    struct stat one, other;
+    return stat(*a ? a : ".", &one) == 0 && stat(*b ? b : ".", &other) == 0 &&
+           one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+}
+
 char *path_join(const char *folder, const char *name)
 {
     const size_t folder_length = strlen(folder);

@@ -75,6 +75,10 @@ sonject_status folder_make(struct report *report, const char *path);
 
 bool file_exists(const char *path);
 
+/* Whether two paths, links followed, are of one file or folder that is there; "" is the working
+ * folder. */
+bool paths_are_same(const char *a, const char *b);
+
 /* Opens a regular file for reading, and never waits. NULL with errno if that fails: EISDIR for a
  * folder, ESPIPE for pipes and devices, which may have no end. */
 FILE *byte_file_open(const char *path, uint64_t *bytes);

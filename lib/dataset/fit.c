@@ -362,14 +362,14 @@ static sonject_status check_fitted(const struct fit *fit, const char *fitted)
 {
     char *folder = path_folder(fitted);
     CHECK_MEMORY(fit->report, folder, "the fit");
-    const bool is_same = strcmp(folder, fit->campaign->campaign.folder) == 0;
+    const bool is_same = paths_are_same(folder, fit->campaign->campaign.folder);
     free(folder);
     if (!is_same)
         return input_failure(fit->report, fitted,
                              "must lie in the folder of %s, from which the names of its files are "
                              "meant",
                              fit->source.path);
-    if (strcmp(fitted, fit->source.path) == 0)
+    if (paths_are_same(fitted, fit->source.path))
         return input_failure(fit->report, fitted,
                              "is the campaign that is fitted; choose another name");
     return SONJECT_OK;

@@ -48,13 +48,18 @@ def test_a_fit_comes_nearer_to_its_contacts(sonject, folder):
      "seabed_1.tif: "),
     ("image,row,column,rows,columns\nseabed_1.tif,5,5,9,20\n", "start.yaml",
      "start.yaml: is the campaign that is fitted; choose another name"),
+    ("image,row,column,rows,columns\nseabed_1.tif,5,5,9,20\n", "../{here}/start.yaml",
+     "start.yaml: is the campaign that is fitted; choose another name"),
+    # in the same folder by another name, so that what is wrong is the contacts
+    ("image,row,column,rows,columns\nseabed_1.tif,5,5,9,20\n", "../{here}/fitted.yaml",
+     "contacts.csv: has 1 contacts; a fit needs 10 or more"),
     ("image,row,column,rows,columns\nseabed_1.tif,5,5,9,20\n", "out/fitted.yaml",
      "out/fitted.yaml: must lie in the folder of start.yaml"),
 ])
 def test_what_cannot_be_fitted_is_told(sonject, folder, contacts, output, message):
     (folder / "contacts.csv").write_text(contacts)
     before = sorted(path.name for path in folder.iterdir())
-    done = sonject("fit", "start.yaml", "contacts.csv", "-o", output)
+    done = sonject("fit", "start.yaml", "contacts.csv", "-o", output.format(here=folder.name))
     assert done.returncode == 3 and message in done.stderr
     assert sorted(path.name for path in folder.iterdir()) == before
 
