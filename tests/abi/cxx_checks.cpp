@@ -234,6 +234,21 @@ static void check_progress(const sonject::context &context)
     }
 }
 
+static void check_campaigns(const sonject::context &context)
+{
+    sonject_campaign_fit_params fit = {};
+    fit.struct_size = sizeof fit;
+    fit.contacts = "contacts.csv";
+    fit.fitted = "fitted.yaml";
+    try {
+        sonject::fit_campaign(context, "no/campaign.yaml", fit);
+        expect(false, "a campaign that is not there is not fitted");
+    } catch (const sonject::error &error) {
+        expect(std::string(error.what()).find("no/campaign.yaml") != std::string::npos,
+               "and its name is told");
+    }
+}
+
 int main()
 {
     std::vector<std::string> lines;
@@ -251,6 +266,7 @@ int main()
     check_files(context);
     check_transfer(context);
     check_progress(context);
+    check_campaigns(context);
     expect(!lines.empty(), "news reach the log, also after the context has moved");
     if (failures == 0)
         std::puts("all right");

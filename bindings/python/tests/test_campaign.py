@@ -128,3 +128,22 @@ def test_a_data_set_stops_by_itself_and_one_image_is_made_alone(campaign, tmp_pa
 def test_mistakes_say_where(tmp_path, campaign):
     with pytest.raises(sonject.SonjectError, match="images: must be 1"):
         sonject.Campaign(tmp_path / "campaign.yaml", {"images": 10**18})
+
+
+def test_a_campaign_is_fitted(tmp_path, campaign):
+    """A whole fit is in tests/cli/test_fit.py; this one stops when its first contacts are made."""
+    (tmp_path / "published.yaml").write_text(
+        "contacts: 40\nquantiles: [0.1, 0.5, 0.9]\nhighlight_along: [20 cm, 30 cm, 40 cm]\n")
+    files = [tmp_path / name for name in ("campaign.yaml", "published.yaml", "fitted.yaml")]
+    seen = []
+
+    def progress(fraction, stage):
+        seen.append(stage)
+        return fraction > 0.01
+
+    with pytest.raises(sonject.SonjectError) as told:
+        sonject.fit_campaign(*files, {"empty": 0.5}, boxes="highlight", progress=progress)
+    assert told.value.status == sonject.Status.CANCELLED and 1 < len(seen) < 20
+    assert set(seen) == {"round 1 of 7"} and not files[2].exists()
+    with pytest.raises(sonject.SonjectError, match="must lie in the folder of .*campaign.yaml"):
+        sonject.fit_campaign(*files[:2], tmp_path / "there" / "fitted.yaml")
