@@ -26,7 +26,7 @@ static const struct argument arguments[] = {
      MEMBER(picture)},
     {"--json", NULL, NULL, "write JSON, which scenes take as well", ARGUMENT_FLAG, false,
      MEMBER(json)},
-    {"--channel", NULL, "port|starboard|N", "of an XTF file", ARGUMENT_TEXT, false,
+    {"--channel", NULL, "port|starboard|N", "of an XTF or JSF file", ARGUMENT_TEXT, false,
      MEMBER(channel)},
     {"--array", NULL, "NAME", "in an HDF5 or MATLAB file of several", ARGUMENT_TEXT, false,
      MEMBER(array)},

@@ -25,6 +25,19 @@ def _field(random, shape):
     return field / numpy.mean(numpy.abs(field) ** 2) ** 0.5
 
 
+def speckle(seed, textures=None, gain_db=0.0, schlick=1.0):
+    """Numbers of one level, of a K distribution of half the shape that textures says, of a gain that rises
+    over the columns, by a Schlick curve."""
+    random = numpy.random.default_rng(seed)
+    shape = (512, 600)
+    intensity = numpy.abs(_field(random, shape)) ** 2 * 10 ** (gain_db / 10 * numpy.arange(600) / 600)
+    if textures:
+        squares = (_smooth(random.standard_normal(shape), 10.0).real ** 2 for _ in range(textures))
+        intensity *= sum(square / square.mean() for square in squares) / textures
+    a = 0.12 * intensity**0.5
+    return numpy.clip(numpy.round(60000 * schlick * a / (1 + (schlick - 1) * a)), 0, 60000).astype(numpy.uint16)
+
+
 class Made:
     """numbers: stored, 8 or 16 bits; the rest is what a calibration is to find."""
 

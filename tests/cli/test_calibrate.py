@@ -7,7 +7,7 @@ import pytest
 
 from conftest import assert_refused
 from images import png_bytes
-from made_swaths import COLUMNS, KINDS, ROWS, Made, deviations
+from made_swaths import COLUMNS, KINDS, ROWS, Made, deviations, speckle
 from measured_images import measured, read_png, read_xtf
 
 
@@ -43,6 +43,40 @@ def test_the_same_swath_tells_the_same_in_every_form(sonject, tmp_path):
     for answer in answers:
         del answer["measured"]["swath"], answer["measured"]["swath_xxh3"]
     assert answers[0] == answers[1] == answers[2]
+
+
+def test_texture_is_told_where_there_is_some(sonject, tmp_path):
+    """Of plain tiles, so that the shape is above the whole swath's, 3 and 6, and has their order."""
+    shapes = []
+    for textures in (6, 12, None):
+        numpy.save(tmp_path / "made.npy", speckle(3, textures=textures))
+        shapes.append(calibrated(sonject, "made.npy")["measured"]["k_shape"])
+    assert "no texture" in shapes[2]["not_seen"]
+    (rough, smooth), errors = ([shape[key] for shape in shapes[:2]] for key in ("value", "standard_error"))
+    assert 3 < rough < smooth - 2 * errors[1] < smooth < 60 and 6 < smooth and errors[0] < 0.2 * rough
+
+
+def test_gain_against_range_is_told(sonject, tmp_path):
+    numpy.save(tmp_path / "made.npy", speckle(3, gain_db=-6))
+    gain = calibrated(sonject, "made.npy")["measured"]["gain"]
+    columns, decibels, errors = (numpy.array(gain[key], float) for key in ("columns", "decibels", "standard_error"))
+    is_told = numpy.isfinite(decibels)
+    assert len(decibels) == 18 and is_told.sum() > 15 and numpy.median(errors[is_told]) < 0.3
+    off = (decibels + 6 * columns / 600)[is_told]
+    # a band has some 8 of 144 tiles, each of 300 independent pixels: 0.1 dB
+    assert abs(off - numpy.median(off)).max() < 0.6
+
+
+def test_curves_that_one_level_cannot_tell_apart_are_named(sonject, tmp_path):
+    """A Schlick curve of the parameter 3 is nearly a power over the spread of speckle; not over many levels."""
+    numpy.save(tmp_path / "one.npy", speckle(3, schlick=3))
+    one = calibrated(sonject, "one.npy")["measured"]["transfer"]
+    assert one["kind"] == "schlick" and one["parameter"]["value"] == pytest.approx(4, abs=1)
+    (alike,) = one["cannot_be_told_from"]
+    kind, exponent = alike.split()
+    assert kind == "gamma" and 1.6 < float(exponent) < 1.9
+    numpy.save(tmp_path / "many.npy", Made("schlick").numbers)
+    assert calibrated(sonject, "many.npy")["measured"]["transfer"]["cannot_be_told_from"] == []
 
 
 def test_complex_pixels_have_no_curve(sonject, tmp_path):
