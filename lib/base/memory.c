@@ -22,6 +22,14 @@ void *allocate_array(size_t count, size_t size)
     return bytes == 0 ? calloc(1, 1) : calloc(count, size);
 }
 
+void *grow_doubling(void *list, size_t count, size_t size)
+{
+    size_t bytes;
+    if ((count & (count - 1)) != 0)
+        return list;
+    return size_multiply(count > 0 ? 2 * count : 1, size, &bytes) ? realloc(list, bytes) : NULL;
+}
+
 bool memory_is_short(void)
 {
     void *volatile much = allocate_array(1, (size_t)512 << 20); /* volatile: that it is tried */

@@ -21,6 +21,10 @@ bool size_multiply(size_t a, size_t b, size_t *product);
  * overflows or memory is out. count or size of 0 gives a valid pointer. */
 void *allocate_array(size_t count, size_t size);
 
+/* Room for one more element of size bytes behind count ones of a list that has grown by this alone:
+ * room doubles when it is full. NULL where memory is out: then the list stays as it was. */
+void *grow_doubling(void *list, size_t count, size_t size);
+
 /* Whether less than half a gigabyte is to be had, which large libraries may need to be loaded. */
 bool memory_is_short(void);
 

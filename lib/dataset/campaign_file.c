@@ -16,9 +16,8 @@
 sonject_status grow_list(struct report *report, void *list, size_t count, size_t size)
 {
     void *old;
-    size_t bytes;
     memcpy(&old, list, sizeof old);
-    char *grown = size_multiply(count + 1, size, &bytes) ? realloc(old, bytes) : NULL;
+    char *grown = grow_doubling(old, count, size);
     CHECK_MEMORY(report, grown, "the campaign");
     memset(grown + count * size, 0, size);
     memcpy(list, &grown, sizeof grown);

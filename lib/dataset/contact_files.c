@@ -51,13 +51,6 @@ uint32_t part_of_class(const char *name, uint32_t part)
                                        : part;
 }
 
-/* Room for one more element behind count ones, which doubles; NULL: memory is out. */
-static void *make_room(void *list, size_t count, size_t size)
-{
-    const bool is_full = (count & (count - 1)) == 0;
-    return is_full ? realloc(list, (count > 0 ? 2 * count : 1) * size) : list;
-}
-
 /* The path of the file of an image, for free(); NULL: there is none, or memory is out. */
 static char *find_file(const struct contact_reader *reader, const char *name, bool *has_memory)
 {
@@ -91,7 +84,7 @@ sonject_status contact_reader_find_image(struct contact_reader *reader, const ch
                              "there is no image '%s', neither beside the labels nor in 'images' "
                              "below or beside them",
                              text_excerpt(excerpt, sizeof excerpt, name));
-    char **images = make_room(set->images, set->image_count, sizeof *images);
+    char **images = grow_doubling(set->images, set->image_count, sizeof *images);
     set->images = images ? images : set->images;
     *number = (uint32_t)set->image_count;
     if (!path || !images ||
@@ -144,7 +137,7 @@ sonject_status contact_reader_add(struct contact_reader *reader, const char *pla
     if (set->count == CONTACTS_MAX)
         return input_failure(reader->report, place, "more than %d contacts; leave some out",
                              CONTACTS_MAX);
-    struct labelled_contact *contacts = make_room(set->contacts, set->count, sizeof *contacts);
+    struct labelled_contact *contacts = grow_doubling(set->contacts, set->count, sizeof *contacts);
     CHECK_MEMORY(reader->report, contacts, "contacts");
     set->contacts = contacts;
     struct labelled_contact *contact = &contacts[set->count++];

@@ -109,11 +109,9 @@ static sonject_status add_value(struct statistics_page *page, const char *name, 
         strcpy(series->unit, unit);
         page->series_count++;
     }
-    if ((series->count & (series->count - 1)) == 0) { /* room for as many again */
-        double *grown = realloc(series->values, 2 * (series->count + 1) * sizeof *grown);
-        CHECK_MEMORY(page->set->report, grown, "the report");
-        series->values = grown;
-    }
+    double *grown = grow_doubling(series->values, series->count, sizeof *grown);
+    CHECK_MEMORY(page->set->report, grown, "the report");
+    series->values = grown;
     series->values[series->count++] = value;
     return SONJECT_OK;
 }

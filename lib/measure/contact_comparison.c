@@ -99,14 +99,10 @@ static json_t *compare_samples(const struct sample *first, const struct sample *
 
 static bool append(struct sample *sample, double value)
 {
-    /* capacities are powers of 2 */
-    if ((sample->count & (sample->count - 1)) == 0) {
-        double *grown =
-            realloc(sample->values, (sample->count > 0 ? 2 * sample->count : 1) * sizeof *grown);
-        if (!grown)
-            return false;
-        sample->values = grown;
-    }
+    double *grown = grow_doubling(sample->values, sample->count, sizeof *grown);
+    if (!grown)
+        return false;
+    sample->values = grown;
     sample->values[sample->count++] = value;
     return true;
 }

@@ -281,9 +281,7 @@ static bool add_found(struct contact_search *search, const struct contact_place 
                       double contrast)
 {
     const struct found_contact contact = {*place, contrast};
-    struct found_contact *grown = search->found;
-    if ((search->found_count & (search->found_count + 1)) == 0) /* room for 2^k - 1 is full */
-        grown = realloc(search->found, (2 * search->found_count + 1) * sizeof *grown);
+    struct found_contact *grown = grow_doubling(search->found, search->found_count, sizeof *grown);
     if (!grown)
         return false;
     search->found = grown;

@@ -46,20 +46,11 @@ void scene_clear(struct scene *scene)
     memset(scene, 0, sizeof *scene);
 }
 
-/* Room for one more of `count` elements: capacities are powers of two, grown when that is full.
- * Returns the elements, or NULL where there is no memory (the old ones then stay). */
-static void *make_room(void *elements, size_t count, size_t size)
-{
-    if ((count & (count - 1)) != 0)
-        return elements;
-    return realloc(elements, (count == 0 ? 1 : 2 * count) * size);
-}
-
 sonject_status scene_append_object(struct scene *scene, struct report *report,
                                    const sonject_object_params *object)
 {
     sonject_object_params *objects =
-        make_room(scene->objects, scene->object_count, sizeof *objects);
+        grow_doubling(scene->objects, scene->object_count, sizeof *objects);
     CHECK_MEMORY(report, objects, "objects");
     scene->objects = objects;
     sonject_object_params *own = &scene->objects[scene->object_count++];
@@ -74,7 +65,7 @@ sonject_status scene_append_object(struct scene *scene, struct report *report,
 sonject_status scene_append_part(struct scene *scene, struct report *report,
                                  const struct scene_part *part)
 {
-    struct scene_part *parts = make_room(scene->parts, scene->part_count, sizeof *parts);
+    struct scene_part *parts = grow_doubling(scene->parts, scene->part_count, sizeof *parts);
     CHECK_MEMORY(report, parts, "parts");
     scene->parts = parts;
     scene->parts[scene->part_count++] = *part;
@@ -88,7 +79,7 @@ static sonject_status append_mesh(struct scene *scene, struct report *report, co
     if (scene->mesh_count >= SCENE_MESHES_MAX)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "meshes must be at most %d in a scene; split it", SCENE_MESHES_MAX);
-    struct mesh *meshes = make_room(scene->meshes, scene->mesh_count, sizeof *meshes);
+    struct mesh *meshes = grow_doubling(scene->meshes, scene->mesh_count, sizeof *meshes);
     CHECK_MEMORY(report, meshes, "meshes");
     scene->meshes = meshes;
     struct mesh *mesh = &scene->meshes[scene->mesh_count];
@@ -123,7 +114,7 @@ sonject_status scene_note_key(struct scene *scene, struct report *report, const 
     const size_t path_bytes = strlen(path) + 1;
     const size_t place_bytes = strlen(place) + 1;
     struct written_keys *written = &scene->written;
-    struct written_key *keys = make_room(written->keys, written->count, sizeof *keys);
+    struct written_key *keys = grow_doubling(written->keys, written->count, sizeof *keys);
     CHECK_MEMORY(report, keys, "a scene's keys");
     written->keys = keys;
     struct written_key *key = &keys[written->count];

@@ -12,7 +12,6 @@
 #include "swath/swath_format.h"
 
 #define SAMPLES_MAX (UINT32_C(1) << 24)
-#define FIRST_ROOM  64 /* elements; then room doubles */
 
 void channel_list_add(struct channel_list *list, uint32_t number, uint32_t side, const char *of)
 {
@@ -57,19 +56,6 @@ sonject_status recording_damaged(struct report *report, const struct swath_file 
                          (unsigned long long)place, what);
 }
 
-/* Room for one more element behind count; false if memory is out. */
-static bool make_room(void *array, uint64_t count, size_t size)
-{
-    void *old, *grown;
-    if (count > 0 && (count < FIRST_ROOM || (count & (count - 1)) != 0))
-        return true;
-    memcpy(&old, array, sizeof old);
-    grown = realloc(old, (size_t)(count > 0 ? 2 * count : FIRST_ROOM) * size);
-    if (grown)
-        memcpy(array, &grown, sizeof grown);
-    return grown != NULL;
-}
-
 /* Every row of an image has the same cells. */
 static sonject_status check_same(struct report *report, const struct swath_file *file,
                                  const struct recorded_ping *ping, uint64_t samples)
@@ -94,8 +80,9 @@ sonject_status recording_add(struct report *report, struct swath_file *file,
     struct raster_layout *layout = &file->layout;
     if (samples == 0) {
         struct ping_list *empty = &recording->empty;
-        CHECK_MEMORY(report, make_room(&empty->numbers, empty->count, sizeof *empty->numbers),
-                     "the pings");
+        uint64_t *numbers = grow_doubling(empty->numbers, (size_t)empty->count, sizeof *numbers);
+        CHECK_MEMORY(report, numbers, "the pings");
+        empty->numbers = numbers;
         empty->numbers[empty->count] = layout->rows + empty->count;
         empty->count++;
         return SONJECT_OK;
@@ -103,10 +90,13 @@ sonject_status recording_add(struct report *report, struct swath_file *file,
     if (samples > SAMPLES_MAX || !(ping->slant_range_m > 0.0f))
         return recording_damaged(report, file, place, "a ping without slant range");
     CHECK(check_same(report, file, ping, samples));
-    CHECK_MEMORY(report,
-                 make_room(&recording->pings, layout->rows, sizeof *recording->pings) &&
-                     make_room(&file->lines.places, layout->rows, sizeof *file->lines.places),
-                 "the pings");
+    const size_t rows = (size_t)layout->rows;
+    struct recorded_ping *pings = grow_doubling(recording->pings, rows, sizeof *pings);
+    CHECK_MEMORY(report, pings, "the pings");
+    recording->pings = pings;
+    uint64_t *places = grow_doubling(file->lines.places, rows, sizeof *places);
+    CHECK_MEMORY(report, places, "the pings");
+    file->lines.places = places;
     recording->pings[layout->rows] = *ping;
     file->lines.places[layout->rows++] = place;
     recording->rows = layout->rows;
