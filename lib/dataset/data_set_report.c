@@ -31,7 +31,9 @@ struct series {
 /* Numbers that images were made with, and where they may come from; as truth names both. */
 static const char *const number_names[] = {"transfer", "noise_floor_db", "looks", "altitude_m",
                                            "seabed_lambert_db"};
-static const char *const source_names[] = {"scene", "calibration", "patch", "default", "fallback"};
+static const uint32_t sources[] = {SONJECT_SOURCE_SCENE, SONJECT_SOURCE_CALIBRATION,
+                                   SONJECT_SOURCE_PATCH, SONJECT_SOURCE_DEFAULT,
+                                   SONJECT_SOURCE_FALLBACK};
 
 struct statistics_page {
     const struct data_set *set;
@@ -42,7 +44,7 @@ struct statistics_page {
     const json_t *classes;
     uint64_t every; /* image that is taken */
     uint64_t drawn_anew, difficult, clipped, unseen;
-    uint64_t sources[COUNT(number_names)][COUNT(source_names)]; /* images */
+    uint64_t sources[COUNT(number_names)][COUNT(sources)]; /* images */
     struct growing_text reasons; /* of the first of these, as items of a list; owned */
 };
 
@@ -184,10 +186,10 @@ static void add_reason(struct statistics_page *page, uint64_t id, const json_t *
 static void add_sources(struct statistics_page *page, const json_t *numbers)
 {
     for (size_t i = 0; i < COUNT(number_names); i++)
-        for (size_t k = 0; k < COUNT(source_names); k++)
+        for (size_t k = 0; k < COUNT(sources); k++)
             page->sources[i][k] +=
                 strcmp(member_text(json_object_get(numbers, number_names[i]), "from"),
-                       source_names[k]) == 0;
+                       source_word(sources[k])) == 0;
 }
 
 static void write_sources(const struct statistics_page *page, struct growing_text *text)
@@ -197,11 +199,11 @@ static void write_sources(const struct statistics_page *page, struct growing_tex
                            "of the swath, from nowhere (the key's default), or was taken since "
                            "that part did not tell it. A swath's own come by "
                            "input.calibration.</p>\n<table><tr><th>number</th>");
-    for (size_t k = 0; k < COUNT(source_names); k++)
-        growing_text_add(text, "<th>%s</th>", source_names[k]);
+    for (size_t k = 0; k < COUNT(sources); k++)
+        growing_text_add(text, "<th>%s</th>", source_word(sources[k]));
     for (size_t i = 0; i < COUNT(number_names); i++) {
         growing_text_add(text, "</tr>\n<tr><td>%s</td>", number_names[i]);
-        for (size_t k = 0; k < COUNT(source_names); k++)
+        for (size_t k = 0; k < COUNT(sources); k++)
             growing_text_add(text, "<td>%llu</td>", (unsigned long long)page->sources[i][k]);
     }
     growing_text_add(text, "</tr>\n</table>\n");

@@ -135,6 +135,9 @@ sonject_status calibration_files_list(struct report *report, const struct scene 
 /* Logs which keys a scene has from its calibration. */
 void tell_calibration(struct report *report, const struct scene *scene);
 
+/* The word of a sonject_source. */
+const char *source_word(uint32_t source);
+
 /* The numbers that a run used and where they came from; NULL where memory is out. */
 json_t *sources_document(const struct scene *scene, const sonject_statistics *statistics);
 

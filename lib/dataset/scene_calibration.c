@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "dataset/run.h"
 #include "measure/calibration.h"
+#include "schema/keys.h"
 #include "schema/scene_file.h"
 
 #define MADE_FOR "  made_for: " /* the last line, among what was measured */
@@ -149,24 +150,27 @@ void tell_calibration(struct report *report, const struct scene *scene)
 
 /* ---- Where numbers came from. */
 
-static json_t *source_word(uint32_t source)
+const char *source_word(uint32_t source)
 {
-    static const char *const words[] = {"default", "scene", "calibration", "patch", "fallback"};
-    return json_string(words[source < COUNT(words) ? source : 0]);
+    static const char *const words[] = {[SONJECT_SOURCE_DEFAULT] = "default",
+                                        [SONJECT_SOURCE_SCENE] = "scene",
+                                        [SONJECT_SOURCE_CALIBRATION] = "calibration",
+                                        [SONJECT_SOURCE_PATCH] = "patch",
+                                        [SONJECT_SOURCE_FALLBACK] = "fallback"};
+    return words[source < COUNT(words) ? source : 0];
 }
 
 static json_t *number_from(double value, uint32_t source)
 {
-    return JSON_OBJECT({"value", json_number(value)}, {"from", source_word(source)});
+    return JSON_OBJECT({"value", json_number(value)}, {"from", json_string(source_word(source))});
 }
 
 static json_t *transfer_document(const struct scene *scene)
 {
-    static const char *const kinds[] = {"amplitude", "intensity", "decibel", "gamma", "schlick"};
     const sonject_transfer_params *transfer = &scene->transfer;
-    json_t *document =
-        JSON_OBJECT({"kind", json_string(kinds[transfer->kind])},
-                    {"from", source_word(scene_key_source(scene, "input.transfer.kind"))});
+    json_t *document = JSON_OBJECT(
+        {"kind", json_string(transfer_word(transfer->kind))},
+        {"from", json_string(source_word(scene_key_source(scene, "input.transfer.kind")))});
     if (transfer->kind >= SONJECT_TRANSFER_DECIBEL)
         json_add(
             &document, "parameter",

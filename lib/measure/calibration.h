@@ -133,6 +133,11 @@ sonject_status calibrate_swath(struct report *report, const struct stored_swath 
                                struct calibration *calibration);
 void calibration_clear(struct calibration *calibration);
 
+/* A family's curve, chosen or alike: "schlick 3.9". Returns text. */
+#define CURVE_TEXT_CAPACITY 64
+const char *curve_text(const struct calibration *calibration, enum curve_family family,
+                       char text[CURVE_TEXT_CAPACITY]);
+
 /* As a document: keys of scenes, and `measured` with standard errors. Numbers have four significant
  * digits. NULL where memory is out; for json_decref. */
 json_t *calibration_document(const struct calibration *calibration, const char *path,

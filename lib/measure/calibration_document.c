@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "measure/calibration.h"
+#include "schema/keys.h"
 
 #define DIGITS     4
 #define WHOLE_MOST 1e6 /* whole numbers, such as a ceiling, stay as they are */
@@ -16,9 +17,9 @@
 #define RETURNS_MOST                                                                               \
     20000 /* first returns that are told; a scene's reader takes TREE_NODES_MAX values */
 
-static const char *const kind_words[] = {"amplitude", "intensity", "decibel", "gamma", "schlick"};
-static const char *const family_words[] = {
-    [CURVE_POWER] = "gamma", [CURVE_DECIBEL] = "decibel", [CURVE_SCHLICK] = "schlick"};
+static const uint32_t family_kinds[] = {[CURVE_POWER] = SONJECT_TRANSFER_GAMMA,
+                                        [CURVE_DECIBEL] = SONJECT_TRANSFER_DECIBEL,
+                                        [CURVE_SCHLICK] = SONJECT_TRANSFER_SCHLICK};
 static const char *const side_words[] = {
     [WATER_AT_LEFT] = "one, range grows to the right",
     [WATER_AT_RIGHT] = "one, range grows to the left",
@@ -77,7 +78,7 @@ static json_t *transfer_keys(const struct calibration *found)
     json_t *transfer = json_object();
     const bool has_parameter = found->transfer.kind >= SONJECT_TRANSFER_DECIBEL;
     if (!found->transfer_kind.unseen && !(has_parameter && found->parameter.unseen)) {
-        json_add(&transfer, "kind", json_text(kind_words[found->transfer.kind]));
+        json_add(&transfer, "kind", json_text(transfer_word(found->transfer.kind)));
         if (has_parameter)
             json_add(&transfer, "parameter", number_of(found->transfer.parameter));
     }
@@ -122,6 +123,18 @@ static json_t *numbers(const double *values, size_t count, size_t every)
     return list;
 }
 
+const char *curve_text(const struct calibration *found, enum curve_family family,
+                       char text[CURVE_TEXT_CAPACITY])
+{
+    char number[DIGITS + 16];
+    const bool is_other_power =
+        family == CURVE_POWER && found->family == CURVE_POWER && found->alike[CURVE_POWER];
+    const double parameter = is_other_power ? found->alike_exponent : found->fits[family].parameter;
+    snprintf(text, CURVE_TEXT_CAPACITY, "%s %s", transfer_word(family_kinds[family]),
+             text_of_number(number, sizeof number, parameter, DIGITS));
+    return text;
+}
+
 static json_t *measured_curve(const struct calibration *found)
 {
     json_t *curve = json_object();
@@ -131,16 +144,11 @@ static json_t *measured_curve(const struct calibration *found)
         json_add(&curve, "not_seen", json_text(found->transfer_kind.unseen));
         return curve;
     }
-    json_add(&curve, "kind", json_text(kind_words[found->transfer.kind]));
+    json_add(&curve, "kind", json_text(transfer_word(found->transfer.kind)));
     for (int family = 0; family < CURVE_FAMILIES; family++)
         if (found->alike[family]) {
-            char text[64], number[DIGITS + 16];
-            const double parameter = family == CURVE_POWER && found->family == CURVE_POWER
-                                         ? found->alike_exponent
-                                         : found->fits[family].parameter;
-            snprintf(text, sizeof text, "%s %s", family_words[family],
-                     text_of_number(number, sizeof number, parameter, DIGITS));
-            json_append(&alike, json_text(text));
+            char text[CURVE_TEXT_CAPACITY];
+            json_append(&alike, json_text(curve_text(found, (enum curve_family)family, text)));
         }
     json_add(&curve, "cannot_be_told_from", alike);
     if (found->transfer.kind >= SONJECT_TRANSFER_DECIBEL)

@@ -153,16 +153,13 @@ static void draw_reason(const struct chart *chart, const char *title, const char
 }
 
 static const char *family_text(const struct calibration *found, enum curve_family family,
-                               char text[TEXT_BYTES])
+                               char text[CURVE_TEXT_CAPACITY])
 {
-    static const char *const words[] = {"gamma", "decibel", "Schlick"};
-    const double parameter = found->fits[family].parameter;
     if (family == found->family && found->transfer.kind == SONJECT_TRANSFER_AMPLITUDE)
         return strcpy(text, "amplitude");
     if (family == found->family && found->transfer.kind == SONJECT_TRANSFER_INTENSITY)
         return strcpy(text, "intensity");
-    snprintf(text, TEXT_BYTES, "%s %.4g", words[family], parameter);
-    return text;
+    return curve_text(found, family, text);
 }
 
 /* Median and distance between the quartiles of each tile, and what the families say. */
@@ -423,11 +420,8 @@ static void draw_head(struct canvas *canvas, const struct calibration *found, co
     }
     for (int family = 0; family < CURVE_FAMILIES; family++)
         if (found->alike[family]) {
-            static const char *const words[] = {"gamma", "decibel", "Schlick"};
-            const double parameter = family == CURVE_POWER && found->family == CURVE_POWER
-                                         ? found->alike_exponent
-                                         : found->fits[family].parameter;
-            snprintf(alike, sizeof alike, ", not told from %s %.4g", words[family], parameter);
+            snprintf(alike, sizeof alike, ", not told from %s",
+                     curve_text(found, (enum curve_family)family, curve));
             strncat(text, alike, sizeof text - strlen(text) - 1);
         }
     draw_text(canvas, 24, 54, text, SIZE_MAX, TEXT_RIGHTWARDS, blue);

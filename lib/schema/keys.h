@@ -332,6 +332,9 @@ size_t count_given(const struct tree_node *node, const char *keys);
 /* Takes the first of some keys, which blanks separate. False where there is none. */
 bool next_key(const char **keys, char key[64]);
 
+/* The word of a sonject_transfer_kind. */
+const char *transfer_word(uint32_t kind);
+
 /* The word of the list nearest to a mistyped one; NULL if none is near. */
 const char *nearest_word(const char *typed, const char *const *words, size_t count);
 

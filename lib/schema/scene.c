@@ -217,6 +217,11 @@ static const struct section transfer_section = {ROWS(transfer_fields), .finish =
                                                 .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
+const char *transfer_word(uint32_t kind)
+{
+    return transfer_fields[0].words[kind];
+}
+
 static sonject_status read_channel(struct reader *reader, const struct tree_node *node,
                                    void *structure)
 {
