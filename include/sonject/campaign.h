@@ -126,7 +126,9 @@ typedef struct sonject_campaign_fit_params {
      * with its file name. */
     const char *contacts;
     const char *fitted; /* the campaign file to write, in the folder of the one that is fitted; a
-                           page and its picture come beside it: ".html", ".png" */
+                           page and its picture come beside it: ".html", ".png"; where the scene's
+                           input.calibration is auto, a folder of that name with "_fit" for an
+                           extension has calibrations of swaths and contacts' images */
 } sonject_campaign_fit_params;
 
 /* Fits a campaign to real contacts: moves what its targets draw of length, width, height and level

@@ -454,6 +454,11 @@ void campaign_image_clear(struct campaign_image *image);
 
 #define CALIBRATIONS_FOLDER "calibrations" /* in the folder of a run */
 
+/* Makes the calibration that a scene asks for in the run's folder; the scene is left initialised.
+ * name: without extension. Errors: as of scene_calibrate. */
+sonject_status campaign_calibrate(struct sonject_campaign *campaign, const char *name,
+                                  struct scene *scene, char path[PATH_CAPACITY]);
+
 /* Of a run that has ended. */
 void campaign_forget_calibrations(struct sonject_campaign *campaign);
 

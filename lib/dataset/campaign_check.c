@@ -288,6 +288,7 @@ void campaign_close(struct sonject_campaign **campaign)
 {
     if (!*campaign)
         return;
+    campaign_forget_calibrations(*campaign); /* which the swaths number */
     campaign_clear(&(*campaign)->campaign);
     swath_store_close(&(*campaign)->store);
     mesh_store_clear(&(*campaign)->meshes);

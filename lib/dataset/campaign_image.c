@@ -156,16 +156,27 @@ void campaign_forget_calibrations(struct sonject_campaign *campaign)
     campaign->calibrations = NULL;
 }
 
+sonject_status campaign_calibrate(struct sonject_campaign *campaign, const char *name,
+                                  struct scene *scene, char path[PATH_CAPACITY])
+{
+    char folder[PATH_CAPACITY];
+    struct mesh_store *meshes = scene->mesh_store;
+    CHECK(path_in(campaign->report, folder, campaign->folder, CALIBRATIONS_FOLDER));
+    CHECK(scene_calibrate(campaign->report, scene, folder, name, true, path));
+    scene_clear(scene);
+    scene_init(scene);
+    scene->mesh_store = meshes;
+    return SONJECT_OK;
+}
+
 /* Makes the calibration of the plan's swath, which its later scenes have from the start; leaves the
  * scene initialised. */
 static sonject_status calibrate_plan(struct sonject_campaign *campaign,
                                      const struct image_plan *plan, struct scene *scene)
 {
-    char path[PATH_CAPACITY], folder[PATH_CAPACITY], name[24];
-    struct mesh_store *meshes = scene->mesh_store;
-    CHECK(path_in(campaign->report, folder, campaign->folder, CALIBRATIONS_FOLDER));
+    char path[PATH_CAPACITY], name[24];
     snprintf(name, sizeof name, "%lu", (unsigned long)plan->swath);
-    CHECK(scene_calibrate(campaign->report, scene, folder, name, true, path));
+    CHECK(campaign_calibrate(campaign, name, scene, path));
     if (!campaign->calibrations)
         campaign->calibrations =
             allocate_array(campaign->campaign.swath_count, sizeof *campaign->calibrations);
@@ -173,9 +184,6 @@ static sonject_status calibrate_plan(struct sonject_campaign *campaign,
     campaign->calibrations[plan->swath] = copy_text(path);
     CHECK_MEMORY(campaign->report, campaign->calibrations[plan->swath],
                  "a campaign's calibrations");
-    scene_clear(scene);
-    scene_init(scene);
-    scene->mesh_store = meshes;
     return SONJECT_OK;
 }
 

@@ -145,8 +145,11 @@ static sonject_status open_round(struct fit *fit, uint32_t round, struct sonject
         source.override_count = given + 3;
         source.has_one_target = true;
         status = campaign_open(fit->report, &source, opened);
-        if (status == SONJECT_OK) /* what is faint is left out, not drawn anew: time is limited */
+        if (status == SONJECT_OK) {
+            /* what is faint is left out, not drawn anew: time is limited */
             (*opened)->campaign.faint = FAINT_DIFFICULT;
+            (*opened)->folder = fit->folder;
+        }
     }
     free(text);
     free(overrides);
@@ -379,6 +382,8 @@ static sonject_status read_all(struct fit *fit, const sonject_campaign_fit_param
 {
     CHECK(campaign_open(fit->report, &fit->source, &fit->campaign));
     CHECK(check_fitted(fit, params->fitted));
+    CHECK(fit_page_name(fit->report, params->fitted, "_fit", fit->folder));
+    fit->campaign->folder = fit->folder;
     CHECK(fit_draws_find(&fit->draws, fit->report, &fit->campaign->campaign));
     CHECK(contact_set_read(fit->report, params->contacts, params->part, &fit->set));
     if (fit->set.quantiles.count > 0) {

@@ -98,6 +98,7 @@ sonject_status fit_draws_text(const struct fit_draws *draws, struct report *repo
 struct fit {
     struct report *report;
     struct campaign_source source; /* of the campaign that is fitted */
+    char folder[PATH_CAPACITY];    /* where calibrations go that its scene asks for */
     uint32_t part;
     struct sonject_campaign *campaign; /* as its file is */
     struct contact_set set;
@@ -119,6 +120,11 @@ sonject_status campaign_fit(struct report *report, struct device_slot *slot,
                             const struct campaign_source *source,
                             const sonject_campaign_fit_params *params,
                             sonject_progress_function progress, void *user);
+
+/* The name of the fitted campaign's file with another extension, such as ".html". Errors: STORAGE
+ * (it is too long). */
+sonject_status fit_page_name(struct report *report, const char *fitted, const char *extension,
+                             char path[PATH_CAPACITY]);
 
 /* Writes the page, "<fitted without extension>.html", and its picture ".png". Errors: STORAGE,
  * MEMORY. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/json_document.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "dataset/fit.h"
@@ -79,7 +80,7 @@ static sonject_status read_image_scene(struct sonject_campaign *campaign, const 
 {
     const struct swath_plan *swath = swath_of_image(&campaign->campaign, image);
     const size_t keys = swath ? swath->key_count : 0;
-    char patch_text[160];
+    char patch_text[160], path[PATH_CAPACITY], name[HASH_TEXT_CAPACITY];
     struct scene_source source = {.overrides = allocate_array(keys + 5, sizeof *source.overrides),
                                   .moved_overrides = keys};
     CHECK_MEMORY(campaign->report, source.overrides, "a contact's scene");
@@ -97,7 +98,20 @@ static sonject_status read_image_scene(struct sonject_campaign *campaign, const 
         source.overrides[source.override_count++] = patch_text;
     }
     scene_init(scene);
-    const sonject_status status = campaign_read_base(campaign, image, &source, scene);
+    const size_t count = source.override_count;
+    sonject_status status = campaign_read_base(campaign, image, &source, scene);
+    if (status == SONJECT_OK && patch && scene->calibrates_itself) {
+        if (swath)
+            snprintf(name, sizeof name, "%zu", (size_t)(swath - campaign->campaign.swaths));
+        else
+            status = file_hash(campaign->report, image, name);
+        THEN(status, campaign_calibrate(campaign, name, scene, path));
+        source.override_count = count;
+        source.made_calibration = path;
+        THEN(status, campaign_read_base(campaign, image, &source, scene));
+        if (status != SONJECT_OK)
+            scene_clear(scene);
+    }
     free(source.overrides);
     return status;
 }
@@ -121,8 +135,8 @@ static sonject_status describe_image(struct sonject_campaign *campaign, const ch
     struct scene scene;
     struct swath_file *file = NULL;
     CHECK(read_image_scene(campaign, image, NULL, false, false, &scene));
-    sonject_status status = check_direction(campaign->report, image, &scene.geometry);
-    THEN(status, swath_file_open_array(campaign->report, image, scene.channel, scene.array, &file));
+    sonject_status status =
+        swath_file_open_array(campaign->report, image, scene.channel, scene.array, &file);
     if (status == SONJECT_OK) {
         struct noted_geometry noted;
         sonject_geometry_params told;
@@ -162,7 +176,8 @@ sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *
     inner.first_row -= window.first_row;
     inner.first_column -= window.first_column;
     CHECK(read_image_scene(campaign, image, &window, tells_geometry, tells_altitude, &scene));
-    sonject_status status = swath_open_stored(campaign->report, &scene, &campaign->store, &swath);
+    sonject_status status = check_direction(campaign->report, image, &scene.geometry);
+    THEN(status, swath_open_stored(campaign->report, &scene, &campaign->store, &swath));
     if (status == SONJECT_OK) {
         const sonject_geometry_params *geometry = &scene.geometry;
         status = cut_chip(campaign->report, swath.pixels, swath.is_complex, all.columns, &all,

@@ -315,13 +315,19 @@ static sonject_status write_picture(const struct fit *fit, const char *path)
     return status;
 }
 
-sonject_status fit_page_write(const struct fit *fit, const char *fitted)
+sonject_status fit_page_name(struct report *report, const char *fitted, const char *extension,
+                             char path[PATH_CAPACITY])
 {
     const char *dot = strrchr(path_name(fitted), '.');
     const int stem = (int)(dot ? dot - fitted : (long)strlen(fitted));
+    return path_in(report, path, "", "%.*s%s", stem, fitted, extension);
+}
+
+sonject_status fit_page_write(const struct fit *fit, const char *fitted)
+{
     char path[PATH_CAPACITY], picture[PATH_CAPACITY];
-    CHECK(path_in(fit->report, picture, "", "%.*s.png", stem, fitted));
-    CHECK(path_in(fit->report, path, "", "%.*s.html", stem, fitted));
+    CHECK(fit_page_name(fit->report, fitted, ".png", picture));
+    CHECK(fit_page_name(fit->report, fitted, ".html", path));
     CHECK(write_picture(fit, picture));
     return write_page(fit, path_name(picture), path);
 }

@@ -147,3 +147,19 @@ def test_a_campaign_is_fitted(tmp_path, campaign):
     assert set(seen) == {"round 1 of 7"} and not files[2].exists()
     with pytest.raises(sonject.SonjectError, match="must lie in the folder of .*campaign.yaml"):
         sonject.fit_campaign(*files[:2], tmp_path / "there" / "fitted.yaml")
+
+
+def test_a_fit_makes_the_calibrations_that_its_scene_asks_for(tmp_path, campaign):
+    numbers = numpy.random.default_rng(8)
+    for name in ("swath.npy", "other.npy"):
+        numpy.save(tmp_path / name, numbers.rayleigh(20, (300, 300)).astype(numpy.uint8))
+    (tmp_path / "scene.yaml").write_text(SCENE.replace("input:\n", "input:\n  calibration: auto\n"))
+    (tmp_path / "contacts.csv").write_text("image,row,column,rows,columns\n" + "swath.npy,50,50,9,20\n" * 9
+                                           + "other.npy,50,50,9,20\n")
+    with pytest.raises(sonject.SonjectError) as told:
+        sonject.fit_campaign(tmp_path / "campaign.yaml", tmp_path / "contacts.csv", tmp_path / "fitted.yaml",
+                             progress=lambda fraction, stage: fraction > 0.005)
+    assert told.value.status == sonject.Status.CANCELLED
+    made = sorted((tmp_path / "fitted_fit" / "calibrations").glob("*.yaml"))
+    assert len(made) == 2 and made[0].name == "0.yaml"
+    assert all("kind: amplitude" in path.read_text() for path in made)
