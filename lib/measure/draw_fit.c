@@ -13,7 +13,8 @@
 #define STEPS_MAX  60
 #define SEEN_LEAST 8    /* contacts that show an extent, for it to be compared */
 #define RIDGE      1e-5 /* of the weights' sum, so that what was not varied has no response */
-#define NEAR_LEAST 0.5  /* nearness of contacts that are compared */
+#define NEAR_LEAST 0.5  /* mean nearness of a round whose contacts are compared */
+#define OWN_ERROR  1.0  /* variance of a quantile that shares nothing with others, of its own */
 
 /* How far a round may go: natural logarithms of sizes, dB, and logarithms of stretches. */
 static const double most[MOVES] = {0.7, 0.7, 0.7, 20.0, 8.0, 0.5, 0.5, 0.5, 0.5, 0.5};
@@ -109,9 +110,9 @@ static void project(const double *drawn, double heading_rad, double *projected)
     projected[1] = log(hypot(length * s, width * c));
 }
 
-/* Solves a x = b for a symmetric positive matrix of n x n, by Cholesky's factors, in place. False
- * where it is none. */
-static bool solve_symmetric(double *a, double *b, size_t n)
+/* Makes Cholesky's lower factor of a symmetric positive matrix of n x n, in its place. False where
+ * it is none. */
+static bool factor_symmetric(double *a, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j <= i; j++) {
@@ -122,11 +123,25 @@ static bool solve_symmetric(double *a, double *b, size_t n)
                 return false;
             a[i * n + j] = i == j ? sqrt(sum) : sum / a[j * n + j];
         }
+    return true;
+}
+
+/* Solves a x = b for a lower factor, in place. */
+static void solve_lower(const double *a, double *b, size_t n)
+{
     for (size_t i = 0; i < n; i++) {
         for (size_t k = 0; k < i; k++)
             b[i] -= a[i * n + k] * b[k];
         b[i] /= a[i * n + i];
     }
+}
+
+/* Solves a x = b for a symmetric positive matrix, in place. False where it is none. */
+static bool solve_symmetric(double *a, double *b, size_t n)
+{
+    if (!factor_symmetric(a, n))
+        return false;
+    solve_lower(a, b, n);
     for (size_t i = n; i-- > 0;) {
         for (size_t k = i + 1; k < n; k++)
             b[i] -= a[k * n + i] * b[k];
@@ -189,8 +204,9 @@ struct move_fit {
     const struct move_prior *prior;
     double centre[FITTED_KINDS];
     double response[EXTENT_KINDS][FITTED_KINDS];
-    double *shown; /* room for count values; owned */
-    double trust;  /* of the prior: its deviations are so many times as large */
+    double *shown;  /* room for count values; owned */
+    double *factor; /* Cholesky's, of the quantiles' correlations; owned */
+    double trust;   /* of the prior: its deviations are so many times as large */
 };
 
 double draw_moved(const struct draw_move *move, double value)
@@ -233,8 +249,7 @@ static size_t add_extent_residuals(const struct move_fit *fit, const double *mov
     const double half = sorted_quantile(fit->shown, n, 0.75) - sorted_quantile(fit->shown, n, 0.25);
     for (size_t j = 0; j < goal->levels; j++) {
         const double error = hypot(goal->error[j], quantile_error(goal->level[j], half, (double)n));
-        residuals[j] = (sorted_quantile(fit->shown, n, goal->level[j]) - goal->value[j]) / error /
-                       sqrt(0.5 * (double)goal->levels);
+        residuals[j] = (sorted_quantile(fit->shown, n, goal->level[j]) - goal->value[j]) / error;
     }
     return goal->levels;
 }
@@ -244,17 +259,9 @@ static size_t find_residuals(const struct move_fit *fit, const double *moves, do
     const struct move_prior *prior = fit->prior;
     double sizes[FITTED_KINDS];
     size_t count = 0;
-    size_t compared = 0;
     for (size_t k = 0; k < EXTENT_KINDS; k++)
-        compared += fit->goals[k].levels > 0;
-    for (size_t k = 0; k < EXTENT_KINDS; k++) {
-        const size_t added =
-            fit->goals[k].levels ? add_extent_residuals(fit, moves, k, residuals + count) : 0;
-        /* extents are no independent witnesses: eleven count as some six */
-        for (size_t j = 0; j < added; j++)
-            residuals[count + j] *= sqrt(fmin(1.0, 6.0 / (double)compared));
-        count += added;
-    }
+        count += fit->goals[k].levels ? add_extent_residuals(fit, moves, k, residuals + count) : 0;
+    solve_lower(fit->factor, residuals, count);
     for (size_t k = 0; k < FITTED_KINDS; k++) {
         sizes[k] = prior->shift[k] + moves[k];
         residuals[count++] = sizes[k] / (believed[k] * fit->trust);
@@ -326,11 +333,83 @@ static void descend(const struct move_fit *fit, double *moves, double *buffers)
     }
 }
 
+/* Whether the draws of a round's contacts have hardly moved. Those of single contacts do not say:
+ * where draws are stretched, the large alone or the small alone stay where they were. */
+static bool round_is_near(const struct drawn_contact *contacts, size_t count, uint32_t round)
+{
+    double sum = 0.0;
+    double of_round = 0.0;
+    for (size_t i = 0; i < count; i++)
+        if (contacts[i].round == round) {
+            sum += nearness(&contacts[i]);
+            of_round += 1.0;
+        }
+    return sum > NEAR_LEAST * of_round;
+}
+
+/* Which contacts show less of an extent than its quantiles' levels: 1 - level where they do, -level
+ * where they do not, 0 where they do not show it. below: levels of count. Returns their number, 0
+ * where too few show it. */
+static size_t note_below(const struct move_fit *fit, size_t extent, double *below)
+{
+    const struct quantile_goal *goal = &fit->goals[extent];
+    size_t n = 0;
+    for (size_t i = 0; i < fit->count; i++)
+        if (isfinite(fit->contacts[i]->shown.of[extent]))
+            fit->shown[n++] = fit->contacts[i]->shown.of[extent];
+    if (n < SEEN_LEAST)
+        return 0;
+    qsort(fit->shown, n, sizeof *fit->shown, compare_doubles);
+    for (size_t j = 0; j < goal->levels; j++) {
+        const double value = sorted_quantile(fit->shown, n, goal->level[j]);
+        for (size_t i = 0; i < fit->count; i++) {
+            const double shown = fit->contacts[i]->shown.of[extent];
+            below[j * fit->count + i] =
+                isfinite(shown) ? (shown < value ? 1.0 : 0.0) - goal->level[j] : 0.0;
+        }
+    }
+    return goal->levels;
+}
+
+/* Quantiles of one sample are off together as often as the same contacts lie below both. Errors:
+ * MEMORY. */
+static sonject_status correlate(struct move_fit *fit, struct report *report)
+{
+    const size_t count = fit->count;
+    size_t n = 0;
+    for (size_t k = 0; k < EXTENT_KINDS; k++)
+        n += fit->goals[k].levels;
+    double *below = allocate_array(n * count + 1, sizeof *below);
+    fit->factor = allocate_array(n * n + 1, sizeof *fit->factor);
+    if (!below || !fit->factor) {
+        free(below);
+        return report_out_of_memory(report, "the fit");
+    }
+    n = 0;
+    for (size_t k = 0; k < EXTENT_KINDS; k++)
+        n += fit->goals[k].levels ? note_below(fit, k, below + n * count) : 0;
+    for (size_t i = 0; i < n; i++) {
+        const double scale = sqrt(sum_of_squares(below + i * count, count));
+        for (size_t c = 0; scale > 0.0 && c < count; c++)
+            below[i * count + c] /= scale;
+    }
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j <= i; j++) {
+            double *sum = &fit->factor[i * n + j];
+            *sum = i == j ? OWN_ERROR : 0.0;
+            for (size_t c = 0; c < count; c++)
+                *sum += below[i * count + c] * below[j * count + c];
+        }
+    factor_symmetric(fit->factor, n);
+    free(below);
+    return SONJECT_OK;
+}
+
 /* The contacts that are compared, what is drawn of them in the mean, and how it shows. */
 static void prepare(struct move_fit *fit, const struct drawn_contact *contacts, size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        if (nearness(&contacts[i]) > NEAR_LEAST)
+        if (round_is_near(contacts, count, contacts[i].round))
             fit->contacts[fit->count++] = &contacts[i];
     for (size_t k = 0; k < FITTED_KINDS; k++)
         for (size_t i = 0; i < fit->count; i++)
@@ -360,11 +439,13 @@ sonject_status fit_moves(struct report *report, const struct drawn_contact *cont
                                     "campaign's targets levels over the seabed (level: "
                                     "{over_seabed: })");
     }
+    THEN(status, correlate(&fit, report));
     if (status == SONJECT_OK)
         descend(&fit, found, buffers);
     moves_as_steps(&fit, found, moves);
     free(fit.contacts);
     free(fit.shown);
+    free(fit.factor);
     free(buffers);
     return status;
 }

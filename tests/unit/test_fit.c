@@ -71,8 +71,10 @@ static void draws_reach_what_made_the_contacts(void **state)
     for (uint32_t round = 0; round < ROUNDS; round++) {
         struct draw_move moves[FITTED_KINDS];
         const size_t count = (round + 1) * (size_t)CONTACTS;
-        for (uint64_t i = 0; i < CONTACTS; i++)
+        for (uint64_t i = 0; i < CONTACTS; i++) {
             show(&now, 10 + round, i, &made[round * CONTACTS + i]);
+            made[round * CONTACTS + i].round = round;
+        }
         EXPECT_OK(&report, fit_moves(&report, made, count, goals, &prior, moves));
         for (size_t k = 0; k < FITTED_KINDS; k++) {
             prior.shift[k] += moves[k].shift;
