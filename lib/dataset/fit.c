@@ -67,12 +67,24 @@ static double quantile_of_member(const struct contact_extents *extents, size_t s
     return quantile_of(values, count, share);
 }
 
-/* Where chips may lie and how well targets are to be seen, as contacts do and are. */
+/* Leaves real contacts out that are seen less than injected ones will be. */
+static void leave_out_less_seen(struct fit *fit)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < fit->real_count; i++)
+        if (!(fit->real[i].highlight_visibility_db < fit->selection.highlight_db ||
+              fit->real[i].shadow_visibility_db > fit->selection.shadow_db))
+            fit->real[kept++] = fit->real[i];
+    fit->real_count = kept;
+}
+
+/* Where chips may lie, as contacts do, and how well targets are to be seen: as all contacts are but
+ * one in fifty. More left out would make what is compared narrower than what a labeller sees. */
 static sonject_status take_contacts(struct fit *fit)
 {
     CHECK(measure_real(fit));
     const size_t count = fit->real_count;
-    const double share = count >= 30 ? 0.05 : 1.0 / ((double)count + 1.0);
+    const double share = floor((double)count / 50.0) / ((double)count - 1.0);
     double *values = allocate_array(count, sizeof *values);
     CHECK_MEMORY(fit->report, values, "contacts");
 #define OF_REAL(member, share)                                                                     \
@@ -88,7 +100,8 @@ static sonject_status take_contacts(struct fit *fit)
         fit->selection.nearest_range_m = nearest;
         fit->selection.farthest_range_m = farthest;
     }
-    return quantile_goals(fit->report, fit->real, count, fit->goals);
+    leave_out_less_seen(fit);
+    return quantile_goals(fit->report, fit->real, fit->real_count, fit->goals);
 }
 
 /* Goals of published quantiles. */
@@ -340,7 +353,7 @@ static sonject_status run_rounds(struct fit *fit, struct device_slot *slot,
                                  sonject_progress_function progress, void *user)
 {
     struct device *device;
-    struct move_prior prior = {.contacts = fit->real_count > 0 ? (double)fit->real_count
+    struct move_prior prior = {.contacts = fit->real_count > 0 ? (double)fit->set.count
                                                                : fit->set.quantiles.contacts};
     CHECK(device_slot_open(fit->report, slot, &device));
     fit->made = allocate_array((size_t)FIT_ROUNDS * FIT_CHIPS, sizeof *fit->made);

@@ -91,7 +91,7 @@ sonject_status fit_draws_text(const struct fit_draws *draws, struct report *repo
 /* ---- The whole (fit.c), and its page (fit_page.c). */
 
 #define FIT_CHIPS  104 /* in a round */
-#define FIT_ROUNDS 7   /* the last one only shows what came of it */
+#define FIT_ROUNDS 8   /* the last one only shows what came of it */
 #define FIT_SHOWN  20  /* chips on the page, of each kind */
 
 /* All that the page tells. */

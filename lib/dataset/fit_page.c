@@ -239,7 +239,7 @@ static sonject_status write_page(const struct fit *fit, const char *picture, con
         "<h1>A campaign fitted to %zu contacts</h1>\n"
         "<p>Bars: real contacts. Dashed: injected, before. Line: injected, after. All are measured "
         "by the same ruler.</p>\n",
-        fit->real_count > 0 ? fit->real_count : (size_t)fit->set.quantiles.contacts);
+        fit->real_count > 0 ? fit->set.count : (size_t)fit->set.quantiles.contacts);
     for (size_t k = 0; k < EXTENT_KINDS; k++)
         if (fit->goals[k].levels > 0)
             write_histogram(fit, k, values, &text);

@@ -56,14 +56,14 @@ double quantile_error(double share, double middle_half, double count)
     return deviation * sqrt(share * (1.0 - share) / count) / density;
 }
 
-/* Shares that so many contacts tell. */
+/* Shares that so many contacts tell: of 100, 30 or fewer, of whom a few do not show everything. */
 static size_t choose_levels(size_t count, double *levels)
 {
     static const double many[] = {0.05, 0.15, 0.25, 0.375, 0.5, 0.625, 0.75, 0.85, 0.95};
     static const double some[] = {0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9};
     static const double few[] = {0.2, 0.35, 0.5, 0.65, 0.8};
-    const double *chosen = count >= 100 ? many : count >= 30 ? some : few;
-    const size_t chosen_count = count >= 100 ? COUNT(many) : count >= 30 ? COUNT(some) : COUNT(few);
+    const double *chosen = count >= 90 ? many : count >= 27 ? some : few;
+    const size_t chosen_count = count >= 90 ? COUNT(many) : count >= 27 ? COUNT(some) : COUNT(few);
     memcpy(levels, chosen, chosen_count * sizeof *levels);
     return chosen_count;
 }
