@@ -84,7 +84,7 @@ static sonject_status take_contacts(struct fit *fit)
 {
     CHECK(measure_real(fit));
     const size_t count = fit->real_count;
-    const double share = floor((double)count / 50.0) / ((double)count - 1.0);
+    const double share = (floor((double)count / 50.0) + 2.0 / 3.0) / ((double)count + 1.0 / 3.0);
     double *values = allocate_array(count, sizeof *values);
     CHECK_MEMORY(fit->report, values, "contacts");
 #define OF_REAL(member, share)                                                                     \

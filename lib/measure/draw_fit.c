@@ -23,13 +23,13 @@ static const double most[MOVES] = {0.7, 0.7, 0.7, 20.0, 8.0, 0.5, 0.5, 0.5, 0.5,
 static const double near[FITTED_KINDS] = {0.3, 0.3, 0.3, 3.0, 3.0};
 
 /* How far the campaign's own values are believed, standard deviations of all moves; and the ratio
- * of sizes to each other. */
-static const double believed[MOVES] = {1.0, 1.0, 1.0, 15.0, 10.0, 0.3, 0.3, 0.3, 0.5, 0.5};
-#define BELIEVED_RATIO 0.6
+ * of sizes to each other, which contacts of any heading tell poorly. */
+static const double believed[MOVES] = {1.0, 1.0, 1.0, 15.0, 10.0, 0.15, 0.15, 0.3, 0.5, 0.5};
+#define BELIEVED_RATIO 0.25
 
 double sorted_quantile(const double *sorted, size_t count, double share)
 {
-    const double place = share * (double)(count - 1);
+    const double place = fmax(share * ((double)count + 1.0 / 3.0) - 2.0 / 3.0, 0.0);
     const size_t below = (size_t)fmin(floor(place), (double)(count - 1));
     const size_t above = below + 1 < count ? below + 1 : below;
     return sorted[below] + (place - (double)below) * (sorted[above] - sorted[below]);

@@ -91,7 +91,8 @@ sonject_status quantile_goals(struct report *report, const struct contact_extent
  * half is so wide; after a normal distribution's. */
 double quantile_error(double share, double middle_half, double count);
 
-/* The value below which a share of ascending values lies, between them by straight lines. */
+/* The value below which a share lies of what ascending values were drawn from, as often too low as
+ * too high (Hyndman and Fan's eighth); those of few would else lie too far inside. */
 double sorted_quantile(const double *sorted, size_t count, double share);
 
 /* What a value becomes. */

@@ -108,6 +108,29 @@ static void a_median_has_the_error_of_statistics(void **state)
     assert_true(fabs(tail - sqrt(0.0475) / 0.10314) < 0.01);
 }
 
+/* Of ten values drawn between 0 and 1, in as many samples too low as too high. */
+static void quantiles_of_few_are_in_the_middle(void **state)
+{
+    enum {
+        SAMPLES = 4000,
+        VALUES = 10
+    };
+    (void)state;
+    for (int fifth = 1; fifth < 5; fifth++) {
+        const double share = 0.2 * fifth;
+        double low = 0.0;
+        for (uint64_t sample = 0; sample < SAMPLES; sample++) {
+            double values[VALUES];
+            for (uint64_t i = 0; i < VALUES; i++)
+                values[i] = uniform_number(7, 0, sample * VALUES + i);
+            qsort(values, VALUES, sizeof *values, compare_doubles);
+            low += sorted_quantile(values, VALUES, share) < share ? 1.0 / SAMPLES : 0.0;
+        }
+        /* four standard errors, and what straight lines between values are off */
+        assert_true(fabs(low - 0.5) < 4.0 * 0.5 / sqrt(SAMPLES) + 0.01);
+    }
+}
+
 /* The least and the largest of ten are known but roughly, not infinitely ill. */
 static void ends_of_published_quantiles_have_errors(void **state)
 {
@@ -258,7 +281,7 @@ static void what_overrides_give_is_not_written_over(void **state)
 }
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(draws_reach_what_made_the_contacts),
-             TEST(a_median_has_the_error_of_statistics),
+             TEST(a_median_has_the_error_of_statistics), TEST(quantiles_of_few_are_in_the_middle),
              TEST(ends_of_published_quantiles_have_errors),
              TEST(a_fitted_file_is_the_users_own_with_other_numbers),
              TEST(what_is_in_braces_stays_so), TEST(what_overrides_give_is_not_written_over))
