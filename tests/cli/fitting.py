@@ -4,6 +4,8 @@ import json
 
 import numpy
 
+import images
+
 SCENE = """\
 sonject: 1
 input:
@@ -43,8 +45,8 @@ TARGET = """\
 """
 
 
-def make_seabeds(sonject, rows=300, columns=500):
-    for number in (1, 2):
+def make_seabeds(sonject, rows=300, columns=500, numbers=(1, 2)):
+    for number in numbers:
         sonject.done("seabed", "-o", f"seabed_{number}.tif", "--seed", number, "--rows", rows, "--columns", columns,
                      "--ripple-contrast", "0.1", "--row-spacing", "0.05", "--column-spacing", "0.05")
 
@@ -71,3 +73,33 @@ def drawn(folder):
         values.append((thing["length_m"], thing["width_m"], thing["body_height_m"] - thing["burial_m"],
                        thing["level"]["over_seabed_db"], truth["blending"]["noise_floor_db"]))
     return numpy.median(numpy.array(values, float), axis=0)
+
+
+WINDOW = (48, 80)  # rows and columns that a detector looks at
+CELL = 4
+
+
+def _features(image, row, column):
+    rows, columns = WINDOW
+    window = image[row:row + rows, column:column + columns]
+    cells = window.reshape(rows // CELL, CELL, columns // CELL, CELL).mean(axis=(1, 3))
+    return 10 * numpy.log10(numpy.maximum(cells, 1e-6) / numpy.median(window)).ravel()
+
+
+def target_windows(folder, random):
+    """Features of windows about the labels of a data set, a few pixels off."""
+    windows = []
+    labels = json.loads((folder / "all" / "coco.json").read_text())
+    names = {image["id"]: image["file_name"] for image in labels["images"]}
+    for label in labels["annotations"]:
+        image = abs(images.read_tiff(folder / "all" / names[label["image_id"]]))
+        column, row, _, height = label["bbox"]
+        corner = numpy.array([row + height / 2 - WINDOW[0] / 2, column - 12]).astype(int) + random.integers(-3, 4, 2)
+        windows.append(_features(image, *numpy.clip(corner, 0, numpy.subtract(image.shape, WINDOW))))
+    return numpy.array(windows)
+
+
+def seabed_windows(paths, count, random):
+    swaths = [abs(images.read_tiff(path)) for path in paths]
+    return numpy.array([_features(swath, *random.integers(0, numpy.subtract(swath.shape, WINDOW)))
+                        for swath in (swaths[i % len(swaths)] for i in range(count))])

@@ -1,10 +1,14 @@
 """Fits to contacts that a hidden campaign has made, against what its images show, from 10, 30 and 100
-contacts: 20 tries each, SONJECT_FIT_TRIES of them. Two hours on two cores."""
+contacts: 20 tries each, SONJECT_FIT_TRIES of them; and what a detector learns from the fitted campaign.
+Two hours on two cores."""
 
 import os
 
 import numpy
 import pytest
+from sklearn.linear_model import LogisticRegression
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import StandardScaler
 
 import fitting
 
@@ -38,3 +42,48 @@ def test_fits_find_what_made_their_contacts(sonject, tmp_path, contacts, share, 
     right = numpy.hstack([errors[:, :3] < share, errors[:, 3:] < decibels]).mean(axis=0)
     print(contacts, "contacts, right of length, width, height, level, floor:", right)
     assert all(right >= 0.9)
+
+
+TARGETS = 2000
+FALSE_ALARMS = 0.01
+
+
+def share_found(training, seabed, targets, other_seabed):
+    """Of targets, at that share of false alarms on other seabed, by logistic regression."""
+    detector = make_pipeline(StandardScaler(), LogisticRegression(C=0.01, max_iter=2000))
+    detector.fit(numpy.concatenate([training, seabed]), [1] * len(training) + [0] * len(seabed))
+    threshold = numpy.quantile(detector.decision_function(other_seabed), 1 - FALSE_ALARMS)
+    return (detector.decision_function(targets) > threshold).mean()
+
+
+def test_a_detector_learns_from_what_is_fitted(sonject, tmp_path):
+    fitting.make_seabeds(sonject, 600, 800, numbers=(1, 2, 3, 4))
+    (tmp_path / "scene.yaml").write_text(fitting.SCENE)
+
+    def make(name, draws, images, seed):
+        (tmp_path / f"{name}.yaml").write_text(fitting.campaign(draws, images, seed))
+        sonject.done("campaign", f"{name}.yaml", "-o", name, "--quiet", timeout=1800)
+
+    make("start", fitting.START, IMAGES, 3)
+    make("hidden", fitting.HIDDEN, IMAGES, 4)
+    for contacts in (10, 100):
+        make(f"contacts_{contacts}", fitting.HIDDEN, contacts, 100)
+        sonject.done("fit", "start.yaml", f"contacts_{contacts}/all/coco.json", "-o", f"fitted_{contacts}.yaml",
+                     "--quiet", timeout=900)
+        sonject.done("campaign", f"fitted_{contacts}.yaml", "-o", f"fitted_{contacts}", "--quiet", timeout=900)
+    random = numpy.random.default_rng(1)
+    swaths = [tmp_path / f"seabed_{number}.tif" for number in (1, 2, 3, 4)]
+    seabed = fitting.seabed_windows(swaths[:2], TARGETS, random)
+    other_seabed = fitting.seabed_windows(swaths[2:], 3 * TARGETS, random)
+    for new, old in zip(swaths[2:], swaths[:2]):  # new targets lie where no training image was
+        new.replace(old)
+    make("new", fitting.HIDDEN, TARGETS, 77)
+    targets = fitting.target_windows(tmp_path / "new", random)
+    assert len(targets) == TARGETS
+    found = {name: share_found(fitting.target_windows(tmp_path / name, random), seabed, targets, other_seabed)
+             for name in ("hidden", "start", "fitted_10", "fitted_100")}
+    for name, share in found.items():
+        print(f"{name}: {share:.3f} +- {1.96 * (share * (1 - share) / TARGETS) ** 0.5:.3f}", flush=True)
+    assert found["fitted_100"] >= found["hidden"] - 0.02
+    assert found["fitted_10"] >= found["hidden"] - 0.04
+    assert found["start"] < min(found["fitted_10"], found["fitted_100"])
