@@ -61,7 +61,7 @@ static bool place_line(struct tree *tree, const struct image_plan *plan, const c
     if (strncmp(line, start, strlen(start)) != 0)
         return false;
     line += strlen(start);
-    for (size_t i = 0; i < plan->key_count; i++) {
+    for (size_t i = plan->key_count; i-- > 0;) { /* what is drawn of an object comes behind it */
         const char *text = plan->keys[i].text;
         const size_t length = strcspn(text, "=");
         if (plan->keys[i].place.line == 0 || strncmp(line, text, length) != 0 || !line[length] ||

@@ -465,7 +465,9 @@ static void draw_objects(struct drawing *drawing, const struct item *trial_clutt
     for (uint32_t i = 0; i < count; i++)
         write_object(drawing, items[i], &text);
     growing_text_add(&text, "]");
-    add_key(drawing, nowhere, growing_text_end(&text));
+    /* those tried before the first image come one by one */
+    add_key(drawing, count == 1 || trial_clutter ? items[count - 1]->place : nowhere,
+            growing_text_end(&text));
     for (uint32_t i = 0; i < count; i++) {
         begin_object(drawing, i);
         draw_object(drawing, items[i], i, i >= first_beside);

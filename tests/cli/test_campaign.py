@@ -1051,6 +1051,10 @@ def test_mistakes_have_a_place(command, ground):
     line = 1 + CAMPAIGN[: CAMPAIGN.index("seabed.lambert")].count("\n")
     answer = command("campaign", "typo.yaml", "-o", "hostile")
     assert_refused(answer, 3, f"typo.yaml:{line}:", "seabed.lambert")
+    written = "{shape: sphere, diameter: 0.3 m}"
+    (ground / "typo.yaml").write_text(CAMPAIGN.replace(written, "{shape: sphere, fouling: {albedo: 3 m}}"))
+    answer = command("campaign", "typo.yaml", "-o", "hostile")
+    assert_refused(answer, 3, "typo.yaml:", "objects[0].fouling.albedo: unit 'm' is not one of dB")
 
 
 def test_an_object_that_does_not_fit_is_told_by_its_key(command, ground):
