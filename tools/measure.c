@@ -28,7 +28,6 @@ struct measure_options {
     bool range_to_left;
     const char *truth;
     struct number_argument row_spacing, column_spacing;
-    const char *compared;
 };
 
 #define FIND_MOST_LIMIT 100000
@@ -67,8 +66,6 @@ static const struct argument arguments[] = {
      MEMBER(row_spacing)},
     {"--column-spacing", NULL, "M", "likewise, of slant range", ARGUMENT_NUMBER, false,
      MEMBER(column_spacing)},
-    {"--compare", NULL, "FILE", "IMAGE and FILE hold measures of contacts: compares the sets",
-     ARGUMENT_TEXT, false, MEMBER(compared)},
 };
 
 /* JSON knows neither NaN nor infinity. */
@@ -183,12 +180,10 @@ static int work_on_contacts(const struct measure_options *options, sonject_measu
     if (!boxes) {
         message("measure: memory is out");
         code = EXIT_CODE_STORAGE;
-    } else if (options->compared || fill_contacts(options, params, boxes)) {
+    } else if (fill_contacts(options, params, boxes)) {
         sonject_status status = sonject_context_create(NULL, &context);
         if (status == SONJECT_OK)
-            status = options->compared ? sonject_compare_contacts(context, options->image,
-                                                                  options->compared, &text)
-                                       : sonject_measure_contacts(context, params, &text);
+            status = sonject_measure_contacts(context, params, &text);
         if (text)
             puts(text);
         code = status == SONJECT_OK ? finish_output() : fail_with(context, status);
@@ -203,14 +198,11 @@ static int work_on_contacts(const struct measure_options *options, sonject_measu
 static const char *conflict(const struct measure_options *options)
 {
     const bool has_spacing = options->row_spacing.is_given || options->column_spacing.is_given;
-    if (options->compared && (wants_contacts(options) || options->transfer || has_spacing ||
-                              options->channel || options->array))
-        return "measure: --compare takes two files of measures, and no options of an image";
     if (has_spacing && !wants_contacts(options))
         return "measure: --row-spacing and --column-spacing are for --box, --truth and --find";
     if (options->range_to_left && !wants_contacts(options))
         return "measure: --range-to-left is for --box, --truth and --find";
-    if ((options->compared || wants_contacts(options)) &&
+    if (wants_contacts(options) &&
         (options->wants_seam || options->before || options->influence || options->labels))
         return "measure: contacts and the seam are measured one at a time";
     if (options->finds && (options->truth || options->boxes.count > 0))
@@ -242,7 +234,7 @@ static int work(const void *verb_options)
     char transfer[IMAGE_TEXT];
     if (!fill(options, &params, transfer))
         return EXIT_CODE_USAGE;
-    if (options->compared || wants_contacts(options))
+    if (wants_contacts(options))
         return work_on_contacts(options, &params);
     sonject_context *context = NULL;
     sonject_status status = sonject_context_create(NULL, &context);

@@ -187,14 +187,6 @@ SONJECT_API sonject_status sonject_measure_contacts(sonject_context *context,
                                                     const sonject_measure_params *params,
                                                     char **text);
 
-/* Compares two sets of contacts, files as sonject_measure_contacts writes them (also several such
- * texts one after the other). *text gets JSON: of each measure the number of contacts that have it,
- * mean and standard error of both sets, the Kolmogorov-Smirnov distance and the probability that
- * sets of one kind are that far apart (asymptotic: for some 8 contacts a set or more). Errors:
- * ARGUMENT, INPUT, STORAGE, MEMORY. */
-SONJECT_API sonject_status sonject_compare_contacts(sonject_context *context, const char *first,
-                                                    const char *second, char **text);
-
 SONJECT_END_DECLARATIONS
 
 #endif

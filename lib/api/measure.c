@@ -146,18 +146,6 @@ sonject_status sonject_measure_contacts(sonject_context *context,
     return status;
 }
 
-sonject_status sonject_compare_contacts(sonject_context *context, const char *first,
-                                        const char *second, char **text)
-{
-    if (!context || !text)
-        return SONJECT_ERROR_ARGUMENT;
-    *text = NULL;
-    context_begin_call(context);
-    if (!first || !second)
-        return null_argument(&context->report, "first and second");
-    return compare_contact_files(&context->report, first, second, text);
-}
-
 /* Magnitudes of complex pixels; others as they are. */
 static sonject_status calibrate_pixels(struct report *report,
                                        const sonject_calibrate_params *params,

@@ -75,18 +75,13 @@ sonject_status measure_placed_contact(struct report *report, const float *intens
                                       double row_spacing_m, double column_spacing_m,
                                       sonject_contact_measures *found);
 
-/* Two files of contacts: sonject_compare_contacts. */
-sonject_status compare_contact_files(struct report *report, const char *first, const char *second,
-                                     char **text);
-
 /* A member of sonject_contact_measures that is a number. */
 struct contact_number {
     const char *name;
     size_t offset;
 };
 
-#define CONTACT_NUMBERS  32
-#define COMPARED_NUMBERS 24 /* the first ones: the others are standard errors */
+#define CONTACT_NUMBERS 32
 
 extern const struct contact_number contact_numbers[CONTACT_NUMBERS];
 

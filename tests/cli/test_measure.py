@@ -81,8 +81,7 @@ def test_channels_are_measured_as_images_are(sonject, tmp_path):
             (3, ["neither XTF nor JSF"], ["after-port.tif", "--channel", "port"]),
             (3, ["neither XTF nor JSF"], [*seam, "before-port.tif", "after-port.tif", "--channel", "port"]),
             (3, ["absent.xtf: "], ["absent.xtf", "--channel", "port"]),
-            (2, ["--channel"], ["after.xtf", "--channel", "left"]),
-            (2, ["--compare"], ["a.json", "--compare", "b.json", "--channel", "port"])):
+            (2, ["--channel"], ["after.xtf", "--channel", "left"])):
         assert_refused(sonject("measure", *arguments), code, *words)
 
 
@@ -264,35 +263,6 @@ def test_numbers_that_cannot_be_measured(sonject, tmp_path):
         truth = {"objects": [{"box": {**box, key: value}}]}
         (tmp_path / "truth.json").write_text(json.dumps(truth))
         assert_refused(sonject("measure", "image.tif", "--truth", "truth.json"), 3, "lengths")
-
-
-def test_two_sets_of_contacts(sonject, tmp_path):
-    """Sets of equal shadows, and of shadows a third longer in one of them; the first set is of two
-    answers."""
-    for name, columns, seed, parts in (("a", 55, 10, (3, 2)), ("b", 55, 30, (5,)), ("c", 75, 50, (5,))):
-        texts = []
-        for count in parts:
-            tiles = [contact(seed + len(texts) + 10 * i, columns) for i in range(count)]
-            write(tmp_path / "image.tif", numpy.concatenate(tiles))
-            boxes = [word for i in range(count) for word in ("--box", f"{60 + i * ROWS},140,41,110")]
-            texts.append(sonject.done("measure", "image.tif", *boxes).stdout)
-        (tmp_path / f"{name}.json").write_text("".join(texts))
-    same = told(sonject("measure", "a.json", "--compare", "b.json"))
-    other = told(sonject("measure", "a.json", "--compare", "c.json"))
-    length = other["shadow_range_pixels"]
-    assert length["first"]["count"] == length["second"]["count"] == 5
-    assert length["first"]["mean"] == pytest.approx(55, abs=1.5)
-    assert length["second"]["mean"] == pytest.approx(75, abs=1.5)
-    assert 0 < length["first"]["standard_error"] < 1
-    assert length["ks_distance"] == 1 and length["p_value"] < 0.02
-    turned = told(sonject("measure", "c.json", "--compare", "a.json"))
-    assert turned["shadow_range_pixels"]["ks_distance"] == 1
-    assert same["shadow_range_pixels"]["p_value"] > 0.02
-    assert other["shadow_range_m"]["p_value"] is None
-    assert other["shadow_range_m"]["first"]["count"] == 0
-    (tmp_path / "none.json").write_text("{}")
-    assert_refused(sonject("measure", "a.json", "--compare", "none.json"), 3, "none.json")
-    assert_refused(sonject("measure", "a.json", "--compare", "absent.json"), 3, "absent.json")
 
 
 @pytest.mark.parametrize("change, note", [

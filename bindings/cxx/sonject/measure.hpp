@@ -56,16 +56,6 @@ inline std::string measure_contacts(const context &context, const sonject_measur
     return text.copy();
 }
 
-/* Two such sets compared, as JSON. */
-inline std::string compare_contacts(const context &context, const std::string &first,
-                                    const std::string &second)
-{
-    detail::text text;
-    context.check(
-        sonject_compare_contacts(context.get(), first.c_str(), second.c_str(), text.out()));
-    return text.copy();
-}
-
 /* Lengths and levels of a contact; see sonject_measure_contact. box: nullptr for the brightest. */
 inline sonject_contact_measures measure_contact(const context &context, const pixels &image,
                                                 const sonject_box *box = nullptr,
