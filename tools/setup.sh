@@ -5,7 +5,7 @@
 build_packages="build-essential meson ninja-build pkg-config python3
     libopenimageio-dev libpng-dev libtiff-dev libhdf5-dev zlib1g-dev libyaml-dev libjansson-dev
     libexpat1-dev libxxhash-dev ocl-icd-opencl-dev opencl-headers pocl-opencl-icd"
-test_packages="cmake doxygen groff-base libcmocka-dev python3-numpy python3-pytest
+test_packages="git cmake doxygen groff-base libcmocka-dev python3-numpy python3-pytest
     python3-h5py python3-pil python3-scipy python3-venv clang locales"
 # From PyPI: readers by others, which tests hold our files to, and what builds, checks and draws with
 # the Python package.

@@ -17,14 +17,25 @@
 
 #define MADE_FOR "  made_for: " /* the last line, among what was measured */
 
+/* The geometry of the whole swath, from whichever of its patches. Zeros: the file tells it. */
+static sonject_geometry_params swath_geometry(const struct scene *scene)
+{
+    static const sonject_geometry_params unknown;
+    sonject_geometry_params geometry = scene->geometry;
+    if (scene->pings.first_ranges_m)
+        geometry.first_slant_range_m = scene->pings.first_ranges_m[0];
+    return scene->has_files_geometry ? unknown : geometry;
+}
+
 /* The line that tells what the calibration of a scene is made for and that its text is as it was
  * written. Errors: MEMORY. */
 static sonject_status made_for_line(struct report *report, const struct scene *scene,
                                     const char *swath_hash, const char *text, size_t bytes,
                                     char line[sizeof MADE_FOR + HASH_TEXT_CAPACITY])
 {
-    const double geometry[] = {scene->geometry.row_spacing_m, scene->geometry.column_spacing_m,
-                               scene->geometry.first_slant_range_m};
+    const sonject_geometry_params geometry = swath_geometry(scene);
+    const double numbers[] = {geometry.row_spacing_m, geometry.column_spacing_m,
+                              geometry.first_slant_range_m};
     char digits[HASH_TEXT_CAPACITY];
     struct hash *hash = hash_begin();
     CHECK_MEMORY(report, hash, "a hash");
@@ -32,7 +43,7 @@ static sonject_status made_for_line(struct report *report, const struct scene *s
     hash_add_text(hash, swath_hash);
     hash_add_text(hash, scene->array ? scene->array : "");
     hash_add(hash, &scene->channel, sizeof scene->channel);
-    hash_add(hash, geometry, sizeof geometry);
+    hash_add(hash, numbers, sizeof numbers);
     hash_add(hash, text, bytes);
     hash_end(hash, digits);
     snprintf(line, sizeof MADE_FOR + HASH_TEXT_CAPACITY, MADE_FOR "%s\n", digits);
@@ -81,8 +92,8 @@ sonject_status scene_calibrate(struct report *report, const struct scene *scene,
     CHECK(path_in(report, path, folder, "%s.yaml", name));
     CHECK(path_in(report, picture, folder, "%s.png", name));
     CHECK(file_hash(report, scene->input_path, hash));
-    const struct image_options options = {scene->channel, scene->array, scene->transfer, true,
-                                          scene->geometry};
+    const struct image_options options = {scene->channel, scene->array, scene->transfer,
+                                          !scene->has_files_geometry, swath_geometry(scene)};
     const sonject_calibrate_params params = {.struct_size = sizeof params,
                                              .image = scene->input_path,
                                              .channel = channel_text(scene->channel, channel),

@@ -206,7 +206,7 @@ struct move_fit {
     double response[EXTENT_KINDS][FITTED_KINDS];
     double *shown;  /* room for count values; owned */
     double *factor; /* Cholesky's, of the quantiles' correlations; owned */
-    double trust;   /* of the prior: its deviations are so many times as large */
+    double trust;   /* of the prior: its stretches' deviations are so many times as large */
 };
 
 double draw_moved(const struct draw_move *move, double value)
@@ -264,7 +264,7 @@ static size_t find_residuals(const struct move_fit *fit, const double *moves, do
     solve_lower(fit->factor, residuals, count);
     for (size_t k = 0; k < FITTED_KINDS; k++) {
         sizes[k] = prior->shift[k] + moves[k];
-        residuals[count++] = sizes[k] / (believed[k] * fit->trust);
+        residuals[count++] = sizes[k] / believed[k];
         residuals[count++] = (prior->stretch[k] + moves[FITTED_KINDS + k]) /
                              (believed[FITTED_KINDS + k] * fit->trust);
     }
@@ -430,7 +430,7 @@ sonject_status fit_moves(struct report *report, const struct drawn_contact *cont
     sonject_status status =
         fit.contacts && fit.shown && buffers ? SONJECT_OK : report_out_of_memory(report, "the fit");
     if (status == SONJECT_OK) {
-        /* few contacts tell little of what differs from the campaign's own */
+        /* few contacts tell little of how widely they are spread */
         fit.trust = prior->contacts >= 100.0 ? 1.0 : prior->contacts >= 30.0 ? 0.7 : 0.45;
         prepare(&fit, contacts, count);
         if (fit.count < SEEN_LEAST)

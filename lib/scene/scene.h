@@ -78,11 +78,12 @@ struct scene {
     sonject_elements_params elements;
     sonject_patch_params patch;
     sonject_input_kind input_kind;
-    char *input_path;           /* owned; NULL unless input_kind is SONJECT_INPUT_FILE */
-    struct ping_table pings;    /* of the input's rows, from a table */
-    char *calibration;          /* owned; the file that input.calibration names; NULL: none */
-    char *calibrated;           /* owned; the keys that were taken from it, one a line; NULL: none */
-    bool calibrates_itself;     /* auto: whoever runs the scene makes that file first */
+    char *input_path;        /* owned; NULL unless input_kind is SONJECT_INPUT_FILE */
+    struct ping_table pings; /* of the input's rows, from a table */
+    char *calibration;       /* owned; the file that input.calibration names; NULL: none */
+    char *calibrated;        /* owned; the keys that were taken from it, one a line; NULL: none */
+    bool calibrates_itself;  /* auto: whoever runs the scene makes that file first */
+    bool has_files_geometry; /* which the input file tells, here of the patch's rows */
     bool has_recorded_altitude; /* that, or else the input file, says it row by row */
     bool input_is_complex;      /* two channels of the file are real and imaginary part */
     int32_t channel;            /* of a recording: SONJECT_CHANNEL_PORT and the like, or a number */

@@ -454,6 +454,7 @@ static void take_recording(struct reader *reader)
 {
     struct report report = {{0}, NULL, NULL};
     const char *key;
+    reader->scene->has_files_geometry = reader->takes_geometry;
     const struct recording_wish wish = {reader->takes_geometry, reader->takes_altitude,
                                         reader->takes_first_range};
     if ((wish.geometry || wish.altitude || wish.first_range) && are_sound(reader, "input patch") &&

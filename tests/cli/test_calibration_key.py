@@ -227,6 +227,31 @@ targets: [{class: ball, object: {shape: sphere, diameter: 40 cm}}]
     assert not (tmp_path / "whole" / "calibrations").exists()
 
 
+def test_all_images_of_a_swath_share_one_where_pings_differ(sonject, tmp_path):
+    scene(tmp_path, calibration="auto")
+    rows = len(Made("schlick", bits=8).numbers)
+    (tmp_path / "pings.csv").write_text(f"row,altitude_m,first_slant_range_m\n0,10,30\n{rows - 1},10,30.5\n")
+    (tmp_path / "scene.yaml").write_text((SCENE % ("auto", "altitude: from_file")).split("patch:")[0].replace(
+        "first_slant_range: 30 m}", "first_slant_range: from_file}\n  pings: pings.csv"))
+    (tmp_path / "campaign.yaml").write_text("""\
+sonject_campaign: 1
+scene: scene.yaml
+images: 4
+seed: 3
+chip: {rows: 64, columns: 64}
+swaths: [{path: swath.png}]
+splits: {all: 1}
+outputs: []
+targets: [{class: ball, object: {shape: sphere, diameter: 40 cm}}]
+""")
+    told = [sonject.done("campaign", "campaign.yaml", "-o", "parts", "--shard", shard).stderr
+            for shard in ("2/2", "1/2")]
+    assert ["calibration made" in text for text in told] == [True, False]
+    sonject.done("merge", "parts")
+    sonject.done("campaign", "campaign.yaml", "-o", "whole")
+    assert contents(tmp_path / "whole") == contents(tmp_path / "parts")
+
+
 def test_a_kill_leaves_no_part_of_it(tmp_path):
     scene(tmp_path, calibration="auto")
     for delay in (0.2, 0.5, 0.8, 1.2):

@@ -144,7 +144,7 @@ def test_a_campaign_is_fitted(tmp_path, campaign):
     with pytest.raises(sonject.SonjectError) as told:
         sonject.fit_campaign(*files, {"empty": 0.5}, boxes="highlight", progress=progress)
     assert told.value.status == sonject.Status.CANCELLED and 1 < len(seen) < 20
-    assert set(seen) == {"round 1 of 7"} and not files[2].exists()
+    assert len(set(seen)) == 1 and seen[0].startswith("round 1 of ") and not files[2].exists()
     with pytest.raises(sonject.SonjectError, match="must lie in the folder of .*campaign.yaml"):
         sonject.fit_campaign(*files[:2], tmp_path / "there" / "fitted.yaml")
 
