@@ -459,6 +459,10 @@ void campaign_image_clear(struct campaign_image *image);
 sonject_status campaign_calibrate(struct sonject_campaign *campaign, const char *name,
                                   struct scene *scene, char path[PATH_CAPACITY]);
 
+/* That of a swath, which its later scenes are to have from the start: campaign->calibrations. */
+sonject_status campaign_calibrate_swath(struct sonject_campaign *campaign, size_t swath,
+                                        struct scene *scene);
+
 /* Of a run that has ended. */
 void campaign_forget_calibrations(struct sonject_campaign *campaign);
 

@@ -169,21 +169,18 @@ sonject_status campaign_calibrate(struct sonject_campaign *campaign, const char 
     return SONJECT_OK;
 }
 
-/* Makes the calibration of the plan's swath, which its later scenes have from the start; leaves the
- * scene initialised. */
-static sonject_status calibrate_plan(struct sonject_campaign *campaign,
-                                     const struct image_plan *plan, struct scene *scene)
+sonject_status campaign_calibrate_swath(struct sonject_campaign *campaign, size_t swath,
+                                        struct scene *scene)
 {
     char path[PATH_CAPACITY], name[24];
-    snprintf(name, sizeof name, "%lu", (unsigned long)plan->swath);
+    snprintf(name, sizeof name, "%zu", swath);
     CHECK(campaign_calibrate(campaign, name, scene, path));
     if (!campaign->calibrations)
         campaign->calibrations =
             allocate_array(campaign->campaign.swath_count, sizeof *campaign->calibrations);
     CHECK_MEMORY(campaign->report, campaign->calibrations, "a campaign's calibrations");
-    campaign->calibrations[plan->swath] = copy_text(path);
-    CHECK_MEMORY(campaign->report, campaign->calibrations[plan->swath],
-                 "a campaign's calibrations");
+    campaign->calibrations[swath] = copy_text(path);
+    CHECK_MEMORY(campaign->report, campaign->calibrations[swath], "a campaign's calibrations");
     return SONJECT_OK;
 }
 
@@ -197,7 +194,7 @@ sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t i
             image_plan_make(campaign->report, &campaign->campaign, id, attempts, plan);
         THEN(status, campaign_read_scene(campaign, plan, scene, &are_relations));
         if (status == SONJECT_OK && scene->calibrates_itself && campaign->folder) {
-            THEN(status, calibrate_plan(campaign, plan, scene));
+            THEN(status, campaign_calibrate_swath(campaign, plan->swath, scene));
             THEN(status, campaign_read_scene(campaign, plan, scene, &are_relations));
         }
         if (status != SONJECT_ERROR_INPUT || !are_relations || attempts->of_all + 1 >= ATTEMPTS_MAX)

@@ -80,10 +80,13 @@ static sonject_status read_image_scene(struct sonject_campaign *campaign, const 
 {
     const struct swath_plan *swath = swath_of_image(&campaign->campaign, image);
     const size_t keys = swath ? swath->key_count : 0;
+    const size_t number = swath ? (size_t)(swath - campaign->campaign.swaths) : 0;
     char patch_text[160], path[PATH_CAPACITY], name[HASH_TEXT_CAPACITY];
     struct scene_source source = {.overrides = allocate_array(keys + 5, sizeof *source.overrides),
                                   .moved_overrides = keys};
     CHECK_MEMORY(campaign->report, source.overrides, "a contact's scene");
+    if (swath && campaign->calibrations)
+        source.made_calibration = campaign->calibrations[number];
     for (size_t i = 0; i < keys; i++)
         source.overrides[source.override_count++] = swath->keys[i];
     source.overrides[source.override_count++] = "objects=[]";
@@ -101,13 +104,15 @@ static sonject_status read_image_scene(struct sonject_campaign *campaign, const 
     const size_t count = source.override_count;
     sonject_status status = campaign_read_base(campaign, image, &source, scene);
     if (status == SONJECT_OK && patch && scene->calibrates_itself) {
-        if (swath)
-            snprintf(name, sizeof name, "%zu", (size_t)(swath - campaign->campaign.swaths));
-        else
+        if (swath) {
+            status = campaign_calibrate_swath(campaign, number, scene);
+            source.made_calibration = status == SONJECT_OK ? campaign->calibrations[number] : NULL;
+        } else {
             status = file_hash(campaign->report, image, name);
-        THEN(status, campaign_calibrate(campaign, name, scene, path));
+            THEN(status, campaign_calibrate(campaign, name, scene, path));
+            source.made_calibration = path;
+        }
         source.override_count = count;
-        source.made_calibration = path;
         THEN(status, campaign_read_base(campaign, image, &source, scene));
         if (status != SONJECT_OK)
             scene_clear(scene);

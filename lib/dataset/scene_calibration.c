@@ -22,7 +22,7 @@ static sonject_geometry_params swath_geometry(const struct scene *scene)
 {
     static const sonject_geometry_params unknown;
     sonject_geometry_params geometry = scene->geometry;
-    if (scene->pings.first_ranges_m)
+    if (scene->has_pings_range)
         geometry.first_slant_range_m = scene->pings.first_ranges_m[0];
     return scene->has_files_geometry ? unknown : geometry;
 }

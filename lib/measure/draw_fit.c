@@ -333,20 +333,6 @@ static void descend(const struct move_fit *fit, double *moves, double *buffers)
     }
 }
 
-/* Whether the draws of a round's contacts have hardly moved. Those of single contacts do not say:
- * where draws are stretched, the large alone or the small alone stay where they were. */
-static bool round_is_near(const struct drawn_contact *contacts, size_t count, uint32_t round)
-{
-    double sum = 0.0;
-    double of_round = 0.0;
-    for (size_t i = 0; i < count; i++)
-        if (contacts[i].round == round) {
-            sum += nearness(&contacts[i]);
-            of_round += 1.0;
-        }
-    return sum > NEAR_LEAST * of_round;
-}
-
 /* Which contacts show less of an extent than its quantiles' levels: 1 - level where they do, -level
  * where they do not, 0 where they do not show it. below: levels of count. Returns their number, 0
  * where too few show it. */
@@ -405,12 +391,18 @@ static sonject_status correlate(struct move_fit *fit, struct report *report)
     return SONJECT_OK;
 }
 
-/* The contacts that are compared, what is drawn of them in the mean, and how it shows. */
+/* The contacts that are compared, what is drawn of them in the mean, and how it shows. Rounds are
+ * compared whole: where draws are stretched, the large alone or the small alone stay where they
+ * were. */
 static void prepare(struct move_fit *fit, const struct drawn_contact *contacts, size_t count)
 {
-    for (size_t i = 0; i < count; i++)
-        if (round_is_near(contacts, count, contacts[i].round))
+    for (size_t first = 0, end; first < count; first = end) {
+        double sum = 0.0;
+        for (end = first; end < count && contacts[end].round == contacts[first].round; end++)
+            sum += nearness(&contacts[end]);
+        for (size_t i = first; sum > NEAR_LEAST * (double)(end - first) && i < end; i++)
             fit->contacts[fit->count++] = &contacts[i];
+    }
     for (size_t k = 0; k < FITTED_KINDS; k++)
         for (size_t i = 0; i < fit->count; i++)
             fit->centre[k] += fit->contacts[i]->now[k] / (double)fit->count;

@@ -98,10 +98,10 @@ double sorted_quantile(const double *sorted, size_t count, double share);
 /* What a value becomes. */
 double draw_moved(const struct draw_move *move, double value);
 
-/* One round: how to move draws so that contacts, whose draws have become what `now` says, show what
- * the goals say. Those whose draws have hardly moved are compared; all tell how what is shown
- * follows from what is drawn, the nearer the better. moves: FITTED_KINDS. Errors: MEMORY, INPUT
- * (too few contacts are seen). */
+/* One round: how to move draws so that contacts, round after round, whose draws have become what
+ * `now` says, show what the goals say. Rounds whose draws have hardly moved are compared; all tell
+ * how what is shown follows from what is drawn, the nearer the better. moves: FITTED_KINDS. Errors:
+ * MEMORY, INPUT (too few contacts are seen). */
 sonject_status fit_moves(struct report *report, const struct drawn_contact *contacts, size_t count,
                          const struct quantile_goal *goals, const struct move_prior *prior,
                          struct draw_move *moves);

@@ -83,7 +83,8 @@ struct scene {
     char *calibration;       /* owned; the file that input.calibration names; NULL: none */
     char *calibrated;        /* owned; the keys that were taken from it, one a line; NULL: none */
     bool calibrates_itself;  /* auto: whoever runs the scene makes that file first */
-    bool has_files_geometry; /* which the input file tells, here of the patch's rows */
+    bool has_files_geometry; /* some of which the input file tells, here of the patch's rows */
+    bool has_pings_range;    /* the first slant range is that of `pings`, likewise */
     bool has_recorded_altitude; /* that, or else the input file, says it row by row */
     bool input_is_complex;      /* two channels of the file are real and imaginary part */
     int32_t channel;            /* of a recording: SONJECT_CHANNEL_PORT and the like, or a number */

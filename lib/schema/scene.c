@@ -454,11 +454,14 @@ static void take_recording(struct reader *reader)
 {
     struct report report = {{0}, NULL, NULL};
     const char *key;
-    reader->scene->has_files_geometry = reader->takes_geometry;
+    struct scene *scene = reader->scene;
+    scene->has_pings_range = reader->takes_first_range && scene->pings.first_ranges_m;
+    scene->has_files_geometry =
+        reader->takes_geometry || (reader->takes_first_range && !scene->has_pings_range);
     const struct recording_wish wish = {reader->takes_geometry, reader->takes_altitude,
                                         reader->takes_first_range};
     if ((wish.geometry || wish.altitude || wish.first_range) && are_sound(reader, "input patch") &&
-        recording_describe(&report, &wish, reader->scene, &key) != SONJECT_OK)
+        recording_describe(&report, &wish, scene, &key) != SONJECT_OK)
         refuse_key(reader, &reader->tree->root, key, "%s", report.message);
 }
 

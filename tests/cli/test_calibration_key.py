@@ -34,6 +34,17 @@ sonar: {altitude: 9 m}
 injection: {noise_floor: -24 dB, match: {looks: 2}}
 measured: {whatever: [1, 2]}
 """
+CAMPAIGN = """\
+sonject_campaign: 1
+scene: scene.yaml
+images: 4
+seed: 3
+chip: {rows: 64, columns: 64}
+swaths: [{path: swath.png}, {path: other.png}]
+splits: {train: 0.5, val: 0.5}
+outputs: []
+targets: [{class: ball, object: {shape: sphere, diameter: 40 cm}}]
+"""
 
 
 def scene(folder, calibration="swath.yaml", sonar="altitude: 10 m", text=CALIBRATION):
@@ -188,17 +199,7 @@ def test_one_of_another_scene_or_that_was_changed_is_made_anew(sonject, tmp_path
 def test_campaigns_make_one_for_each_swath(sonject, tmp_path):
     scene(tmp_path, calibration="auto")
     (tmp_path / "other.png").write_bytes(png_bytes(Made("decibel", bits=8).numbers))
-    (tmp_path / "campaign.yaml").write_text("""\
-sonject_campaign: 1
-scene: scene.yaml
-images: 4
-seed: 3
-chip: {rows: 64, columns: 64}
-swaths: [{path: swath.png}, {path: other.png}]
-splits: {train: 0.5, val: 0.5}
-outputs: []
-targets: [{class: ball, object: {shape: sphere, diameter: 40 cm}}]
-""")
+    (tmp_path / "campaign.yaml").write_text(CAMPAIGN)
     (tmp_path / "scene.yaml").write_text(
         (SCENE % ("auto", "altitude: 10 m")).split("patch:")[0])
     for folder, arguments in (("whole", [()]), ("parts", [("--shard", "1/2"), ("--shard", "2/2")])):
@@ -233,17 +234,8 @@ def test_all_images_of_a_swath_share_one_where_pings_differ(sonject, tmp_path):
     (tmp_path / "pings.csv").write_text(f"row,altitude_m,first_slant_range_m\n0,10,30\n{rows - 1},10,30.5\n")
     (tmp_path / "scene.yaml").write_text((SCENE % ("auto", "altitude: from_file")).split("patch:")[0].replace(
         "first_slant_range: 30 m}", "first_slant_range: from_file}\n  pings: pings.csv"))
-    (tmp_path / "campaign.yaml").write_text("""\
-sonject_campaign: 1
-scene: scene.yaml
-images: 4
-seed: 3
-chip: {rows: 64, columns: 64}
-swaths: [{path: swath.png}]
-splits: {all: 1}
-outputs: []
-targets: [{class: ball, object: {shape: sphere, diameter: 40 cm}}]
-""")
+    (tmp_path / "campaign.yaml").write_text(
+        CAMPAIGN.replace(", {path: other.png}", "").replace("{train: 0.5, val: 0.5}", "{all: 1}"))
     told = [sonject.done("campaign", "campaign.yaml", "-o", "parts", "--shard", shard).stderr
             for shard in ("2/2", "1/2")]
     assert ["calibration made" in text for text in told] == [True, False]

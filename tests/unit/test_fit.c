@@ -97,6 +97,81 @@ static void draws_reach_what_made_the_contacts(void **state)
     assert_true(fabs(now.half[FITTED_LEVEL] - 5.0) < 1.0);
 }
 
+/* How far heights are moved where copies of one extent ask for 0.2 more and another one for none.
+ */
+static double move_by_copies(size_t copies)
+{
+    static const enum extent alike[] = {EXTENT_SHADOW_HEIGHT, EXTENT_AXIS_LENGTH, EXTENT_AXIS_WIDTH,
+                                        EXTENT_HIGHLIGHT_ROWS};
+    const struct draws_of_world world = {{0.0, 0.0, -1.0, 10.0, -15.0}, {0.5, 0.5, 0.5, 5.0, 0.0}};
+    static struct drawn_contact made[CONTACTS];
+    static struct contact_extents real[CONTACTS];
+    struct report report = {.message = ""};
+    struct quantile_goal goals[EXTENT_KINDS];
+    const struct move_prior prior = {.contacts = CONTACTS};
+    struct draw_move moves[FITTED_KINDS];
+    for (uint64_t i = 0; i < CONTACTS; i++) {
+        show(&world, 1, i, &made[i]);
+        double *of = made[i].shown.of;
+        const double shown = made[i].drawn[FITTED_HEIGHT] + noise(3, 1, i, 0.3);
+        of[EXTENT_SHADOW_HEIGHT] = of[EXTENT_SHADOW_LEVEL] = NAN;
+        of[EXTENT_SHADOW_ALONG] = made[i].drawn[FITTED_HEIGHT] + noise(3, 2, i, 0.3);
+        real[i] = made[i].shown;
+        for (size_t k = 0; k < copies; k++) {
+            of[alike[k]] = shown;
+            real[i].of[alike[k]] = shown + 0.2;
+        }
+        made[i].round = 0;
+    }
+    EXPECT_OK(&report, quantile_goals(&report, real, CONTACTS, goals));
+    EXPECT_OK(&report, fit_moves(&report, made, CONTACTS, goals, &prior, moves));
+    return moves[FITTED_HEIGHT].shift;
+}
+
+/* Four witnesses who say the same for the same reason are no four; independent ones would move it
+ * four fifths of the way. */
+static void copies_of_an_extent_count_little(void **state)
+{
+    (void)state;
+    const double one = move_by_copies(1);
+    const double four = move_by_copies(4);
+    print_message("one: %.3f, four: %.3f\n", one, four);
+    assert_true(one > 0.07 && one < 0.13);
+    assert_true(four - one < 0.5 * (0.16 - 0.1));
+}
+
+/* Of a round that has been stretched since those of the largest contacts have hardly moved: they
+ * alone are no sample. */
+static void rounds_are_compared_whole(void **state)
+{
+    const struct draws_of_world world = {{0.0, 0.0, -1.0, 10.0, -15.0}, {0.5, 0.5, 0.5, 5.0, 0.0}};
+    static struct drawn_contact made[2 * CONTACTS];
+    static struct contact_extents real[CONTACTS];
+    struct report report = {.message = ""};
+    struct quantile_goal goals[EXTENT_KINDS];
+    const struct move_prior prior = {.contacts = CONTACTS};
+    struct draw_move moves[FITTED_KINDS];
+    (void)state;
+    for (uint64_t i = 0; i < CONTACTS; i++) {
+        struct drawn_contact *old = &made[i], *now = &made[CONTACTS + i];
+        show(&world, 2, i, now);
+        real[i] = now->shown;
+        now->round = 1;
+        show(&world, 2, i, old);
+        /* it was drawn half as widely about the upper end */
+        for (size_t k = 0; k < FITTED_KINDS; k++)
+            old->drawn[k] = world.centre[k] + world.half[k] +
+                            0.4 * (now->drawn[k] - world.centre[k] - world.half[k]);
+        old->round = 0;
+    }
+    EXPECT_OK(&report, quantile_goals(&report, real, CONTACTS, goals));
+    EXPECT_OK(&report, fit_moves(&report, made, (size_t)2 * CONTACTS, goals, &prior, moves));
+    for (size_t k = 0; k < FITTED_LEVEL; k++) {
+        print_message("%zu: %.4f\n", k, moves[k].shift);
+        assert_true(fabs(moves[k].shift) < 0.01);
+    }
+}
+
 static void a_median_has_the_error_of_statistics(void **state)
 {
     (void)state;
@@ -281,6 +356,7 @@ static void what_overrides_give_is_not_written_over(void **state)
 }
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(draws_reach_what_made_the_contacts),
+             TEST(copies_of_an_extent_count_little), TEST(rounds_are_compared_whole),
              TEST(a_median_has_the_error_of_statistics), TEST(quantiles_of_few_are_in_the_middle),
              TEST(ends_of_published_quantiles_have_errors),
              TEST(a_fitted_file_is_the_users_own_with_other_numbers),
