@@ -76,11 +76,11 @@ FUNCTION int strip_of_item(const struct fan_record *fan, int item)
     return (int)(turn * fan->strip_stride % fan->strips);
 }
 
-/* The random numbers of a strip of this launch. */
+/* The random numbers of a strip of this launch: the same in a window as in the whole patch. */
 FUNCTION struct random_key key_of_strip(const struct fan_record *fan, int strip)
 {
     return random_key_of(fan->seed_low, fan->seed_high, fan->stream,
-                         (RECORD_WORD)(fan->first_strip + strip));
+                         (RECORD_WORD)(fan->track_strip + fan->first_strip + strip));
 }
 
 /* How many of `most` rays from the first on the fan has. */

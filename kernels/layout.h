@@ -178,12 +178,16 @@ struct fan_record {
     float first_strip_x;                      /* x of the middle of strip 0, m */
     float strip_width;                        /* m */
     float first_elevation;  /* lower edge of the fan, rad from the central direction, upward */
-    float elevation_step;   /* rad a ray */
+    float elevation_step;   /* rad a ray; of rays that have edges of their own the widest */
     RECORD_WORD rays;       /* in elevation, a strip and along-track stratum */
+    RECORD_WORD first_ray;  /* number of the first for random numbers, so that a window's rays are
+                               those of the patch */
     RECORD_WORD strata;     /* along-track strata of a strip */
     RECORD_INT first_strip; /* number of the first strip of this launch; strips are numbered over
                                the whole track, so that chunks change nothing */
     RECORD_INT strips;      /* of this launch */
+    RECORD_INT track_strip; /* number of the track's strip 0 in the whole patch, for the random
+                               numbers of a window */
     float bins_per_metre;   /* of true range; processor range scales it */
     float bin_at_reference; /* bin coordinate of reference_range; the grid's first bin is 0 */
     RECORD_INT bins;        /* of the grid */

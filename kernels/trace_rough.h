@@ -248,26 +248,29 @@ FUNCTION struct seabed_return seabed_return_of(const struct fan_record *fan,
     return bed;
 }
 
-/* Traces one group of WIDTH rays of a strip. */
+/* Traces one group of WIDTH rays of a strip. Ray i lies between the elevations edges[i] and
+ * edges[i + 1]. */
 FUNCTION void trace_rough_group(const struct fan_record *fan,
                                 GLOBAL const struct ray_piece_record *pieces,
-                                GLOBAL const struct object_record *objects, int strip,
-                                struct random_key key, RECORD_WORD first_ray,
-                                struct rough_echo *echo, struct outcome_record *outcome)
+                                GLOBAL const struct object_record *objects,
+                                GLOBAL const float *edges, int strip, struct random_key key,
+                                RECORD_WORD first_ray, struct rough_echo *echo,
+                                struct outcome_record *outcome)
 {
-    const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
-    const mask is_ray = MASK_OF(number < fan->rays);
+    const mask is_ray = MASK_OF(SPLAT_WORD(first_ray) + LANE_NUMBERS < fan->rays);
+    const word number = SPLAT_WORD(fan->first_ray + first_ray) + LANE_NUMBERS;
+    const vfloat lower = LOAD_VFLOAT(edges + first_ray);
+    const vfloat step = LOAD_VFLOAT(edges + first_ray + 1) - lower;
     const int own_strip = fan->first_strip + strip;
     vfloat along, across, chance;
     three_uniforms(key, number, 0, &along, &across, &chance);
     const float spread = has_beam(fan) ? 0.0f : fan->strip_width; /* pings are points */
     const vfloat x = strip_position(fan, strip) + (along - 0.5f) * spread;
-    const struct fan_ray ray = fan_ray_at(
-        fan, pieces, x, fan->first_elevation + (VFLOAT_OF(number) + across) * fan->elevation_step);
+    const struct fan_ray ray = fan_ray_at(fan, pieces, x, lower + across * step);
     /* distances along the squinted ray times its cosine are those along the fan's */
     const struct aspect_ray squinted =
-        aspect_ray_of(fan, &ray, (RECORD_WORD)own_strip, number, chance);
-    const vfloat strip_of_cell = fan->strip_width * fan->elevation_step * squinted.cosine;
+        aspect_ray_of(fan, &ray, (RECORD_WORD)(fan->track_strip + own_strip), number, chance);
+    const vfloat strip_of_cell = fan->strip_width * step * squinted.cosine;
     const vfloat to_seabed = seabed_distance(fan, objects, squinted.start, squinted.direction,
                                              SPLAT(-fan->reference_range), is_ray);
     const struct nearest_hit nearest = find_nearest_hit(objects, fan->objects, squinted.start,
@@ -334,8 +337,9 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
 FUNCTION struct outcome_record trace_rough_strip(const struct fan_record *fan,
                                                  GLOBAL const struct ray_piece_record *pieces,
                                                  GLOBAL const struct object_record *objects,
-                                                 GLOBAL const float *map, GLOBAL TALLY *seabed,
-                                                 GLOBAL TALLY *tiles, int strip, int segment)
+                                                 GLOBAL const float *map, GLOBAL const float *edges,
+                                                 GLOBAL TALLY *seabed, GLOBAL TALLY *tiles,
+                                                 int strip, int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};
     const struct random_key key = key_of_strip(fan, strip);
@@ -344,7 +348,7 @@ FUNCTION struct outcome_record trace_rough_strip(const struct fan_record *fan,
     for (RECORD_WORD ray = (RECORD_WORD)segment * WIDTH; ray < fan->rays; ray += step) {
         struct rough_echo echo;
         outcome.rays += rays_from(fan, ray, WIDTH);
-        trace_rough_group(fan, pieces, objects, strip, key, ray, &echo, &outcome);
+        trace_rough_group(fan, pieces, objects, edges, strip, key, ray, &echo, &outcome);
         for (int lane = 0; lane < WIDTH; lane++)
             tally_rough_echo(fan, objects, map, &tallies, &echo, lane, &outcome);
     }

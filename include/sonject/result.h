@@ -47,9 +47,11 @@ SONJECT_API void sonject_result_release(sonject_result **result);
 /* The arrays of a result. */
 typedef enum sonject_layer {
     SONJECT_LAYER_IMAGE = 0,  /* the patch with the objects, kind and units of the input */
-    SONJECT_LAYER_FIELD = 1,  /* complex; |pixel|^2 is a backscattering cross-section in m^2 */
-    SONJECT_LAYER_ENERGY = 2, /* float; expected cross-section in m^2 of what was traced: objects
-                                 and the seabed that still is in view, no speckle, no noise */
+    SONJECT_LAYER_FIELD = 1,  /* complex; |pixel|^2 is a backscattering cross-section in m^2; 0 where
+                                 the image was not changed */
+    SONJECT_LAYER_ENERGY = 2, /* float; expected cross-section in m^2 of objects and the seabed that
+                                 still is in view, no speckle, no noise; where the image was not
+                                 changed that of plain seabed */
     SONJECT_LAYER_VISIBILITY =
         3, /* float 0...1; fraction of the seabed's energy that still arrives; with relief over that
               of a level seabed without objects: slopes that face the sonar return more than 1 */
@@ -64,7 +66,8 @@ typedef enum sonject_layer {
 SONJECT_API sonject_status sonject_result_size(const sonject_result *result, uint64_t *rows,
                                                uint64_t *columns, uint32_t *image_kind);
 
-/* Copies a layer, rows packed, into buffer of exactly rows * columns * pixel size bytes.
+/* Copies a layer, rows packed, into buffer of exactly rows * columns * pixel size bytes, aligned as
+ * its values are.
  * Errors: ARGUMENT (unknown layer, wrong size). */
 SONJECT_API sonject_status sonject_result_layer(const sonject_result *result, sonject_layer layer,
                                                 void *buffer, size_t bytes);
@@ -173,7 +176,7 @@ typedef struct sonject_statistics {
     uint32_t reserved;
     uint64_t pings; /* track positions that were traced, margins included; there may be several to a
                        row */
-    uint64_t rays;  /* primary rays */
+    uint64_t rays;  /* primary rays, of a composite in windows about its objects */
     uint64_t ray_queries; /* rays and visibility tests */
     uint64_t impulses;    /* echoes that were recorded */
     double trace_s;       /* wall-clock time of the stages */

@@ -115,15 +115,14 @@ sonject_status sonject_result_size(const sonject_result *result, uint64_t *rows,
     return SONJECT_OK;
 }
 
-/* Copies a layer of the result's size to a buffer of as many bytes. what: is said of the layer. */
-static sonject_status copy_layer(const sonject_result *result, const char *what, const void *data,
-                                 size_t pixel_bytes, void *buffer, size_t bytes)
+/* Whether a buffer is as large as a layer. what: is said of the layer. */
+static sonject_status check_buffer(const sonject_result *result, const char *what,
+                                   size_t pixel_bytes, size_t bytes)
 {
     const size_t needed = result->result.rows * result->result.columns * pixel_bytes;
     if (bytes != needed)
         return report_failure(result->report, SONJECT_ERROR_ARGUMENT,
                               "%s has %zu bytes, the buffer %zu", what, needed, bytes);
-    memcpy(buffer, data, needed);
     return SONJECT_OK;
 }
 
@@ -136,23 +135,30 @@ sonject_status sonject_result_layer(const sonject_result *result, sonject_layer 
         return null_argument(result->report, "buffer");
     const struct injection_result *made = &result->result;
     const struct {
-        const void *data;
         size_t pixel_bytes;
+        const void *data; /* NULL: a plane */
+        enum injected_plane plane;
     } layers[] = {
-        [SONJECT_LAYER_IMAGE] = {made->image, (made->is_complex ? 2 : 1) * sizeof(float)},
-        [SONJECT_LAYER_FIELD] = {made->field, 2 * sizeof(float)},
-        [SONJECT_LAYER_ENERGY] = {made->energy, sizeof(float)},
-        [SONJECT_LAYER_VISIBILITY] = {made->visibility, sizeof(float)},
-        [SONJECT_LAYER_HIGHLIGHT] = {made->highlight, 1},
-        [SONJECT_LAYER_SHADOW] = {made->shadow, 1},
-        [SONJECT_LAYER_LABELS] = {made->labels, 1},
-        [SONJECT_LAYER_INFLUENCE] = {made->influence, 1},
+        [SONJECT_LAYER_IMAGE] = {(made->is_complex ? 2 : 1) * sizeof(float), made->image,
+                                 INJECTED_FIELD},
+        [SONJECT_LAYER_FIELD] = {2 * sizeof(float), NULL, INJECTED_FIELD},
+        [SONJECT_LAYER_ENERGY] = {sizeof(float), NULL, INJECTED_ENERGY},
+        [SONJECT_LAYER_VISIBILITY] = {sizeof(float), NULL, INJECTED_VISIBILITY},
+        [SONJECT_LAYER_HIGHLIGHT] = {1, made->highlight, INJECTED_FIELD},
+        [SONJECT_LAYER_SHADOW] = {1, made->shadow, INJECTED_FIELD},
+        [SONJECT_LAYER_LABELS] = {1, made->labels, INJECTED_FIELD},
+        [SONJECT_LAYER_INFLUENCE] = {1, made->influence, INJECTED_FIELD},
     };
     char what[32];
     snprintf(what, sizeof what, "layer %d", (int)layer);
-    if ((size_t)layer >= sizeof layers / sizeof *layers || !layers[layer].data)
+    if ((size_t)layer >= sizeof layers / sizeof *layers)
         return report_failure(result->report, SONJECT_ERROR_ARGUMENT, "%s does not exist", what);
-    return copy_layer(result, what, layers[layer].data, layers[layer].pixel_bytes, buffer, bytes);
+    CHECK(check_buffer(result, what, layers[layer].pixel_bytes, bytes));
+    if (layers[layer].data)
+        memcpy(buffer, layers[layer].data, bytes);
+    else
+        injection_result_plane(made, layers[layer].plane, buffer);
+    return SONJECT_OK;
 }
 
 sonject_status sonject_result_order_energy(const sonject_result *result, uint32_t order,
@@ -170,8 +176,9 @@ sonject_status sonject_result_order_energy(const sonject_result *result, uint32_
         return report_failure(result->report, SONJECT_ERROR_ARGUMENT,
                               "there is no order %u, only 1 to %u", (unsigned)order,
                               (unsigned)orders);
-    return copy_layer(result, "the energy of an order", result->result.order_energy[order - 1],
-                      sizeof(float), buffer, bytes);
+    CHECK(check_buffer(result, "the energy of an order", sizeof(float), bytes));
+    injection_result_plane(&result->result, INJECTED_ORDER + order - 1, buffer);
+    return SONJECT_OK;
 }
 
 sonject_status sonject_result_object(const sonject_result *result, uint32_t index,

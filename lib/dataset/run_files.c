@@ -368,6 +368,19 @@ static sonject_status write_float_layer(struct report *report, const struct run_
                              attributes, notes.count + 2, pixels);
 }
 
+static sonject_status write_plane(struct report *report, const struct run_facts *facts,
+                                  enum injected_plane plane, const char *path)
+{
+    const struct injection_result *result = facts->result;
+    const uint32_t channels = plane == INJECTED_FIELD ? 2 : 1;
+    float *pixels = allocate_array(result->rows, result->columns * channels * sizeof *pixels);
+    CHECK_MEMORY(report, pixels, "a layer");
+    injection_result_plane(result, plane, pixels);
+    const sonject_status status = write_float_layer(report, facts, channels, pixels, path);
+    free(pixels);
+    return status;
+}
+
 static void amplitude_of(const float *pixels, size_t count, bool is_complex, float *amplitude)
 {
     for (size_t i = 0; i < count; i++)
@@ -423,9 +436,9 @@ sonject_status write_layer(struct report *report, const struct run_facts *facts,
     const struct injection_result *result = facts->result;
     switch (layer) {
     case LAYER_FIELD:
-        return write_float_layer(report, facts, 2, result->field, path);
+        return write_plane(report, facts, INJECTED_FIELD, path);
     case LAYER_ENERGY:
-        return write_float_layer(report, facts, 1, result->energy, path);
+        return write_plane(report, facts, INJECTED_ENERGY, path);
     case LAYER_HIGHLIGHT:
         return write_mask(report, facts->swath, result->highlight, NULL, path);
     case LAYER_SHADOW:
@@ -458,7 +471,7 @@ sonject_status write_layers(struct report *report, struct run_facts *facts, cons
             file_discard(path);
             continue;
         }
-        CHECK(write_float_layer(report, facts, 1, facts->result->order_energy[order - 1], path));
+        CHECK(write_plane(report, facts, INJECTED_ORDER + order - 1, path));
         CHECK(file_list_add(&facts->files, report, folder, name, true));
     }
     return SONJECT_OK;

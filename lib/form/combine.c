@@ -6,8 +6,7 @@
 #include "form/form.h"
 #include "scene/motion_response.h"
 
-#define ROWS_PER_ITEM 8  /* FORM_ROWS of kernels/image_formation.h */
-#define BLOCK_COLUMNS 16 /* that share a response; holds whole groups of any width */
+#define ROWS_PER_ITEM 8 /* FORM_ROWS of kernels/image_formation.h */
 #define TAPS_OF_A_RUN ((size_t)1 << 22)
 
 /* W (or |W|^2) at the offsets n * strips_per_row - q of pixel row n from strip q, among the zeros
@@ -75,7 +74,7 @@ static sonject_status taps_init(struct taps *taps, const struct form_lines *line
     memset(taps, 0, sizeof *taps);
     taps->each = 2 * (size_t)lines->reach + 1;
     taps->blocks = lines->response.array_length_m > 0.0
-                       ? (lines->columns + BLOCK_COLUMNS - 1) / BLOCK_COLUMNS
+                       ? (lines->columns + FORM_BLOCK_COLUMNS - 1) / FORM_BLOCK_COLUMNS
                        : 1;
     taps->rows = 1;
     if (lines->response.motion) {
@@ -124,7 +123,7 @@ static void fill_blocks(struct taps *taps, const struct form_lines *lines)
     const double strip = lines->row_spacing_m / lines->grid.strips_per_row;
     for (size_t block = 0; block < taps->blocks; block++) {
         const double column =
-            (double)lines->first_column + ((double)block + 0.5) * BLOCK_COLUMNS - 0.5;
+            (double)lines->first_column + ((double)block + 0.5) * FORM_BLOCK_COLUMNS - 0.5;
         const double range = view_processor_range(lines->view, column);
         for (size_t i = 0; i < taps->each; i++) {
             const struct complex_number w = cross_range_response(
@@ -155,7 +154,7 @@ static sonject_status run_rows(struct form_lines *lines, device_kernel kernel,
         const int32_t per_row = (int32_t)lines->grid.strips_per_row;
         const int32_t row = (int32_t)first_row;
         const int32_t row_step = by_row ? (int32_t)taps->each : 0;
-        const int32_t block_columns = BLOCK_COLUMNS;
+        const int32_t block_columns = FORM_BLOCK_COLUMNS;
         const int32_t block_step = taps->blocks > 1 ? (int32_t)taps->each : 0;
         const int32_t stride = (int32_t)lines->stride;
         const int32_t rows = (int32_t)(first_row + some);

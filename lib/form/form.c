@@ -110,10 +110,9 @@ int32_t form_reach(const struct patch_view *view, const struct point_response *r
 {
     const double whole = (double)view->rows * strips_per_row;
     const double strip = view->row_spacing_m / strips_per_row;
-    const double farthest = view_processor_range(view, (double)(view->columns - 1));
-    const double reach = kind == FORM_GLINT
-                             ? cross_range_tail(response, farthest)
-                             : cross_range_energy_reach(response, farthest, SPECKLE_ENERGY_SHARE);
+    const double reach = kind == FORM_GLINT ? cross_range_tail(response, view->farthest_m)
+                                            : cross_range_energy_reach(response, view->farthest_m,
+                                                                       SPECKLE_ENERGY_SHARE);
     return (int32_t)fmin(whole, ceil(reach / strip));
 }
 
@@ -281,7 +280,13 @@ sonject_status speckle_draw(struct report *report, struct device *device, struct
 sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, int32_t count,
                                       const float *energy, uint64_t seed, uint32_t stream)
 {
-    const struct span strips = {strip, count};
+    const struct patch_view *view = lines->view;
+    /* numbered as the whole patch's, so that a window's cells draw what they would there */
+    const struct span strips = {strip + (int32_t)(view->first_row * lines->grid.strips_per_row),
+                                count};
+    const struct span numbers = {lines->grid.bins.first +
+                                     (int32_t)(view->first_column * lines->grid.bins_per_pixel),
+                                 lines->grid.bins.count};
     device_buffer bins[2];
     if (lines->columns == 0 || count == 0)
         return SONJECT_OK;
@@ -289,8 +294,8 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
     CHECK_MEMORY(lines->report, filled, "image formation");
     for (int32_t i = 0; i < count; i++) /* all are taken for filled */
         filled[i].end = lines->grid.bins.count;
-    sonject_status status = speckle_draw(lines->report, lines->device, lines->grid.bins, strips,
-                                         energy, seed, stream, bins);
+    sonject_status status =
+        speckle_draw(lines->report, lines->device, numbers, strips, energy, seed, stream, bins);
     THEN(status, compress_filled(lines, strip, count, bins, filled));
     buffer_release(&bins[0]);
     buffer_release(&bins[1]);

@@ -13,6 +13,9 @@
 #include "scene/patch_view.h"
 #include "scene/point_response.h"
 
+/* Columns that share one cross-range response of a beam; holds whole groups of any width. */
+#define FORM_BLOCK_COLUMNS 16
+
 /* What of lines is worth forming: glints of clutter lie in few places of large grids, and zeros add
  * nothing. */
 bool filled_span_is_empty(struct filled_span span);
@@ -25,8 +28,8 @@ struct filled_span filled_span_of(const float *real_part, const float *imaginary
 struct span next_filled_strips(const struct filled_span *filled, int32_t count, struct span before);
 
 /* What is formed: complex amplitudes, by G and W; or energies, by |G|^2 and |W|^2: one plane of
- * them, or two side by side. Glints are kept over the whole patch (of a beam, to
- * -60 dB), since their side lobes stand out of the seabed that far; a field (speckle, the measured
+ * them, or two side by side. Glints are kept to side lobes of -60 dB, which may stand out of the
+ * seabed; a field (speckle, the measured
  * seabed, a glint's peak) and energies where 99.9 % of |W|^2 lies. */
 enum form_kind {
     FORM_GLINT,

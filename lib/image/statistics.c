@@ -34,11 +34,26 @@ static size_t padded_length(const struct line_mean *mean)
     return mean->length + 2 * mean->radius;
 }
 
+static double variance_of_pass(double deviation)
+{
+    return deviation > 0.0 ? deviation * deviation / PASSES : 0.0;
+}
+
+static double radius_of_pass(double deviation)
+{
+    return floor((sqrt(1.0 + 12.0 * variance_of_pass(deviation)) - 1.0) / 2.0);
+}
+
+size_t local_mean_reach(double deviation)
+{
+    return (size_t)fmin(PASSES * (radius_of_pass(deviation) + 1.0), 1e9);
+}
+
 static sonject_status line_mean_init(struct line_mean *mean, struct report *report, size_t length,
                                      double deviation)
 {
-    const double variance = deviation > 0.0 ? deviation * deviation / PASSES : 0.0;
-    const double radius = floor((sqrt(1.0 + 12.0 * variance) - 1.0) / 2.0);
+    const double variance = variance_of_pass(deviation);
+    const double radius = radius_of_pass(deviation);
     memset(mean, 0, sizeof *mean);
     mean->length = length;
     if (radius < (double)length) {

@@ -15,6 +15,9 @@
 sonject_status local_mean(struct report *report, const float *values, size_t rows, size_t columns,
                           double row_deviation, double column_deviation, float *mean);
 
+/* Pixels away from which nothing enters a local mean. */
+size_t local_mean_reach(double deviation);
+
 /* Mean and standard deviation (root of the mean square difference) in double precision; count > 0.
  */
 void mean_and_deviation(const float *values, size_t count, double *mean, double *deviation);

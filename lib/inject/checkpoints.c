@@ -191,11 +191,18 @@ sonject_status trace_into_file(const struct checkpoint_job *job, const char *pat
 {
     struct tracing tracing = {.job = job, .report = job->report};
     struct injection_input input = *job->input;
-    input.checkpoint = &tracing.checkpoint;
     sonject_status status = identify(&tracing);
+    /* an export is of the whole patch */
+    input.is_whole = true;
+    if (status == SONJECT_OK && sink)
+        status = injection_trace(job->report, job->device, job->request->scene, &input, sink,
+                                 job->progress, job->user, counts);
+    input.is_whole = job->input->is_whole;
+    input.checkpoint = &tracing.checkpoint;
     THEN(status, checkpoint_begin(&tracing.checkpoint, job->report, path, NULL, &tracing.head));
-    THEN(status, injection_trace(job->report, job->device, job->request->scene, &input, sink,
-                                 job->progress, job->user, counts));
+    THEN(status,
+         injection_trace(job->report, job->device, job->request->scene, &input, NULL, job->progress,
+                         job->user, sink ? &(struct trace_counts){0} : counts));
     THEN(status, checkpoint_publish(&tracing.checkpoint, job->request->source));
     checkpoint_clear(&tracing.checkpoint);
     return status;

@@ -110,38 +110,44 @@ static struct window mark_influence(const struct scene *scene, const struct patc
     return window;
 }
 
+/* A pixel that nothing changes: what plain seabed returns. */
+static void leave_pixel(const struct patch_level *level, const struct echoes *echoes, size_t i,
+                        struct injected_window *result)
+{
+    result->visibility[i] = 1.0f;
+    result->energy[i] = level->cell_energy[i % echoes->columns];
+    for (uint32_t order = 0; order < echoes->orders; order++)
+        echoes->order_energy[order][i] = order == 0 ? result->energy[i] : 0.0f;
+}
+
 /* The pixel in image units: the measured seabed or its new realisation, what is left of that in
  * view, the target, and noise. */
 static void compose_pixel(const struct scene *scene, const struct patch_level *level,
                           const struct echoes *echoes, const float *pixels, const float *noise,
-                          const float *phase, size_t i, struct injection_result *result)
+                          const float *phase, size_t i, struct injected_window *result)
 {
     const size_t count = echoes->rows * echoes->columns;
     const double scale = sqrt(gain_at(level, echoes, i));
-    const bool is_touched = result->influence[i] != 0;
     const bool resynthesises = is_traced_anew(scene, level, echoes, i);
-    const double visibility = is_touched ? visibility_of(echoes, i) : 1.0;
+    const double visibility = visibility_of(echoes, i);
     double real_part = resynthesises ? scale * echoes->seabed_real[i] : 0.0;
     double imaginary_part = resynthesises ? scale * echoes->seabed_imaginary[i] : 0.0;
     if (!resynthesises)
         input_with_phase(pixels, result->is_complex, phase, count, i, &real_part, &imaginary_part);
-    if (is_touched) {
-        /* a realisation is of what is in view already */
-        const double seabed = resynthesises ? 1.0 : sqrt(visibility);
-        /* noise is lost with the pixel that held it; a brighter pixel holds enough */
-        const double lost =
-            sqrt(fmax(0.0, 1.0 - visibility) * (level->noise_ratio * level->level[i]));
-        const double noise_real = noise ? noise[i] : 0.0;
-        const double noise_imaginary = noise ? noise[count + i] : 0.0;
-        real_part = seabed * real_part + scale * echoes->target_real[i] + lost * noise_real;
-        imaginary_part =
-            seabed * imaginary_part + scale * echoes->target_imaginary[i] + lost * noise_imaginary;
-        if (result->is_complex) {
-            result->image[2 * i] = (float)real_part;
-            result->image[2 * i + 1] = (float)imaginary_part;
-        } else {
-            result->image[i] = (float)hypot(real_part, imaginary_part);
-        }
+    /* a realisation is of what is in view already */
+    const double seabed = resynthesises ? 1.0 : sqrt(visibility);
+    /* noise is lost with the pixel that held it; a brighter pixel holds enough */
+    const double lost = sqrt(fmax(0.0, 1.0 - visibility) * (level->noise_ratio * level->level[i]));
+    const double noise_real = noise ? noise[i] : 0.0;
+    const double noise_imaginary = noise ? noise[count + i] : 0.0;
+    real_part = seabed * real_part + scale * echoes->target_real[i] + lost * noise_real;
+    imaginary_part =
+        seabed * imaginary_part + scale * echoes->target_imaginary[i] + lost * noise_imaginary;
+    if (result->is_complex) {
+        result->image[2 * i] = (float)real_part;
+        result->image[2 * i + 1] = (float)imaginary_part;
+    } else {
+        result->image[i] = (float)hypot(real_part, imaginary_part);
     }
     result->field[2 * i] = (float)(real_part / scale);
     result->field[2 * i + 1] = (float)(imaginary_part / scale);
@@ -150,7 +156,7 @@ static void compose_pixel(const struct scene *scene, const struct patch_level *l
 }
 
 /* Highlights are cut where the image's own are. */
-static void saturate(double amplitude, size_t count, struct injection_result *result)
+static void saturate(double amplitude, size_t count, struct injected_window *result)
 {
     for (size_t i = 0; !result->is_complex && i < count; i++)
         if (result->influence[i] && (double)result->image[i] > amplitude)
@@ -159,14 +165,12 @@ static void saturate(double amplitude, size_t count, struct injection_result *re
 
 sonject_status compose(struct tracer *tracer, const struct image_match *match,
                        const struct patch_level *level, const struct echoes *echoes,
-                       const float *pixels, bool is_complex, struct injection_result *result)
+                       const float *pixels, bool is_complex, struct injected_window *result)
 {
     const struct scene *scene = tracer->scene;
     const size_t count = echoes->rows * echoes->columns;
     const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
     const struct window touched = mark_influence(scene, level, echoes, result->influence);
-    /* the field layer gives every pixel a phase, so that one is drawn everywhere */
-    const struct window whole = {0, echoes->rows, 0, echoes->columns};
     float *noise = NULL;
     float *phase = NULL;
     sonject_status status = SONJECT_OK;
@@ -174,12 +178,15 @@ sonject_status compose(struct tracer *tracer, const struct image_match *match,
         status = planes_of_noise(tracer, STREAM_NOISE, &touched, &noise);
     const bool has_own_pixels = !resynthesises || level->water_columns > 0;
     if (status == SONJECT_OK && !is_complex && has_own_pixels)
-        status = planes_of_noise(tracer, STREAM_INPUT_PHASE, &whole, &phase);
+        status = planes_of_noise(tracer, STREAM_INPUT_PHASE, &touched, &phase);
     if (status == SONJECT_OK) {
         /* pixels that nothing touches must keep every bit, so they are copied, not computed */
         memcpy(result->image, pixels, count * (is_complex ? 2 : 1) * sizeof(float));
         for (size_t i = 0; i < count; i++)
-            compose_pixel(scene, level, echoes, pixels, noise, phase, i, result);
+            if (result->influence[i])
+                compose_pixel(scene, level, echoes, pixels, noise, phase, i, result);
+            else
+                leave_pixel(level, echoes, i, result);
     }
     if (status == SONJECT_OK && match->looks > 1.0)
         status = compose_looks(tracer, match->looks, level, echoes, pixels, &touched, result);

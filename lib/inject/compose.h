@@ -20,18 +20,35 @@ struct patch_level {
     float *cell_energy;   /* expected cross-section of a pixel of plain seabed (mu0), m^2; a column
                              each */
     double noise_ratio;   /* noise energy over level */
-    bool measures_noise;  /* it was estimated, and a shadow of the patch told it */
     size_t water_columns; /* before the first return from the bottom; their level is that of the
                              seabed nearby */
 };
 
+/* What all pixels of the patch tell. */
+struct patch_facts {
+    double mean_intensity;
+    double noise_ratio;  /* noise energy over level */
+    bool measures_noise; /* it was estimated, and a shadow of the patch told it */
+};
+
 /* pixels: amplitudes or pairs, in the view's row order. Errors: INPUT (nothing but zeros; not a
- * finite number: says where), MEMORY. On failure nothing is held. */
+ * finite number: says where), MEMORY. */
+sonject_status patch_facts_init(struct patch_facts *facts, struct report *report,
+                                const struct scene *scene, const struct patch_view *view,
+                                const float *pixels, bool is_complex);
+
+/* Of a window of the patch: what all of the patch would tell there. view, pixels: the patch's.
+ * Errors: MEMORY. On failure nothing is held. */
 sonject_status patch_level_init(struct patch_level *level, struct report *report,
                                 const struct scene *scene, const struct patch_view *view,
-                                const struct point_response *response, const float *pixels,
+                                const struct window *window, const struct point_response *response,
+                                const struct patch_facts *facts, const float *pixels,
                                 bool is_complex);
 void patch_level_clear(struct patch_level *level);
+
+/* Expected cross-sections, m^2, of pixels of plain seabed in columns of the view. */
+void fill_cell_energies(const struct patch_view *view, const struct point_response *response,
+                        size_t first_column, size_t columns, float *energies);
 
 /* Expected cross-section in m^2 of a pixel of Lambert seabed (mu) at a processor range: mu sin^2 of
  * the grazing angle times the area that the point response covers. */
@@ -45,11 +62,12 @@ struct patch_request {
     struct echo_request request;
 };
 
-/* pixels: in the view's row order. On success to be given to patch_request_clear; on failure
- * nothing is held. Errors: INPUT, MEMORY. */
+/* Of a window of the patch, whose view the tracer has. view, pixels: the patch's. On success to be
+ * given to patch_request_clear; on failure nothing is held. Errors: MEMORY. */
 sonject_status patch_request_init(struct patch_request *patch, struct tracer *tracer,
-                                  const float *pixels, bool is_complex,
-                                  sonject_progress_function progress, void *user);
+                                  const struct patch_view *view, const struct window *window,
+                                  const struct patch_facts *facts, const float *pixels,
+                                  bool is_complex, sonject_progress_function progress, void *user);
 void patch_request_clear(struct patch_request *patch);
 
 /* Finds for each object the factor that gives its echo's peak the level it asks for,
@@ -57,7 +75,7 @@ void patch_request_clear(struct patch_request *patch);
  * with their energies there, which is exact where one object is heard. Tells level_kind,
  * level_gain_db, over_seabed_db and seabed_strength_db in result->objects. Errors: MEMORY. */
 sonject_status set_target_levels(const struct tracer *tracer, struct echoes *echoes,
-                                 struct injection_result *result);
+                                 struct injected_window *result);
 
 /* What is put into a measured magnitude image takes that image's own widths, looks and saturation.
  */
@@ -86,11 +104,6 @@ void tell_match(const struct image_match *match, const struct point_response *re
 /* -INFINITY for 0. */
 double decibels(double ratio);
 
-/* Rows and columns of a view. */
-struct window {
-    size_t first_row, rows, first_column, columns;
-};
-
 /* A field of complex normal deviates of unit mean square with the sonar's point response, in two
  * planes of rows x columns of the view. Only the window is filled; its values do not depend on the
  * window's size. Errors: DEVICE, MEMORY. */
@@ -107,7 +120,7 @@ uint32_t look_weights(double looks, double *weight, double *last);
  * DEVICE, MEMORY. */
 sonject_status compose(struct tracer *tracer, const struct image_match *match,
                        const struct patch_level *level, const struct echoes *echoes,
-                       const float *pixels, bool is_complex, struct injection_result *result);
+                       const float *pixels, bool is_complex, struct injected_window *result);
 
 /* Composes the touched pixels (result->influence, within the window) of a magnitude image anew as
  * the root of a mean over looks: of the measured seabed, the noise and the rough targets each look
@@ -115,12 +128,13 @@ sonject_status compose(struct tracer *tracer, const struct image_match *match,
  * image and field are changed. Errors: DEVICE, MEMORY. */
 sonject_status compose_looks(struct tracer *tracer, double looks, const struct patch_level *level,
                              const struct echoes *echoes, const float *pixels,
-                             const struct window *window, struct injection_result *result);
+                             const struct window *window, struct injected_window *result);
 
-/* Masks, boxes and levels of every object: fills result's masks and objects (allocated), in the
- * view's row order. The input's empty rows are in no mask or box. Errors: MEMORY. */
+/* Masks, boxes and levels of every object that is followed: fills result's masks and objects
+ * (allocated), in the view's row order. is_empty: of its rows, those where nothing was heard; they
+ * are in no mask or box. Errors: MEMORY. */
 sonject_status find_truth(const struct tracer *tracer, const struct patch_level *level,
-                          const struct image_match *match, const struct injection_input *input,
-                          const struct echoes *echoes, struct injection_result *result);
+                          const struct image_match *match, const bool *is_empty,
+                          const struct echoes *echoes, struct injected_window *result);
 
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "trace/checkpoint.h"
 
 #define PATTERN_FLOOR 1e-6f /* a black pixel's share in view must still be known */
 
@@ -381,7 +382,8 @@ static sonject_status finish(struct forming *forming)
 }
 
 sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
-                           const struct echo_request *request, const struct injection_input *other)
+                           const struct echo_request *request, struct tracer *traced,
+                           const struct echo_request *of_traced)
 {
     struct forming forming;
     const struct impulse_sink sink = {take, &forming};
@@ -393,9 +395,9 @@ sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
     forming.request = request;
     sonject_status status = allocate_planes(echoes, tracer, request);
     /* rays are traced here, unless a checkpoint has what they would find */
-    THEN(status, other ? trace_other_response(tracer, other, request, &sink)
-                       : trace_impulses(tracer, request, &sink));
-    THEN(status, finish(&forming));
+    THEN(status, trace_impulses(traced, of_traced, &sink));
+    if (status == SONJECT_OK && !checkpoint_is_cut_short(traced->checkpoint))
+        status = finish(&forming);
     form_lines_end(&forming.energies);
     form_lines_end(&forming.field);
     object_former_clear(&forming.object);

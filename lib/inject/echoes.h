@@ -68,11 +68,12 @@ struct echo_request {
 sonject_status echo_request_tell(const struct echo_request *request, struct report *report,
                                  double fraction, const char *stage);
 
-/* Forms all of it from impulses as they come: of rays of the tracer, or of other->traced where
- * other is not NULL. On failure *echoes is empty. Errors: DEVICE, MEMORY, and those of
- * trace_impulses or trace_other_response. */
+/* Forms all of it from impulses as they come, by rays of `traced`: the tracer itself, or one of
+ * another response. Where its checkpoint is cut short, nothing is formed. On failure *echoes is
+ * empty. Errors: DEVICE, MEMORY, and those of trace_impulses. */
 sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
-                           const struct echo_request *request, const struct injection_input *other);
+                           const struct echo_request *request, struct tracer *traced,
+                           const struct echo_request *of_traced);
 
 void echoes_clear(struct echoes *echoes);
 

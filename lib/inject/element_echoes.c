@@ -149,7 +149,12 @@ static sonject_status trace_and_hear(struct injection_setup *setup, bool is_comp
     struct trace_progress tracing = {progress, user};
     struct patch_request patch;
     struct element_taker taker;
-    CHECK(patch_request_init(&patch, tracer, setup->pixels, is_complex, tell_tracing, &tracing));
+    const struct patch_view *view = &tracer->view;
+    const struct window whole = {0, view->rows, 0, view->columns};
+    struct patch_facts facts;
+    CHECK(patch_facts_init(&facts, tracer->report, tracer->scene, view, setup->pixels, is_complex));
+    CHECK(patch_request_init(&patch, tracer, view, &whole, &facts, setup->pixels, is_complex,
+                             tell_tracing, &tracing));
     memset(&taker, 0, sizeof taker);
     taker.tracer = tracer;
     taker.request = &patch.request;

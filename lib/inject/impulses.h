@@ -65,12 +65,6 @@ struct injection_input;
 sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *request,
                               const struct impulse_sink *sink);
 
-/* The same by rays of input->traced, which has another response than the tracer: that gets the
- * counts. Errors: also those of injection_run. */
-sonject_status trace_other_response(struct tracer *tracer, const struct injection_input *input,
-                                    const struct echo_request *request,
-                                    const struct impulse_sink *sink);
-
 /* Whether impulses that `traced` lays the grids of can be formed with the tracer's response: bins,
  * strips and margins must be fine and wide enough. Errors: INPUT. */
 sonject_status check_response_fits(const struct tracer *tracer, const struct tracer *traced);

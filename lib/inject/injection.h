@@ -28,25 +28,59 @@ struct injection_input {
     double ceiling; /* amplitude from which on the image's file stores its largest number; 0: not
                        known */
     struct checkpoint *checkpoint; /* how tracing is cut; NULL: not at all */
-    const struct scene *traced;    /* NULL, or the scene of another response that is traced: its
-                                      grids must be fine and wide enough */
+    bool is_whole;              /* all of the patch is traced, whatever objects can change of it */
+    const struct scene *traced; /* NULL, or the scene of another response that is traced: its
+                                   grids must be fine and wide enough */
 };
 
-/* What sonject_result is. All layers rows x columns in the image's own order. */
-struct injection_result {
+/* What is made of a window of the patch, or of all of it. All layers rows x columns. */
+struct injected_window {
+    struct window at; /* in the patch */
     size_t rows, columns;
     bool is_complex;
-    void *memory; /* of the layers; owned */
-    float *image; /* kind of the input */
+    void *memory; /* of field, energy and visibility; owned */
     float *field; /* pairs; m */
     float *energy, *visibility;
     float *order_energy[SCENE_INTERACTIONS_MAX]; /* as in struct echoes; each owned */
-    uint32_t orders;
+    void *picture; /* memory of image and masks; owned; NULL once they are in the result's */
+    float *image;  /* kind of the input */
     uint8_t *highlight, *shadow, *labels, *influence;
-    sonject_object_truth *objects; /* owned */
+    sonject_object_truth *objects; /* borrowed: the result's */
+};
+
+/* What sonject_result is. Image and masks rows x columns in the image's own order. */
+struct injection_result {
+    size_t rows, columns;
+    bool is_complex;
+    float *image; /* kind of the input; owned, as all of these */
+    uint8_t *highlight, *shadow, *labels, *influence;
+    struct injected_window *windows; /* whose other layers are kept; owned */
+    size_t window_count;
+    float *seabed_energy; /* expected of plain seabed outside the windows, m^2; a column each */
+    uint32_t orders;
+    sonject_object_truth *objects;
     uint32_t object_count;
     sonject_statistics statistics;
 };
+
+/* Room for all but the image, of a patch of the tracer's view; to be given to
+ * injection_result_clear, also on failure. Errors: MEMORY. */
+sonject_status injection_result_init(struct injection_result *result, const struct tracer *tracer,
+                                     size_t windows, bool is_complex);
+
+/* Room for a window's layers, which its result frees. Errors: MEMORY. */
+sonject_status injected_window_init(struct injected_window *window, struct report *report,
+                                    const struct window *at, bool is_complex,
+                                    sonject_object_truth *objects);
+
+/* Moves the window's picture and masks into the patch's. */
+void injection_result_paste(struct injection_result *result, struct injected_window *window);
+
+/* An object's place from the window's pixels to the patch's. */
+void object_truth_move(sonject_object_truth *truth, const struct window *at);
+
+/* From the view's order of rows and columns back into the image's. */
+void injection_result_turn_back(struct injection_result *result, const struct patch_view *view);
 
 /* Progress fractions run from 0 to 1. On failure *result is empty. Errors: as sonject_inject. */
 sonject_status injection_run(struct report *report, struct device *device,
@@ -54,6 +88,19 @@ sonject_status injection_run(struct report *report, struct device *device,
                              sonject_progress_function progress, void *user,
                              struct injection_result *result);
 void injection_result_clear(struct injection_result *result);
+
+/* Layers that are kept in windows: float, FIELD pairs of it; ORDER + k of k + 1 interactions. */
+enum injected_plane {
+    INJECTED_FIELD,
+    INJECTED_ENERGY,
+    INJECTED_VISIBILITY,
+    INJECTED_ORDER
+};
+
+/* Fills rows x columns pixels of the patch: outside the windows there is no field, the seabed is
+ * plain and seen. */
+void injection_result_plane(const struct injection_result *result, enum injected_plane plane,
+                            float *out);
 
 /* The first stage of it, whose impulses go to the sink. Errors: as sonject_inject, and the sink's
  * own. */

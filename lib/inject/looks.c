@@ -319,7 +319,7 @@ struct look_work {
     const struct echoes *echoes;
     const float *pixels;
     const struct window *window;
-    struct injection_result *result;
+    struct injected_window *result;
     float *planes[LOOK_PLANES];
 };
 
@@ -399,7 +399,7 @@ static sonject_status add_looks(const struct look_work *work, double looks, cons
 
 sonject_status compose_looks(struct tracer *tracer, double looks, const struct patch_level *level,
                              const struct echoes *echoes, const float *pixels,
-                             const struct window *window, struct injection_result *result)
+                             const struct window *window, struct injected_window *result)
 {
     const size_t pixel_count = echoes->rows * echoes->columns;
     size_t count = 0;

@@ -25,15 +25,24 @@ double seabed_cell_energy(const struct patch_view *view, const struct point_resp
            view_refraction_gain(view, processor_range_m);
 }
 
-void patch_level_clear(struct patch_level *level)
+void fill_cell_energies(const struct patch_view *view, const struct point_response *response,
+                        size_t first_column, size_t columns, float *energies)
 {
-    free(level->intensity);
-    memset(level, 0, sizeof *level);
+    for (size_t j = 0; j < columns; j++)
+        energies[j] =
+            (float)seabed_cell_energy(view, response, view->seabed_lambert,
+                                      view_processor_range(view, (double)(first_column + j)));
 }
 
-static sonject_status set_intensity(struct patch_level *level, struct report *report,
-                                    const struct patch_view *view, const float *pixels,
-                                    bool is_complex, double *mean)
+static float intensity_of(const float *pixels, bool is_complex, size_t i)
+{
+    const double a = is_complex ? pixels[2 * i] : pixels[i];
+    const double b = is_complex ? pixels[2 * i + 1] : 0.0;
+    return (float)(a * a + b * b);
+}
+
+static sonject_status check_pixels(struct report *report, const struct patch_view *view,
+                                   const float *pixels, bool is_complex, double *mean)
 {
     double sum = 0.0;
     for (size_t i = 0; i < view->rows * view->columns; i++) {
@@ -50,7 +59,6 @@ static sonject_status set_intensity(struct patch_level *level, struct report *re
                 isnan(a) || isnan(b)
                     ? "not a number (NaN)"
                     : (intensity > 1e30 ? "too large or infinite" : "a negative amplitude"));
-        level->intensity[i] = (float)intensity;
         sum += intensity;
     }
     *mean = sum / (double)(view->rows * view->columns);
@@ -60,90 +68,200 @@ static sonject_status set_intensity(struct patch_level *level, struct report *re
     return SONJECT_OK;
 }
 
-static sonject_status smooth(struct report *report, const struct patch_view *view,
+/* A region of the patch whose level is sought, the first of its columns in the water column. */
+struct level_region {
+    const struct scene *scene;
+    const struct patch_view *view; /* of the patch */
+    struct window at;
+    size_t water_columns;
+    double mean; /* intensity of the patch */
+};
+
+static sonject_status smooth(struct report *report, const struct level_region *region,
                              const float *values, double radius_m, float *mean)
 {
-    return local_mean(report, values, view->rows, view->columns, radius_m / view->row_spacing_m,
-                      radius_m / view->column_spacing_m, mean);
+    return local_mean(report, values, region->at.rows, region->at.columns,
+                      radius_m / region->view->row_spacing_m,
+                      radius_m / region->view->column_spacing_m, mean);
 }
 
 /* The local mean of the seabed alone; in the water column that of the seabed nearby. */
-static sonject_status level_beside_water(struct patch_level *level, struct report *report,
-                                         const struct scene *scene, const struct patch_view *view)
+static sonject_status level_beside_water(struct report *report, const struct level_region *region,
+                                         const float *intensity, float *level)
 {
-    const size_t count = view->rows * view->columns;
-    const double radius = scene->seabed.level_radius_m;
+    const size_t columns = region->at.columns;
+    const size_t count = region->at.rows * columns;
+    const double radius = region->scene->seabed.level_radius_m;
     float *seabed = allocate_array(2 * count, sizeof *seabed);
     float *share = seabed + count;
     CHECK_MEMORY(report, seabed, "the patch");
     for (size_t i = 0; i < count; i++)
-        seabed[i] = i % view->columns < level->water_columns ? 0.0f : 1.0f;
-    sonject_status status = smooth(report, view, seabed, radius, share);
+        seabed[i] = i % columns < region->water_columns ? 0.0f : 1.0f;
+    sonject_status status = smooth(report, region, seabed, radius, share);
     for (size_t i = 0; status == SONJECT_OK && i < count; i++)
-        seabed[i] *= level->intensity[i];
-    THEN(status, smooth(report, view, seabed, radius, level->level));
+        seabed[i] *= intensity[i];
+    THEN(status, smooth(report, region, seabed, radius, level));
     for (size_t i = count; status == SONJECT_OK && i-- > 0;) {
-        const bool has_neighbour = (i + 1) % view->columns != 0;
-        level->level[i] = share[i] > WATER_SHARE ? level->level[i] / share[i]
-                          : has_neighbour        ? level->level[i + 1]
-                                                 : 0.0f;
+        const bool has_neighbour = (i + 1) % columns != 0;
+        level[i] = share[i] > WATER_SHARE ? level[i] / share[i]
+                   : has_neighbour        ? level[i + 1]
+                                          : 0.0f;
     }
     free(seabed);
     return status;
 }
 
-/* Level and map of an intensity of a mean: the map is the intensity, or its local mean, over the
- * level. */
-static sonject_status find_level(struct patch_level *level, struct report *report,
-                                 const struct scene *scene, const struct patch_view *view,
-                                 double mean)
+static sonject_status find_level(struct report *report, const struct level_region *region,
+                                 const float *intensity, float *level)
 {
-    const size_t count = view->rows * view->columns;
-    const sonject_seabed_params *seabed = &scene->seabed;
-    CHECK(level->water_columns > 0
-              ? level_beside_water(level, report, scene, view)
-              : smooth(report, view, level->intensity, seabed->level_radius_m, level->level));
+    const size_t count = region->at.rows * region->at.columns;
+    CHECK(region->water_columns > 0
+              ? level_beside_water(report, region, intensity, level)
+              : smooth(report, region, intensity, region->scene->seabed.level_radius_m, level));
     for (size_t i = 0; i < count; i++)
-        level->level[i] = fmaxf(level->level[i], (float)(LEVEL_FLOOR * mean));
-    if (seabed->map == SONJECT_MAP_DESPECKLED)
-        CHECK(smooth(report, view, level->intensity, seabed->despeckle_radius_m, level->map));
-    else
-        memcpy(level->map, seabed->map == SONJECT_MAP_COHERENT ? level->level : level->intensity,
-               count * sizeof *level->map);
-    for (size_t i = 0; i < count; i++)
-        level->map[i] /= level->level[i];
+        level[i] = fmaxf(level[i], (float)(LEVEL_FLOOR * region->mean));
     return SONJECT_OK;
+}
+
+/* The map is the intensity, or its local mean, over the level. */
+static sonject_status find_map(struct report *report, const struct level_region *region,
+                               const float *intensity, const float *level, float *map)
+{
+    const size_t count = region->at.rows * region->at.columns;
+    const sonject_seabed_params *seabed = &region->scene->seabed;
+    if (seabed->map == SONJECT_MAP_DESPECKLED)
+        CHECK(smooth(report, region, intensity, seabed->despeckle_radius_m, map));
+    else
+        memcpy(map, seabed->map == SONJECT_MAP_COHERENT ? level : intensity, count * sizeof *map);
+    for (size_t i = 0; i < count; i++)
+        map[i] /= level[i];
+    return SONJECT_OK;
+}
+
+/* From so many pixels before a window to as many behind it, where they exist. */
+static size_t widened(size_t first, size_t count, size_t reach, size_t all, size_t *start)
+{
+    const size_t end = first + count + reach;
+    *start = first > reach ? first - reach : 0;
+    return (end < all ? end : all) - *start;
+}
+
+/* All that tells the level in the window; where that lies in the water column also the seabed
+ * behind. */
+static struct level_region region_about(const struct scene *scene, const struct patch_view *view,
+                                        const struct window *window, double mean)
+{
+    const sonject_seabed_params *seabed = &scene->seabed;
+    const double radius = seabed->map == SONJECT_MAP_DESPECKLED
+                              ? fmax(seabed->level_radius_m, seabed->despeckle_radius_m)
+                              : seabed->level_radius_m;
+    const size_t reach = local_mean_reach(radius / view->column_spacing_m);
+    const size_t water = view_water_columns(view);
+    struct level_region region = {.scene = scene, .view = view, .mean = mean};
+    region.at.rows =
+        widened(window->first_row, window->rows, local_mean_reach(radius / view->row_spacing_m),
+                view->rows, &region.at.first_row);
+    region.at.columns = widened(window->first_column, window->columns, reach, view->columns,
+                                &region.at.first_column);
+    if (water > region.at.first_column) {
+        const size_t end = water + reach < view->columns ? water + reach : view->columns;
+        region.water_columns = water - region.at.first_column;
+        if (region.at.columns < end - region.at.first_column)
+            region.at.columns = end - region.at.first_column;
+    }
+    return region;
+}
+
+static float *intensities_in(const struct level_region *region, const float *pixels,
+                             bool is_complex)
+{
+    const size_t columns = region->at.columns;
+    float *intensity = allocate_array(region->at.rows, columns * sizeof *intensity);
+    for (size_t i = 0; intensity && i < region->at.rows * columns; i++)
+        intensity[i] = intensity_of(pixels, is_complex,
+                                    (region->at.first_row + i / columns) * region->view->columns +
+                                        region->at.first_column + i % columns);
+    return intensity;
+}
+
+sonject_status patch_facts_init(struct patch_facts *facts, struct report *report,
+                                const struct scene *scene, const struct patch_view *view,
+                                const float *pixels, bool is_complex)
+{
+    const struct window whole = {0, view->rows, 0, view->columns};
+    memset(facts, 0, sizeof *facts);
+    CHECK(check_pixels(report, view, pixels, is_complex, &facts->mean_intensity));
+    if (!scene->injection.estimate_noise) {
+        facts->noise_ratio = pow(10.0, scene->injection.noise_floor_db / 10.0);
+        return SONJECT_OK;
+    }
+    const struct level_region region = region_about(scene, view, &whole, facts->mean_intensity);
+    float *intensity = intensities_in(&region, pixels, is_complex);
+    float *level = allocate_array(view->rows, view->columns * sizeof *level);
+    sonject_status status =
+        intensity && level ? SONJECT_OK : report_out_of_memory(report, "the patch");
+    THEN(status, find_level(report, &region, intensity, level));
+    if (status == SONJECT_OK)
+        facts->noise_ratio = estimate_noise_floor(intensity, level, view->rows, view->columns,
+                                                  &facts->measures_noise);
+    free(intensity);
+    free(level);
+    return status;
+}
+
+void patch_level_clear(struct patch_level *level)
+{
+    free(level->intensity);
+    memset(level, 0, sizeof *level);
+}
+
+/* The window's part of a plane of the region. */
+static void cut(const struct level_region *region, const float *plane, const struct window *window,
+                float *out)
+{
+    for (size_t row = 0; row < window->rows; row++)
+        memcpy(out + row * window->columns,
+               plane + (window->first_row - region->at.first_row + row) * region->at.columns +
+                   window->first_column - region->at.first_column,
+               window->columns * sizeof *out);
 }
 
 sonject_status patch_level_init(struct patch_level *level, struct report *report,
                                 const struct scene *scene, const struct patch_view *view,
-                                const struct point_response *response, const float *pixels,
+                                const struct window *window, const struct point_response *response,
+                                const struct patch_facts *facts, const float *pixels,
                                 bool is_complex)
 {
-    const size_t count = view->rows * view->columns;
-    double mean = 0.0;
+    const struct level_region region = region_about(scene, view, window, facts->mean_intensity);
+    const size_t wide = region.at.rows * region.at.columns;
+    const size_t count = window->rows * window->columns;
+    const size_t water = view_water_columns(view);
     memset(level, 0, sizeof *level);
-    level->water_columns = view_water_columns(view);
-    level->intensity = allocate_array(3 * count + view->columns, sizeof(float));
-    CHECK_MEMORY(report, level->intensity, "the patch");
-    level->level = level->intensity + count;
-    level->map = level->level + count;
-    level->cell_energy = level->map + count;
-    sonject_status status = set_intensity(level, report, view, pixels, is_complex, &mean);
-    THEN(status, find_level(level, report, scene, view, mean));
-    if (status != SONJECT_OK) {
+    float *intensity = intensities_in(&region, pixels, is_complex);
+    float *planes = allocate_array(wide, 2 * sizeof *planes);
+    level->intensity = allocate_array(3 * count + window->columns, sizeof(float));
+    sonject_status status = intensity && planes && level->intensity
+                                ? SONJECT_OK
+                                : report_out_of_memory(report, "the patch");
+    THEN(status, find_level(report, &region, intensity, planes));
+    THEN(status, find_map(report, &region, intensity, planes, planes + wide));
+    if (status == SONJECT_OK) {
+        level->water_columns = water > window->first_column ? water - window->first_column : 0;
+        level->noise_ratio = facts->noise_ratio;
+        level->level = level->intensity + count;
+        level->map = level->level + count;
+        level->cell_energy = level->map + count;
+        cut(&region, intensity, window, level->intensity);
+        cut(&region, planes, window, level->level);
+        cut(&region, planes + wide, window, level->map);
+        fill_cell_energies(view, response, window->first_column, window->columns,
+                           level->cell_energy);
+    } else {
         patch_level_clear(level);
-        return status;
     }
-    const double lambert = view_seabed_lambert(view, scene);
-    for (size_t j = 0; j < view->columns; j++)
-        level->cell_energy[j] = (float)seabed_cell_energy(view, response, lambert,
-                                                          view_processor_range(view, (double)j));
-    level->noise_ratio = scene->injection.estimate_noise
-                             ? estimate_noise_floor(level->intensity, level->level, view->rows,
-                                                    view->columns, &level->measures_noise)
-                             : pow(10.0, scene->injection.noise_floor_db / 10.0);
-    return SONJECT_OK;
+    free(intensity);
+    free(planes);
+    return status;
 }
 
 void patch_request_clear(struct patch_request *patch)
@@ -153,16 +271,17 @@ void patch_request_clear(struct patch_request *patch)
 }
 
 sonject_status patch_request_init(struct patch_request *patch, struct tracer *tracer,
-                                  const float *pixels, bool is_complex,
-                                  sonject_progress_function progress, void *user)
+                                  const struct patch_view *view, const struct window *window,
+                                  const struct patch_facts *facts, const float *pixels,
+                                  bool is_complex, sonject_progress_function progress, void *user)
 {
     const struct scene *scene = tracer->scene;
-    const size_t count = tracer->view.rows * tracer->view.columns;
+    const size_t count = window->rows * window->columns;
     const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
     const bool is_coherent = resynthesises && scene->seabed.map == SONJECT_MAP_COHERENT;
     memset(patch, 0, sizeof *patch);
-    CHECK(patch_level_init(&patch->level, tracer->report, scene, &tracer->view, &tracer->response,
-                           pixels, is_complex));
+    CHECK(patch_level_init(&patch->level, tracer->report, scene, view, window, &tracer->response,
+                           facts, pixels, is_complex));
     patch->request.map = patch->level.map;
     patch->request.field = is_coherent     ? SEABED_FIELD_COHERENT
                            : resynthesises ? SEABED_FIELD_SPECKLE
@@ -240,16 +359,20 @@ static void scale_pixel(struct echoes *echoes, const double *gains, double mean,
 }
 
 sonject_status set_target_levels(const struct tracer *tracer, struct echoes *echoes,
-                                 struct injection_result *result)
+                                 struct injected_window *result)
 {
     const struct scene *scene = tracer->scene;
     double *gains = allocate_array(echoes->object_count, sizeof *gains);
     double mean = 0.0;
+    double followed = 0.0;
     bool is_scaled = false;
-    const double lambert = view_seabed_lambert(&tracer->view, scene);
+    const double lambert = tracer->view.seabed_lambert;
     CHECK_MEMORY(tracer->report, gains, "the objects' levels");
     for (uint32_t i = 0; i < echoes->object_count; i++) {
         const struct object_echo *echo = &echoes->objects[i];
+        gains[i] = 1.0;
+        if (!tracer_follows(tracer, i))
+            continue;
         /* over the seabed that the peak of the echo lies on */
         const double over_seabed =
             echo->peak_energy > 0.0
@@ -260,7 +383,8 @@ sonject_status set_target_levels(const struct tracer *tracer, struct echoes *ech
                                                 tracer->objects[i].origin[2]);
         sonject_object_truth *truth = &result->objects[i];
         gains[i] = gain_of(&scene->objects[i], echo->peak_energy, over_seabed);
-        mean += gains[i] / echoes->object_count;
+        mean += gains[i];
+        followed += 1.0;
         is_scaled = is_scaled || scene->objects[i].level_kind != SONJECT_LEVEL_PHYSICAL;
         truth->level_kind = scene->objects[i].level_kind;
         truth->level_gain_db = decibels(gains[i]);
@@ -268,7 +392,7 @@ sonject_status set_target_levels(const struct tracer *tracer, struct echoes *ech
         truth->seabed_strength_db = decibels(lambert * sin(grazing) * sin(grazing));
     }
     for (size_t i = 0; is_scaled && i < echoes->rows * echoes->columns; i++)
-        scale_pixel(echoes, gains, mean, i);
+        scale_pixel(echoes, gains, mean / followed, i);
     for (uint32_t i = 0; is_scaled && i < echoes->object_count; i++) {
         struct object_echo *echo = &echoes->objects[i];
         echo->peak_energy *= gains[i];

@@ -162,7 +162,8 @@ static sonject_status trace_objects(const struct tracing *tracing)
     for (uint32_t i = 0; status == SONJECT_OK && i < count; i++) {
         const struct placed_object *object = &tracing->tracer->objects[i];
         status = emit_tile(tracing, i);
-        for (uint32_t k = 0; status == SONJECT_OK && k < object->part_count; k++)
+        const uint32_t parts = tracer_follows(tracing->tracer, i) ? object->part_count : 0;
+        for (uint32_t k = 0; status == SONJECT_OK && k < parts; k++)
             status = trace_glints(tracing, object->first_part + k);
         THEN(status, echo_request_tell(tracing->request, tracing->tracer->report,
                                        ROUGH_SHARE + OBJECT_SHARE * (i + 1) / count,
@@ -260,7 +261,8 @@ static sonject_status trace_chains(const struct tracing *tracing)
     if (status != SONJECT_OK || trace.orders == 0)
         return status;
     for (uint32_t i = 0; status == SONJECT_OK && i < chain_fan_count(tracing->tracer); i++)
-        status = trace_fan(tracing, &trace, i);
+        if (i == 0 || tracer_follows(tracing->tracer, tracing->tracer->placements[i - 1].object))
+            status = trace_fan(tracing, &trace, i);
     THEN(status, emit_chains(tracing, &trace));
     chain_trace_end(&trace);
     return status;
@@ -284,8 +286,6 @@ sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *
     }
     tracing_clear(&tracing);
     THEN(status, trace_chains(&tracing));
-    if (status == SONJECT_OK && tracer->checkpoint)
-        status = checkpoint_finish(tracer->checkpoint, &tracer->counts);
     return status;
 }
 

@@ -61,7 +61,7 @@ static struct pixel_levels levels_at(const struct patch_level *level, const stru
     return levels;
 }
 
-static float intensity_at(const struct injection_result *result, size_t i)
+static float intensity_at(const struct injected_window *result, size_t i)
 {
     const float *image = result->image;
     if (!result->is_complex)
@@ -71,7 +71,7 @@ static float intensity_at(const struct injection_result *result, size_t i)
 
 static void find_object(const struct patch_level *level, double ceiling,
                         const struct echoes *echoes, const bool *is_empty, uint32_t number,
-                        struct injection_result *result)
+                        struct injected_window *result)
 {
     const struct object_echo *echo = &echoes->objects[number];
     sonject_object_truth *truth = &result->objects[number];
@@ -115,7 +115,7 @@ static void find_object(const struct patch_level *level, double ceiling,
 
 /* Of an object's shadow, when the masks of all objects are known. */
 static void find_visible_shadow(const struct patch_level *level, const struct echoes *echoes,
-                                uint32_t number, struct injection_result *result)
+                                uint32_t number, struct injected_window *result)
 {
     const struct object_echo *echo = &echoes->objects[number];
     sonject_object_truth *truth = &result->objects[number];
@@ -257,7 +257,7 @@ static struct window_box box_within(const sonject_box *box, const struct window_
 
 /* How the object shows amid the image's own speckle, behind so many columns of water; empty rows
  * are no seabed. */
-static sonject_status see_object(struct report *report, const struct injection_result *result,
+static sonject_status see_object(struct report *report, const struct injected_window *result,
                                  size_t water_columns, const bool *is_empty,
                                  sonject_object_truth *truth)
 {
@@ -298,11 +298,13 @@ static sonject_status see_object(struct report *report, const struct injection_r
 static sonject_status measure_objects(const struct tracer *tracer, const struct patch_level *level,
                                       const struct speckle_statistics *speckle,
                                       const struct echoes *echoes, const bool *is_empty,
-                                      struct injection_result *result)
+                                      struct injected_window *result)
 {
     sonject_status status = SONJECT_OK;
     for (uint32_t i = 0; status == SONJECT_OK && i < echoes->object_count; i++) {
         sonject_object_truth *truth = &result->objects[i];
+        if (!tracer_follows(tracer, i))
+            continue;
         truth->highlight_contrast_db = truth->shadow_contrast_db = NAN;
         truth->highlight_along_m = truth->highlight_range_m = NAN;
         truth->shadow_along_m = truth->shadow_range_m = NAN;
@@ -318,27 +320,20 @@ static sonject_status measure_objects(const struct tracer *tracer, const struct 
 }
 
 sonject_status find_truth(const struct tracer *tracer, const struct patch_level *level,
-                          const struct image_match *match, const struct injection_input *input,
-                          const struct echoes *echoes, struct injection_result *result)
+                          const struct image_match *match, const bool *is_empty,
+                          const struct echoes *echoes, struct injected_window *result)
 {
-    bool *is_empty = allocate_array(echoes->rows, sizeof *is_empty);
-    CHECK_MEMORY(tracer->report, is_empty, "the truth");
-    for (uint64_t i = 0; input->empty && i < input->empty->count; i++) {
-        const size_t row = (size_t)(input->empty->numbers[i] - (uint64_t)input->first_row);
-        is_empty[tracer->view.is_mirrored ? echoes->rows - 1 - row : row] = true;
-    }
-    for (uint32_t i = 0; i < echoes->object_count; i++) {
-        locate(tracer, i, &result->objects[i]);
-        find_object(level, match->ceiling, echoes, is_empty, i, result);
-    }
+    for (uint32_t i = 0; i < echoes->object_count; i++)
+        if (tracer_follows(tracer, i)) {
+            locate(tracer, i, &result->objects[i]);
+            find_object(level, match->ceiling, echoes, is_empty, i, result);
+        }
     /* a pixel where another object's echo stands in the shadow is a highlight */
     for (size_t i = 0; i < echoes->rows * echoes->columns; i++)
         if (result->highlight[i])
             result->shadow[i] = 0;
     for (uint32_t i = 0; i < echoes->object_count; i++)
-        find_visible_shadow(level, echoes, i, result);
-    const sonject_status status =
-        measure_objects(tracer, level, &match->seabed, echoes, is_empty, result);
-    free(is_empty);
-    return status;
+        if (tracer_follows(tracer, i))
+            find_visible_shadow(level, echoes, i, result);
+    return measure_objects(tracer, level, &match->seabed, echoes, is_empty, result);
 }

@@ -135,8 +135,12 @@ double cross_range_energy_reach(const struct point_response *response, double ra
 
 double cross_range_tail(const struct point_response *response, double range_m)
 {
-    if (response->array_length_m == 0.0)
+    if (response->motion)
         return HUGE_VAL;
+    if (response->cross_range_table)
+        return response_table_reach(response->cross_range_table, 0.0);
+    if (response->array_length_m == 0.0)
+        return along_track_tail(response);
     return range_m / response->range_ratio * tangent_at(response, TAIL_LOBES) +
            largest_shift(response, range_m / response->range_ratio);
 }

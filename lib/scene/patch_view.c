@@ -57,6 +57,16 @@ static sonject_status check_water_column(const struct patch_view *view, struct r
         view_bottom_range(view));
 }
 
+static double seabed_lambert_of(const struct patch_view *view, const struct scene *scene)
+{
+    const double first = fmax(view->first_range_m, view_bottom_range(view));
+    const double middle = 0.5 * (first + view_processor_range(view, (double)(view->columns - 1)));
+    return isnan(scene->seabed.grain_size_phi)
+               ? scene->seabed.lambert
+               : sediment_lambert(scene->seabed.grain_size_phi, view->wavelength_m,
+                                  view_grazing(view, middle));
+}
+
 sonject_status patch_view_init(struct patch_view *view, struct report *report,
                                const struct scene *scene, const struct water *water,
                                double first_row, double first_column, size_t rows, size_t columns)
@@ -67,6 +77,7 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
         return report_failure(report, SONJECT_ERROR_INPUT, "the patch has no pixels");
     view->rows = rows;
     view->columns = columns;
+    view->first_row = view->first_column = 0;
     view->row_spacing_m = geometry->row_spacing_m;
     view->column_spacing_m = geometry->column_spacing_m;
     view->range_ratio = reference / water->straight_speed_mps;
@@ -85,7 +96,46 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
                               "%g: choose others, or the other side",
                               first_column, first_column + (double)columns - 1.0,
                               view->is_mirrored ? "starboard" : "port", geometry->nadir_column);
-    return check_water_column(view, report, scene, first_column);
+    view->farthest_m = view_processor_range(view, (double)(columns - 1));
+    CHECK(check_water_column(view, report, scene, first_column));
+    view->seabed_lambert = seabed_lambert_of(view, scene);
+    return SONJECT_OK;
+}
+
+struct patch_view patch_view_window(const struct patch_view *view, const struct window *window)
+{
+    struct patch_view part = *view;
+    part.rows = window->rows;
+    part.columns = window->columns;
+    part.first_row = window->first_row;
+    part.first_column = window->first_column;
+    part.first_x_m = view_x_of_row(view, (double)window->first_row);
+    part.first_range_m = view_processor_range(view, (double)window->first_column);
+    return part;
+}
+
+/* Puts count things of so many bytes each in reverse order. */
+static void reverse(char *things, size_t count, size_t bytes)
+{
+    for (size_t k = 0; k < count / 2; k++) {
+        char *a = things + k * bytes;
+        char *b = things + (count - 1 - k) * bytes;
+        for (size_t i = 0; i < bytes; i++) {
+            const char kept = a[i];
+            a[i] = b[i];
+            b[i] = kept;
+        }
+    }
+}
+
+void view_turn_plane(const struct patch_view *view, size_t rows, size_t columns, void *plane,
+                     size_t pixel_bytes)
+{
+    const size_t row_bytes = columns * pixel_bytes;
+    if (view->is_mirrored)
+        reverse(plane, rows, row_bytes);
+    for (size_t row = 0; view->is_reversed && row < rows; row++)
+        reverse((char *)plane + row * row_bytes, columns, pixel_bytes);
 }
 
 double view_patch_column(const struct patch_view *view, double column)
@@ -144,16 +194,6 @@ double view_ground_range(const struct patch_view *view, double processor_range_m
     return ray_path_ground_range(&view->water, processor_range_m / view->range_ratio);
 }
 
-double view_seabed_lambert(const struct patch_view *view, const struct scene *scene)
-{
-    const double first = fmax(view->first_range_m, view_bottom_range(view));
-    const double middle = 0.5 * (first + view_processor_range(view, (double)(view->columns - 1)));
-    return isnan(scene->seabed.grain_size_phi)
-               ? scene->seabed.lambert
-               : sediment_lambert(scene->seabed.grain_size_phi, view->wavelength_m,
-                                  view_grazing(view, middle));
-}
-
 double view_grazing(const struct patch_view *view, double processor_range_m)
 {
     const double ground = view_ground_range(view, processor_range_m);
@@ -201,10 +241,9 @@ void line_grid_for_patch(struct line_grid *grid, const struct patch_view *view,
     grid->strips_per_row = (uint32_t)ceil(view->row_spacing_m / response->strip_m - ROUNDING);
     grid->bins_per_pixel =
         (uint32_t)ceil(BINS_PER_RESOLUTION * view->column_spacing_m / resolution - ROUNDING);
-    const double farthest = view_processor_range(view, (double)(view->columns - 1));
     const double strip = view->row_spacing_m / grid->strips_per_row;
-    const int32_t strip_margin =
-        (int32_t)ceil(cross_range_energy_reach(response, farthest, MARGIN_ENERGY_SHARE) / strip);
+    const int32_t strip_margin = (int32_t)ceil(
+        cross_range_energy_reach(response, view->farthest_m, MARGIN_ENERGY_SHARE) / strip);
     const int32_t bin_margin = bins_of(view, response->pulse_margin_m, grid->bins_per_pixel);
     /* nothing returns from before range 0 */
     const int32_t bins_before = (int32_t)fmin(

@@ -16,12 +16,16 @@ struct point_response;
  * view is row rows - 1 - n of the image, so that +y is to port of +x as in a right-handed frame. */
 struct patch_view {
     size_t rows, columns;
+    size_t first_row, first_column; /* of a window, in the patch's view; 0 of the whole patch */
     double row_spacing_m, column_spacing_m;
     double first_x_m;     /* of row 0 of the view */
     double first_range_m; /* processor's slant range of column 0 */
+    double farthest_m;    /* and of the patch's last column */
     double range_ratio;   /* processor over straight range: reference over straight sound speed */
     double altitude_m;
     double wavelength_m;   /* in the straight water, around seabed and targets */
+    double seabed_lambert; /* mu0: what the scene says, or its sediment at the middle of the patch's
+                              seabed */
     bool is_mirrored;      /* its rows are the image's from the last to the first */
     bool is_reversed;      /* and so are its columns, so that range grows with them */
     struct ray_path water; /* of sound straight from the sonar */
@@ -41,6 +45,20 @@ double scene_reference_speed(const struct scene *scene);
 sonject_status patch_view_init(struct patch_view *view, struct report *report,
                                const struct scene *scene, const struct water *water,
                                double first_row, double first_column, size_t rows, size_t columns);
+
+/* Rows and columns of a view. */
+struct window {
+    size_t first_row, rows, first_column, columns;
+};
+
+/* A window of the whole patch's view as a view of its own: x, ranges and all that belongs to the
+ * patch stay as they are, and so do the random numbers of its cells. */
+struct patch_view patch_view_window(const struct patch_view *view, const struct window *window);
+
+/* Turns a plane of the patch, or of a part of it, from the image's order of rows and columns into
+ * the view's, or back. */
+void view_turn_plane(const struct patch_view *view, size_t rows, size_t columns, void *plane,
+                     size_t pixel_bytes);
 
 /* The patch's column that a column of the view is. */
 double view_patch_column(const struct patch_view *view, double column);
@@ -70,9 +88,6 @@ double view_ground_range(const struct patch_view *view, double processor_range_m
  * altitude.
  */
 double view_grazing(const struct patch_view *view, double processor_range_m);
-
-/* The seabed's mu0: what the scene says, or its sediment at the middle of the patch's seabed. */
-double view_seabed_lambert(const struct patch_view *view, const struct scene *scene);
 
 /* What refraction does to the energy of echoes of the seabed at a processor's slant range: 1 in
  * isovelocity water. */

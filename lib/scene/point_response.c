@@ -136,6 +136,11 @@ double along_track_energy_reach(const struct point_response *response, double sh
                     4096.0 * response->resolution_m, share, window_energy_at);
 }
 
+double along_track_tail(const struct point_response *response)
+{
+    return response->resolution_m * transform_tail(response->weights, response->terms, TAIL_LEVEL);
+}
+
 /* ---- Pulses: how each begins after point_response_set_widths, G, the integral of |G|^2, and the
  * half width beyond which less than a share of that lies. */
 

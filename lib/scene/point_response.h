@@ -95,6 +95,9 @@ double along_track_energy_width(const struct point_response *response);
 /* Half width in m beyond which less than `share` of that integral lies. */
 double along_track_energy_reach(const struct point_response *response, double share);
 
+/* Half width in m beyond which |W| is below -60 dB. */
+double along_track_tail(const struct point_response *response);
+
 /* G(r): exp(-r^2 / 2 sigma^2), or the compressed sweep's; of a table the real part. */
 double range_response(const struct point_response *response, double distance_m);
 struct complex_number range_response_complex(const struct point_response *response,
@@ -123,8 +126,8 @@ double cross_range_energy_width(const struct point_response *response, double ra
 double cross_range_energy_reach(const struct point_response *response, double range_m,
                                 double share);
 
-/* Half width in m that glints are spread over: to where a beam's side lobes are below -60 dB;
- * infinite for a synthetic aperture. */
+/* Half width in m that glints are spread over: to where side lobes are below -60 dB; infinite with
+ * residual motion. */
 double cross_range_tail(const struct point_response *response, double range_m);
 
 /* Whether images can be formed so: echoes must stay within their range cell over a real aperture's

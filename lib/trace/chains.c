@@ -73,8 +73,8 @@ static double mean_height(const struct tracer *tracer, const struct placement *p
 static double heard_reach(const struct tracer *tracer, const struct placement *placement)
 {
     const struct patch_view *view = &tracer->view;
-    const double last = 1.02 * view_processor_range(view, (double)view->columns);
-    return 2.0 * last - placement_range(placement, view) - view->altitude_m;
+    return 2.0 * 1.02 * (view->farthest_m + view->column_spacing_m) -
+           placement_range(placement, view) - view->altitude_m;
 }
 
 struct chain_reach chain_reach_of(const struct tracer *tracer, const struct placement *placement)
@@ -110,6 +110,8 @@ static struct surroundings surroundings_of_objects(const struct tracer *tracer)
     struct surroundings around = {INFINITY, -INFINITY, INFINITY, -INFINITY};
     for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *placement = &tracer->placements[i];
+        if (!tracer_follows(tracer, placement->object))
+            continue;
         const struct chain_reach reach = chain_reach_of(tracer, placement);
         const double ground = placement->centre[1];
         around.first_x = fmin(around.first_x, placement->centre[0] - reach.around_m);
@@ -191,7 +193,7 @@ static sonject_material_params seabed_material(const struct tracer *tracer)
 {
     sonject_material_params material = tracer->scene->seabed.forward;
     if (isnan(material.lambert))
-        material.lambert = view_seabed_lambert(&tracer->view, tracer->scene);
+        material.lambert = tracer->view.seabed_lambert;
     return material;
 }
 

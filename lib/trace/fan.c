@@ -8,7 +8,6 @@
 #include "trace/chains.h"
 
 #define PI             3.14159265358979323846
-#define RAYS_MAX       67108864.0
 #define OBJECT_RAYS    16.0 /* at least, on a rough object: its energy is then known to 1 dB */
 #define SURROUNDINGS   18.0 /* in bounding radii of an object */
 #define MARGIN         1.02
@@ -241,14 +240,15 @@ struct span strips_between(const struct tracer *tracer, const struct line_grid *
     return strips;
 }
 
-/* Elevation of the highest object over the central direction. */
-static double highest_elevation(const struct tracer *tracer, double central_grazing, double lowest)
+double fan_highest_elevation(const struct tracer *tracer, double central_grazing, double lowest)
 {
     const struct patch_view *view = &tracer->view;
     double highest = lowest;
     for (uint32_t i = 0; i < tracer->part_count; i++)
-        highest = fmax(highest, central_grazing - placement_grazing(&tracer->placements[i], view) +
-                                    elevations_of_object(tracer, i, &view->water).highest);
+        if (tracer_follows(tracer, tracer->placements[i].object))
+            highest =
+                fmax(highest, central_grazing - placement_grazing(&tracer->placements[i], view) +
+                                  elevations_of_object(tracer, i, &view->water).highest);
     return highest;
 }
 
@@ -262,8 +262,7 @@ double fan_elevation_step(const struct tracer *tracer, const struct line_grid *g
            (rays_per_bin * tracer->scene->injection.ray_scale);
 }
 
-/* The step at which the smallest rough object, a sphere as large as that, is met by OBJECT_RAYS. */
-static double step_to_objects(const struct tracer *tracer, double strip_m)
+double fan_step_to_objects(const struct tracer *tracer, double strip_m)
 {
     double step = INFINITY;
     for (uint32_t i = 0; i < tracer->part_count; i++) {
@@ -272,7 +271,7 @@ static double step_to_objects(const struct tracer *tracer, double strip_m)
         const double grazing = placement_grazing(placement, &tracer->view);
         const double radius =
             ray_path_arrival(&tracer->view.water, grazing, placement->centre[2]).wavefront_m;
-        if (material_is_rough(&placement->material))
+        if (material_is_rough(&placement->material) && tracer_follows(tracer, placement->object))
             step = fmin(step, 0.25 * PI * size * size / (OBJECT_RAYS * strip_m * radius));
     }
     return step / tracer->scene->injection.ray_scale;
@@ -282,7 +281,7 @@ sonject_status fan_set_rays(struct fan_record *fan, struct report *report, doubl
                             double highest, double step)
 {
     const double rays = ceil((highest - lowest) / step);
-    if (!(rays < RAYS_MAX))
+    if (!(rays < FAN_RAYS_MAX))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the patch needs %.3g rays a ping: use a smaller patch or fewer rays",
                               rays);
@@ -319,9 +318,9 @@ sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
     if (tracer->relief)
         edges = grazing_over_relief(tracer, edges);
     return fan_set_rays(fan, tracer->report, central - edges.near,
-                        highest_elevation(tracer, central, central - edges.far),
+                        fan_highest_elevation(tracer, central, central - edges.far),
                         fmin(fan_elevation_step(tracer, grid, far, rays_per_bin),
-                             step_to_objects(tracer, (double)fan->strip_width)));
+                             fan_step_to_objects(tracer, (double)fan->strip_width)));
 }
 
 struct elevations elevations_of_object(const struct tracer *tracer, uint32_t part,
@@ -436,12 +435,10 @@ double beam_largest_weight(const struct tracer *tracer, const struct fan_record 
     return 6.0 * sine * 2.0 * fan->reference_range / (fan->strip_width * pow(cosine, 3.0));
 }
 
-sonject_status beam_record_init(struct fan_record *fan, const struct tracer *tracer,
-                                const struct line_grid *grid)
+void beam_record_init(struct fan_record *fan, const struct tracer *tracer)
 {
     const sonject_sonar_params *sonar = &tracer->scene->sonar;
     const struct patch_view *view = &tracer->view;
-    const double sine = beam_largest_sine(tracer);
     double axes[3][3];
     sonar_array_axes(axes, sonar, view->is_mirrored);
     fan->beam.reach = (float)reach_of_beam(tracer);
@@ -451,13 +448,10 @@ sonject_status beam_record_init(struct fan_record *fan, const struct tracer *tra
         fan->beam.along[k] = (float)axes[0][k];
         fan->beam.across[k] = (float)axes[2][k];
     }
-    /* what lies at the near end's range off broadside is nearer at broadside */
-    const double near = line_grid_near_end(grid, view) * sqrt(1.0 - sine * sine);
-    double origin[3];
-    patch_fan_origin(origin, view);
-    const double central = ray_path_grazing(&view->water, origin[1], 0.0);
-    const double highest = fan->first_elevation + (double)fan->rays * fan->elevation_step;
-    return fan_set_rays(fan, tracer->report,
-                        fmin(central - view_grazing(view, near), fan->first_elevation), highest,
-                        fan->elevation_step);
+}
+
+double beam_nearest(const struct tracer *tracer, const struct line_grid *grid)
+{
+    const double sine = beam_largest_sine(tracer);
+    return line_grid_near_end(grid, &tracer->view) * sqrt(1.0 - sine * sine);
 }

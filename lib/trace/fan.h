@@ -28,6 +28,23 @@ void patch_fan_origin(double origin[3], const struct patch_view *view);
 sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
                               const struct line_grid *grid, bool has_map, double rays_per_bin);
 
+/* The elevations between which each ray of a fan lies, rad over the central direction: rays + 1,
+ * and the last again for lanes without a ray. */
+struct fan_edges {
+    float *elevations; /* owned */
+    size_t count, capacity;
+    double widest; /* step, rad */
+};
+
+/* Lays a patch's fan anew, from a processor range on, by the bins that rays meet level seabed in:
+ * rays_per_bin (times the scene's ray scale) in each, and more where sound comes so steeply, or a
+ * rough object is so small, that they would lie far apart across it. A bin's rays are numbered as
+ * the bins of the patch are. fan: of patch_fan_init. To be given to free(edges->elevations), also
+ * on failure. Errors: INPUT (too many rays), MEMORY. */
+sonject_status fan_edges_init(struct fan_edges *edges, struct fan_record *fan,
+                              const struct tracer *tracer, const struct line_grid *grid,
+                              double nearest_m, double rays_per_bin);
+
 /* Grazing angles, rad, at which sound comes to the near and the far end of what is traced. */
 struct grazing_angles {
     double near, far;
@@ -51,6 +68,15 @@ struct span strips_between(const struct tracer *tracer, const struct line_grid *
  * sound meets the seabed at a grazing angle, and elevation covers most range. */
 double fan_elevation_step(const struct tracer *tracer, const struct line_grid *grid,
                           double grazing_rad, double rays_per_bin);
+
+#define FAN_RAYS_MAX 67108864.0
+
+/* Elevation of the highest object over the central direction; the lowest given where none is. */
+double fan_highest_elevation(const struct tracer *tracer, double central_grazing, double lowest);
+
+/* The step at which the smallest rough object, a sphere as large as that, is met by 16 rays of a
+ * strip so wide: its energy is then known to 1 dB. */
+double fan_step_to_objects(const struct tracer *tracer, double strip_m);
 
 /* Lays rays from a lowest to a highest elevation (rad over the central direction). Errors: INPUT
  * (too many rays). */
@@ -85,10 +111,11 @@ double aspects_slide(const struct tracer *tracer, double length_m);
  * the plane. */
 int32_t aspects_relief_halo(const struct tracer *tracer, const struct line_grid *grid);
 
-/* Fills fan->beam, and lays the fan's rays anew so that those off broadside reach the patch's near
- * end too. fan: of patch_fan_init. Errors: INPUT (too many rays). */
-sonject_status beam_record_init(struct fan_record *fan, const struct tracer *tracer,
-                                const struct line_grid *grid);
+/* Fills fan->beam. */
+void beam_record_init(struct fan_record *fan, const struct tracer *tracer);
+
+/* The processor range at broadside, m, of what lies farthest off it at the grid's near end. */
+double beam_nearest(const struct tracer *tracer, const struct line_grid *grid);
 
 /* Sine of the largest angle off broadside that the beam's rays go out to. */
 double beam_largest_sine(const struct tracer *tracer);

@@ -16,12 +16,6 @@
 /* A pixel is one ping's alone, and a beam's rays weigh unequally. */
 #define RAYS_PER_BIN_OF_BEAM 3.0
 
-static double bin_of_processor_range(const struct rough_trace *trace, const struct tracer *tracer,
-                                     double range)
-{
-    return view_column_of_range(&tracer->view, range) * trace->grid.bins_per_pixel;
-}
-
 static bool has_beam(const struct rough_trace *trace)
 {
     return trace->launch.fan.beam.reach > 0.0f;
@@ -48,51 +42,49 @@ static struct part_ranges ranges_of_part(const struct tracer *tracer,
     return ranges;
 }
 
-/* Bins where a part's echoes and shadow can lie, those by image sources too. */
-static struct span part_bins(const struct rough_trace *trace, const struct tracer *tracer,
-                             uint32_t number)
+struct span rough_bins_of_part(const struct tracer *tracer, uint32_t number,
+                               const struct line_grid *grid, bool by_beam)
 {
     const struct part_ranges ranges = ranges_of_part(tracer, &tracer->placements[number]);
     const double ratio = tracer->view.range_ratio;
-    const double first = floor(bin_of_processor_range(trace, tracer, ranges.first * ratio)) - 2.0;
-    const struct span images = image_source_bins(tracer, number, &trace->grid);
+    const struct span images = image_source_bins(tracer, number, grid);
     /* a beam sees what is off broadside farther away */
-    const double sine = has_beam(trace) ? beam_largest_sine(tracer) : 0.0;
+    const double sine = by_beam ? beam_largest_sine(tracer) : 0.0;
     const double farthest = ranges.last / sqrt(1.0 - sine * sine);
-    const double last = fmax(ceil(bin_of_processor_range(trace, tracer, farthest * ratio)) + 2.0,
-                             images.first + images.count);
-    const double limit = trace->grid.bins.first + trace->grid.bins.count;
+    const double first_column = view_column_of_range(&tracer->view, ranges.first * ratio);
+    const double last_column = view_column_of_range(&tracer->view, farthest * ratio);
+    const double first = floor(first_column * grid->bins_per_pixel) - 2.0;
+    const double last =
+        fmax(ceil(last_column * grid->bins_per_pixel) + 2.0, images.first + images.count);
+    const double limit = grid->bins.first + grid->bins.count;
     struct span bins;
-    bins.first = (int32_t)fmin(fmax(first, trace->grid.bins.first), limit);
+    bins.first = (int32_t)fmin(fmax(first, grid->bins.first), limit);
     bins.count = (int32_t)fmax(0.0, fmin(last + 1.0, limit) - bins.first);
-    return span_overlap(span_join(bins, multibounce_bins(tracer, number, &trace->grid)),
-                        trace->grid.bins);
+    return span_overlap(span_join(bins, multibounce_bins(tracer, number, grid)), grid->bins);
 }
 
 /* How far, m along the track, a part's shadow and the strips of rays that meet it reach beyond it:
  * rays belong where they meet the seabed, or the patch's end. */
-static double part_slide(const struct rough_trace *trace, const struct tracer *tracer,
-                         const struct placement *placement)
+static double part_slide(const struct tracer *tracer, const struct placement *placement,
+                         const struct line_grid *grid, bool by_beam)
 {
     const struct part_ranges ranges = ranges_of_part(tracer, placement);
-    const double sine = has_beam(trace) ? beam_largest_sine(tracer) : 0.0;
-    if (has_beam(trace)) /* rays belong to the ping that they leave from */
+    const double sine = by_beam ? beam_largest_sine(tracer) : 0.0;
+    if (by_beam) /* rays belong to the ping that they leave from */
         return ranges.last * sine / sqrt(1.0 - sine * sine);
-    const double patch_end =
-        line_grid_far_end(&trace->grid, &tracer->view) / tracer->view.range_ratio;
+    const double patch_end = line_grid_far_end(grid, &tracer->view) / tracer->view.range_ratio;
     return aspects_slide(tracer, fmax(fmin(ranges.last, patch_end) - ranges.first, 0.0));
 }
 
-/* Strips where a part's echoes and shadow can lie, in the patch and beyond. */
-static struct span part_strips(const struct rough_trace *trace, const struct tracer *tracer,
-                               uint32_t number)
+struct span rough_strips_of_part(const struct tracer *tracer, uint32_t number,
+                                 const struct line_grid *grid, bool by_beam)
 {
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct placement *placement = &tracer->placements[number];
     const double extent = placement_half_extent(placement, along) +
                           tracer->scene->sonar.transducer_side_m +
-                          part_slide(trace, tracer, placement);
-    return strips_between(tracer, &trace->grid, placement->centre[0] - extent,
+                          part_slide(tracer, placement, grid, by_beam);
+    return strips_between(tracer, grid, placement->centre[0] - extent,
                           placement->centre[0] + extent);
 }
 
@@ -104,7 +96,9 @@ static int32_t object_halo(const struct rough_trace *trace, const struct tracer 
     if (!(aspects_sine(tracer) > 0.0))
         return 0;
     for (uint32_t i = 0; i < tracer->part_count; i++) {
-        const struct span strips = part_strips(trace, tracer, i);
+        if (!tracer_follows(tracer, tracer->placements[i].object))
+            continue;
+        const struct span strips = rough_strips_of_part(tracer, i, &trace->grid, has_beam(trace));
         const int32_t before = patch.first - strips.first;
         const int32_t after = strips.first + strips.count - (patch.first + patch.count);
         halo = before > halo ? before : halo;
@@ -136,10 +130,12 @@ static sonject_status init_tiles(struct rough_trace *trace, struct tracer *trace
         tile->offset = elements;
         for (uint32_t k = 0; k < object->part_count; k++) {
             const uint32_t part = object->first_part + k;
+            const struct span strips =
+                rough_strips_of_part(tracer, part, &trace->grid, has_beam(trace));
             tile->grid.strips =
-                span_join(tile->grid.strips,
-                          span_overlap(part_strips(trace, tracer, part), trace->grid.strips));
-            tile->grid.bins = span_join(tile->grid.bins, part_bins(trace, tracer, part));
+                span_join(tile->grid.strips, span_overlap(strips, trace->grid.strips));
+            tile->grid.bins = span_join(
+                tile->grid.bins, rough_bins_of_part(tracer, part, &trace->grid, has_beam(trace)));
         }
         elements += line_grid_cells(&tile->grid) * TILE_PLANES;
         if (elements > (size_t)1 << 31)
@@ -167,8 +163,7 @@ static void choose_quanta(struct rough_trace *trace, const struct tracer *tracer
     const double wavefront =
         (double)fan->strip_width * fan->elevation_step * 2.0 * fan->reference_range;
     const double beam = has_beam(trace) ? beam_largest_weight(tracer, fan) : 1.0;
-    const double most = beam * wavefront *
-                        fmax(brightest, view_seabed_lambert(&tracer->view, tracer->scene) * seabed);
+    const double most = beam * wavefront * fmax(brightest, tracer->view.seabed_lambert * seabed);
     fan->quanta = power_of_two_below(ldexp(1.0, 44) / most);
     trace->energy_of_quantum = view_energy_scale(&tracer->view) / fan->quanta;
 }
@@ -184,6 +179,8 @@ static sonject_status begin_launch(struct rough_trace *trace, struct tracer *tra
     sonject_status status = launch_begin(launch, tracer, PROGRAM_TRACE_ROUGH, "trace_rough");
     THEN(status, launch_add_objects(launch, tracer, &parts, origin, trace));
     THEN(status, launch_add(launch, tracer, map_bytes, map));
+    THEN(status,
+         launch_add(launch, tracer, trace->edges.count * sizeof(float), trace->edges.elevations));
     THEN(status, launch_add_tallies(launch, tracer, trace->grid.strips.count,
                                     (size_t)trace->grid.bins.count, &trace->chunk));
     THEN(status, launch_add(launch, tracer, trace->tile_elements * sizeof(int64_t), NULL));
@@ -195,15 +192,18 @@ static sonject_status init_fan(struct rough_trace *trace, struct tracer *tracer,
                                bool is_beam)
 {
     const double rays_per_bin = is_beam ? RAYS_PER_BIN_OF_BEAM : RAYS_PER_BIN;
-    sonject_status status =
-        patch_fan_init(&trace->launch.fan, tracer, &trace->grid, has_map, rays_per_bin);
-    if (status == SONJECT_OK && is_beam)
-        status = beam_record_init(&trace->launch.fan, tracer, &trace->grid);
+    const double nearest = is_beam ? beam_nearest(tracer, &trace->grid)
+                                   : line_grid_near_end(&trace->grid, &tracer->view);
+    struct fan_record *fan = &trace->launch.fan;
+    sonject_status status = patch_fan_init(fan, tracer, &trace->grid, has_map, rays_per_bin);
+    if (is_beam)
+        beam_record_init(fan, tracer);
+    THEN(status, fan_edges_init(&trace->edges, fan, tracer, &trace->grid, nearest, rays_per_bin));
     THEN(status,
          patch_rays_init(&trace->launch.rays, &trace->launch.fan.table, tracer, &trace->grid));
     trace->launch.fan.stream = STREAM_ROUGH_RAYS;
     aspects_record_init(&trace->launch.fan, tracer, &trace->grid);
-    trace->launch.fan.seabed_lambert = (float)view_seabed_lambert(&tracer->view, tracer->scene);
+    trace->launch.fan.seabed_lambert = (float)tracer->view.seabed_lambert;
     return status;
 }
 
@@ -240,6 +240,8 @@ sonject_status rough_trace_begin_beam(struct rough_trace *trace, struct tracer *
 void rough_trace_end(struct rough_trace *trace)
 {
     launch_end(&trace->launch);
+    free(trace->edges.elevations);
+    trace->edges.elevations = NULL;
 }
 
 void rough_trace_flatten(struct rough_trace *trace)

@@ -3,6 +3,7 @@
 #ifndef SONJECT_TRACE_ROUGH_H
 #define SONJECT_TRACE_ROUGH_H
 
+#include "trace/fan.h"
 #include "trace/tracer.h"
 
 struct rough_tile {
@@ -14,6 +15,7 @@ struct rough_tile {
 enum rough_buffer {
     ROUGH_OBJECTS,
     ROUGH_MAP,
+    ROUGH_EDGES,
     ROUGH_TALLIES,
     ROUGH_TILES
 };
@@ -27,8 +29,16 @@ struct rough_trace {
      * sides of a chunk, and beyond the patch's ends. */
     int32_t relief_halo, object_halo;
     int32_t chunk; /* strips that a call of rough_trace_strips may take */
+    struct fan_edges edges;
     struct launch launch;
 };
+
+/* Bins of the grid, and strips of it and beyond, where echoes and shadow of a part can lie, those
+ * by image sources and several faces too. by_beam: as pings of a real aperture hear them. */
+struct span rough_bins_of_part(const struct tracer *tracer, uint32_t number,
+                               const struct line_grid *grid, bool by_beam);
+struct span rough_strips_of_part(const struct tracer *tracer, uint32_t number,
+                                 const struct line_grid *grid, bool by_beam);
 
 /* Prepares a trace. map: rows x columns of the view, reflectivity over mu0 (values >= 0, finite),
  * or NULL for 1 everywhere. On success the trace is to be given to rough_trace_end, also after

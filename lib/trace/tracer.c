@@ -17,7 +17,7 @@
 
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 58 * 4 ? 1 : -1];
-typedef char fan_record_is_packed[sizeof(struct fan_record) == 76 * 4 ? 1 : -1];
+typedef char fan_record_is_packed[sizeof(struct fan_record) == 78 * 4 ? 1 : -1];
 typedef char chain_record_is_packed[sizeof(struct chain_record) == 43 * 4 ? 1 : -1];
 typedef char sphere_group_is_packed[sizeof(struct sphere_group) == 64 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
@@ -70,6 +70,7 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
     fan->seed_high = (uint32_t)(tracer->scene->injection.seed >> 32);
     fan->objects = (int32_t)tracer->part_count;
     fan->segments = 1;
+    fan->track_strip = (int32_t)(view->first_row * grid->strips_per_row);
     fan->relief_words = object_buffer_relief_words(tracer, tracer->part_count);
     if (tracer->relief) {
         fan->relief_x = (float)(tracer->relief->first_x_m - origin[0]);

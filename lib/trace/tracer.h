@@ -3,6 +3,7 @@
 #ifndef SONJECT_TRACE_TRACER_H
 #define SONJECT_TRACE_TRACER_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/report.h"
@@ -30,9 +31,17 @@ struct tracer {
     uint32_t part_count;
     const struct placed_object *objects; /* of scene->objects: where their parts are */
     const struct relief *relief;         /* NULL: the seabed is the plane */
+    const bool *follows; /* of scene->objects: whose echoes the view is to show; the others are
+                            only in the way. NULL: all */
     struct trace_counts counts;
     struct checkpoint *checkpoint; /* NULL: everything is traced, and nothing kept */
 };
+
+/* Whether echoes of that object are followed. */
+static inline bool tracer_follows(const struct tracer *tracer, uint32_t object)
+{
+    return !tracer->follows || tracer->follows[object];
+}
 
 /* Heights that the seabed keeps to, m; both 0 where it is a plane. */
 double tracer_lowest_seabed(const struct tracer *tracer);

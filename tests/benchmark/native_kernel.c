@@ -19,7 +19,7 @@
     }
 
 OVER_STRIPS(native_trace_rough, trace_rough_strip(fan, NULL, buffers[0], buffers[1], buffers[2],
-                                                  buffers[3], strip, segment))
+                                                  buffers[3], buffers[4], strip, segment))
 OVER_STRIPS(native_trace_smooth,
             trace_smooth_strip(fan, NULL, buffers[0], buffers[1], strip, segment))
 OVER_STRIPS(native_trace_chains, trace_chains_strip(fan, NULL, buffers[0], buffers[1], buffers[2],

@@ -146,6 +146,7 @@ static int compare_single_hits(struct benchmark_scene *set)
                                    .run = native_trace_rough,
                                    .launch = &rough.launch,
                                    .bytes = {sizeof(struct object_record), 0,
+                                             rough.edges.count * sizeof(float),
                                              line_grid_cells(&rough.grid) * sizeof(int64_t),
                                              rough.tile_elements * sizeof(int64_t)},
                                    .tallies = ROUGH_TALLIES};

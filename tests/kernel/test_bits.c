@@ -419,8 +419,8 @@ static struct outcome_record strip_as_c(const struct trace *trace, const struct 
     const struct ray_piece_record *rays = trace->launch->rays.pieces;
     void *const *buffers = given->buffers;
     if (subject->part == ROUGH)
-        return trace_rough_strip(fan, rays, buffers[ROUGH_OBJECTS], subject->map, tallies->sums,
-                                 tallies->tiles, strip, 0);
+        return trace_rough_strip(fan, rays, buffers[ROUGH_OBJECTS], subject->map,
+                                 buffers[ROUGH_EDGES], tallies->sums, tallies->tiles, strip, 0);
     if (subject->part == CHAINS)
         return trace_chains_strip(fan, rays, buffers[CHAIN_RECORD], buffers[CHAIN_OBJECTS],
                                   buffers[CHAIN_SPHERES], subject->map, tallies->sums, strip, 0);

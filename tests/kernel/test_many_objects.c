@@ -231,10 +231,10 @@ static void compare_rough(struct bench *bench)
     objects[0].tree_words = 0;
     trace.launch.fan.segments = 1;
     for (int strip = 0; is_new && strip < trace.launch.fan.strips; strip++)
-        assert_int_equal(
-            trace_rough_strip(&trace.launch.fan, NULL, objects, NULL, lines, tiles, strip, 0)
-                .faults,
-            0);
+        assert_int_equal(trace_rough_strip(&trace.launch.fan, NULL, objects, NULL,
+                                           trace.edges.elevations, lines, tiles, strip, 0)
+                             .faults,
+                         0);
     /* a dead trace would agree too */
     assert_true(bench_expect_sums("seabed", from_device, lines, cells) > 300);
     assert_true(bench_expect_sums("tiles", device_tiles, tiles, trace.tile_elements) > 300);

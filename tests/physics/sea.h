@@ -231,8 +231,8 @@ struct energies sea_changed_chains(struct sea *sea, const struct ranges *ranges,
                                    uint64_t first_seed, int seeds,
                                    void (*change)(struct bench *bench, struct chain_trace *trace));
 
-/* Compares an order's energies with those expected, where these are a fiftieth of the most, range by
- * range and their sum; errors of so many of them at least must be below a share of them. */
+/* Compares an order's energies with those expected, where these are a fiftieth of the most, range
+ * by range and their sum; errors of so many of them at least must be below a share of them. */
 void expect_energies(const char *what, const struct energies *measured, int order,
                      const struct estimate *expected, int count, double systematic, double resolved,
                      int least);
@@ -289,8 +289,19 @@ double complex *unit_field(const struct sea *sea, const double complex *field, c
 
 /* ---- injections ---- */
 
-/* pixels: amplitudes or pairs. */
-const struct injection_result *sea_inject(struct sea *sea, const float *pixels, bool is_complex);
+/* Layers of an injection, and how many windows they were made in. */
+struct injected {
+    const float *image, *field, *energy, *visibility, *order_energy[CHAIN_ORDERS];
+    const uint8_t *highlight, *shadow, *labels, *influence;
+    const sonject_object_truth *objects;
+    sonject_statistics statistics;
+    const struct injected_window *windows;
+    size_t window_count;
+};
+
+/* pixels: amplitudes or pairs. The second traces all of the patch. */
+const struct injected *sea_inject(struct sea *sea, const float *pixels, bool is_complex);
+const struct injected *sea_inject_whole(struct sea *sea, const float *pixels, bool is_complex);
 float *pairs_of(const double complex *field, size_t count);
 float *magnitudes_of(const double complex *field, size_t count);
 

@@ -32,7 +32,8 @@ const struct image *sea_image_of(struct sea *sea, const float *map, bool has_spe
     const struct echo_request request = {
         .map = map, .field = has_speckle ? SEABED_FIELD_SPECKLE : SEABED_FIELD_NONE};
     sea_lay(sea);
-    EXPECT_OK(&sea->bench->report, echoes_form(echoes, &sea->bench->tracer, &request, NULL));
+    EXPECT_OK(&sea->bench->report,
+              echoes_form(echoes, &sea->bench->tracer, &request, &sea->bench->tracer, &request));
     claim_end(clear_echoes, echoes);
     *image = (struct image){.rows = echoes->rows,
                             .columns = echoes->columns,
@@ -165,15 +166,51 @@ double complex *unit_field(const struct sea *sea, const double complex *field, c
     return unit;
 }
 
-const struct injection_result *sea_inject(struct sea *sea, const float *pixels, bool is_complex)
+static const float *plane_of(const struct injection_result *result, enum injected_plane plane)
+{
+    float *pixels = claim_memory(2 * result->rows * result->columns, sizeof *pixels);
+    injection_result_plane(result, plane, pixels);
+    return pixels;
+}
+
+static const struct injected *inject(struct sea *sea, const float *pixels, bool is_complex,
+                                     bool is_whole)
 {
     struct injection_result *result = claim_memory(1, sizeof *result);
-    const struct injection_input input = {
-        .rows = sea->rows, .columns = sea->columns, .is_complex = is_complex, .pixels = pixels};
+    struct injected *injected = claim_memory(1, sizeof *injected);
+    const struct injection_input input = {.rows = sea->rows,
+                                          .columns = sea->columns,
+                                          .is_complex = is_complex,
+                                          .pixels = pixels,
+                                          .is_whole = is_whole};
     EXPECT_OK(&sea->bench->report, injection_run(&sea->bench->report, sea->bench->tracer.device,
                                                  &sea->bench->scene, &input, NULL, NULL, result));
     claim_end(clear_result, result);
-    return result;
+    *injected = (struct injected){.image = result->image,
+                                  .field = plane_of(result, INJECTED_FIELD),
+                                  .energy = plane_of(result, INJECTED_ENERGY),
+                                  .visibility = plane_of(result, INJECTED_VISIBILITY),
+                                  .highlight = result->highlight,
+                                  .shadow = result->shadow,
+                                  .labels = result->labels,
+                                  .influence = result->influence,
+                                  .objects = result->objects,
+                                  .statistics = result->statistics,
+                                  .windows = result->windows,
+                                  .window_count = result->window_count};
+    for (uint32_t order = 0; order < result->orders && order < CHAIN_ORDERS; order++)
+        injected->order_energy[order] = plane_of(result, INJECTED_ORDER + order);
+    return injected;
+}
+
+const struct injected *sea_inject(struct sea *sea, const float *pixels, bool is_complex)
+{
+    return inject(sea, pixels, is_complex, false);
+}
+
+const struct injected *sea_inject_whole(struct sea *sea, const float *pixels, bool is_complex)
+{
+    return inject(sea, pixels, is_complex, true);
 }
 
 float *pairs_of(const double complex *field, size_t count)
@@ -197,9 +234,13 @@ float *magnitudes_of(const double complex *field, size_t count)
 const struct patch_level *sea_level(struct sea *sea, const float *pixels, bool is_complex)
 {
     struct patch_level *level = claim_memory(1, sizeof *level);
-    EXPECT_OK(&sea->bench->report,
-              patch_level_init(level, &sea->bench->report, &sea->bench->scene, sea_view(sea),
-                               sea_response(sea), pixels, is_complex));
+    const struct window whole = {0, sea->rows, 0, sea->columns};
+    struct report *report = &sea->bench->report;
+    struct patch_facts facts;
+    EXPECT_OK(report, patch_facts_init(&facts, report, &sea->bench->scene, sea_view(sea), pixels,
+                                       is_complex));
+    EXPECT_OK(report, patch_level_init(level, report, &sea->bench->scene, sea_view(sea), &whole,
+                                       sea_response(sea), &facts, pixels, is_complex));
     claim_end(clear_level, level);
     return level;
 }

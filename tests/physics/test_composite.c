@@ -20,7 +20,7 @@ static double complex *measured_field(struct sea *sea, uint64_t seed)
     return field;
 }
 
-static double pixel_energy(const struct injection_result *result, bool is_complex, size_t i)
+static double pixel_energy(const struct injected *result, bool is_complex, size_t i)
 {
     const float *p = result->image;
     return is_complex ? (double)p[2 * i] * p[2 * i] + (double)p[2 * i + 1] * p[2 * i + 1]
@@ -54,7 +54,7 @@ CLAIM(untouched_pixels_keep_every_bit)
         object->material.reflection = 0.8;
         object->material.roughness_m = 1e-3;
         object->material.lambert = 0.1;
-        const struct injection_result *result = sea_inject(sea, pixels, is_complex);
+        const struct injected *result = sea_inject(sea, pixels, is_complex);
         size_t kept = 0, shaded = 0;
         for (size_t i = 0; i < PIXELS; i++) {
             assert_true(result->visibility[i] >= 0.0f && result->visibility[i] <= 1.0f);
@@ -92,7 +92,7 @@ CLAIM(shadows_and_highlights_have_their_energy)
             place_in_pixels(ball, 60.0, 60.0);
             make_rough(ball, 0.2);
             sea_ready(sea);
-            const struct injection_result *result = sea_inject(sea, pixels, is_complex);
+            const struct injected *result = sea_inject(sea, pixels, is_complex);
             const struct patch_level *level = sea_level(sea, pixels, is_complex);
             double in_shadow = 0.0, on_ball = 0.0, shadow_pixels = 0.0, ball_pixels = 0.0;
             for (size_t i = 0; i < PIXELS; i++) {
@@ -136,7 +136,7 @@ CLAIM(a_partial_shadow_keeps_its_share)
         slat->burial_m = -0.3;
         place_in_pixels(slat, 140.0 + 4.3 * k, 150.0);
     }
-    const struct injection_result *result = sea_inject(sea, pairs_of(field, PIXELS), true);
+    const struct injected *result = sea_inject(sea, pairs_of(field, PIXELS), true);
     double out = 0.0, expected = 0.0;
     size_t partial = 0;
     for (size_t i = 0; i < PIXELS; i++) {
@@ -171,7 +171,7 @@ CLAIM(the_change_is_that_of_the_second_interaction)
             field[2 * i] = (float)(size * cos(turn));
             field[2 * i + 1] = (float)(size * sin(turn));
         }
-        const struct injection_result *result[2];
+        const struct injected *result[2];
         sonject_object_params *object = sea_add(sea, SHAPE_CAPSULE, 2.3, 0.0, 0.3);
         object->burial_m = 0.1;
         assert_true(material_named("steel", &object->material));
@@ -319,7 +319,7 @@ CLAIM(a_coherent_map_comes_back_as_itself)
         sea->injection->mode = SONJECT_MODE_RESYNTHESISE;
         sea->seabed->map = SONJECT_MAP_COHERENT;
         const float *field = pairs_of(measured_field(sea, 9), PIXELS);
-        const struct injection_result *result = sea_inject(sea, field, true);
+        const struct injected *result = sea_inject(sea, field, true);
         double ab = 0.0, aa = 0.0, bb = 0.0;
         for (size_t k = 0; k < 2 * PIXELS; k++) {
             ab += (double)field[k] * result->image[k];
@@ -370,7 +370,7 @@ CLAIM(speckle_in_shadows_is_the_images)
         const float *pixels = measured_amplitudes(sea, looks, 1.6 * SPACING);
         const double expected =
             along_track_speckle_correlation(&sea->bench->tracer.response, SPACING); /* 0.22 */
-        const struct injection_result *result = sea_inject(sea, pixels, false);
+        const struct injected *result = sea_inject(sea, pixels, false);
         for (size_t i = 0; i < PIXELS; i++) {
             const double value = result->visibility[i] < DEEP ? (double)result->image[i] : 0.0;
             n += result->visibility[i] < DEEP;
@@ -428,7 +428,7 @@ CLAIM(highlights_saturate_where_the_image_does)
         float *pixels = measured_amplitudes(sea, 1, SPACING);
         for (size_t i = 0; i < PIXELS; i++)
             pixels[i] = fminf(pixels[i], 2.0f); /* two in a hundred pixels */
-        const struct injection_result *result = sea_inject(sea, pixels, false);
+        const struct injected *result = sea_inject(sea, pixels, false);
         for (size_t i = 0; i < PIXELS; i++)
             largest = fmaxf(largest, result->image[i]);
         assert_true(is_cut ? largest == 2.0f : largest > 20.0f);
@@ -436,7 +436,7 @@ CLAIM(highlights_saturate_where_the_image_does)
 }
 
 /* The largest energy of some rows, dB. */
-static double peak_of(const struct injection_result *result, size_t first_row, size_t end_row)
+static double peak_of(const struct injected *result, size_t first_row, size_t end_row)
 {
     double peak = 0.0;
     for (size_t i = first_row * SIDE; i < end_row * SIDE; i++)
@@ -454,12 +454,12 @@ CLAIM(levels_are_those_asked_for)
         ball->material.lambert = 0.1;
     }
     const float *pixels = measured_amplitudes(sea, 1, SPACING);
-    const struct injection_result *before = sea_inject(sea, pixels, false);
+    const struct injected *before = sea_inject(sea, pixels, false);
     sea_object(sea, 0)->level_kind = SONJECT_LEVEL_TARGET_STRENGTH;
     sea_object(sea, 0)->level_db = -30.0;
     sea_object(sea, 1)->level_kind = SONJECT_LEVEL_OVER_SEABED;
     sea_object(sea, 1)->level_db = 18.0;
-    const struct injection_result *after = sea_inject(sea, pixels, false);
+    const struct injected *after = sea_inject(sea, pixels, false);
     expect_close("target strength", after->objects[0].target_strength_db, -30.0, 1e-4);
     expect_close("over the seabed", after->objects[1].over_seabed_db, 18.0, 1e-4);
     for (uint32_t i = 0; i < 3; i++) {
@@ -510,7 +510,7 @@ CLAIM(the_water_column_keeps_its_pixels)
     for (size_t i = 0; i < sea->pixels; i++)
         pixels[i] = i % FIRST_COLUMNS < water ? 0.01f : 1.0f;
     const struct patch_level *level = sea_level(sea, pixels, false);
-    const struct injection_result *result = sea_inject(sea, pixels, false);
+    const struct injected *result = sea_inject(sea, pixels, false);
     for (size_t i = 0; i < sea->pixels; i++) {
         assert_true(fabsf(level->level[i] - 1.0f) < 1e-4f); /* sums in single precision */
         assert_true(i % FIRST_COLUMNS >= water || result->image[i] == pixels[i]);

@@ -300,7 +300,7 @@ static sonject_scene *make_scene(sonject_context *context, uint64_t seed)
     snprintf(text, sizeof text,
              "sonject: 1\n"
              "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: %.17g, aperture: none, "
-            "response: rectangular}\n"
+             "response: rectangular}\n"
              "input: {geometry: {row_spacing: %.17g, column_spacing: %.17g, first_slant_range: "
              "%.17g},\n"
              "  synthetic: {rows: %d, columns: %d, seed: %llu, speckle_shape: inf,\n"

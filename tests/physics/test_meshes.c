@@ -527,8 +527,8 @@ CLAIM(tallies_have_the_bits_of_plain_c)
         int64_t *from_device = bench_copy_buffer(bench, trace.launch.buffers[ROUGH_TILES]);
         trace.launch.fan.segments = 1;
         for (int strip = 0; strip < trace.launch.fan.strips; strip++)
-            trace_rough_strip(&trace.launch.fan, trace.launch.rays.pieces, objects, NULL, line,
-                              tile, strip, 0);
+            trace_rough_strip(&trace.launch.fan, trace.launch.rays.pieces, objects, NULL,
+                              trace.edges.elevations, line, tile, strip, 0);
         assert_true(bench_expect_sums("tiles", from_device, tile, trace.tile_elements) > 1000);
         free(objects);
         free(from_device);

@@ -354,7 +354,7 @@ CLAIM(a_mound_in_a_composite)
     for (size_t i = 0; i < sea->pixels; i++)
         pixels[i] = 1.0f + 0.3f * (float)((i * 7919) % 101) / 101.0f;
     sea_add_mound(sea, 0.8, 0.5, 0.0);
-    const struct injection_result *result = sea_inject(sea, pixels, false);
+    const struct injected *result = sea_inject(sea, pixels, false);
     size_t kept = 0;
     double most = 0.0, least = 1.0;
     for (size_t i = 0; i < sea->pixels; i++) {

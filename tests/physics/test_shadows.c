@@ -115,8 +115,7 @@ CLAIM(the_shadow_of_a_sphere)
 }
 
 /* A tilted plate off the middle, about which nothing is symmetric, put into an even patch. */
-static const struct injection_result *inject_plate(struct sea *sea, double row, double heading,
-                                                   double roll)
+static const struct injected *inject_plate(struct sea *sea, double row, double heading, double roll)
 {
     float *pixels = claim_memory(sea->pixels, sizeof *pixels);
     for (size_t i = 0; i < sea->pixels; i++)
@@ -138,10 +137,10 @@ CLAIM(starboard_is_port_from_the_other_end)
 {
     struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
     sea->geometry->first_along_track_m = -200.0 * 0.025;
-    const struct injection_result *port = inject_plate(sea, 200.0 - 80.0, PI - 0.5, -0.25);
+    const struct injected *port = inject_plate(sea, 200.0 - 80.0, PI - 0.5, -0.25);
     sea = sea_open(ROWS, COLUMNS, RANGE);
     sea->geometry->side = SONJECT_SIDE_STARBOARD;
-    const struct injection_result *starboard = inject_plate(sea, 80.0, 0.5, 0.25);
+    const struct injected *starboard = inject_plate(sea, 80.0, 0.5, 0.25);
     size_t shaded = 0;
     for (size_t i = 0; i < sea->pixels; i++) {
         const size_t j = (ROWS - 1 - i / COLUMNS) * COLUMNS + i % COLUMNS;
@@ -160,7 +159,7 @@ CLAIM(starboard_is_port_from_the_other_end)
  * rays are traced, so energies agree as far as their number allows. */
 CLAIM(sides_look_alike)
 {
-    const struct injection_result *sides[2];
+    const struct injected *sides[2];
     double difference = 0.0, sum = 0.0;
     for (int side = 0; side < 2; side++) {
         struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);

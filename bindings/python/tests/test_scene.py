@@ -121,10 +121,12 @@ def test_a_table_of_the_default_pulse_changes_nothing_much(make_scene, amplitude
         scene.set_table("sonar.pulse.file", **columns)
         fields.append(sonject.inject(amplitude_patch, scene).field)
     by_range, by_time = fields
+    changed = (expected != 0) & (by_range != 0) & (by_time != 0)
+    assert changed.sum() > 0.95 * (expected != 0).sum() > 100
     # the cubic between eight samples a cell errs by 1e-4 of the brightest pixel
     largest = numpy.abs(expected).max()
-    assert numpy.abs(by_range - expected).max() < 2e-3 * largest
-    assert numpy.abs(by_time - by_range).max() < 1e-5 * largest
+    assert numpy.abs(by_range - expected)[changed].max() < 2e-3 * largest
+    assert numpy.abs(by_time - by_range)[changed].max() < 1e-5 * largest
 
 
 @pytest.mark.parametrize("key, columns", [
