@@ -7,6 +7,7 @@
 #define SPREADS         3    /* shares are tried as what spreads, */
 #define SPREAD_RATIO    0.71 /* each so many times the last; the first is all of it */
 #define REACH           6 /* deviations of the point response beyond which nothing of it is left */
+#define STEP_ENTRIES    1536
 #define WIDTH_RATIO     1.6 /* of penumbras' widths; the first is the point response's */
 #define LOBE_BIAS_RATIO 2.0
 #define FAINTEST        1e-9 /* of a dark level: there are means of 0 */
@@ -111,33 +112,56 @@ struct profile_edge find_profile_end(const struct profile *profile, const struct
     return edge_believed(&belief);
 }
 
-/* Likewise, so that profiles of other means compare: of all the pixels that a profile's mean is of,
- * a sample. */
-static double whole_cost_of(double mean, double expected)
+/* What is expected about a step, by deviations from it; linear between the entries, which costs
+ * 1e-5 of a sample. */
+struct step_levels {
+    double inverse_behind, log_behind;
+    double inverse[STEP_ENTRIES + 1], logarithm[STEP_ENTRIES + 1];
+};
+
+static void step_levels_init(struct step_levels *levels, double before, double behind)
 {
-    return mean / expected + log(expected);
+    levels->inverse_behind = 1.0 / behind;
+    levels->log_behind = log(behind);
+    for (int i = 0; i <= STEP_ENTRIES; i++) {
+        const double deviations = (double)i * 2.0 * REACH / STEP_ENTRIES - REACH;
+        const double expected = behind + (before - behind) * spread(deviations);
+        levels->inverse[i] = 1.0 / expected;
+        levels->logarithm[i] = log(expected);
+    }
+}
+
+/* Negative log likelihood of a pixel's mean less than REACH deviations from the step, over that of
+ * one behind it; of all the pixels that a profile's mean is of, a sample, so that profiles of other
+ * means compare. */
+static double cost_at_step(const struct step_levels *levels, double mean, double deviations)
+{
+    const double at = (deviations + REACH) * (STEP_ENTRIES / (2.0 * REACH));
+    const int i = (int)fmin(at, STEP_ENTRIES - 1.0);
+    const double later = at - i;
+    return mean * (levels->inverse[i] + later * (levels->inverse[i + 1] - levels->inverse[i]) -
+                   levels->inverse_behind) +
+           levels->logarithm[i] + later * (levels->logarithm[i + 1] - levels->logarithm[i]) -
+           levels->log_behind;
 }
 
 /* Adds the places of a step whose penumbra has that deviation; wider ones are less likely before.
  */
-static void weigh_steps(struct edge_belief *belief, const struct profile *profile, double before,
-                        double behind, double width)
+static void weigh_steps(struct edge_belief *belief, const struct profile *profile,
+                        const struct step_levels *levels, double width)
 {
     const double stride = fmax(1.0, width) / STEPS_PER_PIXEL;
-    double all_cost = 0.0; /* of all pixels behind the step */
-    size_t settled = 0;    /* pixels well before it */
+    double settled_cost = 0.0; /* of pixels well before the step, over that of all behind it */
+    size_t settled = 0;        /* these */
+    double all_cost = (double)profile->count * levels->log_behind;
     for (size_t k = 0; k < profile->count; k++)
-        all_cost += whole_cost_of(profile->means[k], behind);
+        all_cost += profile->means[k] * levels->inverse_behind;
     for (double place = -0.5; place <= (double)profile->count - 0.5; place += stride) {
         for (; (double)settled < place - REACH * width; settled++)
-            all_cost += whole_cost_of(profile->means[settled], before) -
-                        whole_cost_of(profile->means[settled], behind);
-        double cost = all_cost;
-        for (size_t k = settled; k < profile->count && (double)k < place + REACH * width; k++) {
-            const double share = spread(((double)k - place) / width);
-            cost += whole_cost_of(profile->means[k], behind + (before - behind) * share) -
-                    whole_cost_of(profile->means[k], behind);
-        }
+            settled_cost += cost_at_step(levels, profile->means[settled], -REACH);
+        double cost = all_cost + settled_cost;
+        for (size_t k = settled; k < profile->count && (double)k < place + REACH * width; k++)
+            cost += cost_at_step(levels, profile->means[k], ((double)k - place) / width);
         weigh(belief, place, stride / width, profile->samples * cost);
     }
 }
@@ -145,9 +169,11 @@ static void weigh_steps(struct edge_belief *belief, const struct profile *profil
 void weigh_profile_step(struct edge_posterior *belief, const struct profile *profile, double before,
                         double behind)
 {
+    struct step_levels levels;
     double width = profile->deviation;
+    step_levels_init(&levels, before, behind);
     for (int i = 0; i < STEP_WIDTHS; i++, width *= WIDTH_RATIO)
-        weigh_steps(&belief->widths[i], profile, before, behind, width);
+        weigh_steps(&belief->widths[i], profile, &levels, width);
 }
 
 struct profile_edge mean_step_believed(const struct edge_posterior *parts, size_t count)

@@ -13,7 +13,8 @@
 #include "user/snippet.h"
 
 #define PI          3.14159265358979323846
-#define TALLY_BYTES ((size_t)64 << 20)
+#define TALLY_BYTES ((size_t)8 << 20) /* that stay in the cache, and in memory that is used again  \
+                                       */
 
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 58 * 4 ? 1 : -1];
