@@ -85,8 +85,9 @@ static double ns_of_rough_rays(struct benchmark_scene *set)
     const uint64_t rays = tracer->counts.rays;
     const double start = seconds_of(set);
     benchmark_expect(&set->report, rough_trace_begin(&trace, tracer, NULL));
+    const struct span strips = {trace.grid.strips.first, trace.chunk};
     float *energy = benchmark_array(line_grid_cells(&trace.grid), sizeof *energy);
-    benchmark_expect(&set->report, rough_trace_strips(&trace, tracer, trace.grid.strips, energy));
+    benchmark_expect(&set->report, rough_trace_strips(&trace, tracer, strips, energy));
     const double taken = seconds_of(set) - start;
     free(energy);
     rough_trace_end(&trace);

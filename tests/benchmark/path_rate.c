@@ -141,15 +141,15 @@ static int compare_single_hits(struct benchmark_scene *set)
     struct smooth_trace smooth;
     benchmark_expect(&set->report, rough_trace_begin(&rough, &set->tracer, NULL));
     rough.launch.fan.first_strip = rough.grid.strips.first;
-    rough.launch.fan.strips = rough.grid.strips.count;
-    const struct program seabed = {.name = "seabed and rough surfaces",
-                                   .run = native_trace_rough,
-                                   .launch = &rough.launch,
-                                   .bytes = {sizeof(struct object_record), 0,
-                                             rough.edges.count * sizeof(float),
-                                             line_grid_cells(&rough.grid) * sizeof(int64_t),
-                                             rough.tile_elements * sizeof(int64_t)},
-                                   .tallies = ROUGH_TALLIES};
+    rough.launch.fan.strips = rough.chunk;
+    const size_t lines = (size_t)rough.chunk * (size_t)rough.grid.bins.count;
+    const struct program seabed = {
+        .name = "seabed and rough surfaces",
+        .run = native_trace_rough,
+        .launch = &rough.launch,
+        .bytes = {sizeof(struct object_record), 0, rough.edges.count * sizeof(float),
+                  lines * sizeof(int64_t), rough.tile_elements * sizeof(int64_t)},
+        .tallies = ROUGH_TALLIES};
     int differs = compare(set, &seabed);
     rough_trace_end(&rough);
     benchmark_expect(&set->report, smooth_trace_begin(&smooth, &set->tracer, 0, NULL));
