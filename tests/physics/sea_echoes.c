@@ -105,7 +105,13 @@ struct strips sea_rough_of(struct sea *sea, bool is_beam, struct tile_sums *sums
                                        : rough_trace_begin(&trace, tracer, NULL));
     float *energy = claim_memory(line_grid_cells(&trace.grid), sizeof *energy);
     float *planes = claim_memory(trace.tile_elements + 1, sizeof *planes);
-    EXPECT_OK(&sea->bench->report, rough_trace_strips(&trace, tracer, trace.grid.strips, energy));
+    const int32_t end = trace.grid.strips.first + trace.grid.strips.count;
+    struct span some = {trace.grid.strips.first, trace.chunk};
+    for (float *lines = energy; some.first < end; some.first += some.count) {
+        some.count = end - some.first < trace.chunk ? end - some.first : trace.chunk;
+        EXPECT_OK(&sea->bench->report, rough_trace_strips(&trace, tracer, some, lines));
+        lines += (size_t)some.count * (size_t)trace.grid.bins.count;
+    }
     if (tracer->part_count > 0)
         EXPECT_OK(&sea->bench->report, rough_trace_tiles(&trace, tracer, planes));
     for (uint32_t part = 0; part < tracer->part_count; part++) {
