@@ -342,7 +342,7 @@ static sonject_status run_round(struct fit *fit, struct device *device, uint32_t
     for (uint64_t id = 0; status == SONJECT_OK && id < FIT_CHIPS; id++) {
         const double done = ((double)round + (double)id / FIT_CHIPS) / FIT_ROUNDS;
         if (progress && progress(user, done, stage) != 0)
-            status = SONJECT_CANCELLED;
+            status = report_failure(fit->report, SONJECT_CANCELLED, "cancelled in %s", stage);
         THEN(status, make_contact(fit, device, campaign, id, round));
     }
     campaign_close(&campaign);

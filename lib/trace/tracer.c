@@ -12,9 +12,9 @@
 #include "trace/object_buffer.h"
 #include "user/snippet.h"
 
-#define PI          3.14159265358979323846
-#define TALLY_BYTES ((size_t)8 << 20) /* that stay in the cache, and in memory that is used again  \
-                                       */
+#define PI 3.14159265358979323846
+/* Tallies of a launch: more are mapped and cleared anew by each, fewer leave a GPU idle. */
+#define TALLY_BYTES ((size_t)16 << 20)
 
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 58 * 4 ? 1 : -1];

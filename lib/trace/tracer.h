@@ -95,7 +95,7 @@ void launch_end(struct launch *launch);
 sonject_status launch_add(struct launch *launch, struct tracer *tracer, size_t bytes,
                           const void *contents);
 
-/* Adds tallies for as many of `strips` strips, of `elements` 64-bit integers each, as fit 8 MB (at
+/* Adds tallies for as many of `strips` strips, of `elements` 64-bit integers each, as fit 16 MB (at
  * least one); *chunk tells how many. */
 sonject_status launch_add_tallies(struct launch *launch, struct tracer *tracer, int32_t strips,
                                   size_t elements, int32_t *chunk);

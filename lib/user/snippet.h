@@ -23,19 +23,17 @@ struct user_snippet {
     uint32_t first_line; /* number of the code's first line in that file */
 };
 
-/* Pragmas that hold for a snippet. clang keeps its names out of the linker's sight; NVIDIA's only
- * those of functions. */
+/* Pragmas that hold for a snippet. clang keeps its names out of the linker's sight; NVIDIA's knows
+ * this of all variables alone, and leaves local ones as they are. */
 #define SNIPPET_OWN_NAMES                                                                          \
     "#pragma clang attribute push(__attribute__((internal_linkage)), apply_to = function)\n"       \
-    "#ifndef __NV_CL_C_VERSION\n"                                                                  \
+    "#ifdef __NV_CL_C_VERSION\n"                                                                   \
+    "#pragma clang attribute push(__attribute__((internal_linkage)), apply_to = variable)\n"       \
+    "#else\n"                                                                                      \
     "#pragma clang attribute push(__attribute__((internal_linkage)), "                             \
     "apply_to = variable(is_global))\n"                                                            \
     "#endif\n"
-#define SNIPPET_NAMES_END                                                                          \
-    "#pragma clang attribute pop\n"                                                                \
-    "#ifndef __NV_CL_C_VERSION\n"                                                                  \
-    "#pragma clang attribute pop\n"                                                                \
-    "#endif\n"
+#define SNIPPET_NAMES_END "#pragma clang attribute pop\n#pragma clang attribute pop\n"
 
 /* What stands before and behind a snippet, with its number, twice, as %lu. A kernel calls the
  * functions here, which are written before any macro of the snippet's. */

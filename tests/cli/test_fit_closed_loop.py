@@ -45,6 +45,20 @@ def test_fits_find_what_made_their_contacts(sonject, tmp_path, contacts, share, 
     assert all(right >= 0.9)
 
 
+def test_the_same_inputs_give_the_same_campaign(sonject, tmp_path):
+    fitting.make_seabeds(sonject)
+    (tmp_path / "scene.yaml").write_text(fitting.SCENE)
+    (tmp_path / "start.yaml").write_text(fitting.campaign(fitting.START, 40, 3, 64, 96))
+    (tmp_path / "hidden.yaml").write_text(fitting.campaign(fitting.HIDDEN, 20, 11, 64, 96))
+    sonject.done("campaign", "hidden.yaml", "-o", "contacts", "--quiet")
+    made = []
+    for _ in range(2):
+        sonject.done("fit", "start.yaml", "contacts/all/coco.json", "-o", "fitted.yaml", "--quiet", timeout=600)
+        made.append([(tmp_path / f"fitted.{kind}").read_bytes() for kind in ("yaml", "html", "png")])
+        (tmp_path / "fitted.yaml").unlink()
+    assert made[0] == made[1]
+
+
 TARGETS = 2000
 FALSE_ALARMS = 0.01
 
