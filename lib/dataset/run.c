@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
+#include "base/progress.h"
 #include "base/report.h"
 #include "inject/impulses.h"
 #include "inject/scene_hash.h"
@@ -18,21 +19,6 @@
 /* Shares of a run's progress. */
 #define TRACE_START 0.1
 #define WRITE_START 0.8
-
-/* Maps a stage's own fraction into the run's. */
-struct stage_progress {
-    sonject_progress_function progress;
-    void *user;
-    double start, share;
-};
-
-static int tell_stage(void *user, double fraction, const char *stage)
-{
-    const struct stage_progress *outer = user;
-    return outer->progress
-               ? outer->progress(outer->user, outer->start + outer->share * fraction, stage)
-               : 0;
-}
 
 void tell_noise_floor(struct report *report, const struct scene *scene,
                       const sonject_statistics *statistics)
@@ -129,14 +115,14 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
                                     void *user)
 {
     const double start = clock_seconds();
-    struct stage_progress writing = {progress, user, WRITE_START, 1.0 - WRITE_START};
+    struct progress_share writing = {progress, user, WRITE_START, 1.0 - WRITE_START};
     char path[PATH_CAPACITY];
     CHECK(path_in(report, path, folder, "%s", facts->image_name));
     json_t *earlier = earlier_withdraw(folder, RUN_DOCUMENT);
     facts->files = json_array();
     sonject_status status = write_layers(report, facts, folder);
-    THEN(status, swath_write(report, facts->scene, facts->swath, result, path, tell_stage, &writing,
-                             &result->statistics.output_clipped));
+    THEN(status, swath_write(report, facts->scene, facts->swath, result, path, progress_share_tell,
+                             &writing, &result->statistics.output_clipped));
     if (status == SONJECT_OK && facts->scene->input_kind == SONJECT_INPUT_FILE &&
         facts->swath->new_extension)
         report_log(report,
@@ -159,13 +145,13 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
     struct device *device = NULL;
     struct injection_result result;
     const struct scene *scene = request->scene;
-    struct stage_progress stage = {request->progress, request->user, TRACE_START,
+    struct progress_share stage = {request->progress, request->user, TRACE_START,
                                    WRITE_START - TRACE_START};
     const struct injection_input input = swath_input(swath);
     bool is_formed = true;
     sonject_status status = device_slot_open(report, slot, &device);
     const struct checkpoint_job job = {report,          device, request, facts->scene_hash,
-                                       swath->identity, &input, start,   tell_stage,
+                                       swath->identity, &input, start,   progress_share_tell,
                                        &stage};
     THEN(status, inject_by_checkpoints(&job, &result, &is_formed));
     if (status != SONJECT_OK || !is_formed)

@@ -8,12 +8,14 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/progress.h"
 #include "base/report.h"
 #include "inject/scene_hash.h"
 #include "trace/checkpoint.h"
 
 #define CHECKPOINT_S 60.0
-#define NAMES_MOST   12 /* shards that a message names */
+#define NAMES_MOST   12  /* shards that a message names */
+#define EXPORT_SHARE 0.7 /* of a trace's time, where it exports too */
 
 /* One call's tracing. */
 struct tracing {
@@ -190,21 +192,26 @@ sonject_status trace_into_file(const struct checkpoint_job *job, const char *pat
                                const struct impulse_sink *sink, struct trace_counts *counts)
 {
     struct tracing tracing = {.job = job, .report = job->report};
+    const struct scene *scene = job->request->scene;
+    struct injection_input whole = *job->input;
     struct injection_input input = *job->input;
-    sonject_status status = identify(&tracing);
-    /* an export is of the whole patch */
-    input.is_whole = true;
-    if (status == SONJECT_OK && sink)
-        status = injection_trace(job->report, job->device, job->request->scene, &input, sink,
-                                 job->progress, job->user, counts);
-    input.is_whole = job->input->is_whole;
+    struct trace_counts kept;
+    const double exported = sink ? EXPORT_SHARE : 0.0;
+    struct progress_share exporting = {job->progress, job->user, 0.0, exported};
+    struct progress_share keeping = {job->progress, job->user, exported, 1.0 - exported};
+    whole.is_whole = true;
     input.checkpoint = &tracing.checkpoint;
+    sonject_status status = identify(&tracing);
+    if (status == SONJECT_OK && sink) /* an export is of the whole patch */
+        status = injection_trace(job->report, job->device, scene, &whole, sink, progress_share_tell,
+                                 &exporting, counts);
     THEN(status, checkpoint_begin(&tracing.checkpoint, job->report, path, NULL, &tracing.head));
-    THEN(status,
-         injection_trace(job->report, job->device, job->request->scene, &input, NULL, job->progress,
-                         job->user, sink ? &(struct trace_counts){0} : counts));
+    THEN(status, injection_trace(job->report, job->device, scene, &input, NULL, progress_share_tell,
+                                 &keeping, &kept));
     THEN(status, checkpoint_publish(&tracing.checkpoint, job->request->source));
     checkpoint_clear(&tracing.checkpoint);
+    if (status == SONJECT_OK && !sink)
+        *counts = kept;
     return status;
 }
 

@@ -29,26 +29,26 @@ struct patch_facts {
     double mean_intensity;
     double noise_ratio;  /* noise energy over level */
     bool measures_noise; /* it was estimated, and a shadow of the patch told it */
+    float *level;        /* the patch's, where the noise was sought in it; owned; NULL: not known */
 };
 
-/* pixels: amplitudes or pairs, in the view's row order. Errors: INPUT (nothing but zeros; not a
- * finite number: says where), MEMORY. */
+/* pixels: amplitudes or pairs, in the view's row order. To be given to patch_facts_clear, also on
+ * failure. Errors: INPUT (nothing but zeros; not a finite number: says where), MEMORY. */
 sonject_status patch_facts_init(struct patch_facts *facts, struct report *report,
                                 const struct scene *scene, const struct patch_view *view,
                                 const float *pixels, bool is_complex);
+void patch_facts_clear(struct patch_facts *facts);
 
-/* Of a window of the patch: what all of the patch would tell there. view, pixels: the patch's.
- * Errors: MEMORY. On failure nothing is held. */
-sonject_status patch_level_init(struct patch_level *level, struct report *report,
-                                const struct scene *scene, const struct patch_view *view,
-                                const struct window *window, const struct point_response *response,
-                                const struct patch_facts *facts, const float *pixels,
-                                bool is_complex);
+/* Of the tracer's window of the patch: what all of the patch would tell there. view, pixels: the
+ * patch's. Errors: MEMORY. On failure nothing is held. */
+sonject_status patch_level_init(struct patch_level *level, const struct tracer *tracer,
+                                const struct patch_view *view, const struct patch_facts *facts,
+                                const float *pixels, bool is_complex);
 void patch_level_clear(struct patch_level *level);
 
-/* Expected cross-sections, m^2, of pixels of plain seabed in columns of the view. */
+/* Expected cross-sections, m^2, of pixels of plain seabed in the view's columns. */
 void fill_cell_energies(const struct patch_view *view, const struct point_response *response,
-                        size_t first_column, size_t columns, float *energies);
+                        float *energies);
 
 /* Expected cross-section in m^2 of a pixel of Lambert seabed (mu) at a processor range: mu sin^2 of
  * the grazing angle times the area that the point response covers. */
@@ -65,9 +65,9 @@ struct patch_request {
 /* Of a window of the patch, whose view the tracer has. view, pixels: the patch's. On success to be
  * given to patch_request_clear; on failure nothing is held. Errors: MEMORY. */
 sonject_status patch_request_init(struct patch_request *patch, struct tracer *tracer,
-                                  const struct patch_view *view, const struct window *window,
-                                  const struct patch_facts *facts, const float *pixels,
-                                  bool is_complex, sonject_progress_function progress, void *user);
+                                  const struct patch_view *view, const struct patch_facts *facts,
+                                  const float *pixels, bool is_complex,
+                                  sonject_progress_function progress, void *user);
 void patch_request_clear(struct patch_request *patch);
 
 /* Finds for each object the factor that gives its echo's peak the level it asks for,

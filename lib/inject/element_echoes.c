@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/progress.h"
 #include "elements/elements.h"
 #include "inject/compose.h"
 #include "scene/placement.h"
@@ -99,18 +100,6 @@ static sonject_status gather(struct element_taker *taker)
     return status;
 }
 
-/* The tracer's own progress as the first share of the run's. */
-struct trace_progress {
-    sonject_progress_function progress;
-    void *user;
-};
-
-static int tell_tracing(void *user, double fraction, const char *stage)
-{
-    const struct trace_progress *outer = user;
-    return outer->progress ? outer->progress(outer->user, TRACE_SHARE * fraction, stage) : 0;
-}
-
 static sonject_status check_scene(struct report *report, const struct scene *scene)
 {
     if (!aperture_motion_is_still(&scene->motion))
@@ -146,20 +135,22 @@ static sonject_status trace_and_hear(struct injection_setup *setup, bool is_comp
                                      const sonject_element_layout *layout, float *series)
 {
     struct tracer *tracer = &setup->tracer;
-    struct trace_progress tracing = {progress, user};
+    struct progress_share tracing = {progress, user, 0.0, TRACE_SHARE};
     struct patch_request patch;
     struct element_taker taker;
     const struct patch_view *view = &tracer->view;
-    const struct window whole = {0, view->rows, 0, view->columns};
     struct patch_facts facts;
-    CHECK(patch_facts_init(&facts, tracer->report, tracer->scene, view, setup->pixels, is_complex));
-    CHECK(patch_request_init(&patch, tracer, view, &whole, &facts, setup->pixels, is_complex,
-                             tell_tracing, &tracing));
+    sonject_status status =
+        patch_facts_init(&facts, tracer->report, tracer->scene, view, setup->pixels, is_complex);
+    THEN(status, patch_request_init(&patch, tracer, view, &facts, setup->pixels, is_complex,
+                                    progress_share_tell, &tracing));
+    patch_facts_clear(&facts);
+    CHECK(status);
     memset(&taker, 0, sizeof taker);
     taker.tracer = tracer;
     taker.request = &patch.request;
     impulse_list_init(&taker.impulses, tracer->report, tracer->device);
-    sonject_status status = gather(&taker);
+    status = gather(&taker);
     THEN(status, hear(&taker, progress, user, layout, series));
     impulse_list_clear(&taker.impulses);
     patch_request_clear(&patch);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/progress.h"
 #include "inject/compose.h"
 #include "inject/windows.h"
 #include "scene/point_response.h"
@@ -25,7 +26,7 @@ static sonject_status compare_seabed(struct report *report, const struct echoes 
                                      const struct injected_window *result,
                                      sonject_statistics *statistics)
 {
-    const size_t pixels = result->rows * result->columns;
+    const size_t pixels = result->at.rows * result->at.columns;
     float *before = allocate_array(2 * pixels, sizeof *before);
     float *after = before + pixels;
     size_t count = 0;
@@ -70,8 +71,6 @@ static void fill_statistics(const struct prepared *prepared, struct injection_re
             ? scene_key_source(tracer->scene, "injection.noise_floor")
             : (uint32_t)(prepared->facts.measures_noise ? SONJECT_SOURCE_PATCH
                                                         : SONJECT_SOURCE_FALLBACK);
-    for (size_t i = 0; i < result->rows * result->columns; i++)
-        statistics->changed_pixels += result->influence[i] != 0;
 }
 
 /* To be given to prepared_clear, also on failure. */
@@ -94,29 +93,15 @@ static sonject_status prepare(struct prepared *prepared, struct report *report,
 static void prepared_clear(struct prepared *prepared)
 {
     influence_windows_clear(&prepared->windows);
+    patch_facts_clear(&prepared->facts);
     injection_setup_clear(&prepared->setup);
-}
-
-/* A window's share of a run's progress. */
-struct window_progress {
-    double first, share;
-    sonject_progress_function progress;
-    void *user;
-};
-
-static int tell_window(void *user, double fraction, const char *stage)
-{
-    const struct window_progress *whole = user;
-    return whole->progress
-               ? whole->progress(whole->user, whole->first + whole->share * fraction, stage)
-               : 0;
 }
 
 /* What is asked of the echoes in a window. */
 struct window_job {
     struct tracer tracer; /* that sees the window alone */
     struct patch_request patch;
-    struct window_progress progress;
+    struct progress_share progress; /* the window's of the run */
 };
 
 /* On success to be given to window_job_clear; on failure nothing is held. */
@@ -131,9 +116,10 @@ static sonject_status window_job_init(struct window_job *job, struct prepared *p
     job->tracer = prepared->setup.tracer;
     job->tracer.view = patch_view_window(view, &window->at);
     job->tracer.follows = window->follows;
-    job->progress = (struct window_progress){(double)number * share, share, progress, user};
-    return patch_request_init(&job->patch, &job->tracer, view, &window->at, &prepared->facts,
-                              prepared->setup.pixels, is_complex, tell_window, &job->progress);
+    job->progress = (struct progress_share){progress, user, (double)number * share, share};
+    return patch_request_init(&job->patch, &job->tracer, view, &prepared->facts,
+                              prepared->setup.pixels, is_complex, progress_share_tell,
+                              &job->progress);
 }
 
 static void window_job_clear(struct window_job *job, struct prepared *prepared)
@@ -162,29 +148,29 @@ static float *pixels_in_window(const struct prepared *prepared, const struct win
     return pixels;
 }
 
-static sonject_status compose_window(struct prepared *prepared, const struct window_job *job,
+static sonject_status compose_window(struct prepared *prepared, struct window_job *job,
                                      const struct window *at, const bool *is_empty,
                                      struct echoes *echoes, struct injection_result *result)
 {
-    struct tracer tracer = job->tracer;
+    struct tracer *tracer = &job->tracer;
     struct injected_window *window = &result->windows[result->window_count++];
     const bool is_complex = result->is_complex;
     float *pixels = pixels_in_window(prepared, at, is_complex);
-    CHECK_MEMORY(tracer.report, pixels, "the patch");
+    CHECK_MEMORY(tracer->report, pixels, "the patch");
     sonject_status status =
-        injected_window_init(window, tracer.report, at, is_complex, result->objects);
-    THEN(status, set_target_levels(&tracer, echoes, window));
+        injected_window_init(window, tracer->report, at, is_complex, result->objects);
+    THEN(status, set_target_levels(tracer, echoes, window));
     THEN(status,
-         compose(&tracer, &prepared->match, &job->patch.level, echoes, pixels, is_complex, window));
-    if (status == SONJECT_OK && tracer.scene->injection.mode == SONJECT_MODE_RESYNTHESISE)
+         compose(tracer, &prepared->match, &job->patch.level, echoes, pixels, is_complex, window));
+    if (status == SONJECT_OK && tracer->scene->injection.mode == SONJECT_MODE_RESYNTHESISE)
         status =
-            compare_seabed(tracer.report, echoes, &job->patch.level, window, &result->statistics);
-    THEN(status, find_truth(&tracer, &job->patch.level, &prepared->match, is_empty + at->first_row,
+            compare_seabed(tracer->report, echoes, &job->patch.level, window, &result->statistics);
+    THEN(status, find_truth(tracer, &job->patch.level, &prepared->match, is_empty + at->first_row,
                             echoes, window));
     free(pixels);
     CHECK(status);
     for (uint32_t i = 0; i < result->object_count; i++)
-        if (tracer_follows(&tracer, i))
+        if (tracer_follows(tracer, i))
             object_truth_move(&result->objects[i], at);
     result->orders = echoes->orders;
     memcpy(window->order_energy, echoes->order_energy, sizeof window->order_energy);

@@ -33,10 +33,10 @@ struct injection_input {
                                    grids must be fine and wide enough */
 };
 
-/* What is made of a window of the patch, or of all of it. All layers rows x columns. */
+/* What is made of a window of the patch, or of all of it. All layers at.rows x at.columns.
+ */
 struct injected_window {
     struct window at; /* in the patch */
-    size_t rows, columns;
     bool is_complex;
     void *memory; /* of field, energy and visibility; owned */
     float *field; /* pairs; m */
@@ -73,7 +73,7 @@ sonject_status injected_window_init(struct injected_window *window, struct repor
                                     const struct window *at, bool is_complex,
                                     sonject_object_truth *objects);
 
-/* Moves the window's picture and masks into the patch's. */
+/* Moves the window's picture and masks into the patch's, and counts its changed pixels. */
 void injection_result_paste(struct injection_result *result, struct injected_window *window);
 
 /* An object's place from the window's pixels to the patch's. */

@@ -26,12 +26,11 @@ double seabed_cell_energy(const struct patch_view *view, const struct point_resp
 }
 
 void fill_cell_energies(const struct patch_view *view, const struct point_response *response,
-                        size_t first_column, size_t columns, float *energies)
+                        float *energies)
 {
-    for (size_t j = 0; j < columns; j++)
-        energies[j] =
-            (float)seabed_cell_energy(view, response, view->seabed_lambert,
-                                      view_processor_range(view, (double)(first_column + j)));
+    for (size_t j = 0; j < view->columns; j++)
+        energies[j] = (float)seabed_cell_energy(view, response, view->seabed_lambert,
+                                                view_processor_range(view, (double)j));
 }
 
 static float intensity_of(const float *pixels, bool is_complex, size_t i)
@@ -197,16 +196,21 @@ sonject_status patch_facts_init(struct patch_facts *facts, struct report *report
     }
     const struct level_region region = region_about(scene, view, &whole, facts->mean_intensity);
     float *intensity = intensities_in(&region, pixels, is_complex);
-    float *level = allocate_array(view->rows, view->columns * sizeof *level);
+    facts->level = allocate_array(view->rows, view->columns * sizeof *facts->level);
     sonject_status status =
-        intensity && level ? SONJECT_OK : report_out_of_memory(report, "the patch");
-    THEN(status, find_level(report, &region, intensity, level));
+        intensity && facts->level ? SONJECT_OK : report_out_of_memory(report, "the patch");
+    THEN(status, find_level(report, &region, intensity, facts->level));
     if (status == SONJECT_OK)
-        facts->noise_ratio = estimate_noise_floor(intensity, level, view->rows, view->columns,
-                                                  &facts->measures_noise);
+        facts->noise_ratio = estimate_noise_floor(intensity, facts->level, view->rows,
+                                                  view->columns, &facts->measures_noise);
     free(intensity);
-    free(level);
     return status;
+}
+
+void patch_facts_clear(struct patch_facts *facts)
+{
+    free(facts->level);
+    memset(facts, 0, sizeof *facts);
 }
 
 void patch_level_clear(struct patch_level *level)
@@ -215,47 +219,59 @@ void patch_level_clear(struct patch_level *level)
     memset(level, 0, sizeof *level);
 }
 
-/* The window's part of a plane of the region. */
-static void cut(const struct level_region *region, const float *plane, const struct window *window,
+/* A part of a plane that holds what lies at `from`. */
+static void cut(const struct window *from, const float *plane, const struct window *part,
                 float *out)
 {
-    for (size_t row = 0; row < window->rows; row++)
-        memcpy(out + row * window->columns,
-               plane + (window->first_row - region->at.first_row + row) * region->at.columns +
-                   window->first_column - region->at.first_column,
-               window->columns * sizeof *out);
+    for (size_t row = 0; row < part->rows; row++)
+        memcpy(out + row * part->columns,
+               plane + (part->first_row - from->first_row + row) * from->columns +
+                   part->first_column - from->first_column,
+               part->columns * sizeof *out);
 }
 
-sonject_status patch_level_init(struct patch_level *level, struct report *report,
-                                const struct scene *scene, const struct patch_view *view,
-                                const struct window *window, const struct point_response *response,
-                                const struct patch_facts *facts, const float *pixels,
-                                bool is_complex)
+/* Fills a plane of the region with its level: a part of the patch's where that is known. */
+static sonject_status take_level(struct report *report, const struct level_region *region,
+                                 const struct patch_facts *facts, const float *intensity,
+                                 float *level)
 {
-    const struct level_region region = region_about(scene, view, window, facts->mean_intensity);
+    const struct window whole = {0, region->view->rows, 0, region->view->columns};
+    if (!facts->level)
+        return find_level(report, region, intensity, level);
+    cut(&whole, facts->level, &region->at, level);
+    return SONJECT_OK;
+}
+
+sonject_status patch_level_init(struct patch_level *level, const struct tracer *tracer,
+                                const struct patch_view *view, const struct patch_facts *facts,
+                                const float *pixels, bool is_complex)
+{
+    const struct window window = {tracer->view.first_row, tracer->view.rows,
+                                  tracer->view.first_column, tracer->view.columns};
+    const struct level_region region =
+        region_about(tracer->scene, view, &window, facts->mean_intensity);
+    struct report *report = tracer->report;
     const size_t wide = region.at.rows * region.at.columns;
-    const size_t count = window->rows * window->columns;
-    const size_t water = view_water_columns(view);
+    const size_t count = window.rows * window.columns;
     memset(level, 0, sizeof *level);
     float *intensity = intensities_in(&region, pixels, is_complex);
     float *planes = allocate_array(wide, 2 * sizeof *planes);
-    level->intensity = allocate_array(3 * count + window->columns, sizeof(float));
+    level->intensity = allocate_array(3 * count + window.columns, sizeof(float));
     sonject_status status = intensity && planes && level->intensity
                                 ? SONJECT_OK
                                 : report_out_of_memory(report, "the patch");
-    THEN(status, find_level(report, &region, intensity, planes));
+    THEN(status, take_level(report, &region, facts, intensity, planes));
     THEN(status, find_map(report, &region, intensity, planes, planes + wide));
     if (status == SONJECT_OK) {
-        level->water_columns = water > window->first_column ? water - window->first_column : 0;
+        level->water_columns = view_water_columns(&tracer->view);
         level->noise_ratio = facts->noise_ratio;
         level->level = level->intensity + count;
         level->map = level->level + count;
         level->cell_energy = level->map + count;
-        cut(&region, intensity, window, level->intensity);
-        cut(&region, planes, window, level->level);
-        cut(&region, planes + wide, window, level->map);
-        fill_cell_energies(view, response, window->first_column, window->columns,
-                           level->cell_energy);
+        cut(&region.at, intensity, &window, level->intensity);
+        cut(&region.at, planes, &window, level->level);
+        cut(&region.at, planes + wide, &window, level->map);
+        fill_cell_energies(&tracer->view, &tracer->response, level->cell_energy);
     } else {
         patch_level_clear(level);
     }
@@ -271,17 +287,16 @@ void patch_request_clear(struct patch_request *patch)
 }
 
 sonject_status patch_request_init(struct patch_request *patch, struct tracer *tracer,
-                                  const struct patch_view *view, const struct window *window,
-                                  const struct patch_facts *facts, const float *pixels,
-                                  bool is_complex, sonject_progress_function progress, void *user)
+                                  const struct patch_view *view, const struct patch_facts *facts,
+                                  const float *pixels, bool is_complex,
+                                  sonject_progress_function progress, void *user)
 {
     const struct scene *scene = tracer->scene;
-    const size_t count = window->rows * window->columns;
+    const size_t count = tracer->view.rows * tracer->view.columns;
     const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
     const bool is_coherent = resynthesises && scene->seabed.map == SONJECT_MAP_COHERENT;
     memset(patch, 0, sizeof *patch);
-    CHECK(patch_level_init(&patch->level, tracer->report, scene, view, window, &tracer->response,
-                           facts, pixels, is_complex));
+    CHECK(patch_level_init(&patch->level, tracer, view, facts, pixels, is_complex));
     patch->request.map = patch->level.map;
     patch->request.field = is_coherent     ? SEABED_FIELD_COHERENT
                            : resynthesises ? SEABED_FIELD_SPECKLE

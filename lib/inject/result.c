@@ -51,7 +51,7 @@ sonject_status injection_result_init(struct injection_result *result, const stru
     result->shadow = result->highlight + pixels;
     result->labels = result->shadow + pixels;
     result->influence = result->labels + pixels;
-    fill_cell_energies(view, &tracer->response, 0, view->columns, result->seabed_energy);
+    fill_cell_energies(view, &tracer->response, result->seabed_energy);
     return SONJECT_OK;
 }
 
@@ -62,8 +62,6 @@ sonject_status injected_window_init(struct injected_window *window, struct repor
     const size_t pixels = at->rows * at->columns;
     const size_t parts = is_complex ? 2 : 1;
     window->at = *at;
-    window->rows = at->rows;
-    window->columns = at->columns;
     window->is_complex = is_complex;
     window->objects = objects;
     window->memory = allocate_array(pixels, 4 * sizeof(float));
@@ -82,21 +80,21 @@ sonject_status injected_window_init(struct injected_window *window, struct repor
 
 void injection_result_paste(struct injection_result *result, struct injected_window *window)
 {
-    const size_t width = window->columns;
+    const size_t width = window->at.columns;
     const size_t pixel_bytes = sizeof(float) * (result->is_complex ? 2 : 1);
     uint8_t *const masks[] = {result->highlight, result->shadow, result->labels, result->influence};
     uint8_t *const parts[] = {window->highlight, window->shadow, window->labels, window->influence};
-    for (size_t row = 0; row < window->rows; row++) {
+    for (size_t row = 0; row < window->at.rows; row++) {
         const size_t to = (window->at.first_row + row) * result->columns + window->at.first_column;
         memcpy((char *)result->image + to * pixel_bytes,
                (const char *)window->image + row * width * pixel_bytes, width * pixel_bytes);
         for (int mask = 0; mask < 4; mask++)
             memcpy(masks[mask] + to, parts[mask] + row * width, width);
     }
+    for (size_t i = 0; i < window->at.rows * width; i++)
+        result->statistics.changed_pixels += window->influence[i] != 0;
     free(window->picture);
     window->picture = NULL;
-    window->image = NULL;
-    window->highlight = window->shadow = window->labels = window->influence = NULL;
 }
 
 void object_truth_move(sonject_object_truth *truth, const struct window *at)
@@ -174,9 +172,10 @@ void injection_result_plane(const struct injection_result *result, enum injected
                             : plane == INJECTED_VISIBILITY
                                 ? window->visibility
                                 : window->order_energy[plane - INJECTED_ORDER];
-        for (size_t row = 0; row < window->rows; row++)
+        for (size_t row = 0; row < window->at.rows; row++)
             memcpy(out + parts * ((window->at.first_row + row) * result->columns +
                                   window->at.first_column),
-                   from + parts * row * window->columns, parts * window->columns * sizeof *out);
+                   from + parts * row * window->at.columns,
+                   parts * window->at.columns * sizeof *out);
     }
 }

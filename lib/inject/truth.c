@@ -263,7 +263,7 @@ static sonject_status see_object(struct report *report, const struct injected_wi
 {
     const struct window_box box = window_box_of(&truth->both);
     const struct window_box wide =
-        box_with_margin(&box, SEABED_MARGIN, result->rows, result->columns);
+        box_with_margin(&box, SEABED_MARGIN, result->at.rows, result->at.columns);
     const struct window_box highlight = box_within(&truth->highlight, &wide);
     const struct window_box shadow = box_within(&truth->shadow, &wide);
     struct contact_visibility visibility = {NAN, NAN};
@@ -278,7 +278,7 @@ static sonject_status see_object(struct report *report, const struct injected_wi
                                 ? SONJECT_OK
                                 : report_out_of_memory(report, "an object's measures");
     for (size_t row = 0; status == SONJECT_OK && row < wide.rows; row++) {
-        const size_t first = (wide.first_row + row) * result->columns + wide.first_column;
+        const size_t first = (wide.first_row + row) * result->at.columns + wide.first_column;
         if (water_columns > wide.first_column)
             image.seabed_columns[row] = water_columns - wide.first_column;
         memcpy(image.taken + row * wide.columns, result->labels + first, wide.columns);

@@ -302,8 +302,8 @@ struct grazing_angles grazing_over_relief(const struct tracer *tracer, struct gr
     return angles;
 }
 
-sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
-                              const struct line_grid *grid, bool has_map, double rays_per_bin)
+void patch_fan_aim(struct fan_record *fan, const struct tracer *tracer,
+                   const struct line_grid *grid, bool has_map)
 {
     const struct patch_view *view = &tracer->view;
     double origin[3];
@@ -311,6 +311,15 @@ sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
     fan_record_init(fan, tracer, origin, grid);
     fan->map_rows = has_map ? (int32_t)view->rows : 0;
     fan->map_columns = has_map ? (int32_t)view->columns : 0;
+}
+
+sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
+                              const struct line_grid *grid, bool has_map, double rays_per_bin)
+{
+    const struct patch_view *view = &tracer->view;
+    double origin[3];
+    patch_fan_origin(origin, view);
+    patch_fan_aim(fan, tracer, grid, has_map);
     const double central = ray_path_grazing(&view->water, origin[1], 0.0);
     const double near = view_grazing(view, line_grid_near_end(grid, view));
     const double far = view_grazing(view, line_grid_far_end(grid, view));

@@ -19,12 +19,15 @@ struct elevations {
 /* The middle of the patch on the seabed: origin of the frame that the patch is traced in. */
 void patch_fan_origin(double origin[3], const struct patch_view *view);
 
-/* Fills a fan record for the patch: elevations from the seabed at the grid's first bin up to that
+/* Fills a fan record for the patch but for its rays, quanta and stream, which are left 0. has_map:
+ * a reflectivity map of the view's rows x columns goes with it. */
+void patch_fan_aim(struct fan_record *fan, const struct tracer *tracer,
+                   const struct line_grid *grid, bool has_map);
+
+/* The same with rays by even steps: elevations from the seabed at the grid's first bin up to that
  * at the last bin or over the highest object, in steps that put rays_per_bin rays (times the
  * scene's ray scale) into a bin where elevation covers most range, or more where a rough object is
- * so small that few would meet it. Quanta and stream are left 0.
- * has_map: a reflectivity map of the view's rows x columns goes with it. Errors: INPUT (too many
- * rays). */
+ * so small that few would meet it. Errors: INPUT (too many rays). */
 sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
                               const struct line_grid *grid, bool has_map, double rays_per_bin);
 
@@ -36,10 +39,10 @@ struct fan_edges {
     double widest; /* step, rad */
 };
 
-/* Lays a patch's fan anew, from a processor range on, by the bins that rays meet level seabed in:
+/* Lays a patch's rays, from a processor range on, by the bins that rays meet level seabed in:
  * rays_per_bin (times the scene's ray scale) in each, and more where sound comes so steeply, or a
  * rough object is so small, that they would lie far apart across it. A bin's rays are numbered as
- * the bins of the patch are. fan: of patch_fan_init. To be given to free(edges->elevations), also
+ * the bins of the patch are. fan: of patch_fan_aim. To be given to free(edges->elevations), also
  * on failure. Errors: INPUT (too many rays), MEMORY. */
 sonject_status fan_edges_init(struct fan_edges *edges, struct fan_record *fan,
                               const struct tracer *tracer, const struct line_grid *grid,

@@ -104,7 +104,6 @@ sonject_status fan_edges_init(struct fan_edges *edges, struct fan_record *fan,
                   fmin(fan_elevation_step(tracer, grid, angles.far, rays_per_bin), laying.finest)));
     fan->rays = (uint32_t)(edges->count - 1);
     fan->first_ray = (uint32_t)(int64_t)(first * fmax(ceil(laying.per_bin - ROUNDING), 1.0));
-    fan->first_elevation = edges->elevations[0];
     fan->elevation_step = (float)edges->widest;
     for (int lane = 0; lane < LANES_MOST; lane++, edges->count++)
         edges->elevations[edges->count] = edges->elevations[edges->count - 1];

@@ -195,10 +195,11 @@ static sonject_status init_fan(struct rough_trace *trace, struct tracer *tracer,
     const double nearest = is_beam ? beam_nearest(tracer, &trace->grid)
                                    : line_grid_near_end(&trace->grid, &tracer->view);
     struct fan_record *fan = &trace->launch.fan;
-    sonject_status status = patch_fan_init(fan, tracer, &trace->grid, has_map, rays_per_bin);
+    patch_fan_aim(fan, tracer, &trace->grid, has_map);
     if (is_beam)
         beam_record_init(fan, tracer);
-    THEN(status, fan_edges_init(&trace->edges, fan, tracer, &trace->grid, nearest, rays_per_bin));
+    sonject_status status =
+        fan_edges_init(&trace->edges, fan, tracer, &trace->grid, nearest, rays_per_bin);
     THEN(status,
          patch_rays_init(&trace->launch.rays, &trace->launch.fan.table, tracer, &trace->grid));
     trace->launch.fan.stream = STREAM_ROUGH_RAYS;

@@ -234,13 +234,13 @@ float *magnitudes_of(const double complex *field, size_t count)
 const struct patch_level *sea_level(struct sea *sea, const float *pixels, bool is_complex)
 {
     struct patch_level *level = claim_memory(1, sizeof *level);
-    const struct window whole = {0, sea->rows, 0, sea->columns};
     struct report *report = &sea->bench->report;
     struct patch_facts facts;
     EXPECT_OK(report, patch_facts_init(&facts, report, &sea->bench->scene, sea_view(sea), pixels,
                                        is_complex));
-    EXPECT_OK(report, patch_level_init(level, report, &sea->bench->scene, sea_view(sea), &whole,
-                                       sea_response(sea), &facts, pixels, is_complex));
+    EXPECT_OK(report, patch_level_init(level, &sea->bench->tracer, sea_view(sea), &facts, pixels,
+                                       is_complex));
+    patch_facts_clear(&facts);
     claim_end(clear_level, level);
     return level;
 }

@@ -49,7 +49,10 @@ def test_a_scene_in_memory_is_formed_with_the_scene_at_hand(tmp_path):
 
 @pytest.mark.skipif(os.environ.get("SONJECT_HAS_HDF5") != "1", reason="built without HDF5")
 def test_impulses_are_exported_too(tmp_path):
-    sonject.trace(make_scene(), tmp_path / "impulses.sums", export_file=tmp_path / "arrays.h5")
+    told = []
+    sonject.trace(make_scene(), tmp_path / "impulses.sums", export_file=tmp_path / "arrays.h5",
+                  progress=lambda fraction, stage: told.append(fraction))
+    assert told == sorted(told) and len(told) > 3  # of both traces together
     assert (tmp_path / "arrays.h5").read_bytes().startswith(b"\x89HDF")
 
 
