@@ -339,6 +339,7 @@ static sonject_status add_set(struct forming *forming, const struct impulse_line
         return add_level(forming, lines);
     case IMPULSES_OBJECT:
     case IMPULSES_GLINT:
+    case IMPULSES_MULTIBOUNCE:
         return object_echoes_add(&forming->object, forming->echoes, forming->tracer, lines);
     case IMPULSES_BEAM:
         return add_beam(forming, lines);

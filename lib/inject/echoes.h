@@ -109,16 +109,17 @@ struct peak_lattice {
 struct object_former {
     bool is_open;
     uint32_t number;
-    struct line_grid grid;   /* of its tile */
-    float *rough_energy;     /* of the tile; NULL: no realisation of it is drawn */
-    float *glint;            /* of its parts, which interfere, over the columns of its echo: two
-                                planes; owned */
-    struct form_lines lines; /* of the part whose glints come in */
+    struct line_grid grid; /* of its tile */
+    float *rough_energy;   /* of the tile; NULL: no realisation of it is drawn */
+    float *glint; /* of its parts, which interfere: two planes of all rows and these columns, those
+                     of its echo or all where multi-bounce paths may lead farther; owned */
+    size_t first_column, columns;
+    struct form_lines lines; /* of the glints or multi-bounce echoes that come in */
     struct peak_lattice glint_peak, rough_peak;
 };
 
-/* Takes lines of OBJECT and GLINT. The next OBJECT finishes the one before; object_echoes_finish
- * the last. Errors: DEVICE, MEMORY. */
+/* Takes lines of OBJECT, GLINT and MULTIBOUNCE. The next OBJECT finishes the one before;
+ * object_echoes_finish the last. Errors: DEVICE, MEMORY. */
 sonject_status object_echoes_add(struct object_former *former, struct echoes *echoes,
                                  struct tracer *tracer, const struct impulse_lines *lines);
 sonject_status object_echoes_finish(struct object_former *former, struct echoes *echoes,

@@ -75,6 +75,7 @@ static sonject_status take(void *user, const struct impulse_lines *lines)
         return add_speckle(taker, lines, lines->plane[TILE_ENERGY],
                            STREAM_OBJECT_SPECKLE + lines->number);
     case IMPULSES_GLINT:
+    case IMPULSES_MULTIBOUNCE:
         return impulse_list_add(&taker->impulses, &lines->grid, lines->strips, lines->plane[0],
                                 lines->plane[1]);
     case IMPULSES_BEAM:

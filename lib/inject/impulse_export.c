@@ -94,6 +94,7 @@ static const struct {
     [IMPULSES_SEABED] = {"/seabed", {{"energy", "m^2"}, {"in_view", "m^2"}}},
     [IMPULSES_OBJECT] = {"/objects", {{"energy", "m^2"}, {"footprint", "rays"}, {"lost", "m^2"}}},
     [IMPULSES_GLINT] = {"/glints", {{"real", "m"}, {"imaginary", "m"}}},
+    [IMPULSES_MULTIBOUNCE] = {"/multibounce", {{"real", "m"}, {"imaginary", "m"}}},
     [IMPULSES_BEAM] = {"/beam", {{"energy", "m^2"}}},
     [IMPULSES_HIDDEN] = {"/hidden", {{"lost", "m^2"}}},
     [IMPULSES_LEVEL] = {"/level", {{"energy", "m^2"}}},

@@ -17,21 +17,24 @@ enum impulse_kind {
                         and lost energy in m^2, footprint in rays; no cells: none of it is seen */
     IMPULSES_GLINT,  /* after their object, one set for each of its parts that has some: real and
                         imaginary part, m */
-    IMPULSES_BEAM,   /* m^2: what each ping hears of an even seabed; only of a real aperture */
-    IMPULSES_HIDDEN, /* m^2: of that, what an object hides; one set for each after BEAM */
+    IMPULSES_MULTIBOUNCE, /* after the object's glints, which they interfere with: echoes of several
+                             smooth faces, a set for each region where they gather, m */
+    IMPULSES_BEAM,        /* m^2: what each ping hears of an even seabed; only of a real aperture */
+    IMPULSES_HIDDEN,      /* m^2: of that, what an object hides; one set for each after BEAM */
     IMPULSES_LEVEL, /* m^2: as the seabed, without objects and relief; only where there is relief */
     IMPULSES_CHAINS /* m^2: of paths of several interactions; a set for each order, or one for all
                      */
 };
 
-#define IMPULSE_KINDS      7
+#define IMPULSE_KINDS      8
 #define IMPULSE_PLANES_MAX 3
 
 /* Some strips of a set. Sets come strip by strip from their first to their last; those of objects,
  * of what they hide and of chains in one piece. */
 struct impulse_lines {
     enum impulse_kind kind;
-    uint32_t number;       /* of object or part; of CHAINS, interactions of the shortest path */
+    uint32_t number;       /* of object, part, or region, counted over all objects; of CHAINS,
+                              interactions of the shortest path */
     struct line_grid grid; /* of the whole set */
     struct span strips;    /* these */
     uint32_t planes;
@@ -78,6 +81,8 @@ sonject_status check_response_fits(const struct tracer *tracer, const struct tra
  *   /seabed            energy; in_view where the patch is resynthesised   (m^2)
  *   /objects/NUMBER    energy (m^2), footprint (rays), lost (m^2); objects count from 0
  *   /glints/PART       real, imaginary (m); parts count from 0 over all objects; only smooth ones
+ *   /multibounce/REGION  real, imaginary (m): echoes of several smooth faces, by the regions that
+ *                      hold them, from 0; only with several interactions
  *   /beam              energy (m^2) that each ping hears of an even seabed; only of a real aperture
  *   /hidden/NUMBER     lost (m^2): of that, what an object hides
  *   /level             energy (m^2); only with relief

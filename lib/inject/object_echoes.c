@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "inject/echoes.h"
 #include "scene/point_response.h"
+#include "trace/multibounce.h"
 
 #define POINTS_PER_RESOLUTION 4 /* a parabola in dB between them errs by 0.02 dB */
 #define MARGIN                2 /* points around the tile */
@@ -264,6 +265,16 @@ static bool has_rough_part(const struct tracer *tracer, uint32_t number)
     return false;
 }
 
+/* Whether an object's glints may lie anywhere, by way of other objects. */
+static bool leads_anywhere(const struct tracer *tracer, uint32_t number)
+{
+    const struct placed_object *object = &tracer->objects[number];
+    for (uint32_t i = 0; i < object->part_count; i++)
+        if (multibounce_may_echo(tracer, object->first_part + i))
+            return true;
+    return false;
+}
+
 static sonject_status begin_object(struct object_former *former, struct echoes *echoes,
                                    struct tracer *tracer, const struct impulse_lines *tile)
 {
@@ -277,8 +288,10 @@ static sonject_status begin_object(struct object_former *former, struct echoes *
     if (is_rough)
         CHECK(form_rough_peak(&former->rough_peak, tracer, tile));
     const struct object_echo *echo = &echoes->objects[tile->number];
-    const size_t pixels = echo->energy ? echoes->rows * echo->columns : 0;
-    former->glint = allocate_array(2 * pixels, sizeof(float));
+    const bool is_anywhere = leads_anywhere(tracer, tile->number);
+    former->first_column = is_anywhere ? 0 : echo->first_column;
+    former->columns = is_anywhere ? echoes->columns : echo->columns;
+    former->glint = allocate_array(2 * echoes->rows * former->columns, sizeof(float));
     CHECK_MEMORY(tracer->report, former->glint, "an object's glints");
     /* brute force draws all that is rough at once */
     if (!is_rough || tracer->scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE)
@@ -302,14 +315,13 @@ static void add_field(const struct echoes *echoes, const struct formed *formed, 
 static void add_glint(struct object_former *former, struct echoes *echoes,
                       const struct formed *formed)
 {
-    const struct object_echo *echo = &echoes->objects[former->number];
     for (size_t i = 0; i < formed->count; i++) {
         const size_t column = formed->first_column + i % formed->columns;
-        if (column < echo->first_column || column >= echo->first_column + echo->columns)
+        if (column < former->first_column || column >= former->first_column + former->columns)
             continue;
-        const size_t at = i / formed->columns * echo->columns + column - echo->first_column;
+        const size_t at = i / formed->columns * former->columns + column - former->first_column;
         former->glint[at] += formed->planes[i];
-        former->glint[echoes->rows * echo->columns + at] += formed->planes[formed->count + i];
+        former->glint[echoes->rows * former->columns + at] += formed->planes[formed->count + i];
     }
     if (echoes->coherent_real)
         add_field(echoes, formed, echoes->coherent_real, echoes->coherent_imaginary);
@@ -353,17 +365,32 @@ static sonject_status form_glint(struct object_former *former, struct echoes *ec
     return status;
 }
 
+/* Adds the energy of the object's glints to that of all objects; where its own echo is, to that. */
+static void add_glint_energy(const struct object_former *former, struct echoes *echoes)
+{
+    struct object_echo *echo = &echoes->objects[former->number];
+    const size_t count = echoes->rows * former->columns;
+    for (size_t i = 0; i < count; i++) {
+        const float energy = former->glint[i] * former->glint[i] +
+                             former->glint[count + i] * former->glint[count + i];
+        const size_t row = i / former->columns;
+        const size_t column = former->first_column + i % former->columns;
+        echoes->target_energy[row * echoes->columns + column] += energy;
+        if (column >= echo->first_column && column < echo->first_column + echo->columns)
+            echo->energy[row * echo->columns + column - echo->first_column] += energy;
+    }
+}
+
 sonject_status object_echoes_finish(struct object_former *former, struct echoes *echoes,
                                     struct tracer *tracer)
 {
     if (!former->is_open)
         return SONJECT_OK;
     struct object_echo *echo = &echoes->objects[former->number];
-    const size_t pixels = echo->energy ? echoes->rows * echo->columns : 0;
     echo->peak_energy = peak_of_echo(&former->glint_peak, &former->rough_peak, &echo->peak_range_m);
-    for (size_t i = 0; i < pixels; i++)
-        echo->energy[i] += former->glint[i] * former->glint[i] +
-                           former->glint[pixels + i] * former->glint[pixels + i];
+    if (echo->energy)
+        add_window(echoes->target_energy, echoes, echo->energy, echo->first_column, echo->columns);
+    add_glint_energy(former, echoes);
     if (former->rough_energy) {
         struct formed drawn;
         const sonject_status status = form_speckle(tracer, &former->grid, former->rough_energy,
@@ -373,8 +400,6 @@ sonject_status object_echoes_finish(struct object_former *former, struct echoes 
         free(drawn.planes);
         CHECK(status);
     }
-    if (echo->energy)
-        add_window(echoes->target_energy, echoes, echo->energy, echo->first_column, echo->columns);
     object_former_clear(former);
     return SONJECT_OK;
 }
@@ -382,7 +407,7 @@ sonject_status object_echoes_finish(struct object_former *former, struct echoes 
 sonject_status object_echoes_add(struct object_former *former, struct echoes *echoes,
                                  struct tracer *tracer, const struct impulse_lines *lines)
 {
-    if (lines->kind == IMPULSES_GLINT)
+    if (lines->kind != IMPULSES_OBJECT)
         return form_glint(former, echoes, tracer, lines);
     CHECK(object_echoes_finish(former, echoes, tracer));
     return begin_object(former, echoes, tracer, lines);

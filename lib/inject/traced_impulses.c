@@ -9,9 +9,11 @@
 #include "trace/chains.h"
 #include "trace/checkpoint.h"
 #include "trace/glints.h"
+#include "trace/multibounce.h"
 #include "trace/rough.h"
 
-#define STRIPS_A_LAUNCH 64 /* between two looks at whether the caller cancels */
+#define STRIPS_A_LAUNCH 64                /* between two looks at whether the caller cancels */
+#define CELLS_A_TIME    ((size_t)1 << 20) /* of multi-bounce echoes that are handed out */
 
 /* What tracing works with. */
 struct tracing {
@@ -21,6 +23,7 @@ struct tracing {
     struct rough_trace rough;
     float *tiles;          /* the objects' */
     float *chunk, *second; /* lines that are handed out */
+    uint32_t regions;      /* of multi-bounce echoes so far */
 };
 
 static sonject_status emit(const struct tracing *tracing, const struct impulse_lines *lines)
@@ -122,16 +125,6 @@ static sonject_status emit_tile(const struct tracing *tracing, uint32_t number)
     return emit(tracing, &lines);
 }
 
-/* Chunks that are the same wherever the grid begins: its extent depends on multi-bounce echoes,
- * which are not all known where another process traces some of them. */
-static struct span next_glint_strips(const struct glints *glints, struct span before)
-{
-    const int32_t chunk = glints->chunk;
-    const int32_t off = before.first + before.count - glints->traces[0].grid.strips.first;
-    const int32_t rest = off % chunk < 0 ? off % chunk + chunk : off % chunk;
-    return next_strips(&glints->grid, before, chunk - rest);
-}
-
 static sonject_status trace_glints(const struct tracing *tracing, uint32_t part)
 {
     struct glints glints;
@@ -146,7 +139,7 @@ static sonject_status trace_glints(const struct tracing *tracing, uint32_t part)
     sonject_status status =
         parts ? SONJECT_OK : report_out_of_memory(tracing->tracer->report, "glints");
     while (status == SONJECT_OK && chunk > 0 &&
-           (lines.strips = next_glint_strips(&glints, lines.strips)).count > 0) {
+           (lines.strips = next_strips(&glints.grid, lines.strips, glints.chunk)).count > 0) {
         status = glints_trace(&glints, tracing->tracer, lines.strips, parts, parts + chunk);
         THEN(status, emit(tracing, &lines));
     }
@@ -155,7 +148,45 @@ static sonject_status trace_glints(const struct tracing *tracing, uint32_t part)
     return status;
 }
 
-static sonject_status trace_objects(const struct tracing *tracing)
+static sonject_status emit_region(struct tracing *tracing, const struct multibounce *multibounce,
+                                  const struct multibounce_region *region)
+{
+    const size_t bins = (size_t)region->bins.count;
+    const size_t fitting = bins < CELLS_A_TIME ? CELLS_A_TIME / bins : 1;
+    const size_t strips = (size_t)region->strips.count;
+    const size_t most = fitting < strips ? fitting : strips;
+    float *parts = allocate_array(2 * most, bins * sizeof *parts);
+    CHECK_MEMORY(tracing->tracer->report, parts, "multi-bounce echoes");
+    struct impulse_lines lines = {IMPULSES_MULTIBOUNCE,
+                                  tracing->regions++,
+                                  multibounce->grid,
+                                  {region->strips.first, 0},
+                                  2,
+                                  {parts, parts + most * bins}};
+    lines.grid.strips = region->strips;
+    lines.grid.bins = region->bins;
+    sonject_status status = SONJECT_OK;
+    while (status == SONJECT_OK &&
+           (lines.strips = next_strips(&lines.grid, lines.strips, (int32_t)most)).count > 0) {
+        multibounce_read(multibounce, region, lines.strips, parts, parts + most * bins);
+        status = emit(tracing, &lines);
+    }
+    free(parts);
+    return status;
+}
+
+static sonject_status trace_multibounce(struct tracing *tracing, uint32_t object)
+{
+    struct multibounce multibounce;
+    CHECK(multibounce_begin(&multibounce, tracing->tracer, object));
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < multibounce.region_count; i++)
+        status = emit_region(tracing, &multibounce, &multibounce.regions[i]);
+    multibounce_end(&multibounce);
+    return status;
+}
+
+static sonject_status trace_objects(struct tracing *tracing)
 {
     const uint32_t count = tracing->tracer->scene->object_count;
     sonject_status status = SONJECT_OK;
@@ -165,6 +196,8 @@ static sonject_status trace_objects(const struct tracing *tracing)
         const uint32_t parts = tracer_follows(tracing->tracer, i) ? object->part_count : 0;
         for (uint32_t k = 0; status == SONJECT_OK && k < parts; k++)
             status = trace_glints(tracing, object->first_part + k);
+        if (status == SONJECT_OK && parts > 0)
+            status = trace_multibounce(tracing, i);
         THEN(status, echo_request_tell(tracing->request, tracing->tracer->report,
                                        ROUGH_SHARE + OBJECT_SHARE * (i + 1) / count,
                                        "tracing the objects"));

@@ -9,7 +9,7 @@
 #include "inject/echoes.h"
 #include "measure/contacts.h"
 #include "trace/chains.h"
-#include "trace/glints.h"
+#include "trace/multibounce.h"
 #include "trace/rough.h"
 
 #define TRUTH_MARGIN  (CONTACT_MARGIN + SEABED_MARGIN)
@@ -80,9 +80,16 @@ static void include_chains(struct extent *extent, const struct tracer *tracer, u
                     view_column_of_range(view, farthest * view->range_ratio));
 }
 
-/* Echoes by several smooth faces lie between the parts that they meet. */
-static void include_multibounce(struct extent *extent, const struct tracer *tracer)
+/* Echoes by several smooth faces lie along the track between the parts that they meet. */
+static void include_multibounce(struct extent *extent, const struct tracer *tracer, uint32_t part)
 {
+    struct line_grid grid;
+    line_grid_for_patch(&grid, &tracer->view, &tracer->response);
+    const struct span bins = multibounce_bins(tracer, part, &grid, false);
+    const double pulse = pulse_tail_bins(&tracer->view, &tracer->response, grid.bins_per_pixel);
+    if (bins.count > 0)
+        include_columns(extent, (bins.first - pulse) / grid.bins_per_pixel,
+                        (bins.first + bins.count + pulse) / grid.bins_per_pixel);
     for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *placement = &tracer->placements[i];
         if (material_is_smooth(&placement->material))
@@ -105,7 +112,7 @@ static struct extent extent_of_object(const struct tracer *tracer,
         if (has_beam_shadows(tracer))
             include_echoes(&extent, tracer, part, &of_pings, true);
         if (multibounce_may_echo(tracer, part))
-            include_multibounce(&extent, tracer);
+            include_multibounce(&extent, tracer, part);
         if (tracer->scene->injection.interactions > 1)
             include_chains(&extent, tracer, part);
     }

@@ -154,10 +154,7 @@ sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32
         if (glints->grid.strips.count > 0)
             status = begin_images(glints, tracer, part);
     }
-    THEN(status, multibounce_begin(&glints->multibounce, tracer, part));
     if (status == SONJECT_OK) {
-        glints->grid.strips = span_join(glints->grid.strips, glints->multibounce.grid.strips);
-        glints->grid.bins = span_join(glints->grid.bins, glints->multibounce.grid.bins);
         glints->chunk = glints->traces[0].chunk;
         for (size_t i = 1; i < glints->count; i++)
             if (glints->traces[i].chunk < glints->chunk)
@@ -177,7 +174,6 @@ void glints_end(struct glints *glints)
 {
     for (size_t i = 0; i < glints->count; i++)
         smooth_trace_end(&glints->traces[i]);
-    multibounce_end(&glints->multibounce);
     free(glints->traces);
     free(glints->real_part);
     free(glints->imaginary_part);
@@ -203,7 +199,7 @@ sonject_status glints_trace(struct glints *glints, struct tracer *tracer, struct
                             float *real_part, float *imaginary_part)
 {
     const size_t bytes = (size_t)strips.count * (size_t)glints->grid.bins.count * sizeof *real_part;
-    if (glints->count == 1 && glints->multibounce.grid.strips.count == 0)
+    if (glints->count == 1)
         return smooth_trace_strips(&glints->traces[0], tracer, strips, real_part, imaginary_part);
     memset(real_part, 0, bytes);
     memset(imaginary_part, 0, bytes);
@@ -216,6 +212,5 @@ sonject_status glints_trace(struct glints *glints, struct tracer *tracer, struct
         add_bins(glints, &glints->traces[i], some.count, (size_t)(some.first - strips.first),
                  real_part, imaginary_part);
     }
-    multibounce_add(&glints->multibounce, strips, &glints->grid, real_part, imaginary_part);
     return SONJECT_OK;
 }

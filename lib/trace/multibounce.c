@@ -1,12 +1,11 @@
-#include "trace/glints.h"
+#include "trace/multibounce.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "kernels/tally.h"
-#include "trace/checkpoint.h"
+#include "trace/glints.h"
 #include "trace/object_buffer.h"
 
 #define FINER_MAX          2.0 /* 4 times the rays */
@@ -14,9 +13,18 @@
 #define PAIRS_MAX          (SOURCES_MAX * (SOURCES_MAX + 1) / 2)
 #define ECHOES_A_LAUNCH    ((size_t)1 << 20)
 
+#define ANY_OBJECT UINT32_MAX
+
 static bool is_smooth(const struct tracer *tracer, uint32_t part)
 {
     return material_is_smooth(&tracer->placements[part].material);
+}
+
+/* Whether paths of a first part's that keep to an object may meet this part last. */
+static bool is_met(const struct tracer *tracer, uint32_t part, uint32_t object)
+{
+    return is_smooth(tracer, part) &&
+           (object == ANY_OBJECT || tracer->placements[part].object == object);
 }
 
 bool multibounce_may_echo(const struct tracer *tracer, uint32_t part)
@@ -32,7 +40,7 @@ bool multibounce_may_echo(const struct tracer *tracer, uint32_t part)
 /* No less than what each further interaction may add to a path between the first and last hit: the
  * diagonal of a box around the smooth parts, or half that of one around them and their images in
  * the seabed, which take two interactions. */
-static double longest_step(const struct tracer *tracer)
+static double longest_step(const struct tracer *tracer, uint32_t object)
 {
     double height;
     const sonject_material_params *seabed;
@@ -40,7 +48,7 @@ static double longest_step(const struct tracer *tracer)
     double high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *part = &tracer->placements[i];
-        for (int axis = 0; axis < 3 && is_smooth(tracer, i); axis++) {
+        for (int axis = 0; axis < 3 && is_met(tracer, i, object); axis++) {
             low[axis] = fmin(low[axis], part->centre[axis] - part->bounding_radius_m);
             high[axis] = fmax(high[axis], part->centre[axis] + part->bounding_radius_m);
         }
@@ -66,7 +74,7 @@ static struct ranges ranges_of(const struct sound_source *source, const struct p
 
 /* Half of the shortest and of the longest path. */
 static struct ranges half_paths(const struct tracer *tracer, uint32_t part,
-                                const struct image_pair *pair)
+                                const struct image_pair *pair, uint32_t object)
 {
     const struct placement *first = &tracer->placements[part];
     const uint32_t interactions =
@@ -76,7 +84,7 @@ static struct ranges half_paths(const struct tracer *tracer, uint32_t part,
     double aside = 0.0;
     for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *last = &tracer->placements[i];
-        if (!is_smooth(tracer, i))
+        if (!is_met(tracer, i, object))
             continue;
         const struct ranges one = ranges_of(pair->returning, last);
         returned.nearest = fmin(returned.nearest, one.nearest);
@@ -89,7 +97,7 @@ static struct ranges half_paths(const struct tracer *tracer, uint32_t part,
     struct ranges half;
     half.nearest = 0.5 * (out.nearest + returned.nearest);
     half.farthest = 0.5 * (out.farthest + returned.farthest + lengthened +
-                           (interactions - 1.0) * longest_step(tracer));
+                           (interactions - 1.0) * longest_step(tracer, object));
     return half;
 }
 
@@ -97,15 +105,16 @@ static struct ranges half_paths(const struct tracer *tracer, uint32_t part,
  * size of its bins is used. */
 static struct span multibounce_pair_bins(const struct tracer *tracer, uint32_t part,
                                          const struct image_pair *pair,
-                                         const struct line_grid *grid)
+                                         const struct line_grid *grid, uint32_t object)
 {
-    const struct ranges half = half_paths(tracer, part, pair);
+    const struct ranges half = half_paths(tracer, part, pair, object);
     return bins_in_patch(tracer, grid, bins_of_ranges(tracer, grid, half.nearest, half.farthest));
 }
 
 struct span multibounce_bins(const struct tracer *tracer, uint32_t part,
-                             const struct line_grid *grid)
+                             const struct line_grid *grid, bool is_own)
 {
+    const uint32_t object = is_own ? tracer->placements[part].object : ANY_OBJECT;
     struct image_pairs pairs;
     struct image_pair pair;
     struct span bins = {0, 0};
@@ -113,7 +122,7 @@ struct span multibounce_bins(const struct tracer *tracer, uint32_t part,
         return bins;
     image_pairs_begin(&pairs, tracer, part, true, 2);
     while (image_pairs_next(&pairs, &pair))
-        bins = span_join(bins, multibounce_pair_bins(tracer, part, &pair, grid));
+        bins = span_join(bins, multibounce_pair_bins(tracer, part, &pair, grid, object));
     return bins;
 }
 
@@ -151,20 +160,21 @@ static struct span mean_strips(struct span one, struct span other)
     return mean;
 }
 
-void multibounce_init(struct multibounce *multibounce, const struct tracer *tracer, uint32_t part)
+void multibounce_strips_init(struct multibounce_strips *strips, const struct tracer *tracer,
+                             uint32_t part)
 {
     struct line_grid other;
-    glint_strips_init(&multibounce->grid, tracer, part);
-    multibounce->grid.bins.first = multibounce->grid.bins.count = 0;
-    multibounce->first_hits = multibounce->grid.strips;
-    struct span last_hits = multibounce->grid.strips;
+    glint_strips_init(&strips->grid, tracer, part);
+    strips->grid.bins.first = strips->grid.bins.count = 0;
+    strips->first_hits = strips->grid.strips;
+    struct span last_hits = strips->grid.strips;
     for (uint32_t i = 0; i < tracer->part_count; i++)
         if (is_smooth(tracer, i)) {
             glint_strips_init(&other, tracer, i);
             last_hits = span_join(last_hits, other.strips);
         }
     if (tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED)
-        multibounce->grid.strips = mean_strips(multibounce->first_hits, last_hits);
+        strips->grid.strips = mean_strips(strips->first_hits, last_hits);
 }
 
 /* Paths may gather much of a wide tube in one cell, so quanta leave seven powers of ten over what a
@@ -207,26 +217,27 @@ static sonject_status begin_launch(struct multibounce_launch *of_pair, struct tr
 }
 
 /* So many sub-strips that all their rays may echo at every hit. */
-static void choose_chunk(struct multibounce_launch *of_pair, const struct multibounce *multibounce)
+static void choose_chunk(struct multibounce_launch *of_pair,
+                         const struct multibounce_strips *of_part)
 {
     const struct fan_record *fan = &of_pair->launch.fan;
     const size_t a_strip =
         (size_t)fan->rays * fan->strata * (size_t)(of_pair->record.interactions - 1);
-    const size_t strips = (size_t)multibounce->first_hits.count;
+    const size_t strips = (size_t)of_part->first_hits.count;
     const size_t fitting = ECHOES_A_LAUNCH / a_strip;
     of_pair->chunk = (int32_t)(fitting < 1 ? 1 : fitting < strips ? fitting : strips);
     of_pair->capacity = (size_t)of_pair->chunk * a_strip;
 }
 
 sonject_status multibounce_launch_begin(struct multibounce_launch *of_pair, struct line_grid *grid,
-                                        const struct multibounce *multibounce,
+                                        const struct multibounce_strips *of_part,
                                         struct tracer *tracer, uint32_t part,
                                         const struct image_pair *pair)
 {
     struct fan_record *fan = &of_pair->launch.fan;
     memset(of_pair, 0, sizeof *of_pair);
-    *grid = multibounce->grid;
-    grid->bins = multibounce_pair_bins(tracer, part, pair, grid);
+    *grid = of_part->grid;
+    grid->bins = multibounce_pair_bins(tracer, part, pair, grid, ANY_OBJECT);
     if (grid->bins.count == 0)
         return SONJECT_OK;
     multibounce_record_init(&of_pair->record, tracer, pair);
@@ -235,7 +246,7 @@ sonject_status multibounce_launch_begin(struct multibounce_launch *of_pair, stru
     fan->stream = STREAM_MULTIBOUNCE_RAYS + STREAMS_OF_PAIR * pair->number + part;
     glint_fan_init(fan, tracer, part, &pair->outgoing->path, multibounce_rays_finer(tracer, part));
     choose_quanta(fan);
-    choose_chunk(of_pair, multibounce);
+    choose_chunk(of_pair, of_part);
     THEN(status, begin_launch(of_pair, tracer, part));
     if (status != SONJECT_OK)
         multibounce_launch_end(of_pair);
@@ -270,128 +281,12 @@ sonject_status multibounce_launch_strips(struct multibounce_launch *of_pair, str
     return SONJECT_OK;
 }
 
-bool multibounce_sums_init(struct multibounce_sums *sums, const struct line_grid *grid)
-{
-    sums->grid = *grid;
-    sums->rows = ((size_t)grid->strips.count + TILE_STRIPS - 1) / TILE_STRIPS;
-    sums->columns = ((size_t)grid->bins.count + TILE_BINS - 1) / TILE_BINS;
-    sums->tiles = allocate_array(sums->rows * sums->columns, sizeof *sums->tiles);
-    return sums->tiles != NULL;
-}
-
-void multibounce_sums_clear(struct multibounce_sums *sums)
-{
-    for (size_t i = 0; sums->tiles && i < sums->rows * sums->columns; i++)
-        free(sums->tiles[i]);
-    free(sums->tiles);
-    memset(sums, 0, sizeof *sums);
-}
-
-/* Both parts of a cell, whose tile is made if need be; NULL where memory lacks. */
-static int64_t *cell_at(struct multibounce_sums *sums, size_t strip, size_t bin)
-{
-    int64_t **tile = &sums->tiles[strip / TILE_STRIPS * sums->columns + bin / TILE_BINS];
-    if (!*tile)
-        *tile = allocate_array(TILE_SUMS, sizeof **tile);
-    return *tile ? *tile + 2 * (strip % TILE_STRIPS * TILE_BINS + bin % TILE_BINS) : NULL;
-}
-
-bool multibounce_sums_add(struct multibounce_sums *sums,
-                          const struct multibounce_echo_record *echoes, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        const struct multibounce_echo_record *echo = &echoes[i];
-        const int32_t strip = echo->strip - sums->grid.strips.first;
-        if (strip < 0 || strip >= sums->grid.strips.count || echo->bin < 0 ||
-            echo->bin + 1 >= sums->grid.bins.count)
-            continue;
-        const float later = echo->fraction;
-        const float sooner = 1.0f - later;
-        int64_t *first = cell_at(sums, (size_t)strip, (size_t)echo->bin);
-        int64_t *second = cell_at(sums, (size_t)strip, (size_t)echo->bin + 1);
-        if (!first || !second)
-            return false;
-        first[0] += whole_quanta(echo->real_part * sooner, echo->chance);
-        first[1] += whole_quanta(echo->imaginary_part * sooner, echo->chance);
-        second[0] += whole_quanta(echo->real_part * later, echo->chance);
-        second[1] += whole_quanta(echo->imaginary_part * later, echo->chance);
-    }
-    return true;
-}
-
-static bool add_tile(void *user, uint64_t first, const int64_t *values, size_t count)
-{
-    struct multibounce_sums *sums = user;
-    if (first % TILE_SUMS != 0 || count != TILE_SUMS)
-        return false;
-    int64_t **tile = &sums->tiles[first / TILE_SUMS];
-    if (!*tile)
-        *tile = allocate_array(TILE_SUMS, sizeof **tile);
-    for (size_t i = 0; i < count; i++)
-        if (!*tile || !add_without_overflow(&(*tile)[i], values[i]))
-            return false;
-    return true;
-}
-
-/* Sums of a checkpoint: keeps the tiles that were traced, or adds up those of all checkpoints. */
-static sonject_status share_sums(struct multibounce_sums *sums, struct checkpoint *checkpoint)
-{
-    const size_t tiles = sums->rows * sums->columns;
-    if (!checkpoint)
-        return SONJECT_OK;
-    if (checkpoint->files)
-        return checkpoint_add_up(checkpoint, (uint64_t)tiles * TILE_SUMS, add_tile, sums);
-    sonject_status status =
-        sums_writer_begin_sums(&checkpoint->writer, (uint64_t)tiles * TILE_SUMS);
-    for (size_t i = 0; status == SONJECT_OK && i < tiles; i++)
-        if (sums->tiles[i])
-            status = sums_writer_run(&checkpoint->writer, (uint64_t)i * TILE_SUMS, sums->tiles[i],
-                                     TILE_SUMS);
-    return status == SONJECT_OK ? sums_writer_end_sums(&checkpoint->writer) : status;
-}
-
-/* Strips or bins of one tile. */
-static struct span span_of_tile(size_t number, int32_t size, struct span all)
-{
-    const int32_t first = (int32_t)number * size;
-    const struct span tile = {all.first + first, size};
-    return span_overlap(tile, all);
-}
-
-/* The strips and bins of the tiles that there are; counts 0 where there is none. */
-static void find_extent(const struct multibounce_sums *sums, struct span *strips, struct span *bins)
-{
-    strips->first = strips->count = bins->first = bins->count = 0;
-    for (size_t i = 0; i < sums->rows * sums->columns; i++)
-        if (sums->tiles[i]) {
-            *strips =
-                span_join(*strips, span_of_tile(i / sums->columns, TILE_STRIPS, sums->grid.strips));
-            *bins = span_join(*bins, span_of_tile(i % sums->columns, TILE_BINS, sums->grid.bins));
-        }
-}
-
-static void add_tile_to_planes(const int64_t *tile, struct span rows, struct span tile_strips,
-                               struct span tile_bins, double quantum, struct span strips,
-                               const struct line_grid *grid, float *real_part,
-                               float *imaginary_part)
-{
-    for (int32_t strip = rows.first; strip < rows.first + rows.count; strip++) {
-        const size_t from = (size_t)(strip - tile_strips.first) * TILE_BINS;
-        const size_t to = (size_t)(strip - strips.first) * (size_t)grid->bins.count +
-                          (size_t)(tile_bins.first - grid->bins.first);
-        for (size_t bin = 0; bin < (size_t)tile_bins.count; bin++) {
-            real_part[to + bin] += (float)((double)tile[2 * (from + bin)] * quantum);
-            imaginary_part[to + bin] += (float)((double)tile[2 * (from + bin) + 1] * quantum);
-        }
-    }
-}
-
 static sonject_status trace_pair(struct multibounce_sums *sums, struct multibounce_launch *of_pair,
-                                 const struct multibounce *multibounce, struct tracer *tracer,
+                                 const struct multibounce_strips *of_part, struct tracer *tracer,
                                  const struct line_grid *grid)
 {
     const double ratio = tracer->view.range_ratio;
-    const struct span all = multibounce->first_hits;
+    const struct span all = of_part->first_hits;
     CHECK_MEMORY(tracer->report, multibounce_sums_init(sums, grid), "multi-bounce echoes");
     sums->amplitude_of_quantum = ratio * ratio / of_pair->launch.fan.quanta;
     for (int32_t done = 0; done < all.count; done += of_pair->chunk) {
@@ -400,23 +295,26 @@ static sonject_status trace_pair(struct multibounce_sums *sums, struct multiboun
                                     left < of_pair->chunk ? left : of_pair->chunk};
         CHECK(multibounce_launch_strips(of_pair, tracer, strips, sums));
     }
-    return share_sums(sums, tracer->checkpoint);
+    return multibounce_sums_share(sums, tracer->checkpoint);
 }
 
 static sonject_status trace_pairs(struct multibounce *multibounce, struct tracer *tracer,
                                   uint32_t part)
 {
+    struct multibounce_strips of_part;
     struct image_pairs pairs;
     struct image_pair pair;
     struct multibounce_launch of_pair;
     struct line_grid grid;
+    multibounce_strips_init(&of_part, tracer, part);
     image_pairs_begin(&pairs, tracer, part, true, 2);
     while (image_pairs_next(&pairs, &pair)) {
-        CHECK(multibounce_launch_begin(&of_pair, &grid, multibounce, tracer, part, &pair));
+        CHECK(multibounce_launch_begin(&of_pair, &grid, &of_part, tracer, part, &pair));
         if (grid.bins.count == 0)
             continue;
-        const sonject_status status = trace_pair(&multibounce->sums[multibounce->count++], &of_pair,
-                                                 multibounce, tracer, &grid);
+        multibounce->grid = grid;
+        const sonject_status status =
+            trace_pair(&multibounce->sums[multibounce->count++], &of_pair, &of_part, tracer, &grid);
         multibounce_launch_end(&of_pair);
         CHECK(status);
     }
@@ -424,27 +322,21 @@ static sonject_status trace_pairs(struct multibounce *multibounce, struct tracer
 }
 
 sonject_status multibounce_begin(struct multibounce *multibounce, struct tracer *tracer,
-                                 uint32_t part)
+                                 uint32_t object)
 {
+    const struct placed_object *placed = &tracer->objects[object];
     memset(multibounce, 0, sizeof *multibounce);
-    if (!multibounce_may_echo(tracer, part))
-        return SONJECT_OK;
-    multibounce->sums = allocate_array(PAIRS_MAX, sizeof *multibounce->sums);
+    multibounce->sums =
+        allocate_array((size_t)placed->part_count * PAIRS_MAX, sizeof *multibounce->sums);
     CHECK_MEMORY(tracer->report, multibounce->sums, "multi-bounce echoes");
-    multibounce_init(multibounce, tracer, part);
-    const sonject_status status = trace_pairs(multibounce, tracer, part);
-    if (status != SONJECT_OK) {
+    sonject_status status = SONJECT_OK;
+    for (uint32_t k = 0; status == SONJECT_OK && k < placed->part_count; k++)
+        if (multibounce_may_echo(tracer, placed->first_part + k))
+            status = trace_pairs(multibounce, tracer, placed->first_part + k);
+    THEN(status, multibounce_find_regions(multibounce, tracer->report));
+    if (status != SONJECT_OK)
         multibounce_end(multibounce);
-        return status;
-    }
-    multibounce->grid.strips.count = 0;
-    for (size_t i = 0; i < multibounce->count; i++) {
-        struct span strips, bins;
-        find_extent(&multibounce->sums[i], &strips, &bins);
-        multibounce->grid.strips = span_join(multibounce->grid.strips, strips);
-        multibounce->grid.bins = span_join(multibounce->grid.bins, bins);
-    }
-    return SONJECT_OK;
+    return status;
 }
 
 void multibounce_end(struct multibounce *multibounce)
@@ -452,23 +344,6 @@ void multibounce_end(struct multibounce *multibounce)
     for (size_t i = 0; i < multibounce->count; i++)
         multibounce_sums_clear(&multibounce->sums[i]);
     free(multibounce->sums);
+    free(multibounce->regions);
     memset(multibounce, 0, sizeof *multibounce);
-}
-
-void multibounce_add(const struct multibounce *multibounce, struct span strips,
-                     const struct line_grid *grid, float *real_part, float *imaginary_part)
-{
-    for (size_t k = 0; k < multibounce->count; k++) {
-        const struct multibounce_sums *sums = &multibounce->sums[k];
-        for (size_t i = 0; i < sums->rows * sums->columns; i++) {
-            const struct span tile_strips =
-                span_of_tile(i / sums->columns, TILE_STRIPS, sums->grid.strips);
-            const struct span rows = span_overlap(tile_strips, strips);
-            if (sums->tiles[i] && rows.count > 0)
-                add_tile_to_planes(sums->tiles[i], rows, tile_strips,
-                                   span_of_tile(i % sums->columns, TILE_BINS, sums->grid.bins),
-                                   sums->amplitude_of_quantum, strips, grid, real_part,
-                                   imaginary_part);
-        }
-    }
 }

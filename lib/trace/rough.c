@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "trace/fan.h"
 #include "trace/fouling.h"
-#include "trace/glints.h"
+#include "trace/multibounce.h"
 #include "trace/object_buffer.h"
 
 #define PI           3.14159265358979323846
@@ -60,7 +60,7 @@ struct span rough_bins_of_part(const struct tracer *tracer, uint32_t number,
     struct span bins;
     bins.first = (int32_t)fmin(fmax(first, grid->bins.first), limit);
     bins.count = (int32_t)fmax(0.0, fmin(last + 1.0, limit) - bins.first);
-    return span_overlap(span_join(bins, multibounce_bins(tracer, number, grid)), grid->bins);
+    return span_overlap(span_join(bins, multibounce_bins(tracer, number, grid, true)), grid->bins);
 }
 
 /* How far, m along the track, a part's shadow and the strips of rays that meet it reach beyond it:

@@ -1,6 +1,6 @@
 /* Files of sums: what one process traced of a shard, or of everything, in one go.
  *
- *   "sonject sums 06\n"
+ *   "sonject sums 07\n"
  *   blocks: kind, bytes (64 bits each), digest (XXH3 of kind, bytes and content, 32 digits in 40
  *   bytes), content
  *     sums  how many sums there are; then runs of those that are not all 0: number of the first,
@@ -149,7 +149,7 @@ sonject_status sums_chain_find(struct sums_chain *chain, struct report *report,
                                const struct sums_folder *folder, uint64_t shard);
 
 /* Blocks, as tests make them, too. */
-#define SUMS_MAGIC       "sonject sums 06\n"
+#define SUMS_MAGIC       "sonject sums 07\n"
 #define SUMS_MAGIC_BYTES 16
 
 enum block_kind {

@@ -279,6 +279,14 @@ def test_the_export_holds_what_is_formed(sonject, scene, tmp_path):
         column = tile.attrs["first_bin"] - seabed.attrs["first_bin"]
         under = seabed["energy"][row:row + lost.shape[0], column:column + lost.shape[1]]
         assert 0 < lost[()].sum() <= under.sum()
+        assert "multibounce" not in file
+    command(sonject, "trace", scene, "-o", "d", "--export", "d.h5", "--set",
+            "injection.interactions=2", *NOMINAL)
+    with h5py.File(tmp_path / "d.h5") as file:
+        regions = file["multibounce"].values()  # the faces of the buoy see each other
+        for region in regions:
+            assert region["real"].shape == (region.attrs["strips"], region.attrs["bins"])
+        assert any(region["imaginary"][()].any() for region in regions)
     assert_refused(sonject("form", "a.h5", "-o", "result"), 3, "a.h5", "trace again")
     assert_refused(sonject("trace", scene, "-o", "c", "--export", "none/c.h5"), 5, "none/c.h5")
     assert not (tmp_path / "c").exists()

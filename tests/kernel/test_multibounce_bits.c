@@ -59,11 +59,11 @@ static void make_scene(struct bench *bench, const struct variant *variant)
     bench_ready(bench);
 }
 
-static uint64_t add_on_device(struct bench *bench, const struct multibounce *multibounce,
+static uint64_t add_on_device(struct bench *bench, const struct multibounce_strips *of_part,
                               struct multibounce_launch *of_pair, int32_t wanted_chunk,
                               struct multibounce_sums *sums)
 {
-    const struct span all = multibounce->first_hits;
+    const struct span all = of_part->first_hits;
     const int32_t chunk = wanted_chunk < of_pair->chunk ? wanted_chunk : of_pair->chunk;
     bench->tracer.counts.impulses = 0;
     for (int32_t done = 0; done < all.count; done += chunk) {
@@ -74,7 +74,7 @@ static uint64_t add_on_device(struct bench *bench, const struct multibounce *mul
     return bench->tracer.counts.impulses;
 }
 
-static uint64_t add_as_c(struct bench *bench, const struct multibounce *multibounce,
+static uint64_t add_as_c(struct bench *bench, const struct multibounce_strips *of_part,
                          struct multibounce_launch *of_pair, struct multibounce_sums *sums)
 {
     struct object_record *objects =
@@ -84,9 +84,9 @@ static uint64_t add_as_c(struct bench *bench, const struct multibounce *multibou
     assert_non_null(echoes);
     of_pair->launch.fan.strips = 1;
     of_pair->launch.fan.segments = 1;
-    for (int32_t strip = 0; strip < multibounce->first_hits.count; strip++) {
+    for (int32_t strip = 0; strip < of_part->first_hits.count; strip++) {
         uint32_t listed = 0;
-        of_pair->launch.fan.first_strip = multibounce->first_hits.first + strip;
+        of_pair->launch.fan.first_strip = of_part->first_hits.first + strip;
         const struct outcome_record outcome = trace_multibounce_strip(
             &of_pair->launch.fan, of_pair->launch.rays.pieces, &of_pair->sources, &of_pair->record,
             objects, echoes, &listed, 0, 0);
@@ -115,7 +115,7 @@ static struct device *devices[2];
 static size_t device_count;
 
 /* Echoes of one pair; compares them in launches as they come and, where told to, in small ones. */
-static uint64_t compare_pair(struct bench *bench, const struct multibounce *multibounce,
+static uint64_t compare_pair(struct bench *bench, const struct multibounce_strips *of_part,
                              uint32_t part, const struct image_pair *pair, bool has_small_ones)
 {
     struct device *own = bench->tracer.device;
@@ -126,18 +126,18 @@ static uint64_t compare_pair(struct bench *bench, const struct multibounce *mult
         struct multibounce_launch of_pair;
         struct line_grid grid;
         bench->tracer.device = devices[d];
-        EXPECT_OK(&bench->report, multibounce_launch_begin(&of_pair, &grid, multibounce,
-                                                           &bench->tracer, part, pair));
+        EXPECT_OK(&bench->report,
+                  multibounce_launch_begin(&of_pair, &grid, of_part, &bench->tracer, part, pair));
         if (grid.bins.count == 0)
             break;
         if (d == 0) {
             assert_true(multibounce_sums_init(&expected, &grid));
-            impulses = add_as_c(bench, multibounce, &of_pair, &expected);
+            impulses = add_as_c(bench, of_part, &of_pair, &expected);
         }
         for (int is_small = 0; is_small <= has_small_ones; is_small++) {
             assert_true(multibounce_sums_init(&measured, &grid));
             assert_int_equal(
-                add_on_device(bench, multibounce, &of_pair, is_small ? 37 : 1 << 20, &measured),
+                add_on_device(bench, of_part, &of_pair, is_small ? 37 : 1 << 20, &measured),
                 impulses);
             expect_same(&measured, &expected);
             multibounce_sums_clear(&measured);
@@ -156,14 +156,14 @@ static void compare_variant(struct bench *bench, const struct variant *variant)
     uint64_t impulses = 0;
     size_t pairs = 0;
     for (uint32_t part = 0; part < bench->scene.object_count; part++) {
-        struct multibounce multibounce;
+        struct multibounce_strips of_part;
         struct image_pairs all;
         struct image_pair pair;
         assert_true(multibounce_may_echo(&bench->tracer, part));
-        multibounce_init(&multibounce, &bench->tracer, part);
+        multibounce_strips_init(&of_part, &bench->tracer, part);
         image_pairs_begin(&all, &bench->tracer, part, true, 2);
         for (; image_pairs_next(&all, &pair); pairs++)
-            impulses += compare_pair(bench, &multibounce, part, &pair, impulses == 0);
+            impulses += compare_pair(bench, &of_part, part, &pair, impulses == 0);
     }
     print_message("%s: %zu pairs, %llu echoes\n", variant->name, pairs,
                   (unsigned long long)impulses);

@@ -9,6 +9,7 @@
 #include "inject/compose.h"
 #include "trace/chains.h"
 #include "trace/glints.h"
+#include "trace/multibounce.h"
 #include "trace/rough.h"
 #include "trace/tracer.h"
 

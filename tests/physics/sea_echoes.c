@@ -1,31 +1,68 @@
 /* What rays bring, before the image is formed. */
 #include "sea.h"
 
+/* Adds strips of bins to those of the line. */
+static void add_strips(struct line *line, int32_t first_line_bin, const struct line_grid *grid,
+                       struct span strips, const float *real_part, const float *imaginary_part)
+{
+    const size_t bins = (size_t)grid->bins.count;
+    double complex *values = line->values + (grid->bins.first - first_line_bin);
+    for (size_t i = 0; i < (size_t)strips.count * bins; i++)
+        values[i % bins] += real_part[i] + I * (double)imaginary_part[i];
+}
+
+static void add_glints(struct sea *sea, struct glints *glints, struct line *line, int32_t first_bin)
+{
+    const struct line_grid *grid = &glints->grid;
+    const size_t cells = (size_t)glints->chunk * (size_t)grid->bins.count;
+    float *parts = calloc(2 * cells, sizeof *parts);
+    assert_non_null(parts);
+    for (int32_t done = 0; done < grid->strips.count; done += glints->chunk) {
+        const int32_t left = grid->strips.count - done;
+        const struct span strips = {grid->strips.first + done,
+                                    left < glints->chunk ? left : glints->chunk};
+        EXPECT_OK(&sea->bench->report,
+                  glints_trace(glints, &sea->bench->tracer, strips, parts, parts + cells));
+        add_strips(line, first_bin, grid, strips, parts, parts + cells);
+    }
+    free(parts);
+}
+
+static void add_multibounce(const struct multibounce *multibounce, struct line *line,
+                            int32_t first_bin)
+{
+    for (size_t i = 0; i < multibounce->region_count; i++) {
+        const struct multibounce_region *region = &multibounce->regions[i];
+        const struct line_grid grid = {.strips = region->strips, .bins = region->bins};
+        const size_t cells = line_grid_cells(&grid);
+        float *parts = calloc(2 * cells, sizeof *parts);
+    assert_non_null(parts);
+        multibounce_read(multibounce, region, region->strips, parts, parts + cells);
+        add_strips(line, first_bin, &grid, region->strips, parts, parts + cells);
+        free(parts);
+    }
+}
+
+/* The object is one part. */
 struct line sea_line(struct sea *sea, uint32_t object)
 {
     struct tracer *tracer = &sea->bench->tracer;
     struct glints glints;
+    struct multibounce multibounce;
     struct line line;
     sea_lay(sea);
     EXPECT_OK(&sea->bench->report, glints_begin(&glints, tracer, object));
-    line.bins = (size_t)glints.grid.bins.count;
+    EXPECT_OK(&sea->bench->report, multibounce_begin(&multibounce, tracer, object));
+    struct span bins = glints.grid.bins;
+    for (size_t i = 0; i < multibounce.region_count; i++)
+        bins = span_join(bins, multibounce.regions[i].bins);
+    line.bins = (size_t)bins.count;
     line.spacing_m = tracer->view.column_spacing_m / glints.grid.bins_per_pixel;
-    line.first_range_m = tracer->view.first_range_m + glints.grid.bins.first * line.spacing_m;
+    line.first_range_m = tracer->view.first_range_m + bins.first * line.spacing_m;
     line.values = claim_memory(line.bins, sizeof *line.values);
-    const int32_t chunk = glints.chunk;
-    float *real_part = calloc((size_t)chunk * line.bins, sizeof *real_part);
-    float *imaginary_part = calloc((size_t)chunk * line.bins, sizeof *imaginary_part);
-    assert_true(real_part && imaginary_part);
-    for (int32_t done = 0; done < glints.grid.strips.count; done += chunk) {
-        const int32_t left = glints.grid.strips.count - done;
-        const struct span strips = {glints.grid.strips.first + done, left < chunk ? left : chunk};
-        EXPECT_OK(&sea->bench->report,
-                  glints_trace(&glints, tracer, strips, real_part, imaginary_part));
-        for (size_t i = 0; i < (size_t)strips.count * line.bins; i++)
-            line.values[i % line.bins] += real_part[i] + I * (double)imaginary_part[i];
-    }
-    free(real_part);
-    free(imaginary_part);
+    add_glints(sea, &glints, &line, bins.first);
+    add_multibounce(&multibounce, &line, bins.first);
+    multibounce_end(&multibounce);
     glints_end(&glints);
     return line;
 }
