@@ -204,6 +204,10 @@ FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains
         ways.is_counted = ~(~chain->began_smooth & ~began_on_seabed & ends_on_seabed);
         ways.counts_reverse =
             ways.counts_reverse | (~chain->began_smooth & began_on_seabed & ~ends_on_seabed);
+        if (order == 2 && chains->cell_samples > 0) { /* with their share: second_order.h */
+            ways.counts_reverse = ways.counts_reverse | ~ways.is_counted;
+            ways.is_counted = ~none;
+        }
     }
     if (has_sea_surface(chains))
         count_ways_by_sea_surface(chains, order, chain, &ways);

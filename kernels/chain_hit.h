@@ -177,6 +177,7 @@ struct chain {
                          of the grazing angle: without layers the range, by way of the boundaries */
     vint first_surface;
     vint surface_before;  /* that the sound came from to this hit */
+    vfloat first_density; /* 1/sr, with which the rough part of the first hit chose its direction */
     mask began_smooth;    /* the first hit was a specular bounce: nothing finds the reverse path */
     mask only_specular;   /* every hit before this one was a specular bounce */
     mask only_boundaries; /* all of those on seabed or sea surface */
@@ -184,5 +185,37 @@ struct chain {
     mask is_alive;
     const struct target_choice *choice; /* of targets, where they are many; 0: each ray's own */
 };
+
+/* Sends out rays from the sonar at x. cell: m rad, the piece of wavefront that a ray stands for,
+ * along the track and in elevation. Random numbers are left to be set. */
+NOINLINE void begin_chain(const struct fan_record *fan,
+                          GLOBAL const struct ray_piece_record *pieces,
+                          GLOBAL const struct object_record *objects, vfloat x, vfloat elevation,
+                          vfloat cell, mask is_ray, struct chain *chain)
+{
+    const struct fan_ray ray = fan_ray_at(fan, pieces, x, elevation);
+    chain->hit = find_chain_hit(fan, objects, FACE_OF_SCATTERING, ray.closest, ray.direction,
+                                -fan->reference_range, VINT_OF(SPLAT(-1.0f)), is_ray);
+    chain->choice = 0;
+    chain->range = ray.range_at_closest + chain->hit.distance;
+    chain->length = SPLAT(0.0f);
+    chain->first_x = x;
+    chain->first_surface = chain->hit.surface;
+    chain->surface_before = chain->hit.surface;
+    chain->met_object = MASK_OF(chain->hit.surface >= 0);
+    chain->is_alive = chain->hit.is_hit;
+    chain->began_smooth = chain->is_alive & 0;
+    chain->only_specular = chain->is_alive;
+    chain->only_boundaries = chain->is_alive;
+    /* the strip of wavefront w r de over r^2; through layers r de widens and 1/r^2 is s/(ground r)
+     */
+    const vfloat ground =
+        fan->table.pieces > 0 ? fan->table.ground_range + chain->hit.point.y : SPLAT(1.0f);
+    chain->first_reach =
+        fan->table.pieces > 0 ? ground / ray.direction.y : fan->reference_range + chain->range;
+    const vfloat spreading =
+        fan->table.pieces > 0 ? ray.spreading / ground : 1.0f / chain->first_reach;
+    chain->energy = cell * fan->quanta * SELECT(chain->is_alive, spreading, SPLAT(1.0f));
+}
 
 #endif

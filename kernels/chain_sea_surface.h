@@ -95,7 +95,7 @@ FUNCTION mask is_open_to_image(const struct fan_record *fan,
 /* What the hit returns in lanes that want it, to a receiver broadside of receiver_x: straight, or
  * by way of the sea surface's specular part. Energy f cos / r^2 at the source, normalised by the
  * fourth power of half the path (MATH.md). */
-FUNCTION vfloat energy_returned(const struct fan_record *fan,
+NOINLINE vfloat energy_returned(const struct fan_record *fan,
                                 GLOBAL const struct ray_piece_record *pieces,
                                 GLOBAL const struct chain_record *chains,
                                 GLOBAL const struct object_record *objects, GLOBAL const float *map,

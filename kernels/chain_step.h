@@ -11,7 +11,8 @@
 /* How a chain goes on from a hit. */
 struct chain_step {
     struct vector3 direction;
-    vfloat weight; /* f cos / density, or the specular part's energy over its probability */
+    vfloat weight;  /* f cos / density, or the specular part's energy over its probability */
+    vfloat density; /* of the rough part's directions, 1/sr */
     mask is_specular;
 };
 
@@ -27,6 +28,7 @@ FUNCTION struct chain_step step_in_direction(GLOBAL const struct surface_record 
     step.direction = direction;
     step.weight = SELECT(
         is_possible, scattering * cosine / SELECT(is_possible, density, SPLAT(1.0f)), SPLAT(0.0f));
+    step.density = density;
     step.is_specular = is_possible & 0;
     return step;
 }
@@ -130,9 +132,17 @@ FUNCTION struct chain_step step_from_object(GLOBAL const struct surface_record *
     return step_in_direction(surface, hit, direction, density);
 }
 
-/* Rough or smooth part of one surface: a specular bounce is taken with a probability near its share
- * of the energy. From the seabed in view of the sonar sound is sought that goes to a target; beyond
- * that it may also go to the sea surface, and come from there. */
+/* With what probability a specular bounce is taken: near its share of the energy. */
+FUNCTION vfloat specular_probability(GLOBAL const struct surface_record *surface, vfloat energy)
+{
+    if (!has_rough_part(surface))
+        return SPLAT(1.0f);
+    const float rough = rough_albedo(surface);
+    return smaller(larger(energy / (energy + rough), SPLAT(0.1f)), SPLAT(0.9f));
+}
+
+/* Rough or smooth part of one surface. From the seabed in view of the sonar sound is sought that
+ * goes to a target; beyond that it may also go to the sea surface, and come from there. */
 FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *chains,
                                              GLOBAL const struct sphere_record *spheres,
                                              const struct target_choice *targets,
@@ -150,11 +160,7 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
                                : step_from_object(surface, hit, choice, u, v);
     const vfloat cosine = dot3(hit->normal, hit->back);
     const vfloat energy = specular_energy(surface, cosine);
-    vfloat probability = SPLAT(1.0f);
-    if (has_rough_part(surface)) {
-        const float rough = rough_albedo(surface);
-        probability = smaller(larger(energy / (energy + rough), SPLAT(0.1f)), SPLAT(0.9f));
-    }
+    const vfloat probability = specular_probability(surface, energy);
     const mask is_specular = MASK_OF(choice < probability);
     const vfloat left = larger(1.0f - probability, SPLAT(1.0e-6f));
     const vfloat rest = smaller((choice - probability) / left, SPLAT(0.9999999f));
@@ -165,13 +171,37 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
                                : step_from_object(surface, hit, rough_choice, u, v);
     } else {
         step.direction = hit->back;
-        step.weight = SPLAT(0.0f);
+        step.weight = step.density = SPLAT(0.0f);
     }
     step.direction =
         choose3(is_specular, reflected3(reversed3(hit->back), hit->normal), step.direction);
     step.weight = SELECT(is_specular, energy / probability, step.weight / left);
+    step.density = step.density * left;
     step.is_specular = is_specular;
     return step;
+}
+
+/* The density, 1/sr, with which an object's rough part sends a ray from a hit in a direction. */
+FUNCTION vfloat rough_density_at(const struct fan_record *fan,
+                                 GLOBAL const struct object_record *objects,
+                                 const struct chain_hit *hit, struct vector3 direction)
+{
+    vfloat density = SPLAT(0.0f);
+    for (int i = surface_after(-1, fan->objects, hit->surface, hit->is_hit); i < fan->objects;
+         i = surface_after(i, fan->objects, hit->surface, hit->is_hit)) {
+        GLOBAL const struct surface_record *surface = &objects[i].surface;
+        const mask here = hit->is_hit & MASK_OF(hit->surface == i);
+        if (!ANY(here) || !has_rough_part(surface))
+            continue;
+        vfloat of_surface = rough_direction_density(surface, hit->normal, hit->back, direction);
+        if (has_smooth_part(surface))
+            of_surface =
+                of_surface *
+                (1.0f - specular_probability(
+                            surface, specular_energy(surface, dot3(hit->normal, hit->back))));
+        density = SELECT(here, of_surface, density);
+    }
+    return density;
 }
 
 FUNCTION struct chain_step next_step(const struct fan_record *fan,
@@ -187,7 +217,7 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
     const struct chain_hit *hit = &chain->hit;
     struct chain_step step;
     step.direction = hit->back;
-    step.weight = SPLAT(0.0f);
+    step.weight = step.density = SPLAT(0.0f);
     step.is_specular = MASK_OF(choice < -1.0f);
     const int before = first_surface_number(chains) - 1;
     for (int i = surface_after(before, fan->objects, hit->surface, chain->is_alive);
@@ -201,6 +231,7 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
         step.direction = choose3(here, from.direction, step.direction);
         const vfloat fouled = from.weight * fouling_at(objects, i, hit, from.direction);
         step.weight = SELECT(here, SELECT(from.is_specular, from.weight, fouled), step.weight);
+        step.density = SELECT(here, from.density, step.density);
         step.is_specular = SELECT(here, from.is_specular, step.is_specular);
     }
     const vfloat factor = map_factor(fan, pieces, chains, map, hit);

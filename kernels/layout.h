@@ -29,6 +29,7 @@ enum random_stream {
     STREAM_IMAGE_RAYS = 4096,    /* + STREAMS_OF_PAIR * number of the pair of sources + part */
     STREAM_IMAGE_ROUGH_RAYS = 1048576, /* likewise */
     STREAM_MULTIBOUNCE_RAYS = 2097152, /* likewise; the sonar alone is pair 0 */
+    STREAM_SECOND_ORDER = 4194304,     /* + object */
     STREAM_FOULING = 536870912,        /* + object */
     STREAMS_OF_PAIR = 1024
 };
@@ -206,6 +207,8 @@ struct fan_record {
     RECORD_INT objects;
     RECORD_INT only_object;  /* smooth part: the object whose glints are wanted; chains: the first
                                 surface, -1 the seabed, -2 any */
+    RECORD_INT target;       /* record of the part, or the object's first one (second_order.h) */
+    RECORD_INT is_sample;    /* not rays but samples of the object's paths of second order */
     RECORD_INT segments;     /* work-items that share a strip */
     RECORD_INT strip_stride; /* from a work-item's strip to the next one's, see strip_of_item */
     RECORD_INT first_turn;   /* of the strips in that order: where this call begins */
@@ -226,6 +229,25 @@ struct sphere_group {
 struct sphere_record {
     float centre_x, centre_y, centre_z; /* m, in the frame */
     float radius;
+};
+
+#define LEAST_WEIGHT 0.02f /* of targets, below which none of a cell's samples begin on them */
+
+/* A part as paths of second order begin on it. Ranges are less the reference range. */
+struct target_record {
+    float centre_x;             /* m, in the frame */
+    float range, nearest_range; /* m, of its centre, and no later than any echo by way of it */
+    float square_radius;        /* m^2, of the sphere around it */
+    float first_x, width;       /* m; the window that it fills as seen from the sonar */
+    float first_elevation, elevations; /* rad */
+    float least_y;                     /* m; of seabed that it exchanges sound with */
+    float top;                         /* m, over the seabed */
+    float weight; /* m^2; over the square of the way to the seabed: about what it brings to a cell
+                     over what the seabed returns, in units of what needs all samples */
+    float rays;   /* of its fan, per m rad of wavefront */
+    RECORD_INT part;
+    RECORD_INT first_target, targets; /* the object's */
+    RECORD_INT first_cell, cells;     /* of the output, that the object's samples end in */
 };
 
 enum chain_estimator {
@@ -254,6 +276,11 @@ struct chain_record {
                                       over those of order k; powers of two */
     RECORD_INT tally_first_strip;
     RECORD_INT tally_strips;
+    /* Paths of second order, between seabed and target (second_order.h): */
+    RECORD_WORD target_words; /* where the targets' records are, in words from the first sphere */
+    RECORD_INT cell_samples;  /* of each range cell of a strip; 0: fans find these paths */
+    RECORD_INT cell_bins;     /* of a cell; cell 0 has its middle in the patch's bin 0 */
+    RECORD_INT first_bin;     /* of the grid, on the patch's numbering */
     struct surface_record seabed;
     float sea_surface_height; /* z in the frame, m; 0: chains do not meet the sea surface */
     struct surface_record sea_surface;

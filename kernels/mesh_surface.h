@@ -64,11 +64,6 @@ FUNCTION struct mesh_corners gather_normals(struct mesh_view mesh, const int *tr
     return corners;
 }
 
-FUNCTION struct vector3 minus3(struct vector3 a, struct vector3 b)
-{
-    return along3(a, b, SPLAT(-1.0f));
-}
-
 /* Unit vector along v, `otherwise` where v is 0. Divided by its largest component first, so that
  * squares neither vanish nor overflow. */
 FUNCTION struct vector3 unit3(struct vector3 v, struct vector3 otherwise)

@@ -6,12 +6,14 @@
 
 #include "chain_sea_surface.h"
 #include "chain_step.h"
+#include "second_order.h"
 
 /* Connects the hit to the source and gives the echo. */
 FUNCTION void connect_chain(const struct fan_record *fan,
                             GLOBAL const struct ray_piece_record *pieces,
                             GLOBAL const struct chain_record *chains,
-                            GLOBAL const struct object_record *objects, GLOBAL const float *map,
+                            GLOBAL const struct object_record *objects,
+                            GLOBAL const struct sphere_record *spheres, GLOBAL const float *map,
                             int order, const struct chain *chain, RECORD_WORD draw,
                             struct chain_echo *echo, struct outcome_record *outcome)
 {
@@ -19,8 +21,10 @@ FUNCTION void connect_chain(const struct fan_record *fan,
     const vfloat energy =
         energy_returned(fan, pieces, chains, objects, map, chain, receiver_of(chains, chain), 0,
                         draw, chain->is_alive, &range, outcome);
-    keep_echo(fan, chains, count_ways(chains, order, chain), chain, energy, range, SPLAT(1.0f),
-              echo);
+    const vfloat share = order == 2 && chains->cell_samples > 0
+                             ? share_of_ray(fan, chains, spheres, chain)
+                             : SPLAT(1.0f);
+    keep_echo(fan, chains, count_ways(chains, order, chain), chain, energy, range, share, echo);
 }
 
 /* Where a ray crosses the source's rectangle: the echo of brute force, which counts what happens to
@@ -138,47 +142,29 @@ FUNCTION vfloat russian_roulette(const struct fan_record *fan,
     return SELECT(is_followed, 1.0f / SELECT(is_followed, share, SPLAT(1.0f)), SPLAT(0.0f));
 }
 
-/* Sends out one group of rays. */
-FUNCTION void begin_chain(const struct fan_record *fan,
-                          GLOBAL const struct ray_piece_record *pieces,
-                          GLOBAL const struct object_record *objects, int strip,
-                          struct random_key key, RECORD_WORD first_ray, float throughput,
-                          const struct target_choice *choice, struct chain *chain)
+/* Sends out one group of a fan's rays. */
+FUNCTION void begin_fan_chain(const struct fan_record *fan,
+                              GLOBAL const struct ray_piece_record *pieces,
+                              GLOBAL const struct object_record *objects, int strip,
+                              struct random_key key, RECORD_WORD first_ray, float throughput,
+                              const struct target_choice *choice, struct chain *chain)
 {
+    const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
+    vfloat along, across, chance;
+    three_uniforms(key, number, 0, &along, &across, &chance);
+    begin_chain(fan, pieces, objects,
+                strip_position(fan, strip) + (along - 0.5f) * fan->strip_width,
+                fan->first_elevation + (VFLOAT_OF(number) + across) * fan->elevation_step,
+                SPLAT(throughput * fan->strip_width * fan->elevation_step),
+                MASK_OF(number < fan->rays), chain);
     chain->choice = choice;
     chain->key = key;
-    chain->number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
-    const mask is_ray = MASK_OF(chain->number < fan->rays);
-    vfloat along, across;
-    three_uniforms(key, chain->number, 0, &along, &across, &chain->chance);
-    const vfloat x = strip_position(fan, strip) + (along - 0.5f) * fan->strip_width;
-    const struct fan_ray ray = fan_ray_at(
-        fan, pieces, x,
-        fan->first_elevation + (VFLOAT_OF(chain->number) + across) * fan->elevation_step);
-    chain->hit = find_chain_hit(fan, objects, FACE_OF_SCATTERING, ray.closest, ray.direction,
-                                -fan->reference_range, VINT_OF(SPLAT(-1.0f)), is_ray);
-    chain->range = ray.range_at_closest + chain->hit.distance;
-    chain->length = SPLAT(0.0f);
-    chain->first_x = x;
-    chain->first_surface = chain->hit.surface;
-    chain->surface_before = chain->hit.surface;
-    chain->met_object = MASK_OF(chain->hit.surface >= 0);
-    chain->is_alive = chain->hit.is_hit;
+    chain->number = number;
+    chain->chance = chance;
     if (fan->only_object >= -1)
         chain->is_alive = chain->is_alive & MASK_OF(chain->hit.surface == fan->only_object);
-    chain->began_smooth = chain->is_alive & 0;
     chain->only_specular = chain->is_alive;
     chain->only_boundaries = chain->is_alive;
-    /* the strip of wavefront w r de over r^2; through layers r de widens and 1/r^2 is s/(ground r)
-     */
-    const vfloat ground =
-        fan->table.pieces > 0 ? fan->table.ground_range + chain->hit.point.y : SPLAT(1.0f);
-    chain->first_reach =
-        fan->table.pieces > 0 ? ground / ray.direction.y : fan->reference_range + chain->range;
-    const vfloat spreading =
-        fan->table.pieces > 0 ? ray.spreading / ground : 1.0f / chain->first_reach;
-    chain->energy = throughput * fan->strip_width * fan->elevation_step * fan->quanta *
-                    SELECT(chain->is_alive, spreading, SPLAT(1.0f));
 }
 
 /* Behind level boundaries sound spreads from the sonar's image: the ray's strip of the wavefront
@@ -195,6 +181,14 @@ FUNCTION void spread_from_image(struct chain *chain, const struct chain_step *st
     chain->first_reach = reach;
 }
 
+/* The lowest order of the fan's rays that counts: paths of two interactions that begin on the
+ * seabed may be sampled by themselves. */
+FUNCTION int first_order_of_fan(const struct fan_record *fan,
+                                GLOBAL const struct chain_record *chains)
+{
+    return fan->only_object == SEABED && chains->cell_samples > 0 ? 3 : chains->first_order;
+}
+
 /* Follows one group of WIDTH rays of a strip over all their interactions. */
 FUNCTION void trace_chain_group(const struct fan_record *fan,
                                 GLOBAL const struct ray_piece_record *pieces,
@@ -208,13 +202,14 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
     struct chain chain;
     struct chain_echo echo;
     const int is_connected = chains->estimator == CHAINS_CONNECT;
-    begin_chain(fan, pieces, objects, strip, key, first_ray, throughput, choice, &chain);
+    const int first_order = first_order_of_fan(fan, chains);
+    begin_fan_chain(fan, pieces, objects, strip, key, first_ray, throughput, choice, &chain);
     for (int order = 1; order <= chains->interactions && ANY(chain.is_alive); order++) {
         /* an interaction's four draws: 0 and 1 of its step, 2 and 3 of its connections */
         const RECORD_WORD draw = 4u * (RECORD_WORD)order;
-        if (is_connected && order >= chains->first_order) {
-            connect_chain(fan, pieces, chains, objects, map, order, &chain, draw + 2, &echo,
-                          outcome);
+        if (is_connected && order >= first_order) {
+            connect_chain(fan, pieces, chains, objects, spheres, map, order, &chain, draw + 2,
+                          &echo, outcome);
             tally_chain_echo(fan, chains, tallies, order, &echo, outcome);
         }
         if (is_connected && has_sea_surface(chains))
@@ -241,8 +236,10 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
         const mask is_between_slopes =
             has_relief(fan) ? MASK_OF(chain.hit.surface == -1) & MASK_OF(next.surface == -1)
                             : chain.is_alive & 0;
-        if (order == 1)
+        if (order == 1) {
             chain.began_smooth = step.is_specular;
+            chain.first_density = step.density;
+        }
         chain.only_specular = chain.only_specular & step.is_specular;
         chain.choice = 0;
         chain.energy = chain.energy * (step.weight * chains->finer[order - 1]);
@@ -309,7 +306,8 @@ FUNCTION void trace_chain_block(const struct fan_record *fan,
     }
 }
 
-/* Traces the share `segment` of a strip's fan. tallies: planes x tally_strips x bins. */
+/* Traces the share `segment` of a strip's fan, or of a target's paths of second order. tallies:
+ * planes x tally_strips x bins. */
 FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
                                                   GLOBAL const struct ray_piece_record *pieces,
                                                   GLOBAL const struct chain_record *chains,
@@ -319,6 +317,9 @@ FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
                                                   int strip, int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};
+    if (fan->is_sample)
+        return trace_second_order_strip(fan, pieces, chains, objects, spheres, map, tallies, strip,
+                                        segment);
     const struct random_key key = key_of_strip(fan, strip);
     const RECORD_WORD blocks = (fan->rays + THIN_BLOCK - 1u) / THIN_BLOCK;
     const RECORD_WORD stride = (RECORD_WORD)fan->segments * WIDTH;

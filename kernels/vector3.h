@@ -37,6 +37,11 @@ FUNCTION struct vector3 reflected3(struct vector3 v, struct vector3 normal)
     return along3(v, normal, -2.0f * dot3(v, normal));
 }
 
+FUNCTION struct vector3 minus3(struct vector3 a, struct vector3 b)
+{
+    return along3(a, b, SPLAT(-1.0f));
+}
+
 FUNCTION struct vector3 choose3(mask m, struct vector3 yes, struct vector3 no)
 {
     struct vector3 chosen;

@@ -294,8 +294,7 @@ static sonject_status trace_chains(const struct tracing *tracing)
     if (status != SONJECT_OK || trace.orders == 0)
         return status;
     for (uint32_t i = 0; status == SONJECT_OK && i < chain_fan_count(tracing->tracer); i++)
-        if (i == 0 || tracer_follows(tracing->tracer, tracing->tracer->placements[i - 1].object))
-            status = trace_fan(tracing, &trace, i);
+        status = trace_fan(tracing, &trace, i);
     THEN(status, emit_chains(tracing, &trace));
     chain_trace_end(&trace);
     return status;

@@ -96,8 +96,8 @@ struct chain_reach chain_reach_of(const struct tracer *tracer, const struct plac
 #define SEABED_RAYS_PER_BIN 4.0 /* near the objects; fewer with distance, by Russian roulette */
 /* An object is small, and what it reflects specularly, or sends to the sea surface, spreads far;
  * else its rough part matters between objects. */
-#define OBJECT_RAYS_PER_BIN 16.0
-#define ROUGH_RAYS_PER_BIN  2.0 /* where the seabed's rays stand for its own */
+#define OBJECT_RAYS_PER_BIN 32.0
+#define ROUGH_RAYS_PER_BIN  2.0 /* where others stand for what it sends to the seabed */
 
 /* Where seabed can be that exchanges sound with some object. */
 struct surroundings {
@@ -143,6 +143,16 @@ static sonject_status init_seabed_fan(struct chain_fan *fan, struct tracer *trac
                         fan_elevation_step(tracer, grid, far, SEABED_RAYS_PER_BIN));
 }
 
+double chain_rays_per_bin(const struct tracer *tracer, const struct line_grid *grid, uint32_t part)
+{
+    const sonject_material_params *material = &tracer->placements[part].material;
+    const bool has_reverse = tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED &&
+                             tracer->scene->sonar.transducer_side_m == 0.0;
+    const bool is_peaked = material_is_smooth(material) || material->glossy_albedo > 0.0;
+    return is_peaked || !has_reverse || sea_surface_is_in_chains(tracer, grid) ? OBJECT_RAYS_PER_BIN
+                                                                               : ROUGH_RAYS_PER_BIN;
+}
+
 static sonject_status init_object_fan(struct chain_fan *fan, struct tracer *tracer,
                                       const struct line_grid *grid, double central, uint32_t part)
 {
@@ -152,24 +162,40 @@ static sonject_status init_object_fan(struct chain_fan *fan, struct tracer *trac
     const struct elevations edges = elevations_of_object(tracer, part, &tracer->view.water);
     const double half_length = placement_half_extent(placement, along);
     const double middle = central - grazing;
-    const bool is_specular = material_is_smooth(&placement->material);
-    const bool has_reverse = tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED &&
-                             tracer->scene->sonar.transducer_side_m == 0.0;
-    const bool finds_surface = sea_surface_is_in_chains(tracer, grid);
-    const double rays_per_bin =
-        is_specular || !has_reverse || finds_surface ? OBJECT_RAYS_PER_BIN : ROUGH_RAYS_PER_BIN;
     fan->strips = strips_between(tracer, grid, placement->centre[0] - half_length,
                                  placement->centre[0] + half_length);
     fan->record.only_object = (int32_t)part;
-    return fan_set_rays(&fan->record, tracer->report, middle + edges.lowest, middle + edges.highest,
-                        fan_elevation_step(tracer, grid, grazing, rays_per_bin));
+    fan->record.target = second_order_target(tracer, part);
+    return fan_set_rays(
+        &fan->record, tracer->report, middle + edges.lowest, middle + edges.highest,
+        fan_elevation_step(tracer, grid, grazing, chain_rays_per_bin(tracer, grid, part)));
 }
 
 uint32_t chain_fan_count(const struct tracer *tracer)
 {
     return tracer->scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE
                ? 1
-               : 1 + tracer->part_count;
+               : 1 + tracer->part_count + tracer->scene->object_count;
+}
+
+/* A fan of rays, or of samples, of the connecting estimator. */
+static sonject_status aim_fan(struct chain_fan *fan, struct tracer *tracer,
+                              const struct line_grid *grid, double central, uint32_t i)
+{
+    const bool is_sampled = second_order_is_sampled(tracer, grid);
+    if (i > tracer->part_count) {
+        const uint32_t object = i - 1 - tracer->part_count;
+        fan->strips.count = 0;
+        return is_sampled && tracer_follows(tracer, object)
+                   ? second_order_fan_init(fan, tracer, grid, object)
+                   : SONJECT_OK;
+    }
+    if (i > 0 && tracer_follows(tracer, tracer->placements[i - 1].object))
+        return init_object_fan(fan, tracer, grid, central, i - 1);
+    fan->strips.count = 0;
+    if (i > 0 || (is_sampled && tracer->scene->injection.interactions == 2))
+        return SONJECT_OK;
+    return init_seabed_fan(fan, tracer, grid, central);
 }
 
 sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,
@@ -182,10 +208,10 @@ sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,
     sonject_status status = patch_fan_init(&fan->record, tracer, grid, has_map, PATCH_RAYS_PER_BIN);
     fan->strips = grid->strips;
     fan->record.only_object = -2;
+    fan->record.stream = (uint32_t)STREAM_CHAIN_RAYS;
     if (status == SONJECT_OK && chain_fan_count(tracer) > 1)
-        status = i == 0 ? init_seabed_fan(fan, tracer, grid, central)
-                        : init_object_fan(fan, tracer, grid, central, i - 1);
-    fan->record.stream = (uint32_t)(STREAM_CHAIN_RAYS + fan->record.only_object);
+        status = aim_fan(fan, tracer, grid, central, i);
+    fan->record.stream += (uint32_t)fan->record.only_object;
     return status;
 }
 
@@ -198,7 +224,8 @@ static sonject_material_params seabed_material(const struct tracer *tracer)
 }
 
 static void chain_record_init(struct chain_record *record, const struct chain_trace *trace,
-                              const struct tracer *tracer, const struct target_spheres *spheres)
+                              const struct tracer *tracer, struct target_spheres *spheres,
+                              const double origin[3])
 {
     const struct scene *scene = tracer->scene;
     const sonject_material_params seabed = seabed_material(tracer);
@@ -222,6 +249,8 @@ static void chain_record_init(struct chain_record *record, const struct chain_tr
     record->tally_strips = trace->grid.strips.count;
     surface_record_init(&record->seabed, &seabed, tracer->view.wavelength_m);
     record->seabed.rough_is_apart = true; /* as for sound that goes straight back */
+    if (second_order_is_sampled(tracer, &trace->grid))
+        second_order_init(record, spheres, tracer, &trace->grid, origin);
     if (!trace->has_sea_surface)
         return;
     const sonject_material_params sea_surface = surface_material(&scene->surface);
@@ -286,8 +315,14 @@ static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tr
     if (trace->planes == 1)
         bound *= pow(most.onward, trace->first_order - 1.0) *
                  fmax(1.0, pow(most.onward, trace->orders - 1.0));
+    const double sampled =
+        second_order_is_sampled(tracer, &trace->grid)
+            ? second_order_most(tracer, &trace->grid) * 2.0 * range * most.returned
+            : 0.0;
+    if (trace->planes == 1)
+        bound = fmax(bound, sampled);
     for (int i = 0; i < CHAIN_ORDERS_MAX; i++) {
-        trace->exponents[i] = 37 - (int)ceil(log2(bound));
+        trace->exponents[i] = 37 - (int)ceil(log2(i == 1 ? fmax(bound, sampled) : bound));
         if (trace->planes > 1)
             bound *= most.onward;
     }
@@ -314,7 +349,7 @@ static sonject_status begin_launch(struct chain_trace *trace, struct tracer *tra
                               (unsigned)tracer->scene->injection.interactions);
     patch_fan_origin(origin, &tracer->view);
     CHECK(target_spheres_init(&spheres, tracer, origin));
-    chain_record_init(&chains, trace, tracer, &spheres);
+    chain_record_init(&chains, trace, tracer, &spheres, origin);
     sonject_status status = launch_begin(launch, tracer, PROGRAM_TRACE_CHAINS, "trace_chains");
     THEN(status, launch_add(launch, tracer, sizeof chains, &chains));
     THEN(status, launch_add_objects(launch, tracer, &parts, origin, NULL));

@@ -4,6 +4,7 @@
 #ifndef SONJECT_TRACE_CHAINS_H
 #define SONJECT_TRACE_CHAINS_H
 
+#include "trace/object_buffer.h"
 #include "trace/tracer.h"
 
 /* Whether chains meet the sea surface: there is one, it returns sound in a way that chains count,
@@ -29,14 +30,39 @@ struct chain_fan {
     struct span strips;
 };
 
-/* 1 + number of parts (an object without parts is one); 1 by brute force, whose fan is the patch's.
- */
+/* 1 by brute force, whose fan is the patch's; else 1 + number of parts (an object without parts is
+ * one) + number of objects. */
 uint32_t chain_fan_count(const struct tracer *tracer);
 
-/* Fan number i: 0 the seabed's, then the parts'. grid: that echoes are tallied on. Errors: INPUT
- * (too many rays). */
+/* Fan number i: 0 the seabed's, then the parts', then the samples of second order of each object.
+ * It has no strips where there is nothing to trace, or the tracer does not follow the object. grid:
+ * that echoes are tallied on. Errors: INPUT (too many rays). */
 sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,
                               const struct line_grid *grid, bool has_map, uint32_t i);
+
+/* Whether paths between seabed and a target, of two interactions, are sampled by the cells that
+ * their echoes end in, not followed from the seabed: one path stands for its reverse, and the sea
+ * surface has no part in them. */
+bool second_order_is_sampled(const struct tracer *tracer, const struct line_grid *grid);
+
+/* Adds the targets' records behind spheres, and what samples need to the chains' record. */
+void second_order_init(struct chain_record *record, struct target_spheres *spheres,
+                       const struct tracer *tracer, const struct line_grid *grid,
+                       const double origin[3]);
+
+/* Lays the samples of an object into a fan that is aimed at the patch. Errors: MEMORY. */
+sonject_status second_order_fan_init(struct chain_fan *fan, const struct tracer *tracer,
+                                     const struct line_grid *grid, uint32_t object);
+
+/* The number of a rough part's record: of rough parts before it. */
+int32_t second_order_target(const struct tracer *tracer, uint32_t part);
+
+/* About the most that a sample may bring, over what 1 m rad of wavefront does before it is
+ * returned. */
+double second_order_most(const struct tracer *tracer, const struct line_grid *grid);
+
+/* Rays of a part's fan in a bin. */
+double chain_rays_per_bin(const struct tracer *tracer, const struct line_grid *grid, uint32_t part);
 
 /* The launch's buffers. */
 enum chain_buffer {

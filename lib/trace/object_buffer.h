@@ -76,7 +76,8 @@ struct object_tree {
 sonject_status object_tree_build(const struct tracer *tracer, const struct object_record *records,
                                  const struct part_list *parts, struct object_tree *tree);
 
-/* Spheres, and behind them the groups that they lie in where they are many. */
+/* Spheres, behind them the groups that they lie in where they are many, and room for as many target
+ * records as there are parts. */
 struct target_spheres {
     struct sphere_record *records; /* owned; count, then the groups, then those around groups */
     uint32_t count, groups;        /* groups 0: few spheres */

@@ -384,7 +384,8 @@ sonject_status target_spheres_init(struct target_spheres *spheres, const struct 
     const size_t most = tracer->part_count > FEW_SPHERES_MAX ? TARGET_SPHERES_MAX : FEW_SPHERES_MAX;
     const size_t bounds = (TARGET_GROUPS_MAX + SPHERES_OF_GROUP - 1) / SPHERES_OF_GROUP;
     const size_t room = most * sizeof *spheres->records +
-                        (TARGET_GROUPS_MAX + bounds) * sizeof(struct sphere_group);
+                        (TARGET_GROUPS_MAX + bounds) * sizeof(struct sphere_group) +
+                        tracer->part_count * sizeof(struct target_record);
     memset(spheres, 0, sizeof *spheres);
     spheres->records = allocate_array(room, 1);
     struct split_triangle *sorted = allocate_array(most, sizeof *sorted);

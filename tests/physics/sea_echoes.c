@@ -36,7 +36,7 @@ static void add_multibounce(const struct multibounce *multibounce, struct line *
         const struct line_grid grid = {.strips = region->strips, .bins = region->bins};
         const size_t cells = line_grid_cells(&grid);
         float *parts = calloc(2 * cells, sizeof *parts);
-    assert_non_null(parts);
+        assert_non_null(parts);
         multibounce_read(multibounce, region, region->strips, parts, parts + cells);
         add_strips(line, first_bin, &grid, region->strips, parts, parts + cells);
         free(parts);

@@ -368,14 +368,12 @@ static struct sea *open_over_seabed(uint32_t interactions)
     return sea;
 }
 
-/* Sonar, seabed at `bottom`, a piece of the sphere, sonar: first broadside of the seabed, then of
- * the middle between both. Together with the reverse it is in the image four times. */
+/* Sonar, seabed at `bottom`, a piece of the sphere, sonar, which is broadside of the middle between
+ * both. Together with the reverse it is in the image four times. */
 static void add_pieces(const struct sea *sea, struct reference_vector centre,
                        struct reference_vector bottom, double area, struct estimate *expected)
 {
     const double altitude = sea->sonar->altitude_m;
-    const double first = hypot(bottom.y, altitude);
-    const double lit_by = sea->seabed->lambert * area * altitude / pow(first, 3.0);
     const struct reference_vector broadside = {bottom.x, 0.0, altitude}, up = {0.0, 0.0, 1.0};
     const struct reference_scene scene = {
         .body = {.shape = REFERENCE_SPHERE, .centre = centre, .radius = RADIUS_M}};
@@ -391,11 +389,14 @@ static void add_pieces(const struct sea *sea, struct reference_vector centre,
             const struct reference_vector sonar = {0.5 * (bottom.x + hit.x), 0.0, altitude};
             const struct reference_vector between = reference_sum(bottom, -1.0, hit);
             const struct reference_vector home = reference_sum(sonar, -1.0, hit);
+            const struct reference_vector out = reference_sum(bottom, -1.0, sonar);
+            const double first = sqrt(reference_dot(out, out));
+            const double lit_by = sea->seabed->lambert * area * altitude / pow(first, 3.0);
             const double way = sqrt(reference_dot(between, between)),
                          last = sqrt(reference_dot(home, home));
             if (reference_dot(between, normal) <= 0.0 || reference_dot(home, normal) <= 0.0)
                 continue;
-            const double half_path = 0.5 * (hypot(first, sonar.x - bottom.x) + way + last);
+            const double half_path = 0.5 * (first + way + last);
             const int range = (int)floor((half_path - behind.first_m) / behind.width_m);
             if (range < 0 || range >= behind.count)
                 continue;
@@ -480,4 +481,65 @@ CLAIM(sound_spreads_from_the_mirrored_sonar)
     }
     const struct energies measured = sea_chains(sea, &behind, 1, 8);
     expect_energies("mirror first", &measured, 2, expected, behind.count, 0.01, 0.02, behind.count);
+}
+
+/* ---- second order ---- */
+
+static float rays_counted; /* times as many as there are */
+
+/* Has rays from the target count for more or less than they are in their share of an echo; samples
+ * have the rest. */
+static void weigh_rays(struct bench *bench, struct chain_trace *trace)
+{
+    struct report *report = &bench->report;
+    const device_buffer buffer = trace->launch.buffers[CHAIN_SPHERES];
+    struct chain_record *chains = bench_copy_buffer(bench, trace->launch.buffers[CHAIN_RECORD]);
+    float *words = bench_copy_buffer(bench, buffer);
+    struct target_record *target = (void *)(words + chains->target_words);
+    assert_true(chains->cell_samples > 0 && target->rays > 0.0f);
+    target->rays *= rays_counted;
+    EXPECT_OK(report, buffer_write(report, bench->tracer.device, buffer,
+                                   chains->target_words * sizeof *words, sizeof *target, target));
+    free(words);
+    free(chains);
+}
+
+static struct energies weighed_seeds(struct sea *sea, float counted, uint64_t first_seed)
+{
+    const struct ranges ranges = ranges_about(MIDDLE_M, FEW_RANGES);
+    rays_counted = counted;
+    return sea_changed_chains(sea, &ranges, first_seed, SEEDS, weigh_rays);
+}
+
+/* Paths between target and seabed are sampled by the cells that their echoes end in, and found by
+ * rays that the target scatters. Either alone finds all of them, and so do both with the shares
+ * that are theirs. Samples alone vary without bound where target and seabed touch, so most targets
+ * hang over the seabed. */
+CLAIM(samples_and_rays_find_the_same_paths)
+{
+    static const struct water_layer layers[] = {{0.0, 1480.0, 1.0}, {4.0, 1520.0, 1.0}};
+    static const char *const names[] = {"over the seabed", "over relief", "through layers",
+                                        "glossy",          "weak",        "on the seabed"};
+    for (int variant = 0; variant < 6; variant++) {
+        struct sea *sea = open_capsule(variant == 1);
+        sea->injection->column_rule = SONJECT_COLUMNS_FOCUSED;
+        if (variant < 5)
+            sea_object(sea, 0)->burial_m = -0.4;
+        if (variant == 4) /* of whose cells some samples are left out */
+            make_rough(sea_object(sea, 0), 0.002);
+        if (variant == 2)
+            sea_set_layers(sea, layers, 2);
+        if (variant == 3) {
+            sea_object(sea, 0)->material.glossy_albedo = 0.2;
+            sea_object(sea, 0)->material.glossy_slope = 0.2;
+        }
+        const struct energies by_rays = weighed_seeds(sea, 1e6f, 1);
+        const struct energies by_both = weighed_seeds(sea, 1.0f, 200);
+        print_message("%s\n", names[variant]);
+        expect_same("both", &by_both, &by_rays, 0.003);
+        if (variant == 5)
+            continue;
+        const struct energies by_samples = weighed_seeds(sea, 1e-6f, 100);
+        expect_same("samples", &by_samples, &by_rays, 0.003);
+    }
 }

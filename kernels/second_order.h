@@ -1,0 +1,441 @@
+/* Paths of two interactions, between a target and the seabed. Each range cell of the output has as
+ * many samples as any other: a point of a target is chosen first, then one of the seabed from which
+ * the echo comes in that cell. Rays that targets scatter to the seabed find the same paths; both
+ * count with the shares of multiple importance sampling (kernels/MATH.md, "Second order"). */
+#ifndef SONJECT_KERNELS_SECOND_ORDER_H
+#define SONJECT_KERNELS_SECOND_ORDER_H
+
+#include "chain_sea_surface.h"
+#include "chain_step.h"
+
+/* Parts of targets, behind the spheres and their groups. */
+FUNCTION GLOBAL const struct target_record *targets_of(GLOBAL const struct chain_record *chains,
+                                                       GLOBAL const struct sphere_record *spheres)
+{
+    return (GLOBAL const struct target_record *)((GLOBAL const float *)spheres +
+                                                 chains->target_words);
+}
+
+/* Where the echoes of a group of samples end. Ranges are those of half the path, less the reference
+ * range. */
+struct echo_cell {
+    vfloat receiver_x;
+    vfloat near_range, far_range;
+};
+
+/* A cell of the output. */
+FUNCTION struct echo_cell cell_number(const struct fan_record *fan,
+                                      GLOBAL const struct chain_record *chains, vfloat number,
+                                      vfloat receiver_x)
+{
+    const float bins = (float)chains->cell_bins;
+    const vfloat first = (number - 0.5f) * bins - (float)chains->first_bin;
+    const float metres = 1.0f / fan->bins_per_metre;
+    struct echo_cell cell;
+    cell.receiver_x = receiver_x;
+    cell.near_range = (first - fan->bin_at_reference) * metres;
+    cell.far_range = ((first + bins) - fan->bin_at_reference) * metres;
+    return cell;
+}
+
+/* About what a part brings to a cell by way of the seabed, over what the seabed returns there by
+ * itself: the way between the two is no shorter than the detour, and meets the seabed the flatter
+ * the longer it is. */
+FUNCTION vfloat weight_of_target(GLOBAL const struct target_record *target,
+                                 const struct echo_cell *cell)
+{
+    const vfloat aside = 2.0f * (cell->receiver_x - target->centre_x);
+    const vfloat detour = larger(cell->near_range - target->range, SPLAT(0.0f));
+    const vfloat square = aside * aside + detour * detour + target->square_radius;
+    const vfloat weight =
+        target->weight * smaller(target->top / SQUARE_ROOT(square), SPLAT(1.0f)) / square;
+    return SELECT(MASK_OF(cell->far_range > target->nearest_range) &
+                      MASK_OF(weight >= LEAST_WEIGHT),
+                  weight, SPLAT(0.0f));
+}
+
+/* What the parts of an object bring to a cell. Cells that little comes to have some of their
+ * samples. */
+struct target_weights {
+    vfloat sum, share; /* share: of the samples that are followed */
+};
+
+FUNCTION struct target_weights weigh_targets(GLOBAL const struct target_record *targets, int count,
+                                             const struct echo_cell *cell)
+{
+    struct target_weights weights;
+    weights.sum = SPLAT(0.0f);
+    for (int i = 0; i < count; i++)
+        weights.sum += weight_of_target(&targets[i], cell);
+    weights.share = smaller(weights.sum, SPLAT(1.0f));
+    return weights;
+}
+
+/* The part that a sample begins on, and the window of the wavefront that it fills. */
+struct sampled_target {
+    vfloat first_x, width, first_elevation, elevations;
+    vfloat least_y; /* of seabed that it exchanges sound with */
+    vfloat rays;    /* per m rad: of the part's own fan */
+    vfloat weight;  /* 0: the sample is left out */
+    vint part;
+};
+
+/* chosen: a uniform deviate. */
+FUNCTION struct sampled_target sample_target(GLOBAL const struct target_record *targets, int count,
+                                             const struct echo_cell *cell,
+                                             const struct target_weights *weights, vfloat chosen,
+                                             mask is_followed)
+{
+    struct sampled_target sampled;
+    const vfloat wanted = chosen * weights->sum;
+    vfloat before = SPLAT(0.0f);
+    sampled.first_x = sampled.width = sampled.first_elevation = sampled.elevations = SPLAT(0.0f);
+    sampled.least_y = sampled.rays = sampled.weight = SPLAT(0.0f);
+    sampled.part = VINT_OF(SPLAT(-1.0f));
+    for (int i = 0; i < count; i++) {
+        GLOBAL const struct target_record *target = &targets[i];
+        const vfloat weight = weight_of_target(target, cell);
+        const mask is_it = is_followed & MASK_OF(weight > 0.0f) & MASK_OF(before <= wanted);
+        sampled.first_x = SELECT(is_it, SPLAT(target->first_x), sampled.first_x);
+        sampled.width = SELECT(is_it, SPLAT(target->width), sampled.width);
+        sampled.first_elevation =
+            SELECT(is_it, SPLAT(target->first_elevation), sampled.first_elevation);
+        sampled.elevations = SELECT(is_it, SPLAT(target->elevations), sampled.elevations);
+        sampled.least_y = SELECT(is_it, SPLAT(target->least_y), sampled.least_y);
+        sampled.rays = SELECT(is_it, SPLAT(target->rays), sampled.rays);
+        sampled.weight = SELECT(is_it, weight, sampled.weight);
+        sampled.part = SELECT(is_it, VINT_OF(SPLAT((float)target->part)), sampled.part);
+        before += weight;
+    }
+    return sampled;
+}
+
+/* Samples of a cell per m rad of a part's window and m^2 of the seabed's plan. length: of the line
+ * across the track that a sample's place stands for; along it the seabed's x moves twice as fast as
+ * the echo's. */
+FUNCTION vfloat density_of_samples(const struct fan_record *fan,
+                                   GLOBAL const struct chain_record *chains, vfloat weight,
+                                   const struct target_weights *weights, vfloat window,
+                                   vfloat length)
+{
+    const mask is_possible = MASK_OF(weight > 0.0f) & MASK_OF(length > 0.0f);
+    const vfloat area = 2.0f * fan->strip_width * window * length * weights->sum;
+    return SELECT(is_possible,
+                  (float)chains->cell_samples * weight * weights->share /
+                      SELECT(is_possible, area, SPLAT(1.0f)),
+                  SPLAT(0.0f));
+}
+
+/* A line across the track on the mean seabed, along which y counts from a hit: with d from there to
+ * the hit and r to the receiver, d^2 = square + y^2 and r^2 - d^2 = difference + 2 ground y. */
+struct seabed_line {
+    vfloat square, difference, ground;
+    vfloat direct; /* from the hit to the receiver */
+};
+
+FUNCTION struct seabed_line line_across(const struct fan_record *fan, struct vector3 hit, vfloat x,
+                                        vfloat receiver_x)
+{
+    const vfloat aside = x - hit.x;
+    const vfloat height = hit.z - fan->seabed_height;
+    const vfloat receiver_aside = x - receiver_x;
+    const float receiver_height = fan->reference_range * fan->sine_depression - fan->seabed_height;
+    const vfloat direct_aside = hit.x - receiver_x;
+    const vfloat below = receiver_height - height;
+    struct seabed_line line;
+    line.ground = fan->reference_range * fan->cosine_depression + hit.y;
+    line.square = larger(aside * aside + height * height, SPLAT(1.0e-6f));
+    line.difference = line.ground * line.ground +
+                      (receiver_aside * receiver_aside + receiver_height * receiver_height) -
+                      line.square;
+    line.direct =
+        SQUARE_ROOT(line.ground * line.ground + direct_aside * direct_aside + below * below);
+    return line;
+}
+
+/* The two places where d + r has a length: the ellipsoid's section with the line. */
+struct section {
+    vfloat nearer, farther, middle;
+    mask exists;
+};
+
+FUNCTION struct section section_of(const struct seabed_line *line, vfloat length)
+{
+    struct section section;
+    const mask is_ellipse = MASK_OF(length > line->direct);
+    const vfloat safe = SELECT(is_ellipse, length, 2.0f * line->direct);
+    const vfloat inverse = 1.0f / safe;
+    const vfloat slope = line->ground * inverse;
+    /* d = base - slope y */
+    const vfloat base = 0.5f * (safe - line->difference * inverse);
+    const vfloat narrow = (safe - line->ground) * (safe + line->ground) * inverse * inverse;
+    const vfloat square = base * base - narrow * line->square;
+    section.exists = is_ellipse & MASK_OF(square > 0.0f) & MASK_OF(narrow > 0.0f);
+    const vfloat share = 1.0f / SELECT(section.exists, narrow, SPLAT(1.0f));
+    const vfloat apart = SQUARE_ROOT(SELECT(section.exists, square, SPLAT(0.0f))) * share;
+    section.middle = -base * slope * share;
+    section.nearer = section.middle - apart;
+    section.farther = section.middle + apart;
+    return section;
+}
+
+/* Places are chosen evenly in y / (|y| + depth), about as the angle that they fill from the hit. */
+FUNCTION vfloat share_of_place(vfloat y, vfloat depth)
+{
+    return y / (magnitude(y) + depth);
+}
+
+/* Of samples where both sides have places: what the sonar lights of a target rarely faces away. */
+#define FARTHER_SHARE 0.15f
+
+/* The places on a line whose echoes are in a cell: an interval on the nearer side, and one on the
+ * farther side, in shares. */
+struct places {
+    vfloat first, second, first_length;
+    vfloat both;     /* lengths of both, the farther one times FARTHER_SHARE */
+    vfloat boundary; /* y between them */
+    vfloat depth;
+    mask exist;
+};
+
+FUNCTION struct places places_between(const struct seabed_line *line, vfloat shortest,
+                                      vfloat longest, vfloat least_y)
+{
+    const struct section outer = section_of(line, longest);
+    const struct section inner = section_of(line, shortest);
+    const vfloat nearest = larger(outer.nearer, least_y);
+    const vfloat farthest = larger(outer.farther, least_y);
+    const vfloat first_end =
+        smaller(larger(SELECT(inner.exists, inner.nearer, outer.middle), nearest), farthest);
+    const vfloat second_begin =
+        smaller(larger(SELECT(inner.exists, inner.farther, outer.middle), nearest), farthest);
+    struct places places;
+    places.depth = SQUARE_ROOT(line->square);
+    places.first = share_of_place(nearest, places.depth);
+    places.second = share_of_place(second_begin, places.depth);
+    places.first_length = share_of_place(first_end, places.depth) - places.first;
+    places.both =
+        larger(places.first_length +
+                   FARTHER_SHARE * (share_of_place(farthest, places.depth) - places.second),
+               SPLAT(0.0f));
+    places.boundary = first_end;
+    places.exist = outer.exists & MASK_OF(places.both > 0.0f);
+    return places;
+}
+
+FUNCTION vfloat sample_place(const struct places *places, vfloat uniform)
+{
+    const vfloat at = uniform * places->both;
+    const vfloat share =
+        SELECT(MASK_OF(at < places->first_length), places->first + at,
+               places->second + (at - places->first_length) * (1.0f / FARTHER_SHARE));
+    const vfloat rest = larger(1.0f - magnitude(share), SPLAT(1.0e-6f));
+    return places->depth * share / rest;
+}
+
+/* The length of line that a place stands for; 0: there is none. */
+FUNCTION vfloat length_of_place(const struct places *places, vfloat y)
+{
+    const vfloat far = magnitude(y) + places->depth;
+    const vfloat rarer =
+        SELECT(MASK_OF(y <= places->boundary), SPLAT(1.0f), SPLAT(1.0f / FARTHER_SHARE));
+    return SELECT(places->exist, rarer * places->both * far * far / places->depth, SPLAT(0.0f));
+}
+
+/* The seabed under a point of the plan, as seen from above. */
+FUNCTION struct chain_hit seabed_below(const struct fan_record *fan,
+                                       GLOBAL const struct object_record *objects, vfloat x,
+                                       vfloat y, mask is_wanted)
+{
+    const float height = 100.0f;
+    struct vector3 down;
+    struct chain_hit hit;
+    hit.point.x = x;
+    hit.point.y = y;
+    hit.point.z = SPLAT(fan->seabed_height);
+    if (has_relief(fan)) {
+        struct vector3 above = hit.point;
+        above.z = above.z + height;
+        down.x = down.y = SPLAT(0.0f);
+        down.z = SPLAT(-1.0f);
+        hit.point.z = above.z - seabed_distance(fan, objects, above, down, SPLAT(0.0f), is_wanted);
+    }
+    hit.surface = VINT_OF(SPLAT((float)SEABED));
+    hit.left_behind = VINT_OF(SPLAT(-1.0f));
+    hit.is_hit = is_wanted;
+    return hit;
+}
+
+/* Takes a chain from its hit on a target to a place of the seabed. samples: per m rad and m^2 of
+ * the plan; rays: of the target's fan, per m rad, which may find the path, too. */
+FUNCTION void step_to_seabed(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
+                             GLOBAL const struct object_record *objects, vfloat x, vfloat y,
+                             vfloat samples, vfloat rays, struct chain *chain,
+                             struct outcome_record *outcome)
+{
+    const struct chain_hit *from = &chain->hit;
+    struct chain_hit to = seabed_below(fan, objects, x, y, chain->is_alive);
+    const struct vector3 way = minus3(to.point, start_from(from));
+    const vfloat square = larger(dot3(way, way), SPLAT(1.0e-12f));
+    const vfloat distance = SQUARE_ROOT(square);
+    const vfloat inverse = 1.0f / distance;
+    struct vector3 direction;
+    direction.x = way.x * inverse;
+    direction.y = way.y * inverse;
+    direction.z = way.z * inverse;
+    to.normal = seabed_normal(fan, objects, to.point, direction);
+    to.back = reversed3(direction);
+    to.distance = distance;
+    const vfloat leaving = dot3(from->normal, direction);
+    const vfloat arriving = dot3(to.normal, to.back);
+    mask is_open = chain->is_alive & MASK_OF(leaving > 0.0f) & MASK_OF(arriving > 0.0f);
+    if (ANY(is_open)) {
+        const vfloat scattering = scattering_at(fan, chains, objects, from, direction);
+        is_open = is_open & MASK_OF(scattering > 0.0f);
+        outcome->queries += count_lanes(is_open);
+        is_open = is_open_way(fan, objects, from, direction, 0.9999f * distance, is_open);
+        /* of a m^2 of the plan, sr */
+        const vfloat opening = arriving / (square * larger(to.normal.z, SPLAT(1.0e-3f)));
+        const vfloat found =
+            samples + rays * rough_density_at(fan, objects, from, direction) * opening;
+        chain->energy = SELECT(
+            is_open, chain->energy * (scattering * leaving * opening * chains->finer[0] / found),
+            SPLAT(0.0f));
+    }
+    to.is_hit = is_open;
+    chain->length = SELECT(is_open, distance, SPLAT(0.0f));
+    chain->surface_before = from->surface;
+    chain->hit = to;
+    chain->is_alive = is_open;
+}
+
+/* The share of an echo that a ray from a target counts, having met the seabed; the samples count
+ * the rest. */
+NOINLINE vfloat share_of_ray(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
+                             GLOBAL const struct sphere_record *spheres, const struct chain *chain)
+{
+    const mask is_shared = chain->is_alive & ~chain->began_smooth &
+                           MASK_OF(chain->first_surface >= 0) &
+                           MASK_OF(chain->hit.surface == SEABED);
+    if (!ANY(is_shared))
+        return SPLAT(1.0f);
+    GLOBAL const struct target_record *targets = targets_of(chains, spheres);
+    GLOBAL const struct target_record *own = &targets[fan->target];
+    const struct vector3 from = along3(chain->hit.point, chain->hit.back, chain->length);
+    const vfloat receiver_x = receiver_of(chains, chain);
+    const struct seabed_line line = line_across(fan, from, chain->hit.point.x, receiver_x);
+    const vfloat y = chain->hit.point.y - from.y;
+    const vfloat square = line.square + y * y;
+    const vfloat length =
+        SQUARE_ROOT(square) +
+        SQUARE_ROOT(larger(square + line.difference + 2.0f * line.ground * y, SPLAT(0.0f)));
+    const vfloat first = fan->reference_range - first_leg(chain, receiver_x);
+    const vfloat bin = 0.5f * (length - first) * fan->bins_per_metre + fan->bin_at_reference +
+                       (float)chains->first_bin;
+    const vfloat number =
+        VFLOAT_OF(VINT_OF(
+            smaller(larger(bin / (float)chains->cell_bins + 0.5f, SPLAT(-1.0e6f)), SPLAT(1.0e6f)) +
+            1.0e6f)) -
+        1.0e6f;
+    const struct echo_cell cell = cell_number(fan, chains, number, receiver_x);
+    const struct target_weights weights =
+        weigh_targets(targets + own->first_target, own->targets, &cell);
+    const struct places places =
+        places_between(&line, first + 2.0f * cell.near_range, first + 2.0f * cell.far_range,
+                       own->least_y - from.y);
+    const mask is_sampled = MASK_OF(number >= (float)own->first_cell) &
+                            MASK_OF(number < (float)(own->first_cell + own->cells)) &
+                            MASK_OF(y >= own->least_y - from.y);
+    const vfloat samples =
+        SELECT(is_sampled,
+               density_of_samples(fan, chains, weight_of_target(own, &cell), &weights,
+                                  SPLAT(own->width * own->elevations), length_of_place(&places, y)),
+               SPLAT(0.0f));
+    const vfloat opening = dot3(chain->hit.normal, chain->hit.back) /
+                           (larger(chain->length * chain->length, SPLAT(1.0e-12f)) *
+                            larger(chain->hit.normal.z, SPLAT(1.0e-3f)));
+    const vfloat rays = own->rays * chain->first_density * opening;
+    return SELECT(is_shared & MASK_OF(rays > 0.0f),
+                  rays / SELECT(MASK_OF(rays > 0.0f), rays + samples, SPLAT(1.0f)), SPLAT(1.0f));
+}
+
+/* One group of samples of a strip; all of a cell come one after the other. */
+NOINLINE void trace_second_order_group(
+    const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
+    GLOBAL const struct chain_record *chains, GLOBAL const struct object_record *objects,
+    GLOBAL const struct sphere_record *spheres, GLOBAL const float *map, GLOBAL TALLY *tallies,
+    int strip, struct random_key key, RECORD_WORD first_sample, struct outcome_record *outcome)
+{
+    GLOBAL const struct target_record *targets = targets_of(chains, spheres) + fan->target;
+    const word sample = SPLAT_WORD(first_sample) + LANE_NUMBERS;
+    const word number = SPLAT_WORD(fan->first_ray) + sample;
+    vfloat along, chosen, followed, across_x, across, uniform, chance, unused;
+    three_uniforms(key, number, 0, &along, &chosen, &followed);
+    const struct echo_cell cell = cell_number(
+        fan, chains,
+        VFLOAT_OF(sample / (RECORD_WORD)chains->cell_samples) + (float)targets->first_cell,
+        strip_position(fan, strip) + (along - 0.5f) * fan->strip_width);
+    const struct target_weights weights = weigh_targets(targets, targets->targets, &cell);
+    const mask is_followed = MASK_OF(sample < fan->rays) & MASK_OF(followed < weights.share);
+    if (!ANY(is_followed))
+        return;
+    const struct sampled_target target =
+        sample_target(targets, targets->targets, &cell, &weights, chosen, is_followed);
+    three_uniforms(key, number, 1, &across_x, &across, &chance);
+    two_uniforms(key, number, 2, &uniform, &unused);
+    struct chain chain;
+    struct chain_echo echo;
+    begin_chain(fan, pieces, objects, target.first_x + across_x * target.width,
+                target.first_elevation + across * target.elevations, SPLAT(1.0f), is_followed,
+                &chain);
+    outcome->rays += count_lanes(is_followed);
+    outcome->queries += count_lanes(is_followed);
+    chain.is_alive = chain.is_alive & MASK_OF(chain.hit.surface == target.part);
+    if (!ANY(chain.is_alive))
+        return;
+    chain.key = key;
+    chain.number = number;
+    chain.chance = chance;
+    const vfloat first = fan->reference_range - first_leg(&chain, cell.receiver_x);
+    const vfloat x = 2.0f * cell.receiver_x - chain.first_x;
+    const struct seabed_line line = line_across(fan, chain.hit.point, x, cell.receiver_x);
+    const struct places places =
+        places_between(&line, first + 2.0f * cell.near_range, first + 2.0f * cell.far_range,
+                       target.least_y - chain.hit.point.y);
+    const vfloat y = sample_place(&places, uniform);
+    const vfloat samples =
+        density_of_samples(fan, chains, target.weight, &weights, target.width * target.elevations,
+                           length_of_place(&places, y));
+    chain.is_alive = chain.is_alive & MASK_OF(samples > 0.0f);
+    step_to_seabed(fan, chains, objects, x, chain.hit.point.y + y, samples, target.rays, &chain,
+                   outcome);
+    if (!ANY(chain.is_alive))
+        return;
+    struct ways_counted ways;
+    ways.is_counted = ways.counts_reverse = chain.is_alive;
+    vfloat range;
+    const vfloat energy =
+        energy_returned(fan, pieces, chains, objects, map, &chain, receiver_of(chains, &chain), 0,
+                        3, chain.is_alive, &range, outcome);
+    keep_echo(fan, chains, ways, &chain, energy, range, SPLAT(1.0f), &echo);
+    tally_chain_echo(fan, chains, tallies, 2, &echo, outcome);
+}
+
+/* Traces the share `segment` of a strip's samples, of which the fan tells the number as its rays.
+ */
+FUNCTION struct outcome_record trace_second_order_strip(
+    const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
+    GLOBAL const struct chain_record *chains, GLOBAL const struct object_record *objects,
+    GLOBAL const struct sphere_record *spheres, GLOBAL const float *map, GLOBAL TALLY *tallies,
+    int strip, int segment)
+{
+    struct outcome_record outcome = {0, 0, 0, 0};
+    const struct random_key key = key_of_strip(fan, strip);
+    const RECORD_WORD stride = (RECORD_WORD)fan->segments * WIDTH;
+    for (RECORD_WORD sample = (RECORD_WORD)segment * WIDTH; sample < fan->rays; sample += stride)
+        trace_second_order_group(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
+                                 sample, &outcome);
+    return outcome;
+}
+
+#endif

@@ -1,0 +1,228 @@
+/* Paths of two interactions between seabed and target, sampled by the range cells that their echoes
+ * end in (kernels/second_order.h). */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "trace/chains.h"
+#include "trace/fan.h"
+#include "trace/image_sources.h"
+
+#define PI              3.14159265358979323846
+#define SAMPLES_A_PIXEL 16.0
+/* Of what the seabed returns in a cell: where a target brings less, it has fewer samples. */
+#define FULL_SHARE 0.001
+#define MARGIN     1.001
+#define NEAREST_M  0.01 /* ground range */
+
+bool second_order_is_sampled(const struct tracer *tracer, const struct line_grid *grid)
+{
+    const sonject_injection_params *injection = &tracer->scene->injection;
+    return injection->interactions > 1 && injection->estimator == SONJECT_ESTIMATOR_CONNECT &&
+           injection->column_rule == SONJECT_COLUMNS_FOCUSED &&
+           tracer->scene->sonar.transducer_side_m == 0.0 && !sea_surface_is_in_chains(tracer, grid);
+}
+
+static double samples_a_cell(const struct tracer *tracer, const struct line_grid *grid)
+{
+    const double wanted =
+        SAMPLES_A_PIXEL * tracer->scene->injection.ray_scale / grid->strips_per_row;
+    return fmax(1.0, floor(wanted + 0.5));
+}
+
+/* The most that a part scatters: of a smooth surface, what its roughness takes out of the specular
+ * direction, both coming and going. */
+static double brightness_of_part(const struct tracer *tracer, uint32_t part)
+{
+    const sonject_material_params *material = &tracer->placements[part].material;
+    const double phase = 4.0 * PI * material->roughness_m / tracer->view.wavelength_m;
+    const double scattered = material_is_smooth(material) ? -expm1(-phase * phase) : 1.0;
+    return material_brightness(material) * scattered * scattered;
+}
+
+/* The window of the wavefront that a part fills. */
+struct target_window {
+    double half_width_m, lowest, elevations;
+    double area_m2;
+};
+
+static struct target_window window_of_part(const struct tracer *tracer, uint32_t part)
+{
+    static const double along[3] = {1.0, 0.0, 0.0};
+    const struct placement *placement = &tracer->placements[part];
+    const struct ray_path *water = &tracer->view.water;
+    const struct elevations edges = elevations_of_object(tracer, part, water);
+    const double grazing = placement_grazing(placement, &tracer->view);
+    struct target_window window;
+    window.half_width_m = MARGIN * placement_half_extent(placement, along);
+    window.lowest = edges.lowest;
+    window.elevations = edges.highest - edges.lowest;
+    window.area_m2 = 2.0 * window.half_width_m * window.elevations *
+                     ray_path_arrival(water, grazing, placement->centre[2]).wavefront_m;
+    return window;
+}
+
+/* Distance, m, from which on a part has no samples: its weight falls with the cube of that. */
+static double reach_of_weight(const struct target_record *record)
+{
+    return cbrt((double)record->weight * (double)record->top / LEAST_WEIGHT);
+}
+
+static void target_record_init(struct target_record *record, const struct tracer *tracer,
+                               const struct line_grid *grid, uint32_t part, const double origin[3])
+{
+    static const double upward[3] = {0.0, 0.0, 1.0};
+    const struct placement *placement = &tracer->placements[part];
+    const struct ray_path *water = &tracer->view.water;
+    const struct target_window window = window_of_part(tracer, part);
+    const double central = ray_path_grazing(water, origin[1], 0.0);
+    const double grazing = placement_grazing(placement, &tracer->view);
+    const double radius = placement->bounding_radius_m;
+    const double strip = tracer->view.row_spacing_m / grid->strips_per_row;
+    const double range =
+        placement_range(placement, &tracer->view) - ray_path_range(water, origin[1], 0.0);
+    const double least_ground =
+        water->is_straight
+            ? 0.0
+            : placement->centre[1] - chain_reach_of(tracer, placement).towards_sonar_m;
+    record->centre_x = (float)(placement->centre[0] - origin[0]);
+    record->range = (float)range;
+    record->nearest_range = (float)(range - 1.01 * radius);
+    record->square_radius = (float)(radius * radius);
+    record->first_x = (float)(placement->centre[0] - origin[0] - window.half_width_m);
+    record->width = (float)(2.0 * window.half_width_m);
+    record->first_elevation = (float)(central - grazing + window.lowest);
+    record->elevations = (float)window.elevations;
+    record->least_y = (float)(fmax(least_ground, NEAREST_M) - origin[1]);
+    record->top = (float)fmax(placement->centre[2] - tracer_lowest_seabed(tracer) +
+                                  placement_half_extent(placement, upward),
+                              0.01);
+    /* both ways, whose amplitudes add, and two places on the seabed */
+    record->weight = (float)(8.0 * window.area_m2 * brightness_of_part(tracer, part) / FULL_SHARE);
+    record->rays =
+        (float)(1.0 / (strip * fan_elevation_step(tracer, grid, grazing,
+                                                  chain_rays_per_bin(tracer, grid, part))));
+    record->part = (int32_t)part;
+}
+
+/* Where an object's samples may end: cells and strips. */
+struct sampled_region {
+    struct span cells, strips;
+};
+
+/* The records are of the object's rough parts. */
+static struct sampled_region region_of_object(const struct tracer *tracer,
+                                              const struct line_grid *grid,
+                                              const struct target_record *records, int32_t count)
+{
+    const struct patch_view *view = &tracer->view;
+    const double per_pixel = grid->bins_per_pixel;
+    double nearest = INFINITY, farthest = 0.0, first_x = INFINITY, last_x = -INFINITY;
+    struct sampled_region region = {{0, 0}, {0, 0}};
+    for (int32_t i = 0; i < count; i++) {
+        const struct placement *placement = &tracer->placements[records[i].part];
+        const double range = placement_range(placement, view);
+        const double reach = reach_of_weight(&records[i]);
+        nearest = fmin(nearest, range - 1.02 * placement->bounding_radius_m);
+        farthest = fmax(farthest, range + reach);
+        first_x = fmin(first_x, placement->centre[0] - 0.5 * reach);
+        last_x = fmax(last_x, placement->centre[0] + 0.5 * reach);
+    }
+    if (count == 0)
+        return region;
+    const double first = fmax(floor(grid->bins.first / per_pixel),
+                              floor(view_column_of_range(view, nearest * view->range_ratio)) - 1.0);
+    const double end = fmin(ceil((grid->bins.first + grid->bins.count) / per_pixel) + 1.0,
+                            ceil(view_column_of_range(view, farthest * view->range_ratio)) + 2.0);
+    region.cells.first = (int32_t)fmin(first, end);
+    region.cells.count = (int32_t)fmax(0.0, end - first);
+    region.strips = span_overlap(strips_between(tracer, grid, first_x, last_x), grid->strips);
+    return region;
+}
+
+static bool is_rough(const struct tracer *tracer, uint32_t part)
+{
+    return material_is_rough(&tracer->placements[part].material);
+}
+
+int32_t second_order_target(const struct tracer *tracer, uint32_t part)
+{
+    int32_t count = 0;
+    for (uint32_t i = 0; i < part; i++)
+        count += is_rough(tracer, i);
+    return count;
+}
+
+/* Writes the records of an object's rough parts, of which there are so many. */
+static int32_t init_targets_of(struct target_record *records, const struct tracer *tracer,
+                               const struct line_grid *grid, uint32_t object,
+                               const double origin[3])
+{
+    const struct placed_object *placed = &tracer->objects[object];
+    const int32_t first = second_order_target(tracer, placed->first_part);
+    int32_t count = 0;
+    for (uint32_t i = placed->first_part; i < placed->first_part + placed->part_count; i++)
+        if (is_rough(tracer, i))
+            target_record_init(&records[count++], tracer, grid, i, origin);
+    const struct span cells = region_of_object(tracer, grid, records, count).cells;
+    for (int32_t i = 0; i < count; i++) {
+        records[i].first_target = first;
+        records[i].targets = count;
+        records[i].first_cell = cells.first;
+        records[i].cells = cells.count;
+    }
+    return count;
+}
+
+void second_order_init(struct chain_record *record, struct target_spheres *spheres,
+                       const struct tracer *tracer, const struct line_grid *grid,
+                       const double origin[3])
+{
+    struct target_record *targets =
+        (struct target_record *)(void *)((char *)spheres->records + spheres->bytes);
+    int32_t count = 0;
+    for (uint32_t i = 0; i < tracer->scene->object_count; i++)
+        count += init_targets_of(targets + count, tracer, grid, i, origin);
+    record->target_words = (uint32_t)(spheres->bytes / sizeof(float));
+    record->cell_samples = (int32_t)samples_a_cell(tracer, grid);
+    record->cell_bins = (int32_t)grid->bins_per_pixel;
+    record->first_bin = grid->bins.first;
+    spheres->bytes += (size_t)count * sizeof *targets;
+}
+
+sonject_status second_order_fan_init(struct chain_fan *fan, const struct tracer *tracer,
+                                     const struct line_grid *grid, uint32_t object)
+{
+    const struct placed_object *placed = &tracer->objects[object];
+    const int64_t samples = (int64_t)samples_a_cell(tracer, grid);
+    struct fan_record *record = &fan->record;
+    struct target_record *targets = allocate_array(placed->part_count, sizeof *targets);
+    double origin[3];
+    CHECK_MEMORY(tracer->report, targets, "multiple interactions");
+    patch_fan_origin(origin, &tracer->view);
+    const int32_t count = init_targets_of(targets, tracer, grid, object, origin);
+    const struct sampled_region region = region_of_object(tracer, grid, targets, count);
+    free(targets);
+    record->target = second_order_target(tracer, placed->first_part);
+    record->is_sample = 1;
+    record->first_ray =
+        (uint32_t)(samples * ((int64_t)tracer->view.first_column + region.cells.first));
+    record->rays = (uint32_t)(samples * region.cells.count);
+    record->stream = (uint32_t)(STREAM_SECOND_ORDER + object);
+    record->only_object = 0;
+    fan->strips = region.strips;
+    return SONJECT_OK;
+}
+
+double second_order_most(const struct tracer *tracer, const struct line_grid *grid)
+{
+    double most = 0.0;
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
+        const struct target_window window = window_of_part(tracer, i);
+        most = fmax(most, is_rough(tracer, i)
+                              ? 2.0 * window.half_width_m * window.elevations *
+                                    material_brightness(&tracer->placements[i].material)
+                              : 0.0);
+    }
+    return most / samples_a_cell(tracer, grid);
+}
