@@ -1,7 +1,7 @@
 """Times with warm program caches, one line each. Figure 6 of the paper, from process start to files,
 beside the time that the process needs to do nothing (list the devices); the injection alone, by the
-C interface through the Python bindings, for a 512 x 512 patch, and of a mesh of a million triangles
-from its file to an image of 400 x 400; and forming an image anew at two thirds of the bandwidth, beside
+C interface through the Python bindings, for a 512 x 512 patch; the targets of tools/targets with two
+interactions; a mesh of a million triangles from its file to an image of 400 x 400; and forming an image anew at two thirds of the bandwidth, beside
 a whole run at that bandwidth: figure 7 with three interactions, and the same with so many rays that
 tracing is nearly all of a run."""
 import os
@@ -49,6 +49,15 @@ def time_injection():
     sonject.inject(patch, scene)
     taken = best_time(lambda _: sonject.inject(patch, scene))
     print(f"injection of a capsule into 512 x 512 pixels: {taken:.3f} s")
+
+
+def time_targets(folder):
+    def run(number):
+        subprocess.run([COMMAND, "run", SCENES / "targets.yaml", "--quiet", "--set", "injection.interactions=2",
+                        "-o", folder / f"targets {number}"], check=True)
+
+    run("first")
+    print(f"twelve targets in 600 x 600 pixels, two interactions, process start to files: {best_time(run, 2):.1f} s")
 
 
 def write_ring(path, around=1000, across=500):
@@ -99,6 +108,7 @@ with tempfile.TemporaryDirectory() as name:
                     "--first-range", "43.6125"], check=True)
     time_figure6(folder, swath)
     time_injection()
+    time_targets(folder)
     time_mesh(folder)
     for rays in (1, 64):
         time_stages(folder, swath, rays)
