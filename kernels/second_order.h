@@ -242,28 +242,49 @@ FUNCTION vfloat length_of_place(const struct places *places, vfloat y)
     return SELECT(places->exist, rarer * places->both * far * far / places->depth, SPLAT(0.0f));
 }
 
-/* The seabed under a point of the plan, as seen from above. */
+/* The seabed under a point of the plan. */
 FUNCTION struct chain_hit seabed_below(const struct fan_record *fan,
                                        GLOBAL const struct object_record *objects, vfloat x,
                                        vfloat y, mask is_wanted)
 {
-    const float height = 100.0f;
-    struct vector3 down;
     struct chain_hit hit;
     hit.point.x = x;
     hit.point.y = y;
     hit.point.z = SPLAT(fan->seabed_height);
-    if (has_relief(fan)) {
+#if HAS_RELIEF
+    if (has_relief(fan)) { /* from little above it, so that its height keeps its digits */
         struct vector3 above = hit.point;
-        above.z = above.z + height;
+        struct vector3 down;
+        above.z = above.z + (relief_of(fan, objects).grid->highest + 0.01f);
         down.x = down.y = SPLAT(0.0f);
         down.z = SPLAT(-1.0f);
         hit.point.z = above.z - seabed_distance(fan, objects, above, down, SPLAT(0.0f), is_wanted);
     }
+#endif
+    (void)objects;
     hit.surface = VINT_OF(SPLAT((float)SEABED));
     hit.left_behind = VINT_OF(SPLAT(-1.0f));
     hit.is_hit = is_wanted;
     return hit;
+}
+
+/* The way from one point to another. */
+struct straight_way {
+    struct vector3 direction; /* unit */
+    vfloat square, distance;
+};
+
+FUNCTION struct straight_way way_between(struct vector3 from, struct vector3 to)
+{
+    const struct vector3 shift = minus3(to, from);
+    struct straight_way way;
+    way.square = larger(dot3(shift, shift), SPLAT(1.0e-12f));
+    way.distance = SQUARE_ROOT(way.square);
+    const vfloat inverse = 1.0f / way.distance;
+    way.direction.x = shift.x * inverse;
+    way.direction.y = shift.y * inverse;
+    way.direction.z = shift.z * inverse;
+    return way;
 }
 
 /* Takes a chain from its hit on a target to a place of the seabed. samples: per m rad and m^2 of
@@ -275,17 +296,13 @@ FUNCTION void step_to_seabed(const struct fan_record *fan, GLOBAL const struct c
 {
     const struct chain_hit *from = &chain->hit;
     struct chain_hit to = seabed_below(fan, objects, x, y, chain->is_alive);
-    const struct vector3 way = minus3(to.point, start_from(from));
-    const vfloat square = larger(dot3(way, way), SPLAT(1.0e-12f));
-    const vfloat distance = SQUARE_ROOT(square);
-    const vfloat inverse = 1.0f / distance;
-    struct vector3 direction;
-    direction.x = way.x * inverse;
-    direction.y = way.y * inverse;
-    direction.z = way.z * inverse;
-    to.normal = seabed_normal(fan, objects, to.point, direction);
+    const struct vector3 start = start_from(from);
+    to.normal = seabed_normal(fan, objects, to.point, way_between(start, to.point).direction);
+    /* to as little over the seabed as rays start there, so that it does not hide itself */
+    const struct straight_way way = way_between(start, start_from(&to));
+    const struct vector3 direction = way.direction;
     to.back = reversed3(direction);
-    to.distance = distance;
+    to.distance = way.distance;
     const vfloat leaving = dot3(from->normal, direction);
     const vfloat arriving = dot3(to.normal, to.back);
     mask is_open = chain->is_alive & MASK_OF(leaving > 0.0f) & MASK_OF(arriving > 0.0f);
@@ -293,9 +310,9 @@ FUNCTION void step_to_seabed(const struct fan_record *fan, GLOBAL const struct c
         const vfloat scattering = scattering_at(fan, chains, objects, from, direction);
         is_open = is_open & MASK_OF(scattering > 0.0f);
         outcome->queries += count_lanes(is_open);
-        is_open = is_open_way(fan, objects, from, direction, 0.9999f * distance, is_open);
+        is_open = is_open_way(fan, objects, from, direction, way.distance, is_open);
         /* of a m^2 of the plan, sr */
-        const vfloat opening = arriving / (square * larger(to.normal.z, SPLAT(1.0e-3f)));
+        const vfloat opening = arriving / (way.square * larger(to.normal.z, SPLAT(1.0e-3f)));
         const vfloat found =
             samples + rays * rough_density_at(fan, objects, from, direction) * opening;
         chain->energy = SELECT(
@@ -303,7 +320,7 @@ FUNCTION void step_to_seabed(const struct fan_record *fan, GLOBAL const struct c
             SPLAT(0.0f));
     }
     to.is_hit = is_open;
-    chain->length = SELECT(is_open, distance, SPLAT(0.0f));
+    chain->length = SELECT(is_open, way.distance, SPLAT(0.0f));
     chain->surface_before = from->surface;
     chain->hit = to;
     chain->is_alive = is_open;
@@ -332,20 +349,20 @@ NOINLINE vfloat share_of_ray(const struct fan_record *fan, GLOBAL const struct c
     const vfloat first = fan->reference_range - first_leg(chain, receiver_x);
     const vfloat bin = 0.5f * (length - first) * fan->bins_per_metre + fan->bin_at_reference +
                        (float)chains->first_bin;
+    const vfloat place =
+        smaller(larger(bin / (float)chains->cell_bins + 0.5f, SPLAT(-1.0e6f)), SPLAT(1.0e6f));
+    const vfloat towards_zero = VFLOAT_OF(VINT_OF(place));
     const vfloat number =
-        VFLOAT_OF(VINT_OF(
-            smaller(larger(bin / (float)chains->cell_bins + 0.5f, SPLAT(-1.0e6f)), SPLAT(1.0e6f)) +
-            1.0e6f)) -
-        1.0e6f;
+        towards_zero - SELECT(MASK_OF(towards_zero > place), SPLAT(1.0f), SPLAT(0.0f));
     const struct echo_cell cell = cell_number(fan, chains, number, receiver_x);
     const struct target_weights weights =
         weigh_targets(targets + own->first_target, own->targets, &cell);
     const struct places places =
         places_between(&line, first + 2.0f * cell.near_range, first + 2.0f * cell.far_range,
                        own->least_y - from.y);
-    const mask is_sampled = MASK_OF(number >= (float)own->first_cell) &
-                            MASK_OF(number < (float)(own->first_cell + own->cells)) &
-                            MASK_OF(y >= own->least_y - from.y);
+    const mask is_heard = MASK_OF(y >= own->least_y - from.y);
+    const mask is_sampled = is_heard & MASK_OF(number >= (float)own->first_cell) &
+                            MASK_OF(number < (float)(own->first_cell + own->cells));
     const vfloat samples =
         SELECT(is_sampled,
                density_of_samples(fan, chains, weight_of_target(own, &cell), &weights,
@@ -355,8 +372,11 @@ NOINLINE vfloat share_of_ray(const struct fan_record *fan, GLOBAL const struct c
                            (larger(chain->length * chain->length, SPLAT(1.0e-12f)) *
                             larger(chain->hit.normal.z, SPLAT(1.0e-3f)));
     const vfloat rays = own->rays * chain->first_density * opening;
-    return SELECT(is_shared & MASK_OF(rays > 0.0f),
-                  rays / SELECT(MASK_OF(rays > 0.0f), rays + samples, SPLAT(1.0f)), SPLAT(1.0f));
+    const mask has_rays = MASK_OF(rays > 0.0f);
+    vfloat share = rays / SELECT(has_rays, rays + samples, SPLAT(1.0f));
+    if (fan->table.pieces > 0) /* rays beyond are not in the table */
+        share = SELECT(is_heard, share, SPLAT(0.0f));
+    return SELECT(is_shared & has_rays, share, SPLAT(1.0f));
 }
 
 /* One group of samples of a strip; all of a cell come one after the other. */

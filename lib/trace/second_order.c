@@ -99,9 +99,9 @@ static void target_record_init(struct target_record *record, const struct tracer
                               0.01);
     /* both ways, whose amplitudes add, and two places on the seabed */
     record->weight = (float)(8.0 * window.area_m2 * brightness_of_part(tracer, part) / FULL_SHARE);
-    record->rays =
-        (float)(1.0 / (strip * fan_elevation_step(tracer, grid, grazing,
-                                                  chain_rays_per_bin(tracer, grid, part))));
+    const double step =
+        fan_elevation_step(tracer, grid, grazing, chain_rays_per_bin(tracer, grid, part));
+    record->rays = (float)(ceil(window.elevations / step) / (strip * window.elevations));
     record->part = (int32_t)part;
 }
 
@@ -136,7 +136,10 @@ static struct sampled_region region_of_object(const struct tracer *tracer,
                             ceil(view_column_of_range(view, farthest * view->range_ratio)) + 2.0);
     region.cells.first = (int32_t)fmin(first, end);
     region.cells.count = (int32_t)fmax(0.0, end - first);
-    region.strips = span_overlap(strips_between(tracer, grid, first_x, last_x), grid->strips);
+    /* what lies close to a strip's edge may count as the next one's */
+    const struct span strips = {grid->strips.first - 1, grid->strips.count + 2};
+    if (region.cells.count > 0)
+        region.strips = span_overlap(strips_between(tracer, grid, first_x, last_x), strips);
     return region;
 }
 

@@ -506,7 +506,7 @@ static void weigh_rays(struct bench *bench, struct chain_trace *trace)
 
 static struct energies weighed_seeds(struct sea *sea, float counted, uint64_t first_seed)
 {
-    const struct ranges ranges = ranges_about(MIDDLE_M, FEW_RANGES);
+    const struct ranges ranges = {FEW_RANGES, MIDDLE_M - 0.7, 0.5};
     rays_counted = counted;
     return sea_changed_chains(sea, &ranges, first_seed, SEEDS, weigh_rays);
 }
@@ -518,15 +518,24 @@ static struct energies weighed_seeds(struct sea *sea, float counted, uint64_t fi
 CLAIM(samples_and_rays_find_the_same_paths)
 {
     static const struct water_layer layers[] = {{0.0, 1480.0, 1.0}, {4.0, 1520.0, 1.0}};
-    static const char *const names[] = {"over the seabed", "over relief", "through layers",
-                                        "glossy",          "weak",        "on the seabed"};
-    for (int variant = 0; variant < 6; variant++) {
-        struct sea *sea = open_capsule(variant == 1);
+    static const char *const names[] = {"over the seabed", "over relief",  "through layers",
+                                        "glossy",          "weak",         "on the seabed",
+                                        "low, on relief",  "partly smooth"};
+    for (int variant = 0; variant < 8; variant++) {
+        struct sea *sea = open_capsule(variant == 1 || variant == 6);
         sea->injection->column_rule = SONJECT_COLUMNS_FOCUSED;
         if (variant < 5)
             sea_object(sea, 0)->burial_m = -0.4;
         if (variant == 4) /* of whose cells some samples are left out */
             make_rough(sea_object(sea, 0), 0.002);
+        if (variant == 6) {
+            sea_object(sea, 0)->diameter_m = 0.12;
+            sea_object(sea, 0)->burial_m = 0.0;
+        }
+        if (variant == 7) {
+            sea_object(sea, 0)->material.reflection = 0.7;
+            sea_object(sea, 0)->material.roughness_m = 2e-3;
+        }
         if (variant == 2)
             sea_set_layers(sea, layers, 2);
         if (variant == 3) {
@@ -537,7 +546,7 @@ CLAIM(samples_and_rays_find_the_same_paths)
         const struct energies by_both = weighed_seeds(sea, 1.0f, 200);
         print_message("%s\n", names[variant]);
         expect_same("both", &by_both, &by_rays, 0.003);
-        if (variant == 5)
+        if (variant >= 5)
             continue;
         const struct energies by_samples = weighed_seeds(sea, 1e-6f, 100);
         expect_same("samples", &by_samples, &by_rays, 0.003);
