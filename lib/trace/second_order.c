@@ -82,9 +82,7 @@ static void target_record_init(struct target_record *record, const struct tracer
     const double range =
         placement_range(placement, &tracer->view) - ray_path_range(water, origin[1], 0.0);
     const double least_ground =
-        water->is_straight
-            ? 0.0
-            : placement->centre[1] - chain_reach_of(tracer, placement).towards_sonar_m;
+        placement->centre[1] - chain_reach_of(tracer, placement).towards_sonar_m;
     record->centre_x = (float)(placement->centre[0] - origin[0]);
     record->range = (float)range;
     record->nearest_range = (float)(range - 1.01 * radius);
