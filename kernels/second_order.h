@@ -153,23 +153,21 @@ FUNCTION struct chain_hit seabed_below(const struct fan_record *fan,
     return hit;
 }
 
-/* The way from one point to another. */
-struct straight_way {
-    struct vector3 direction; /* unit */
-    vfloat square, distance;
-};
-
-FUNCTION struct straight_way way_between(struct vector3 from, struct vector3 to)
+/* A square metre of the plan as seen from a hit, sr. spreading: 1 over the square of the way. */
+FUNCTION vfloat opening_of_plan(const struct chain_hit *seabed, vfloat spreading)
 {
-    const struct vector3 shift = minus3(to, from);
-    struct straight_way way;
-    way.square = larger(dot3(shift, shift), SPLAT(1.0e-12f));
-    way.distance = SQUARE_ROOT(way.square);
-    const vfloat inverse = 1.0f / way.distance;
-    way.direction.x = shift.x * inverse;
-    way.direction.y = shift.y * inverse;
-    way.direction.z = shift.z * inverse;
-    return way;
+    return dot3(seabed->normal, seabed->back) * spreading /
+           larger(seabed->normal.z, SPLAT(1.0e-3f));
+}
+
+/* The places on a line from which the echo of a chain's hit is in a cell. */
+FUNCTION struct places places_of_cell(const struct fan_record *fan, const struct chain *chain,
+                                      const struct seabed_line *line, const struct echo_cell *cell,
+                                      vfloat least_y)
+{
+    const vfloat first = fan->reference_range - first_leg(chain, cell->receiver_x);
+    return places_between(line, first + 2.0f * cell->near_range, first + 2.0f * cell->far_range,
+                          least_y);
 }
 
 /* Takes a chain from its hit on a target to a place of the seabed. samples: per m rad and m^2 of
@@ -182,12 +180,13 @@ FUNCTION void step_to_seabed(const struct fan_record *fan, GLOBAL const struct c
     const struct chain_hit *from = &chain->hit;
     struct chain_hit to = seabed_below(fan, objects, x, y, chain->is_alive);
     const struct vector3 start = start_from(from);
-    to.normal = seabed_normal(fan, objects, to.point, way_between(start, to.point).direction);
+    to.normal =
+        seabed_normal(fan, objects, to.point, straight_path(minus3(to.point, start)).direction);
     /* to as little over the seabed as rays start there, so that it does not hide itself */
-    const struct straight_way way = way_between(start, start_from(&to));
+    const struct source_path way = straight_path(minus3(start_from(&to), start));
     const struct vector3 direction = way.direction;
     to.back = reversed3(direction);
-    to.distance = way.distance;
+    to.distance = way.path;
     const vfloat leaving = dot3(from->normal, direction);
     const vfloat arriving = dot3(to.normal, to.back);
     mask is_open = chain->is_alive & MASK_OF(leaving > 0.0f) & MASK_OF(arriving > 0.0f);
@@ -195,9 +194,8 @@ FUNCTION void step_to_seabed(const struct fan_record *fan, GLOBAL const struct c
         const vfloat scattering = scattering_at(fan, chains, objects, from, direction);
         is_open = is_open & MASK_OF(scattering > 0.0f);
         outcome->queries += count_lanes(is_open);
-        is_open = is_open_way(fan, objects, from, direction, way.distance, is_open);
-        /* of a m^2 of the plan, sr */
-        const vfloat opening = arriving / (way.square * larger(to.normal.z, SPLAT(1.0e-3f)));
+        is_open = is_open_way(fan, objects, from, direction, way.path, is_open);
+        const vfloat opening = opening_of_plan(&to, way.spreading);
         const vfloat found =
             samples + rays * rough_density_at(fan, objects, from, direction) * opening;
         chain->energy = SELECT(
@@ -205,7 +203,7 @@ FUNCTION void step_to_seabed(const struct fan_record *fan, GLOBAL const struct c
             SPLAT(0.0f));
     }
     to.is_hit = is_open;
-    chain->length = SELECT(is_open, way.distance, SPLAT(0.0f));
+    chain->length = SELECT(is_open, way.path, SPLAT(0.0f));
     chain->surface_before = from->surface;
     chain->hit = to;
     chain->is_alive = is_open;
@@ -242,10 +240,9 @@ NOINLINE vfloat share_of_ray(const struct fan_record *fan, GLOBAL const struct c
     const struct echo_cell cell = cell_number(fan, chains, number, receiver_x);
     const struct target_weights weights =
         weigh_targets(targets + own->first_target, own->targets, &cell);
-    const struct places places =
-        places_between(&line, first + 2.0f * cell.near_range, first + 2.0f * cell.far_range,
-                       own->least_y - from.y);
-    const mask is_heard = MASK_OF(y >= own->least_y - from.y);
+    const vfloat least_y = own->least_y - from.y;
+    const struct places places = places_of_cell(fan, chain, &line, &cell, least_y);
+    const mask is_heard = MASK_OF(y >= least_y);
     const mask is_sampled = is_heard & MASK_OF(number >= (float)own->first_cell) &
                             MASK_OF(number < (float)(own->first_cell + own->cells));
     const vfloat samples =
@@ -253,9 +250,8 @@ NOINLINE vfloat share_of_ray(const struct fan_record *fan, GLOBAL const struct c
                density_of_samples(fan, chains, weight_of_target(own, &cell), &weights,
                                   SPLAT(own->width * own->elevations), length_of_place(&places, y)),
                SPLAT(0.0f));
-    const vfloat opening = dot3(chain->hit.normal, chain->hit.back) /
-                           (larger(chain->length * chain->length, SPLAT(1.0e-12f)) *
-                            larger(chain->hit.normal.z, SPLAT(1.0e-3f)));
+    const vfloat opening =
+        opening_of_plan(&chain->hit, 1.0f / larger(chain->length * chain->length, SPLAT(1.0e-12f)));
     const vfloat rays = own->rays * chain->first_density * opening;
     const mask has_rays = MASK_OF(rays > 0.0f);
     const vfloat share = rays / SELECT(has_rays, rays + samples, SPLAT(1.0f));
@@ -299,12 +295,10 @@ NOINLINE void trace_second_order_group(
     chain.key = key;
     chain.number = number;
     chain.chance = chance;
-    const vfloat first = fan->reference_range - first_leg(&chain, cell.receiver_x);
     const vfloat x = 2.0f * cell.receiver_x - chain.first_x;
     const struct seabed_line line = line_across(fan, chain.hit.point, x, cell.receiver_x);
     const struct places places =
-        places_between(&line, first + 2.0f * cell.near_range, first + 2.0f * cell.far_range,
-                       target.least_y - chain.hit.point.y);
+        places_of_cell(fan, &chain, &line, &cell, target.least_y - chain.hit.point.y);
     const vfloat y = sample_place(&places, uniform);
     const vfloat samples =
         density_of_samples(fan, chains, target.weight, &weights, target.width * target.elevations,

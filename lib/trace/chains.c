@@ -186,9 +186,9 @@ static sonject_status aim_fan(struct chain_fan *fan, struct tracer *tracer,
     if (i > tracer->part_count) {
         const uint32_t object = i - 1 - tracer->part_count;
         fan->strips.count = 0;
-        return is_sampled && tracer_follows(tracer, object)
-                   ? second_order_fan_init(fan, tracer, grid, object)
-                   : SONJECT_OK;
+        if (is_sampled && tracer_follows(tracer, object))
+            second_order_fan_init(fan, tracer, grid, object);
+        return SONJECT_OK;
     }
     if (i > 0 && tracer_follows(tracer, tracer->placements[i - 1].object))
         return init_object_fan(fan, tracer, grid, central, i - 1);

@@ -50,9 +50,9 @@ void second_order_init(struct chain_record *record, struct target_spheres *spher
                        const struct tracer *tracer, const struct line_grid *grid,
                        const double origin[3]);
 
-/* Lays the samples of an object into a fan that is aimed at the patch. Errors: MEMORY. */
-sonject_status second_order_fan_init(struct chain_fan *fan, const struct tracer *tracer,
-                                     const struct line_grid *grid, uint32_t object);
+/* Lays the samples of an object into a fan that is aimed at the patch. */
+void second_order_fan_init(struct chain_fan *fan, const struct tracer *tracer,
+                           const struct line_grid *grid, uint32_t object);
 
 /* The number of a rough part's record: of rough parts before it. */
 int32_t second_order_target(const struct tracer *tracer, uint32_t part);

@@ -1,9 +1,7 @@
 /* Paths of two interactions between seabed and target, sampled by the range cells that their echoes
  * end in (kernels/second_order.h). */
 #include <math.h>
-#include <stdlib.h>
 
-#include "base/memory.h"
 #include "trace/chains.h"
 #include "trace/fan.h"
 #include "trace/image_sources.h"
@@ -62,16 +60,74 @@ static struct target_window window_of_part(const struct tracer *tracer, uint32_t
     return window;
 }
 
-/* Distance, m, from which on a part has no samples: its weight falls with the cube of that. */
-static double reach_of_weight(const struct target_record *record)
+static double top_of_part(const struct tracer *tracer, uint32_t part)
 {
-    return cbrt((double)record->weight * (double)record->top / LEAST_WEIGHT);
+    static const double upward[3] = {0.0, 0.0, 1.0};
+    const struct placement *placement = &tracer->placements[part];
+    const double height = placement->centre[2] - tracer_lowest_seabed(tracer);
+    return fmax(height + placement_half_extent(placement, upward), 0.01);
+}
+
+/* Both ways, whose amplitudes add, and two places on the seabed. */
+static double weight_of_part(const struct tracer *tracer, uint32_t part)
+{
+    return 8.0 * window_of_part(tracer, part).area_m2 * brightness_of_part(tracer, part) /
+           FULL_SHARE;
+}
+
+/* Distance, m, from which on a part has no samples: its weight falls with the cube of that. */
+static double reach_of_part(const struct tracer *tracer, uint32_t part)
+{
+    return cbrt(MARGIN * weight_of_part(tracer, part) * top_of_part(tracer, part) / LEAST_WEIGHT);
+}
+
+static bool is_rough(const struct tracer *tracer, uint32_t part)
+{
+    return material_is_rough(&tracer->placements[part].material);
+}
+
+/* Where an object's samples may end: cells and strips. */
+struct sampled_region {
+    struct span cells, strips;
+};
+
+static struct sampled_region region_of_object(const struct tracer *tracer,
+                                              const struct line_grid *grid, uint32_t object)
+{
+    const struct placed_object *placed = &tracer->objects[object];
+    const struct patch_view *view = &tracer->view;
+    const double per_pixel = grid->bins_per_pixel;
+    double nearest = INFINITY, farthest = 0.0, first_x = INFINITY, last_x = -INFINITY;
+    struct sampled_region region = {{0, 0}, {0, 0}};
+    for (uint32_t i = placed->first_part; i < placed->first_part + placed->part_count; i++) {
+        if (!is_rough(tracer, i))
+            continue;
+        const struct placement *placement = &tracer->placements[i];
+        const double range = placement_range(placement, view);
+        const double reach = reach_of_part(tracer, i);
+        nearest = fmin(nearest, range - 1.02 * placement->bounding_radius_m);
+        farthest = fmax(farthest, range + reach);
+        first_x = fmin(first_x, placement->centre[0] - 0.5 * reach);
+        last_x = fmax(last_x, placement->centre[0] + 0.5 * reach);
+    }
+    if (!(farthest > 0.0))
+        return region;
+    const double first = fmax(floor(grid->bins.first / per_pixel),
+                              floor(view_column_of_range(view, nearest * view->range_ratio)) - 1.0);
+    const double end = fmin(ceil((grid->bins.first + grid->bins.count) / per_pixel) + 1.0,
+                            ceil(view_column_of_range(view, farthest * view->range_ratio)) + 2.0);
+    region.cells.first = (int32_t)fmin(first, end);
+    region.cells.count = (int32_t)fmax(0.0, end - first);
+    /* what lies close to a strip's edge may count as the next one's */
+    const struct span strips = {grid->strips.first - 1, grid->strips.count + 2};
+    if (region.cells.count > 0)
+        region.strips = span_overlap(strips_between(tracer, grid, first_x, last_x), strips);
+    return region;
 }
 
 static void target_record_init(struct target_record *record, const struct tracer *tracer,
                                const struct line_grid *grid, uint32_t part, const double origin[3])
 {
-    static const double upward[3] = {0.0, 0.0, 1.0};
     const struct placement *placement = &tracer->placements[part];
     const struct ray_path *water = &tracer->view.water;
     const struct target_window window = window_of_part(tracer, part);
@@ -92,58 +148,12 @@ static void target_record_init(struct target_record *record, const struct tracer
     record->first_elevation = (float)(central - grazing + window.lowest);
     record->elevations = (float)window.elevations;
     record->least_y = (float)(fmax(least_ground, NEAREST_M) - origin[1]);
-    record->top = (float)fmax(placement->centre[2] - tracer_lowest_seabed(tracer) +
-                                  placement_half_extent(placement, upward),
-                              0.01);
-    /* both ways, whose amplitudes add, and two places on the seabed */
-    record->weight = (float)(8.0 * window.area_m2 * brightness_of_part(tracer, part) / FULL_SHARE);
+    record->top = (float)top_of_part(tracer, part);
+    record->weight = (float)weight_of_part(tracer, part);
     const double step =
         fan_elevation_step(tracer, grid, grazing, chain_rays_per_bin(tracer, grid, part));
     record->rays = (float)(ceil(window.elevations / step) / (strip * window.elevations));
     record->part = (int32_t)part;
-}
-
-/* Where an object's samples may end: cells and strips. */
-struct sampled_region {
-    struct span cells, strips;
-};
-
-/* The records are of the object's rough parts. */
-static struct sampled_region region_of_object(const struct tracer *tracer,
-                                              const struct line_grid *grid,
-                                              const struct target_record *records, int32_t count)
-{
-    const struct patch_view *view = &tracer->view;
-    const double per_pixel = grid->bins_per_pixel;
-    double nearest = INFINITY, farthest = 0.0, first_x = INFINITY, last_x = -INFINITY;
-    struct sampled_region region = {{0, 0}, {0, 0}};
-    for (int32_t i = 0; i < count; i++) {
-        const struct placement *placement = &tracer->placements[records[i].part];
-        const double range = placement_range(placement, view);
-        const double reach = reach_of_weight(&records[i]);
-        nearest = fmin(nearest, range - 1.02 * placement->bounding_radius_m);
-        farthest = fmax(farthest, range + reach);
-        first_x = fmin(first_x, placement->centre[0] - 0.5 * reach);
-        last_x = fmax(last_x, placement->centre[0] + 0.5 * reach);
-    }
-    if (count == 0)
-        return region;
-    const double first = fmax(floor(grid->bins.first / per_pixel),
-                              floor(view_column_of_range(view, nearest * view->range_ratio)) - 1.0);
-    const double end = fmin(ceil((grid->bins.first + grid->bins.count) / per_pixel) + 1.0,
-                            ceil(view_column_of_range(view, farthest * view->range_ratio)) + 2.0);
-    region.cells.first = (int32_t)fmin(first, end);
-    region.cells.count = (int32_t)fmax(0.0, end - first);
-    /* what lies close to a strip's edge may count as the next one's */
-    const struct span strips = {grid->strips.first - 1, grid->strips.count + 2};
-    if (region.cells.count > 0)
-        region.strips = span_overlap(strips_between(tracer, grid, first_x, last_x), strips);
-    return region;
-}
-
-static bool is_rough(const struct tracer *tracer, uint32_t part)
-{
-    return material_is_rough(&tracer->placements[part].material);
 }
 
 int32_t second_order_target(const struct tracer *tracer, uint32_t part)
@@ -154,57 +164,43 @@ int32_t second_order_target(const struct tracer *tracer, uint32_t part)
     return count;
 }
 
-/* Writes the records of an object's rough parts, of which there are so many. */
-static int32_t init_targets_of(struct target_record *records, const struct tracer *tracer,
-                               const struct line_grid *grid, uint32_t object,
-                               const double origin[3])
-{
-    const struct placed_object *placed = &tracer->objects[object];
-    const int32_t first = second_order_target(tracer, placed->first_part);
-    int32_t count = 0;
-    for (uint32_t i = placed->first_part; i < placed->first_part + placed->part_count; i++)
-        if (is_rough(tracer, i))
-            target_record_init(&records[count++], tracer, grid, i, origin);
-    const struct span cells = region_of_object(tracer, grid, records, count).cells;
-    for (int32_t i = 0; i < count; i++) {
-        records[i].first_target = first;
-        records[i].targets = count;
-        records[i].first_cell = cells.first;
-        records[i].cells = cells.count;
-    }
-    return count;
-}
-
 void second_order_init(struct chain_record *record, struct target_spheres *spheres,
                        const struct tracer *tracer, const struct line_grid *grid,
                        const double origin[3])
 {
-    struct target_record *targets =
+    struct target_record *target =
         (struct target_record *)(void *)((char *)spheres->records + spheres->bytes);
-    int32_t count = 0;
-    for (uint32_t i = 0; i < tracer->scene->object_count; i++)
-        count += init_targets_of(targets + count, tracer, grid, i, origin);
     record->target_words = (uint32_t)(spheres->bytes / sizeof(float));
     record->cell_samples = (int32_t)samples_a_cell(tracer, grid);
     record->cell_bins = (int32_t)grid->bins_per_pixel;
     record->first_bin = grid->bins.first;
-    spheres->bytes += (size_t)count * sizeof *targets;
+    for (uint32_t object = 0; object < tracer->scene->object_count; object++) {
+        const struct placed_object *placed = &tracer->objects[object];
+        const uint32_t end = placed->first_part + placed->part_count;
+        const struct span cells = region_of_object(tracer, grid, object).cells;
+        const int32_t first = second_order_target(tracer, placed->first_part);
+        const int32_t count = second_order_target(tracer, end) - first;
+        for (uint32_t i = placed->first_part; i < end; i++) {
+            if (!is_rough(tracer, i))
+                continue;
+            target_record_init(target, tracer, grid, i, origin);
+            target->first_target = first;
+            target->targets = count;
+            target->first_cell = cells.first;
+            target->cells = cells.count;
+            target++;
+            spheres->bytes += sizeof *target;
+        }
+    }
 }
 
-sonject_status second_order_fan_init(struct chain_fan *fan, const struct tracer *tracer,
-                                     const struct line_grid *grid, uint32_t object)
+void second_order_fan_init(struct chain_fan *fan, const struct tracer *tracer,
+                           const struct line_grid *grid, uint32_t object)
 {
-    const struct placed_object *placed = &tracer->objects[object];
+    const struct sampled_region region = region_of_object(tracer, grid, object);
     const int64_t samples = (int64_t)samples_a_cell(tracer, grid);
     struct fan_record *record = &fan->record;
-    struct target_record *targets = allocate_array(placed->part_count, sizeof *targets);
-    double origin[3];
-    CHECK_MEMORY(tracer->report, targets, "multiple interactions");
-    patch_fan_origin(origin, &tracer->view);
-    const int32_t count = init_targets_of(targets, tracer, grid, object, origin);
-    const struct sampled_region region = region_of_object(tracer, grid, targets, count);
-    free(targets);
-    record->target = second_order_target(tracer, placed->first_part);
+    record->target = second_order_target(tracer, tracer->objects[object].first_part);
     record->is_sample = 1;
     record->first_ray =
         (uint32_t)(samples * ((int64_t)tracer->view.first_column + region.cells.first));
@@ -212,7 +208,6 @@ sonject_status second_order_fan_init(struct chain_fan *fan, const struct tracer 
     record->stream = (uint32_t)(STREAM_SECOND_ORDER + object);
     record->only_object = 0;
     fan->strips = region.strips;
-    return SONJECT_OK;
 }
 
 double second_order_most(const struct tracer *tracer, const struct line_grid *grid)

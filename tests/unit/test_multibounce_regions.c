@@ -5,11 +5,14 @@
 #define STRIPS 9000
 #define BINS   30000
 #define PLACES 5
-#define ECHOES 4000
+#define ABOUT  4000 /* echoes about places */
+#define COLUMN 30   /* echoes one under the other, 16 strips apart */
+#define ECHOES (ABOUT + COLUMN + 2)
 
 static struct report report;
 
-/* Echoes about a few places, and some far from all. */
+/* Echoes about a few places, and some far from all; and a column, on both sides of whose foot two
+ * others lie that are joined: their region must join the column's, too. */
 static struct multibounce_echo_record echo_of(uint32_t number)
 {
     static const int32_t places[PLACES][2] = {
@@ -23,12 +26,17 @@ static struct multibounce_echo_record echo_of(uint32_t number)
         .imaginary_part = -2.0f,
         .chance = 0.5f,
     };
-    if (number % 1000 == 0)
+    if (number >= ABOUT) {
+        const int32_t i = (int32_t)number - ABOUT;
+        echo.strip = 7000 + 16 * (i < COLUMN ? i : i - 1);
+        echo.bin = i < COLUMN ? 5500 : i == COLUMN ? 7000 : 4000;
+    } else if (number % 1000 == 0)
         echo.strip = (int32_t)(random % STRIPS);
     return echo;
 }
 
-/* Two pairs of sources, whose grids do not begin in the same bin. */
+/* Two pairs of sources, whose grids do not begin in the same bin. The second alone has the column.
+ */
 static void lay_echoes(struct multibounce *multibounce)
 {
     memset(multibounce, 0, sizeof *multibounce);
@@ -40,7 +48,7 @@ static void lay_echoes(struct multibounce *multibounce)
                                        .bins = {-50 * k, BINS + 100}};
         assert_true(multibounce_sums_init(&multibounce->sums[k], &grid));
         multibounce->sums[k].amplitude_of_quantum = 0.5;
-        for (uint32_t i = 0; i < ECHOES; i++) {
+        for (uint32_t i = 0; i < (k == 0 ? ABOUT : ECHOES); i++) {
             struct multibounce_echo_record echo = echo_of(i);
             echo.bin += 50 * k; /* those of the device count from the grid's first */
             assert_true(multibounce_sums_add(&multibounce->sums[k], &echo, 1));
@@ -108,8 +116,8 @@ static void test_regions_are_read_whole(void **state)
         }
         free(parts);
     }
-    assert_true(real_sum == 0.5 * 2 * ECHOES);
-    assert_true(imaginary_sum == -2.0 * 0.5 * 2 * ECHOES);
+    assert_true(real_sum == 0.5 * (ABOUT + ECHOES));
+    assert_true(imaginary_sum == -2.0 * 0.5 * (ABOUT + ECHOES));
     multibounce_end(&multibounce);
 }
 
