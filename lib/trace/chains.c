@@ -146,11 +146,9 @@ static sonject_status init_seabed_fan(struct chain_fan *fan, struct tracer *trac
 double chain_rays_per_bin(const struct tracer *tracer, const struct line_grid *grid, uint32_t part)
 {
     const sonject_material_params *material = &tracer->placements[part].material;
-    const bool has_reverse = tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED &&
-                             tracer->scene->sonar.transducer_side_m == 0.0;
     const bool is_peaked = material_is_smooth(material) || material->glossy_albedo > 0.0;
-    return is_peaked || !has_reverse || sea_surface_is_in_chains(tracer, grid) ? OBJECT_RAYS_PER_BIN
-                                                                               : ROUGH_RAYS_PER_BIN;
+    return is_peaked || !second_order_is_sampled(tracer, grid) ? OBJECT_RAYS_PER_BIN
+                                                               : ROUGH_RAYS_PER_BIN;
 }
 
 static sonject_status init_object_fan(struct chain_fan *fan, struct tracer *tracer,
@@ -208,10 +206,10 @@ sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,
     sonject_status status = patch_fan_init(&fan->record, tracer, grid, has_map, PATCH_RAYS_PER_BIN);
     fan->strips = grid->strips;
     fan->record.only_object = -2;
-    fan->record.stream = (uint32_t)STREAM_CHAIN_RAYS;
     if (status == SONJECT_OK && chain_fan_count(tracer) > 1)
         status = aim_fan(fan, tracer, grid, central, i);
-    fan->record.stream += (uint32_t)fan->record.only_object;
+    if (!fan->record.is_sample)
+        fan->record.stream = (uint32_t)(STREAM_CHAIN_RAYS + fan->record.only_object);
     return status;
 }
 

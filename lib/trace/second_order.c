@@ -206,7 +206,6 @@ void second_order_fan_init(struct chain_fan *fan, const struct tracer *tracer,
         (uint32_t)(samples * ((int64_t)tracer->view.first_column + region.cells.first));
     record->rays = (uint32_t)(samples * region.cells.count);
     record->stream = (uint32_t)(STREAM_SECOND_ORDER + object);
-    record->only_object = 0;
     fan->strips = region.strips;
 }
 
