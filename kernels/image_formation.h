@@ -22,20 +22,27 @@ FUNCTION void complex_normal(struct random_key key, word number, vfloat *real_pa
     *imaginary_part = amplitude * sine;
 }
 
-/* The bins that WIDTH neighbouring pixels take one tap from; bins outside the line are empty. */
-FUNCTION vfloat load_tap(GLOBAL const float *line, int bins, int start, int bins_per_pixel)
+/* Sorts a line's bins so that those which neighbouring pixels take one tap from lie side by side:
+ * bin k * bins_per_pixel + phase + first comes to sorted[phase * stride + k], for the WIDTH
+ * elements k from `column` on and all phases. Bins outside the line are empty. */
+FUNCTION void sort_bins_of(GLOBAL const float *line, int bins, int first, int bins_per_pixel,
+                           int stride, int column, GLOBAL float *sorted)
 {
-    float lanes[WIDTH];
-    if (start >= 0 && start + (WIDTH - 1) * bins_per_pixel < bins) {
-        for (int lane = 0; lane < WIDTH; lane++)
-            lanes[lane] = line[start + lane * bins_per_pixel];
-        return LOAD_VFLOAT(lanes);
+    const int end = (column + WIDTH) * bins_per_pixel + first;
+    const int is_inside = column * bins_per_pixel + first >= 0 && end <= bins;
+    for (int phase = 0; phase < bins_per_pixel; phase++) {
+        float lanes[WIDTH];
+        const int start = column * bins_per_pixel + phase + first;
+        if (is_inside)
+            for (int lane = 0; lane < WIDTH; lane++)
+                lanes[lane] = line[start + lane * bins_per_pixel];
+        else
+            for (int lane = 0; lane < WIDTH; lane++) {
+                const int bin = start + lane * bins_per_pixel;
+                lanes[lane] = bin >= 0 && bin < bins ? line[bin] : 0.0f;
+            }
+        STORE_VFLOAT(LOAD_VFLOAT(lanes), sorted + phase * stride + column);
     }
-    for (int lane = 0; lane < WIDTH; lane++) {
-        const int bin = start + lane * bins_per_pixel;
-        lanes[lane] = bin >= 0 && bin < bins ? line[bin] : 0.0f;
-    }
-    return LOAD_VFLOAT(lanes);
 }
 
 /* The taps that meet these, for WIDTH pixels of which the first begins at `start`: the others would
@@ -52,24 +59,32 @@ FUNCTION int end_of_taps(int start, struct filled_span filled, int taps)
 }
 
 /* Range compression of the WIDTH pixels from `column` on: pixel j is the sum over taps of
- * line[j * bins_per_pixel + first + tap] * pulse[tap]. Lanes are pixels, so that each sum keeps its
- * order whatever a compiler makes of the loop. `out` must have room for whole groups of WIDTH. */
-FUNCTION void compress_range_of(GLOBAL const float *line, int bins, struct filled_span filled,
+ * line[j * bins_per_pixel + first + tap] * pulse[tap], from the line's sorted bins. Lanes are
+ * pixels, so that each sum keeps its order whatever a compiler makes of the loop. `out` must have
+ * room for whole groups of WIDTH. */
+FUNCTION void compress_range_of(GLOBAL const float *sorted, int stride, struct filled_span filled,
                                 int first, int bins_per_pixel, GLOBAL const float *pulse, int taps,
                                 int column, GLOBAL float *out)
 {
     const int start = column * bins_per_pixel + first;
     vfloat sum = SPLAT(0.0f);
     const int end = end_of_taps(start, filled, taps);
-    for (int tap = first_tap_of(start, filled, bins_per_pixel); tap < end; tap++)
-        sum += load_tap(line, bins, start + tap, bins_per_pixel) * pulse[tap];
+    int tap = first_tap_of(start, filled, bins_per_pixel);
+    int phase = tap % bins_per_pixel;
+    GLOBAL const float *bins = sorted + column + tap / bins_per_pixel;
+    for (; tap < end; tap++) {
+        sum += LOAD_VFLOAT(bins + phase * stride) * pulse[tap];
+        phase = phase + 1 < bins_per_pixel ? phase + 1 : 0;
+        bins += phase == 0;
+    }
     STORE_VFLOAT(sum, out + column);
 }
 
 /* The same with a complex pulse, both parts of the line at once. */
-FUNCTION void compress_complex_of(GLOBAL const float *line_real, GLOBAL const float *line_imaginary,
-                                  int bins, struct filled_span filled, int first,
-                                  int bins_per_pixel, GLOBAL const float *pulse_real,
+FUNCTION void compress_complex_of(GLOBAL const float *sorted_real,
+                                  GLOBAL const float *sorted_imaginary, int stride,
+                                  struct filled_span filled, int first, int bins_per_pixel,
+                                  GLOBAL const float *pulse_real,
                                   GLOBAL const float *pulse_imaginary, int taps, int column,
                                   GLOBAL float *out_real, GLOBAL float *out_imaginary)
 {
@@ -78,8 +93,9 @@ FUNCTION void compress_complex_of(GLOBAL const float *line_real, GLOBAL const fl
     vfloat sum_imaginary = SPLAT(0.0f);
     const int end = end_of_taps(start, filled, taps);
     for (int tap = first_tap_of(start, filled, bins_per_pixel); tap < end; tap++) {
-        const vfloat a = load_tap(line_real, bins, start + tap, bins_per_pixel);
-        const vfloat b = load_tap(line_imaginary, bins, start + tap, bins_per_pixel);
+        const int at = tap % bins_per_pixel * stride + column + tap / bins_per_pixel;
+        const vfloat a = LOAD_VFLOAT(sorted_real + at);
+        const vfloat b = LOAD_VFLOAT(sorted_imaginary + at);
         sum_real += a * pulse_real[tap] - b * pulse_imaginary[tap];
         sum_imaginary += a * pulse_imaginary[tap] + b * pulse_real[tap];
     }

@@ -361,6 +361,7 @@ static sonject_status open_chosen(struct report *report, const sonject_context_p
     memcpy(device->driver, info.driver, sizeof device->driver);
     device->id = chosen.id;
     device->is_cpu = (chosen.type & CL_DEVICE_TYPE_CPU) != 0;
+    device->is_pocl = strcmp(info.platform, "Portable Computing Language") == 0;
     device->width = info.vector_width;
     device->compute_units = info.compute_units;
     CHECK(check_abilities(report, device));

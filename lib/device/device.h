@@ -15,7 +15,7 @@ typedef struct _cl_mem *device_buffer;
 typedef struct _cl_kernel *device_kernel;
 
 struct device {
-    bool is_cpu;
+    bool is_cpu, is_pocl;
     uint32_t width; /* lanes that the kernels are compiled for */
     uint32_t compute_units;
     size_t allocation_limit; /* bytes of one buffer */
@@ -61,6 +61,10 @@ void host_context_release(void *opencl_context);
  * given to buffer_release. Errors: DEVICE, MEMORY. */
 sonject_status buffer_create(struct report *report, struct device *device, size_t bytes,
                              const void *contents, device_buffer *buffer);
+
+/* The same, of which nothing is known until something is written. */
+sonject_status buffer_reserve(struct report *report, struct device *device, size_t bytes,
+                              device_buffer *buffer);
 
 /* Nothing where it is NULL, which it becomes. */
 void buffer_release(device_buffer *buffer);

@@ -1,8 +1,15 @@
 /* Buffers and launches, all on the device's in-order queue. */
+#include <pthread.h>
+
 #include "device/opencl.h"
 
-sonject_status buffer_create(struct report *report, struct device *device, size_t bytes,
-                             const void *contents, device_buffer *buffer)
+/* PoCL ends the process, by an assertion on its count of a kernel's users, where two threads run
+ * one kernel over ranges of different width at once: seen with 3.1, and the same in the source of
+ * 5.0. A launch uses all cores, so little is lost by one at a time. */
+static pthread_mutex_t one_launch_of_pocl = PTHREAD_MUTEX_INITIALIZER;
+
+sonject_status buffer_reserve(struct report *report, struct device *device, size_t bytes,
+                              device_buffer *buffer)
 {
     cl_int error = CL_SUCCESS;
     const size_t size = bytes > 0 ? bytes : 1;
@@ -15,8 +22,16 @@ sonject_status buffer_create(struct report *report, struct device *device, size_
     cl_mem made = clCreateBuffer(device->context, CL_MEM_READ_WRITE, size, NULL, &error);
     CHECK(opencl_answer(report, device, "clCreateBuffer", error));
     *buffer = made;
-    const sonject_status status = contents ? buffer_write(report, device, made, 0, bytes, contents)
-                                           : buffer_clear(report, device, made, size);
+    return SONJECT_OK;
+}
+
+sonject_status buffer_create(struct report *report, struct device *device, size_t bytes,
+                             const void *contents, device_buffer *buffer)
+{
+    CHECK(buffer_reserve(report, device, bytes, buffer));
+    const sonject_status status = contents
+                                      ? buffer_write(report, device, *buffer, 0, bytes, contents)
+                                      : buffer_clear(report, device, *buffer, bytes);
     if (status != SONJECT_OK)
         buffer_release(buffer);
     return status;
@@ -68,6 +83,8 @@ sonject_status buffer_clear(struct report *report, struct device *device, device
                             size_t bytes)
 {
     const cl_uchar zero = 0;
+    if (bytes == 0)
+        return SONJECT_OK;
     return opencl_answer(
         report, device, "clEnqueueFillBuffer",
         clEnqueueFillBuffer(device->queue, buffer, &zero, sizeof zero, 0, bytes, 0, NULL, NULL));
@@ -83,10 +100,18 @@ sonject_status kernel_run(struct report *report, struct device *device, device_k
             clSetKernelArg(kernel, (cl_uint)i, arguments[i].bytes, arguments[i].value)));
     /* on a CPU a work-item is a whole strip: groups of one let the cores share them evenly */
     static const size_t alone[3] = {1, 1, 1};
-    CHECK(opencl_answer(report, device, "clEnqueueNDRangeKernel",
-                        clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, global,
-                                               device->is_cpu ? alone : NULL, 0, NULL, NULL)));
-    return opencl_answer(report, device, "clFinish", clFinish(device->queue));
+    if (device->is_pocl)
+        pthread_mutex_lock(&one_launch_of_pocl);
+    const char *call = "clEnqueueNDRangeKernel";
+    cl_int error = clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, global,
+                                          device->is_cpu ? alone : NULL, 0, NULL, NULL);
+    if (error == CL_SUCCESS) {
+        call = "clFinish";
+        error = clFinish(device->queue);
+    }
+    if (device->is_pocl)
+        pthread_mutex_unlock(&one_launch_of_pocl);
+    return opencl_answer(report, device, call, error);
 }
 
 void kernel_release(device_kernel *kernel)

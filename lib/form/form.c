@@ -144,7 +144,9 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
     sonject_status status = lines->filled_columns ? make_pulse(lines, view, taps_each_side)
                                                   : report_out_of_memory(report, "image formation");
     for (int part = 0; part < 2; part++)
-        THEN(status, buffer_create(report, device, bytes, NULL, &lines->lines[part]));
+        THEN(status, buffer_reserve(report, device, bytes, &lines->lines[part]));
+    THEN(status,
+         kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "sort_bins", &lines->sort));
     THEN(status, kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0,
                                lines->imaginary_pulse ? "compress_range_complex" : "compress_range",
                                &lines->compress));
@@ -155,6 +157,7 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
 
 void form_lines_end(struct form_lines *lines)
 {
+    kernel_release(&lines->sort);
     kernel_release(&lines->compress);
     for (int part = 0; part < 2; part++)
         buffer_release(&lines->lines[part]);
@@ -164,10 +167,35 @@ void form_lines_end(struct form_lines *lines)
     lines->filled_columns = NULL;
 }
 
-static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t count,
-                               const device_buffer bins[2], device_buffer filled)
+/* Sorts each plane of lines, 0 where it is NULL, by the pixels that take their bins. */
+static sonject_status sort_bins(struct form_lines *lines, int32_t count,
+                                const device_buffer bins[2], int32_t stride,
+                                device_buffer sorted[2])
 {
     const int32_t bin_count = lines->grid.bins.count;
+    const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
+    const int32_t first = lines->pulse_first + (int32_t)lines->first_column * per_pixel;
+    const size_t bytes = (size_t)count * (size_t)per_pixel * (size_t)stride * sizeof(float);
+    const size_t global[2] = {(size_t)stride / lines->device->width, (size_t)count};
+    for (size_t part = 0; part < lines->planes; part++) {
+        if (!bins[part]) {
+            CHECK(buffer_create(lines->report, lines->device, bytes, NULL, &sorted[part]));
+            continue;
+        }
+        CHECK(buffer_reserve(lines->report, lines->device, bytes, &sorted[part]));
+        const struct kernel_argument arguments[] = {ARGUMENT(bins[part]), ARGUMENT(bin_count),
+                                                    ARGUMENT(first),      ARGUMENT(per_pixel),
+                                                    ARGUMENT(stride),     ARGUMENT(sorted[part])};
+        CHECK(kernel_run(lines->report, lines->device, lines->sort, arguments, COUNT(arguments), 2,
+                         global));
+    }
+    return SONJECT_OK;
+}
+
+static sonject_status compress_sorted(struct form_lines *lines, int32_t strip, int32_t count,
+                                      const device_buffer sorted[2], int32_t sorted_stride,
+                                      device_buffer filled)
+{
     const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
     const int32_t first = lines->pulse_first + (int32_t)lines->first_column * per_pixel;
     const int32_t taps = lines->pulse_taps;
@@ -175,8 +203,8 @@ static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t 
     const int32_t out_strip = strip - lines->grid.strips.first;
     const bool is_complex = lines->imaginary_pulse != NULL; /* else its place is the next one's */
     struct kernel_argument arguments[13] = {
-        ARGUMENT(bins[0]), ARGUMENT(bins[1]),   ARGUMENT(filled),      ARGUMENT(bin_count),
-        ARGUMENT(first),   ARGUMENT(per_pixel), ARGUMENT(lines->pulse)};
+        ARGUMENT(sorted[0]), ARGUMENT(sorted[1]), ARGUMENT(sorted_stride), ARGUMENT(filled),
+        ARGUMENT(first),     ARGUMENT(per_pixel), ARGUMENT(lines->pulse)};
     const struct kernel_argument rest[] = {ARGUMENT(lines->imaginary_pulse),
                                            ARGUMENT(taps),
                                            ARGUMENT(stride),
@@ -188,6 +216,20 @@ static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t 
     const size_t global[3] = {lines->stride / lines->device->width, (size_t)count, lines->planes};
     return kernel_run(lines->report, lines->device, lines->compress, arguments, 7 + left,
                       is_complex ? 2 : 3, global);
+}
+
+static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t count,
+                               const device_buffer bins[2], device_buffer filled)
+{
+    const int32_t columns =
+        (int32_t)lines->stride + (lines->pulse_taps - 1) / (int32_t)lines->grid.bins_per_pixel + 1;
+    const int32_t stride = (columns + COLUMN_STEP - 1) / COLUMN_STEP * COLUMN_STEP;
+    device_buffer sorted[2] = {NULL, NULL};
+    sonject_status status = sort_bins(lines, count, bins, stride, sorted);
+    THEN(status, compress_sorted(lines, strip, count, sorted, stride, filled));
+    buffer_release(&sorted[0]);
+    buffer_release(&sorted[1]);
+    return status;
 }
 
 /* Notes the columns of a strip's line that filled bins reach: column j takes the bins from
@@ -260,8 +302,8 @@ sonject_status speckle_draw(struct report *report, struct device *device, struct
     sonject_status status =
         kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "draw_speckle", &kernel);
     THEN(status, buffer_create(report, device, bytes, energy, &energies));
-    THEN(status, buffer_create(report, device, bytes, NULL, &parts[0]));
-    THEN(status, buffer_create(report, device, bytes, NULL, &parts[1]));
+    THEN(status, buffer_reserve(report, device, bytes, &parts[0]));
+    THEN(status, buffer_reserve(report, device, bytes, &parts[1]));
     if (status == SONJECT_OK) {
         const struct kernel_argument arguments[] = {
             ARGUMENT(energies),     ARGUMENT(bins.count), ARGUMENT(bins.first),
@@ -323,8 +365,8 @@ sonject_status form_lines_finish(struct form_lines *lines, float *real_part, flo
         return SONJECT_OK;
     const size_t bytes = lines->rows * lines->stride * sizeof(float);
     device_buffer out[2] = {NULL, NULL};
-    sonject_status status = buffer_create(lines->report, lines->device, bytes, NULL, &out[0]);
-    THEN(status, buffer_create(lines->report, lines->device, bytes, NULL, &out[1]));
+    sonject_status status = buffer_reserve(lines->report, lines->device, bytes, &out[0]);
+    THEN(status, buffer_reserve(lines->report, lines->device, bytes, &out[1]));
     THEN(status, buffer_create(lines->report, lines->device,
                                (size_t)lines->grid.strips.count * sizeof *lines->filled_columns,
                                lines->filled_columns, &lines->filled));

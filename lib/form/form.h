@@ -55,7 +55,7 @@ struct form_lines {
     device_buffer lines[2], pulse;
     device_buffer imaginary_pulse; /* NULL where G is real */
     device_buffer filled;          /* filled_columns, while lines are combined */
-    device_kernel compress;
+    device_kernel sort, compress;
 };
 
 /* Prepares lines for the patch's rows and, of its columns, those that bins of the grid reach. On

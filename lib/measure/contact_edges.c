@@ -7,7 +7,6 @@
 #define SPREADS         3    /* shares are tried as what spreads, */
 #define SPREAD_RATIO    0.71 /* each so many times the last; the first is all of it */
 #define REACH           6 /* deviations of the point response beyond which nothing of it is left */
-#define STEP_ENTRIES    1536
 #define WIDTH_RATIO     1.6 /* of penumbras' widths; the first is the point response's */
 #define LOBE_BIAS_RATIO 2.0
 #define FAINTEST        1e-9 /* of a dark level: there are means of 0 */
@@ -112,14 +111,8 @@ struct profile_edge find_profile_end(const struct profile *profile, const struct
     return edge_believed(&belief);
 }
 
-/* What is expected about a step, by deviations from it; linear between the entries, which costs
- * 1e-5 of a sample. */
-struct step_levels {
-    double inverse_behind, log_behind;
-    double inverse[STEP_ENTRIES + 1], logarithm[STEP_ENTRIES + 1];
-};
-
-static void step_levels_init(struct step_levels *levels, double before, double behind)
+/* Linear between the entries, which costs 1e-5 of a sample. */
+void step_levels_init(struct step_levels *levels, double before, double behind)
 {
     levels->inverse_behind = 1.0 / behind;
     levels->log_behind = log(behind);
@@ -166,14 +159,12 @@ static void weigh_steps(struct edge_belief *belief, const struct profile *profil
     }
 }
 
-void weigh_profile_step(struct edge_posterior *belief, const struct profile *profile, double before,
-                        double behind)
+void weigh_profile_step(struct edge_posterior *belief, const struct profile *profile,
+                        const struct step_levels *levels)
 {
-    struct step_levels levels;
     double width = profile->deviation;
-    step_levels_init(&levels, before, behind);
     for (int i = 0; i < STEP_WIDTHS; i++, width *= WIDTH_RATIO)
-        weigh_steps(&belief->widths[i], profile, &levels, width);
+        weigh_steps(&belief->widths[i], profile, levels, width);
 }
 
 struct profile_edge mean_step_believed(const struct edge_posterior *parts, size_t count)

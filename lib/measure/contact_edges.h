@@ -45,11 +45,19 @@ struct edge_posterior {
     struct edge_belief widths[STEP_WIDTHS];
 };
 
-/* Weighs where a profile steps from one level to another, both > 0: half way up a penumbra of any
- * width. Several profiles through an edge, such as ones along different slants, may be weighed one
- * after the other, the belief all zeros at first. */
-void weigh_profile_step(struct edge_posterior *belief, const struct profile *profile, double before,
-                        double behind);
+/* What is expected about a step from one level to another, both > 0, by deviations from it. */
+#define STEP_ENTRIES 1536
+struct step_levels {
+    double inverse_behind, log_behind;
+    double inverse[STEP_ENTRIES + 1], logarithm[STEP_ENTRIES + 1];
+};
+void step_levels_init(struct step_levels *levels, double before, double behind);
+
+/* Weighs where a profile steps so: half way up a penumbra of any width. Several profiles through an
+ * edge, such as ones along different slants, may be weighed one after the other, the belief all
+ * zeros at first. */
+void weigh_profile_step(struct edge_posterior *belief, const struct profile *profile,
+                        const struct step_levels *levels);
 
 /* The mean place of parts of one edge, whose penumbra is equally wide in all of them: how wide, and
  * with that how far out they lie, is believed for all together. */

@@ -340,12 +340,14 @@ static struct edge_posterior weigh_edge_in_seabed(const struct contact_lines *li
     struct edge_posterior belief;
     struct contact_lines tilted = *lines;
     const int tilts = path->box.rows > 1 && !path->is_along_track ? TILTS : 0;
+    struct step_levels levels;
+    step_levels_init(&levels, dark, lines->seabed);
     memset(&belief, 0, sizeof belief);
     tilted.tilt_row = (double)path->box.first_row + 0.5 * (double)(path->box.rows - 1);
     for (int i = -tilts; i <= tilts; i++) {
         tilted.tilt = TILT_STEP * i;
         const struct profile profile = profile_along(&tilted, path);
-        weigh_profile_step(&belief, &profile, dark, lines->seabed);
+        weigh_profile_step(&belief, &profile, &levels);
     }
     return belief;
 }

@@ -268,7 +268,8 @@ sonject_status launch_add_tallies(struct launch *launch, struct tracer *tracer, 
     const size_t strip_bytes = elements * sizeof(int64_t);
     const size_t fitting = TALLY_BYTES / strip_bytes;
     *chunk = fitting < 1 ? 1 : fitting < (size_t)strips ? (int32_t)fitting : strips;
-    return launch_add(launch, tracer, (size_t)*chunk * strip_bytes, NULL);
+    return buffer_reserve(tracer->report, tracer->device, (size_t)*chunk * strip_bytes,
+                          &launch->buffers[launch->buffer_count++]);
 }
 
 sonject_status tallies_read(struct tracer *tracer, device_buffer tallies, size_t first,

@@ -54,18 +54,25 @@ static void compress_as_c(struct bench *bench, const struct form_lines *lines,
         EXPECT_OK(&bench->report,
                   buffer_read(&bench->report, bench->tracer.device, lines->imaginary_pulse, 0,
                               (size_t)lines->pulse_taps * sizeof *imaginary, imaginary));
-    for (size_t s = 0; s < strips; s++)
+    const int stride = (int)lines->columns + (lines->pulse_taps - 1) / per_pixel + 1;
+    struct planes sorted = planes_of((size_t)(stride * per_pixel));
+    for (size_t s = 0; s < strips; s++) {
+        const size_t out = s * lines->stride;
+        for (int part = 0; part < 2; part++)
+            for (int column = 0; column < stride; column++)
+                sort_bins_of(bins->part[part] + s * (size_t)count, count, first, per_pixel, stride,
+                             column, sorted.part[part]);
         for (int column = 0; column < (int)lines->columns; column++) {
-            const size_t in = s * (size_t)count;
-            const size_t out = s * lines->stride;
             if (lines->imaginary_pulse)
-                compress_complex_of(bins->part[0] + in, bins->part[1] + in, count, all, first,
-                                    per_pixel, pulse, imaginary, lines->pulse_taps, column,
+                compress_complex_of(sorted.part[0], sorted.part[1], stride, all, first, per_pixel,
+                                    pulse, imaginary, lines->pulse_taps, column,
                                     compressed->part[0] + out, compressed->part[1] + out);
             for (int part = 0; part < 2 && !lines->imaginary_pulse; part++)
-                compress_range_of(bins->part[part] + in, count, all, first, per_pixel, pulse,
+                compress_range_of(sorted.part[part], stride, all, first, per_pixel, pulse,
                                   lines->pulse_taps, column, compressed->part[part] + out);
         }
+    }
+    planes_clear(&sorted);
     free(imaginary);
 }
 

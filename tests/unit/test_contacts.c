@@ -88,7 +88,9 @@ static void test_steps_in_speckle(void **state)
     double means[PIXELS];
     const double lobe_bias[PIXELS] = {0.0};
     const double widths[2] = {0.42, 2.5};
+    struct step_levels levels;
     random_state = 2;
+    step_levels_init(&levels, 0.03, 1.0);
     for (int i = 0; i < 2; i++) {
         struct pulls pulls = {0.0, 0.0, 0.0, 0};
         for (int j = 0; j < DRAWS; j++) {
@@ -98,7 +100,7 @@ static void test_steps_in_speckle(void **state)
             const struct profile profile = {means, lobe_bias, PIXELS, 6.0, 0.42};
             struct edge_posterior belief;
             memset(&belief, 0, sizeof belief);
-            weigh_profile_step(&belief, &profile, 0.03, 1.0);
+            weigh_profile_step(&belief, &profile, &levels);
             const struct profile_edge edge = mean_step_believed(&belief, 1);
             add_pull(&pulls, &edge, truth);
         }
