@@ -79,7 +79,7 @@ typedef struct sonject_campaign_run_params {
     uint32_t only_one;    /* 1: only the image `only`, anew if it is there */
     uint64_t only;        /* id */
     const char *folder;   /* for the data set; made where missing */
-    double exit_after_s;  /* stops as if cancelled, after the image of that moment; 0: never */
+    double exit_after_s;  /* stops as if cancelled, after the images of that moment; 0: never */
     uint32_t overwrites;  /* 1: another campaign's images in the folder are removed, not with
                              shards; 0: they are refused */
     uint32_t reserved;    /* 0 */
@@ -92,6 +92,9 @@ typedef struct sonject_campaign_run_params {
  * *was_finished (may be NULL) gets 1 if nothing was left to do. A folder of another campaign, or of
  * another version, is refused unless params->overwrites. progress (may be NULL): fractions of what
  * was missing; its stage tells the rate.
+ * Threads: images are made by threads of the library's own, two for each processor, 16 at most, and
+ * fewer where images are large; progress and log are called by the calling thread alone. Of images
+ * that fail, the first is told; those that were under way then are finished.
  * Errors: ARGUMENT (also a folder of another campaign: the message names what differs), INPUT,
  * DEVICE, STORAGE, MEMORY, UNSUPPORTED, CANCELLED (finished images stay).
  */
@@ -134,7 +137,8 @@ typedef struct sonject_campaign_fit_params {
 /* Fits a campaign to real contacts: moves what its targets draw of length, width, height and level
  * over the seabed, and the noise floor, until contacts that it injects measure as the real ones do;
  * sets chip.slant_range and visible from the contacts. What cannot be told from contacts stays as
- * it is: classes' shares, headings, burial, materials, fixed sizes. Some 830 images are made. path,
+ * it is: classes' shares, headings, burial, materials, fixed sizes. Some 830 images are made, by
+ * threads as in sonject_campaign_run. path,
  * params: as of sonject_campaign_read. The same inputs give the same bytes. progress may be NULL.
  * Errors: ARGUMENT, INPUT (fewer than ten contacts, labels that cannot be read, ...), DEVICE,
  * STORAGE, MEMORY, UNSUPPORTED, CANCELLED; then fit_params->fitted is not written. */

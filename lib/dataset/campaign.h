@@ -5,6 +5,7 @@
 #define SONJECT_DATASET_CAMPAIGN_H
 
 #include <jansson.h>
+#include <pthread.h>
 
 #include <sonject/campaign.h>
 
@@ -386,6 +387,7 @@ struct sonject_campaign {
     struct class_names classes; /* of all that may be drawn: images number them alike */
     const char *folder;         /* of a run, where calibrations go; NULL: no run is under way */
     char **calibrations; /* of each swath whose scene asks for one, the file; owned; NULL: none */
+    pthread_mutex_t *calibrating; /* held by the one thread that does; NULL: there is but one */
     struct swath_store store;
     struct mesh_store meshes; /* of scenes whose mesh_store it is */
 };
@@ -470,6 +472,31 @@ void campaign_forget_calibrations(struct sonject_campaign *campaign);
  * UNSUPPORTED. */
 sonject_status campaign_image_write(struct sonject_campaign *campaign, struct campaign_image *image,
                                     const char *folder);
+
+/* What a thread makes images with: all of it is its own. */
+struct image_maker {
+    struct device *device;
+    struct sonject_campaign *campaign;
+    sonject_progress_function progress; /* for campaign_image_make, with user */
+    void *user;
+};
+
+/* Images to be made, side by side. */
+struct image_work {
+    uint64_t count;
+    /* Makes one of them, 0...count - 1; called once for each by any thread, in rising order. */
+    sonject_status (*make)(void *user, const struct image_maker *maker, uint64_t index);
+    /* Told by the calling thread how many are done, parts of some included; not 0: cancels. */
+    int (*tell)(void *user, double done);
+    void *user;
+};
+
+/* Makes the images by as many threads as the machine has processors, fewer where images are large.
+ * After a failure those that are under way are finished, and no other is begun; the message is of
+ * the first image that failed. slot: how each thread opens the device. Errors: those of make,
+ * CANCELLED, MEMORY. */
+sonject_status campaign_work(struct sonject_campaign *campaign, const struct device_slot *slot,
+                             const struct image_work *work);
 
 /* The images that the folder lacks, of those that params asks for, and the documents of the whole:
  * sonject_campaign_run. */

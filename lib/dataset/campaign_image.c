@@ -174,7 +174,12 @@ sonject_status campaign_calibrate_swath(struct sonject_campaign *campaign, size_
 {
     char path[PATH_CAPACITY], name[24];
     snprintf(name, sizeof name, "%zu", swath);
-    CHECK(campaign_calibrate(campaign, name, scene, path));
+    if (campaign->calibrating)
+        pthread_mutex_lock(campaign->calibrating);
+    const sonject_status status = campaign_calibrate(campaign, name, scene, path);
+    if (campaign->calibrating)
+        pthread_mutex_unlock(campaign->calibrating);
+    CHECK(status);
     if (!campaign->calibrations)
         campaign->calibrations =
             allocate_array(campaign->campaign.swath_count, sizeof *campaign->calibrations);

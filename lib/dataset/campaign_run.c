@@ -16,46 +16,54 @@ struct sweep {
     const sonject_campaign_run_params *params;
     sonject_progress_function progress;
     void *user;
+    uint64_t made;  /* images of this run; atomic */
+    double begin_s; /* of the call; start_s: of the first image */
     double start_s;
-    uint64_t made, missing; /* images of this run */
-    double begin_s;         /* of the call; start_s: of the first image */
-    struct data_set set;    /* the folder's */
-    uint8_t *is_missing;    /* of each image whether it was when the call began; owned */
+    struct data_set set; /* the folder's */
+    uint32_t *missing;   /* ids of images that were so when the call began; owned */
+    uint64_t missing_count;
 };
 
-/* Within an image, so that it can be cancelled there. */
-static int tell_image(void *user, double fraction, const char *stage)
+/* Within images, too, so that the run can be cancelled there. */
+static int tell_images(void *user, double done)
 {
-    const struct sweep *sweep = user;
-    char rate[32] = "first image";
+    struct sweep *sweep = user;
     const double elapsed = clock_seconds() - sweep->start_s;
-    (void)stage;
+    const double made = (double)__atomic_load_n(&sweep->made, __ATOMIC_RELAXED);
+    char rate[32] = "first image";
     if (!sweep->progress)
         return 0;
-    const double images_per_s = elapsed > 0.0 ? (double)sweep->made / elapsed : 0.0;
+    const double images_per_s = elapsed > 0.0 ? made / elapsed : 0.0;
     if (images_per_s > 0.0)
         snprintf(rate, sizeof rate, "%.*f images/s", images_per_s < 10.0 ? 2 : 0, images_per_s);
-    return sweep->progress(sweep->user, ((double)sweep->made + fraction) / (double)sweep->missing,
-                           rate);
+    return sweep->progress(sweep->user, done / (double)sweep->missing_count, rate);
 }
 
-static sonject_status make_image(struct sweep *sweep, uint64_t id)
+/* Another process may be at the same campaign: what it made meanwhile is not made again. */
+static sonject_status make_missing(void *user, const struct image_maker *maker, uint64_t index)
 {
+    struct sweep *sweep = user;
+    struct report *report = maker->campaign->report;
+    struct data_set set = sweep->set;
     struct campaign_image image;
-    struct device *device;
-    memset(&image, 0, sizeof image);
-    sonject_status status = device_slot_open(sweep->campaign->report, sweep->slot, &device);
-    THEN(status, campaign_image_make(device, sweep->campaign, id, tell_image, sweep, &image));
-    THEN(status, campaign_image_write(sweep->campaign, &image, sweep->params->folder));
-    campaign_image_clear(&image);
-    sweep->made++;
-    if (status == SONJECT_OK && tell_image(sweep, 0.0, "") != 0)
-        status = report_failure(sweep->campaign->report, SONJECT_CANCELLED, "cancelled");
+    bool has = false;
+    const uint64_t id = sweep->missing[index];
     const double limit_s = sweep->params->exit_after_s;
-    if (status == SONJECT_OK && limit_s > 0.0 && sweep->made < sweep->missing &&
+    if (limit_s > 0.0 && __atomic_load_n(&sweep->made, __ATOMIC_RELAXED) > 0 &&
         clock_seconds() - sweep->begin_s >= limit_s)
-        status = report_failure(sweep->campaign->report, SONJECT_CANCELLED, "stopped after %g s",
-                                limit_s);
+        return report_failure(report, SONJECT_CANCELLED, "stopped after %g s", limit_s);
+    set.report = report;
+    if (!sweep->params->only_one)
+        CHECK(
+            data_set_has_image(&set, image_split(&maker->campaign->campaign, id), id, NULL, &has));
+    if (has)
+        return SONJECT_OK;
+    memset(&image, 0, sizeof image);
+    sonject_status status = campaign_image_make(maker->device, maker->campaign, id, maker->progress,
+                                                maker->user, &image);
+    THEN(status, campaign_image_write(maker->campaign, &image, sweep->params->folder));
+    campaign_image_clear(&image);
+    __atomic_fetch_add(&sweep->made, status == SONJECT_OK, __ATOMIC_RELAXED);
     return status;
 }
 
@@ -76,31 +84,15 @@ static sonject_status find_missing(struct sweep *sweep)
 {
     const struct campaign *plan = &sweep->campaign->campaign;
     sonject_status status = SONJECT_OK;
-    sweep->is_missing = allocate_array(plan->images, 1);
-    CHECK_MEMORY(sweep->campaign->report, sweep->is_missing, "the images");
+    sweep->missing = allocate_array(plan->images, sizeof *sweep->missing);
+    CHECK_MEMORY(sweep->campaign->report, sweep->missing, "the images");
     for (uint64_t id = first_id(sweep->params); status == SONJECT_OK && id < plan->images;
          id = next_id(sweep, id)) {
         bool has = false;
         if (!sweep->params->only_one)
             status = data_set_has_image(&sweep->set, image_split(plan, id), id, NULL, &has);
-        sweep->is_missing[id] = !has;
-        sweep->missing += !has;
-    }
-    return status;
-}
-
-/* Another process may be at the same campaign: what it made meanwhile is not made again. */
-static sonject_status make_missing(struct sweep *sweep)
-{
-    const struct campaign *plan = &sweep->campaign->campaign;
-    sonject_status status = SONJECT_OK;
-    for (uint64_t id = first_id(sweep->params); status == SONJECT_OK && id < plan->images;
-         id = next_id(sweep, id)) {
-        bool has = !sweep->is_missing[id];
-        if (!has && !sweep->params->only_one)
-            status = data_set_has_image(&sweep->set, image_split(plan, id), id, NULL, &has);
-        if (status == SONJECT_OK && !has)
-            status = make_image(sweep, id);
+        if (!has)
+            sweep->missing[sweep->missing_count++] = (uint32_t)id;
     }
     return status;
 }
@@ -133,7 +125,7 @@ static sonject_status finish_whole(struct sweep *sweep, bool *is_finished)
     sweep->set.progress = sweep->progress;
     sweep->set.user = sweep->user;
     *is_finished = false;
-    if (sweep->missing == 0)
+    if (sweep->missing_count == 0)
         CHECK(data_set_is_finished(&sweep->set, is_finished));
     return *is_finished ? SONJECT_OK : data_set_finish(&sweep->set);
 }
@@ -152,10 +144,11 @@ sonject_status campaign_run(struct sonject_campaign *campaign, struct device_slo
     campaign->folder = params->folder;
     THEN(status, find_missing(&sweep));
     sweep.start_s = clock_seconds();
-    THEN(status, make_missing(&sweep));
+    const struct image_work work = {sweep.missing_count, make_missing, tell_images, &sweep};
+    THEN(status, campaign_work(campaign, slot, &work));
     if (status == SONJECT_OK && sweep.made > 0)
         status = write_times(&sweep);
-    bool is_finished = sweep.missing == 0;
+    bool is_finished = sweep.missing_count == 0;
     if (status == SONJECT_OK && params->shard_count == 1 && !params->only_one)
         status = finish_whole(&sweep, &is_finished);
     campaign->folder = NULL;
@@ -163,7 +156,7 @@ sonject_status campaign_run(struct sonject_campaign *campaign, struct device_slo
     if (was_finished)
         *was_finished = status == SONJECT_OK && is_finished;
     data_set_clear(&sweep.set);
-    free(sweep.is_missing);
+    free(sweep.missing);
     return status;
 }
 

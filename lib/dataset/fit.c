@@ -195,30 +195,68 @@ static void note_drawn(const struct campaign_image *image, struct drawn_contact 
     memcpy(contact->now, drawn, sizeof contact->now);
 }
 
-static sonject_status make_contact(struct fit *fit, struct device *device,
-                                   struct sonject_campaign *campaign, uint64_t id, uint32_t round)
+/* A round's images, as they are made side by side. */
+struct fit_round {
+    struct fit *fit;
+    uint32_t number;
+    char stage[64];
+    sonject_progress_function progress;
+    void *user;
+    struct round_contact {
+        bool is_there; /* there is something to label */
+        struct drawn_contact contact;
+        struct contact_chip chip; /* owned; of the last round */
+    } contacts[FIT_CHIPS];
+};
+
+/* Called by several threads: touches what is the image's. */
+static sonject_status make_contact(void *user, const struct image_maker *maker, uint64_t id)
 {
+    struct fit_round *round = user;
+    const struct fit *fit = round->fit;
+    struct report *report = maker->campaign->report;
+    struct round_contact *made = &round->contacts[id];
     struct campaign_image image;
-    struct contact_chip chip = {0};
-    struct drawn_contact *contact = &fit->made[fit->made_count];
     bool is_seen = false;
     memset(&image, 0, sizeof image);
-    sonject_status status = campaign_image_make(device, campaign, id, NULL, NULL, &image);
-    THEN(status, contact_chip_of_image(fit->report, &image, fit->part, fit->pad, &chip, &is_seen));
+    sonject_status status = campaign_image_make(maker->device, maker->campaign, id, maker->progress,
+                                                maker->user, &image);
+    THEN(status, contact_chip_of_image(report, &image, fit->part, fit->pad, &made->chip, &is_seen));
     if (status == SONJECT_OK && is_seen && isfinite(image.result.objects->over_seabed_db)) {
-        contact->round = round;
-        contact->is_faint = image.is_faint[0];
-        note_drawn(&image, contact);
-        status = contact_chip_measure(fit->report, &chip, fit->part, &contact->shown);
-        fit->made_count += status == SONJECT_OK;
-        if (round + 1 == FIT_ROUNDS && !contact->is_faint && fit->made_chip_count < FIT_SHOWN) {
-            fit->made_chips[fit->made_chip_count++] = chip;
-            chip.intensity = NULL;
-        }
+        made->contact.round = round->number;
+        made->contact.is_faint = image.is_faint[0];
+        note_drawn(&image, &made->contact);
+        status = contact_chip_measure(report, &made->chip, fit->part, &made->contact.shown);
+        made->is_there = status == SONJECT_OK;
     }
-    contact_chip_clear(&chip);
+    if (round->number + 1 < FIT_ROUNDS)
+        contact_chip_clear(&made->chip);
     campaign_image_clear(&image);
     return status;
+}
+
+/* In the order of their images, whichever was made first. */
+static void take_round(struct fit *fit, struct fit_round *round)
+{
+    for (size_t id = 0; id < FIT_CHIPS; id++) {
+        struct round_contact *made = &round->contacts[id];
+        if (made->is_there)
+            fit->made[fit->made_count++] = made->contact;
+        if (made->is_there && made->chip.intensity && !made->contact.is_faint &&
+            fit->made_chip_count < FIT_SHOWN) {
+            fit->made_chips[fit->made_chip_count++] = made->chip;
+            made->chip.intensity = NULL;
+        }
+        contact_chip_clear(&made->chip);
+    }
+}
+
+static int tell_round(void *user, double done)
+{
+    const struct fit_round *round = user;
+    return round->progress &&
+           round->progress(round->user, ((double)round->number + done / FIT_CHIPS) / FIT_ROUNDS,
+                           round->stage) != 0;
 }
 
 /* What the first round shows becomes the draws that the campaign lacks. */
@@ -331,36 +369,36 @@ static void leave_out_faint(struct fit *fit, size_t first)
     fit->made_count = kept;
 }
 
-static sonject_status run_round(struct fit *fit, struct device *device, uint32_t round,
+static sonject_status run_round(struct fit *fit, const struct device_slot *slot, uint32_t number,
                                 sonject_progress_function progress, void *user)
 {
     struct sonject_campaign *campaign;
-    char stage[64];
+    struct fit_round *round = allocate_array(1, sizeof *round);
+    CHECK_MEMORY(fit->report, round, "the fit");
+    *round = (struct fit_round){.fit = fit, .number = number, .progress = progress, .user = user};
+    snprintf(round->stage, sizeof round->stage, "round %u of %d", (unsigned)number + 1, FIT_ROUNDS);
+    const struct image_work work = {FIT_CHIPS, make_contact, tell_round, round};
     sonject_status status =
-        round == 0 ? open_first(fit, &campaign) : open_round(fit, round, &campaign);
-    snprintf(stage, sizeof stage, "round %u of %d", (unsigned)round + 1, FIT_ROUNDS);
-    for (uint64_t id = 0; status == SONJECT_OK && id < FIT_CHIPS; id++) {
-        const double done = ((double)round + (double)id / FIT_CHIPS) / FIT_ROUNDS;
-        if (progress && progress(user, done, stage) != 0)
-            status = report_failure(fit->report, SONJECT_CANCELLED, "cancelled in %s", stage);
-        THEN(status, make_contact(fit, device, campaign, id, round));
-    }
+        number == 0 ? open_first(fit, &campaign) : open_round(fit, number, &campaign);
+    THEN(status, campaign_work(campaign, slot, &work));
+    if (status == SONJECT_CANCELLED)
+        report_failure(fit->report, status, "cancelled in %s", round->stage);
+    take_round(fit, round);
     campaign_close(&campaign);
+    free(round);
     return status;
 }
 
 static sonject_status run_rounds(struct fit *fit, struct device_slot *slot,
                                  sonject_progress_function progress, void *user)
 {
-    struct device *device;
     struct move_prior prior = {.contacts = fit->real_count > 0 ? (double)fit->set.count
                                                                : fit->set.quantiles.contacts};
-    CHECK(device_slot_open(fit->report, slot, &device));
     fit->made = allocate_array((size_t)FIT_ROUNDS * FIT_CHIPS, sizeof *fit->made);
     CHECK_MEMORY(fit->report, fit->made, "the fit");
     for (uint32_t round = 0; round < FIT_ROUNDS; round++) {
         const size_t first = fit->made_count;
-        CHECK(run_round(fit, device, round, progress, user));
+        CHECK(run_round(fit, slot, round, progress, user));
         leave_out_faint(fit, first);
         if (round == 0)
             CHECK(learn_from_first(fit));

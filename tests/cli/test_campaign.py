@@ -388,19 +388,36 @@ def test_sigterm_keeps_finished_images(ground, environment, whole):
     assert 0 < len(records(folder)) < IMAGES
 
 
-def test_it_stops_by_itself(command, ground, whole):
-    for count in (1, 2):
-        answer = command("campaign", "campaign.yaml", "-o", "timed", "--exit-after", "1e-9")
+def test_it_stops_by_itself(command, ground):
+    # More images than are made side by side on any machine.
+    arguments = ("campaign", "campaign.yaml", "--set", "images=100", "-o")
+    assert command(*arguments, "all_at_once").returncode == 0
+    made = [0]
+    for _ in range(2):
+        answer = command(*arguments, "timed", "--exit-after", "1e-9")
         assert (answer.returncode, answer.stderr) == (
             85, "sonject: stopped; run the same command again\n")
-        assert len(records(ground / "timed")) == count
+        made.append(len(records(ground / "timed")))
+        assert made[-2] < made[-1] < 100
     # What is lost of an image is made again.
     before = contents(ground / "timed")
     for kind in ("masks", "images"):
-        next((ground / "timed").glob(f"*/{kind}/00000001.png")).unlink()
-        answer = command("campaign", "campaign.yaml", "-o", "timed", "--exit-after", "1e-9")
-        assert answer.returncode == 85 and contents(ground / "timed") == before
-    assert contents(ground / "timed").items() <= contents(whole).items()
+        next((ground / "timed").glob(f"*/{kind}/*.png")).unlink()
+        answer = command(*arguments, "timed", "--exit-after", "1e-9")
+        assert answer.returncode == 85 and before.items() <= contents(ground / "timed").items()
+    assert contents(ground / "timed").items() <= contents(ground / "all_at_once").items()
+
+
+def test_the_first_image_that_fails_is_told(command, ground):
+    # Images are made side by side: those before it are there, whichever ended first.
+    for attempt in range(3):
+        folder = ground / f"failing{attempt}"
+        for image in (24, 25, 26):
+            (folder / "train" / "images" / f"{image:08}.png").mkdir(parents=True)
+        answer = command("campaign", "campaign.yaml", "-o", folder.name, "--set", "images=100")
+        assert_refused(answer, 5, "images/00000024.png")
+        made = {record["id"] for record in records(folder)}
+        assert made >= set(range(24)) and len(made) < 60
 
 
 def test_a_head_that_was_tampered_with_is_refused(command, whole, ground):

@@ -113,13 +113,15 @@ def test_a_data_set_is_made_once(campaign, tmp_path):
 
 
 def test_a_data_set_stops_by_itself_and_one_image_is_made_alone(campaign, tmp_path):
-    whole, _ = campaign
+    # More images than are made side by side on any machine.
+    whole = sonject.Campaign(tmp_path / "campaign.yaml", {"images": 100})
     folder = tmp_path / "set"
     with pytest.raises(sonject.Cancelled):
         whole.run(folder, exit_after_s=1e-9)
-    assert [path.stem for path in folder.glob("all/records/*")] == ["00000000"]
-    assert whole.run(folder, only=4)
-    assert sorted(path.stem for path in folder.glob("all/records/*")) == ["00000000", "00000004"]
+    made = {path.stem for path in folder.glob("all/records/*")}
+    assert "00000000" in made and "00000099" not in made
+    assert whole.run(folder, only=99)
+    assert {path.stem for path in folder.glob("all/records/*")} == made | {"00000099"}
     assert not (folder / "all" / "coco.json").exists()
     with pytest.raises(sonject.SonjectError, match="not below 0"):
         whole.run(folder, exit_after_s=-1)
@@ -138,13 +140,15 @@ def test_a_campaign_is_fitted(tmp_path, campaign):
     seen = []
 
     def progress(fraction, stage):
-        seen.append(stage)
+        seen.append((fraction, stage))
         return fraction > 0.01
 
     with pytest.raises(sonject.SonjectError) as told:
         sonject.fit_campaign(*files, {"empty": 0.5}, boxes="highlight", progress=progress)
-    assert told.value.status == sonject.Status.CANCELLED and 1 < len(seen) < 20
-    assert len(set(seen)) == 1 and seen[0].startswith("round 1 of ") and not files[2].exists()
+    assert told.value.status == sonject.Status.CANCELLED
+    fractions, stages = zip(*seen)
+    assert len(seen) > 1 and max(fractions) < 0.1 and not files[2].exists()
+    assert len(set(stages)) == 1 and stages[0].startswith("round 1 of ")
     with pytest.raises(sonject.SonjectError, match="must lie in the folder of .*campaign.yaml"):
         sonject.fit_campaign(*files[:2], tmp_path / "there" / "fitted.yaml")
 
