@@ -84,7 +84,7 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
     struct image_pair_record sources;
     sonject_status status = SONJECT_OK;
     memset(trace, 0, sizeof *trace);
-    if (!material_is_smooth(&tracer->placements[part].material))
+    if (!part_has_glints(tracer, part))
         return SONJECT_OK;
     glint_strips_init(&trace->grid, tracer, part);
     trace->grid.bins = pair ? image_pair_bins_in_patch(tracer, part, pair, &trace->grid)

@@ -5,10 +5,11 @@
 
 #include "trace/fan.h"
 
-#define MORE_BOUNCES_MAX  ((SOURCES_MAX - 1) / 2)
-#define PI                3.14159265358979323846
-#define BINS_MAX          1.0e9 /* beyond any patch, within a 32-bit number */
-#define LOSS_EXPONENT_MAX 30.0  /* boundaries that keep less than exp(-30) return nothing */
+#define MORE_BOUNCES_MAX   ((SOURCES_MAX - 1) / 2)
+#define PI                 3.14159265358979323846
+#define BINS_MAX           1.0e9 /* beyond any patch, within a 32-bit number */
+#define GLINT_EXPONENT_MAX 12.0
+#define LOSS_EXPONENT_MAX  30.0 /* boundaries that keep less than exp(-30) return nothing */
 
 bool scene_boundary(const struct scene *scene, enum boundary kind, double *height_m,
                     const sonject_material_params **material)
@@ -197,6 +198,23 @@ bool image_pairs_next(struct image_pairs *pairs, struct image_pair *pair)
                 return true;
         }
     return false;
+}
+
+bool part_has_glints(const struct tracer *tracer, uint32_t part)
+{
+    const struct placement *placement = &tracer->placements[part];
+    struct image_pairs pairs;
+    struct image_pair pair;
+    double widest = 0.0; /* of these half angles */
+    if (!material_is_smooth(&placement->material))
+        return false;
+    image_pairs_begin(&pairs, tracer, part, false, 1);
+    while (image_pairs_next(&pairs, &pair))
+        widest = fmax(widest, 0.5 * fabs(source_grazing(pair.outgoing, placement) -
+                                         source_grazing(pair.returning, placement)));
+    const double phase =
+        4.0 * PI * placement->material.roughness_m * cos(widest) / tracer->view.wavelength_m;
+    return 0.5 * phase * phase < GLINT_EXPONENT_MAX;
 }
 
 struct span span_join(struct span one, struct span other)

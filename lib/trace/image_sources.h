@@ -66,6 +66,11 @@ struct span image_pair_bins_in_patch(const struct tracer *tracer, uint32_t part,
 struct span bins_in_patch(const struct tracer *tracer, const struct line_grid *grid,
                           struct span bins);
 
+/* Whether any pair, the straight one or another, keeps more than exp(-12), -104 dB, of the part's
+ * glint: roughness takes exp(-P^2/2), P = 2 k eta cos(theta), of which half the angle between the
+ * directions to both sources is theta. */
+bool part_has_glints(const struct tracer *tracer, uint32_t part);
+
 /* The bins in the patch of all the part's pairs but the straight one; count 0 if there is none.
  */
 struct span image_source_bins(const struct tracer *tracer, uint32_t part,

@@ -106,6 +106,33 @@ CLAIM(glints_by_mirrors)
     }
 }
 
+/* A glint of which roughness leaves no more than exp(-12) is not traced: straight back at normal
+ * incidence, by way of the seabed at half the angle between the two directions, here some 44
+ * degrees. */
+CLAIM(roughness_that_leaves_no_glint_is_not_traced)
+{
+    static const struct {
+        double exponent, reflection;
+        bool has_glints;
+    } cases[] = {{11.9, 0.0, true},
+                 {12.1, 0.0, false},
+                 {12.1, 1.0, true},
+                 {12.1 / 0.75, 1.0, true},
+                 {12.1 / 0.45, 1.0, false}};
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        const struct mirror_case slant = {
+            NULL, 14.0, 10.0, 0.0, cases[i].reflection, 0.0, 0.0, 3.0, COLUMNS, 3, 2, false};
+        struct sea *sea = open_case(&slant);
+        sea_object(sea, 0)->material.roughness_m =
+            sqrt(2.0 * cases[i].exponent) / (2.0 * sea_wavenumber(sea));
+        sea_ready(sea);
+        const struct line line = sea_line(sea, 0);
+        print_message("exp(-%.1f), seabed's R %.0f: energy %g\n", cases[i].exponent,
+                      cases[i].reflection, line_energy(&line));
+        assert_int_equal(line.bins > 0, cases[i].has_glints);
+    }
+}
+
 /* A pulse far longer than the paths differ: |e^{ikR1}/R1 + R e^{ikR2}/R2|^2, there and back. */
 CLAIM(lloyds_mirror)
 {
