@@ -28,20 +28,14 @@ FUNCTION void complex_normal(struct random_key key, word number, vfloat *real_pa
 FUNCTION void sort_bins_of(GLOBAL const float *line, int bins, int first, int bins_per_pixel,
                            int stride, int column, GLOBAL float *sorted)
 {
-    const int end = (column + WIDTH) * bins_per_pixel + first;
-    const int is_inside = column * bins_per_pixel + first >= 0 && end <= bins;
+    const int start = column * bins_per_pixel + first;
+    const int is_inside = start >= 0 && start + WIDTH * bins_per_pixel <= bins;
     for (int phase = 0; phase < bins_per_pixel; phase++) {
-        float lanes[WIDTH];
-        const int start = column * bins_per_pixel + phase + first;
-        if (is_inside)
-            for (int lane = 0; lane < WIDTH; lane++)
-                lanes[lane] = line[start + lane * bins_per_pixel];
-        else
-            for (int lane = 0; lane < WIDTH; lane++) {
-                const int bin = start + lane * bins_per_pixel;
-                lanes[lane] = bin >= 0 && bin < bins ? line[bin] : 0.0f;
-            }
-        STORE_VFLOAT(LOAD_VFLOAT(lanes), sorted + phase * stride + column);
+        GLOBAL float *out = sorted + phase * stride + column;
+        for (int lane = 0; lane < WIDTH; lane++) {
+            const int bin = start + phase + lane * bins_per_pixel;
+            out[lane] = is_inside || (bin >= 0 && bin < bins) ? line[bin] : 0.0f;
+        }
     }
 }
 
