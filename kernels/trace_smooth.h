@@ -49,10 +49,11 @@ FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
 }
 
 /* Half the path by way of the cell's middle (less the reference range), and the amplitude of the
- * cell over its reflection coefficient, in quanta. */
+ * cell over its reflection coefficient, in quanta, before the integral across the ray. */
 struct cell_phase {
     vfloat range;
     vfloat amplitude;
+    vfloat across; /* by how many wavelengths half the path changes across the cell */
     vfloat chance; /* of rounding it up */
 };
 
@@ -73,10 +74,38 @@ FUNCTION struct cell_phase integrate_cell(const struct fan_record *fan,
         range - 0.5f * (gradient_along * cell->offset_along + gradient_across * offset_across);
     const vfloat limit = SPLAT(4.0e6f);
     const vfloat integral =
-        sinc_of_cycles(smaller(magnitude(per_cycle * width_along * gradient_along), limit)) *
-        sinc_of_cycles(smaller(magnitude(per_cycle * width_across * gradient_across), limit));
+        sinc_of_cycles(smaller(magnitude(per_cycle * width_along * gradient_along), limit));
+    phase.across = larger(smaller(per_cycle * width_across * gradient_across, limit), -limit);
     phase.amplitude = integral * width_along * width_across * fan->inverse_wavelength * fan->quanta;
     return phase;
+}
+
+/* The cell as one echo. */
+FUNCTION struct cell_phase whole_cell(struct cell_phase phase)
+{
+    phase.amplitude = phase.amplitude * sinc_of_cycles(magnitude(phase.across));
+    return phase;
+}
+
+/* Cells of a face that is seen so flat that the path changes by a wavelength from each to the next
+ * would add up as a mirror's do. So a cell is cut across the ray into parts, between which it
+ * changes by no more than 0.8. */
+#define CELL_PARTS_MAX 8
+FUNCTION vint parts_of_cell(struct cell_phase phase)
+{
+    return VINT_OF(1.0f + smaller(2.5f * magnitude(phase.across), SPLAT(CELL_PARTS_MAX - 1.0f)));
+}
+
+/* One of so many parts, at its own middle. */
+FUNCTION struct cell_phase part_of_cell(const struct fan_record *fan, struct cell_phase phase,
+                                        int part, vint parts)
+{
+    const vfloat share = 1.0f / VFLOAT_OF(parts);
+    const vfloat off_middle = (float)part - 0.5f * (VFLOAT_OF(parts) - 1.0f);
+    phase.across = phase.across * share;
+    phase.range = phase.range + off_middle * phase.across / fan->inverse_wavelength;
+    phase.amplitude = phase.amplitude * share;
+    return whole_cell(phase);
 }
 
 /* -i times amplitude times reflection, at the phase and in the bin of a half path. */
@@ -106,11 +135,18 @@ FUNCTION void put_smooth_echo(const struct fan_record *fan, mask is_hit, struct 
     STORE_VINT(bin_or_none, echo->bin);
 }
 
-FUNCTION void trace_smooth_group(const struct fan_record *fan,
-                                 GLOBAL const struct ray_piece_record *pieces,
-                                 GLOBAL const struct object_record *objects, int strip, int stratum,
-                                 struct random_key key, RECORD_WORD first_ray,
-                                 struct smooth_echo *echo)
+/* What a group of rays meets. */
+struct smooth_cells {
+    mask is_hit;
+    struct cell_phase phase;
+    vfloat reflection_real, reflection_imaginary;
+};
+
+FUNCTION struct smooth_cells trace_smooth_group(const struct fan_record *fan,
+                                                GLOBAL const struct ray_piece_record *pieces,
+                                                GLOBAL const struct object_record *objects,
+                                                int strip, int stratum, struct random_key key,
+                                                RECORD_WORD first_ray)
 {
     const struct wavefront_cell cell =
         wavefront_cell_at(fan, pieces, strip, stratum, key, first_ray);
@@ -120,20 +156,21 @@ FUNCTION void trace_smooth_group(const struct fan_record *fan,
     const mask on_object = cell.is_ray & MASK_OF(nearest.object == fan->only_object);
     const vfloat to_seabed = seabed_distance(fan, objects, ray.closest, ray.direction,
                                              SPLAT(-fan->reference_range), on_object);
-    const mask is_hit = on_object & MASK_OF(nearest.distance < to_seabed);
-    const vfloat distance = SELECT(is_hit, nearest.distance, SPLAT(0.0f));
+    struct smooth_cells cells;
+    cells.is_hit = on_object & MASK_OF(nearest.distance < to_seabed);
+    const vfloat distance = SELECT(cells.is_hit, nearest.distance, SPLAT(0.0f));
     const GLOBAL struct object_record *object = &objects[fan->only_object];
     const struct vector3 normal = object_normal(object, ray.closest, ray.direction, distance);
     const vfloat cosine = larger(-dot3(normal, ray.direction), SPLAT(1.0e-6f));
     const vfloat range = ray.range_at_closest + distance;
     /* the path's gradient along a direction q across the ray is -2 n.q/(n.d) */
-    struct cell_phase phase =
+    cells.phase =
         integrate_cell(fan, &cell, 2.0f * normal.x / cosine,
                        2.0f * dot3(normal, ray.upward) / cosine, range, ray.wavefront + distance);
-    phase.amplitude = phase.amplitude * refraction_gain(fan, &ray, distance);
-    vfloat reflection_real, reflection_imaginary;
-    smooth_reflection(&object->surface, cosine, &reflection_real, &reflection_imaginary);
-    put_smooth_echo(fan, is_hit, phase, reflection_real, reflection_imaginary, echo);
+    cells.phase.amplitude = cells.phase.amplitude * refraction_gain(fan, &ray, distance);
+    smooth_reflection(&object->surface, cosine, &cells.reflection_real,
+                      &cells.reflection_imaginary);
+    return cells;
 }
 
 /* Shares an echo between the two bins about it: linear in range, so that the pulse's envelope moves
@@ -155,6 +192,27 @@ FUNCTION void tally_smooth_echo(GLOBAL TALLY *tally, const struct smooth_echo *e
     outcome->impulses++;
 }
 
+/* Counts the echoes of a group's cells, all of their parts. */
+FUNCTION void tally_smooth_cells(const struct fan_record *fan, const struct smooth_cells *cells,
+                                 GLOBAL TALLY *line, struct outcome_record *outcome)
+{
+    const vint parts = parts_of_cell(cells->phase);
+    int lanes[WIDTH];
+    int most = 1;
+    const vint counted = SELECT(cells->is_hit, parts, parts - parts);
+    STORE_VINT(counted, lanes);
+    for (int lane = 0; lane < WIDTH; lane++)
+        most = lanes[lane] > most ? lanes[lane] : most;
+    for (int part = 0; part < most; part++) {
+        struct smooth_echo echo;
+        put_smooth_echo(fan, cells->is_hit & MASK_OF(parts > part),
+                        part_of_cell(fan, cells->phase, part, parts), cells->reflection_real,
+                        cells->reflection_imaginary, &echo);
+        for (int lane = 0; lane < WIDTH; lane++)
+            tally_smooth_echo(line, &echo, lane, outcome);
+    }
+}
+
 /* Traces the share `segment` of a sub-strip's fan; tally: strips x bins x (real, imaginary). */
 FUNCTION struct outcome_record trace_smooth_strip(const struct fan_record *fan,
                                                   GLOBAL const struct ray_piece_record *pieces,
@@ -167,11 +225,10 @@ FUNCTION struct outcome_record trace_smooth_strip(const struct fan_record *fan,
     const RECORD_WORD step = (RECORD_WORD)fan->segments * WIDTH;
     for (int stratum = 0; stratum < (int)fan->strata; stratum++)
         for (RECORD_WORD ray = (RECORD_WORD)segment * WIDTH; ray < fan->rays; ray += step) {
-            struct smooth_echo echo;
             outcome.rays += rays_from(fan, ray, WIDTH);
-            trace_smooth_group(fan, pieces, objects, strip, stratum, key, ray, &echo);
-            for (int lane = 0; lane < WIDTH; lane++)
-                tally_smooth_echo(line, &echo, lane, &outcome);
+            const struct smooth_cells cells =
+                trace_smooth_group(fan, pieces, objects, strip, stratum, key, ray);
+            tally_smooth_cells(fan, &cells, line, &outcome);
         }
     outcome.queries += outcome.rays;
     return outcome;

@@ -6,12 +6,13 @@
 #include "image_sources.h"
 #include "trace_smooth.h"
 
-FUNCTION void trace_smooth_images_group(const struct fan_record *fan,
-                                        GLOBAL const struct ray_piece_record *pieces,
-                                        GLOBAL const struct image_pair_record *pair,
-                                        GLOBAL const struct object_record *objects, int strip,
-                                        int stratum, struct random_key key, RECORD_WORD first_ray,
-                                        struct smooth_echo *echo, struct outcome_record *outcome)
+FUNCTION struct smooth_cells trace_smooth_images_group(const struct fan_record *fan,
+                                                       GLOBAL const struct ray_piece_record *pieces,
+                                                       GLOBAL const struct image_pair_record *pair,
+                                                       GLOBAL const struct object_record *objects,
+                                                       int strip, int stratum,
+                                                       struct random_key key, RECORD_WORD first_ray,
+                                                       struct outcome_record *outcome)
 {
     const struct wavefront_cell cell =
         wavefront_cell_at(fan, pieces, strip, stratum, key, first_ray);
@@ -25,17 +26,20 @@ FUNCTION void trace_smooth_images_group(const struct fan_record *fan,
     const vfloat gradient_along = bend * hit.normal.x / cosine_out;
     const vfloat gradient_across = bend * dot3(hit.normal, cell.ray.upward) / cosine_out +
                                    dot3(path.back.direction, cell.ray.upward);
-    struct cell_phase phase =
+    struct smooth_cells cells;
+    cells.is_hit = path.is_open;
+    cells.phase =
         integrate_cell(fan, &cell, gradient_along, gradient_across, path.range, path.wavefront_out);
-    phase.amplitude = phase.amplitude * (0.5f * pair->echoes) *
-                      (1.0f + path.cosine_back / cosine_out) * path.spreading;
+    cells.phase.amplitude = cells.phase.amplitude * (0.5f * pair->echoes) *
+                            (1.0f + path.cosine_back / cosine_out) * path.spreading;
     vfloat one_real, one_imaginary;
     smooth_reflection(&object->surface, 0.5f * (cosine_out + magnitude(path.cosine_back)),
                       &one_real, &one_imaginary);
-    put_smooth_echo(fan, path.is_open, phase,
-                    one_real * path.reflection_real - one_imaginary * path.reflection_imaginary,
-                    one_real * path.reflection_imaginary + one_imaginary * path.reflection_real,
-                    echo);
+    cells.reflection_real =
+        one_real * path.reflection_real - one_imaginary * path.reflection_imaginary;
+    cells.reflection_imaginary =
+        one_real * path.reflection_imaginary + one_imaginary * path.reflection_real;
+    return cells;
 }
 
 /* As trace_smooth_strip. */
@@ -50,12 +54,10 @@ FUNCTION struct outcome_record trace_smooth_images_strip(
     const RECORD_WORD step = (RECORD_WORD)fan->segments * WIDTH;
     for (int stratum = 0; stratum < (int)fan->strata; stratum++)
         for (RECORD_WORD ray = (RECORD_WORD)segment * WIDTH; ray < fan->rays; ray += step) {
-            struct smooth_echo echo;
             outcome.rays += rays_from(fan, ray, WIDTH);
-            trace_smooth_images_group(fan, pieces, pair, objects, strip, stratum, key, ray, &echo,
-                                      &outcome);
-            for (int lane = 0; lane < WIDTH; lane++)
-                tally_smooth_echo(line, &echo, lane, &outcome);
+            const struct smooth_cells cells = trace_smooth_images_group(
+                fan, pieces, pair, objects, strip, stratum, key, ray, &outcome);
+            tally_smooth_cells(fan, &cells, line, &outcome);
         }
     outcome.queries += outcome.rays;
     return outcome;

@@ -372,6 +372,30 @@ CLAIM(more_rays_change_no_glint)
     expect_close("16 times the rays, dB", level[2], level[0], 0.06);
 }
 
+/* A level face that is seen flat returns nothing from between its edges, at grazing angles at which
+ * the path changes by 0.6 to 2.1 wavelengths from one ray of the default spacing to the next. */
+CLAIM(faces_seen_flat_return_nothing_but_edges)
+{
+    static const double altitudes[] = {20.0, 15.0, 12.5, 11.0, 9.0, 7.0};
+    for (size_t i = 0; i < COUNT(altitudes); i++) {
+        struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+        sonject_object_params *box = sea_add(sea, SHAPE_BOX, 1.6, 1.4, 0.0);
+        box->height_m = 0.4;
+        box->heading_rad = 0.2;
+        sea->sonar->altitude_m = altitudes[i];
+        const struct image *image = sea_image(sea);
+        const double middle = sea_column(sea, sea_slant_range(sea, 0) - 0.2 * altitudes[i] / RANGE);
+        const size_t first = (size_t)(middle - 10.0);
+        double sum = 0.0;
+        for (size_t row = 100 - 10; row <= 100 + 10; row++)
+            for (size_t column = first; column < first + 20; column++)
+                sum += pow(cabs(image->target[row * COLUMNS + column]), 2.0);
+        print_message("grazing %.1f degrees: ", asin((altitudes[i] - 0.4) / RANGE) * 180.0 / PI);
+        expect_below("between the edges, dB re 1 m^2", decibels_of_energy(sum / (21.0 * 20.0)),
+                     -100.0);
+    }
+}
+
 /* What is left where a smooth convex body returns nothing. The in-cell integral puts it at
  * -64...-74 dB re 1 m^2 at 64 rays per 25 x 25 mm and lower by 6 to 12 dB for 4 times the rays
  * (a plain sum: -44...-49); the default spacing of 1/8 wavelength is 180 rays. A seabed pixel at
