@@ -314,7 +314,7 @@ FUNCTION void trace_multibounce_group(
     int stratum, struct random_key key, RECORD_WORD first_ray, struct outcome_record *outcome)
 {
     const struct wavefront_cell cell =
-        wavefront_cell_at(fan, pieces, strip, stratum, key, first_ray);
+        wavefront_cell_at(fan, pieces, strip, stratum, 0.0f, key, first_ray);
     struct multibounce_path path;
     begin_multibounce(fan, pair, objects, &cell, &path, outcome);
     for (int order = 2; order <= multibounce->interactions && ANY(path.is_alive); order++) {

@@ -28,10 +28,22 @@ struct wavefront_cell {
     vfloat chance;                        /* of rounding its echo up */
 };
 
+/* Where a stratum's cells begin across the ray, -0.5...0.5 of their width from the fan's own: even
+ * over any few neighbours. Else the steps in which cells follow an edge would keep time with its
+ * echo's phase from strip to strip, and shine. */
+FUNCTION float cell_shift_of(const struct fan_record *fan, int strip, int stratum)
+{
+    const RECORD_WORD turn =
+        (RECORD_WORD)(fan->track_strip + fan->first_strip + strip) * fan->strata +
+        (RECORD_WORD)stratum;
+    return (float)((turn * 0x9E3779B9u) >> 9) * 1.1920928955078125e-7f - 0.5f;
+}
+
+/* shift: of the cells across the ray, in their widths. */
 FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
                                                  GLOBAL const struct ray_piece_record *pieces,
-                                                 int strip, int stratum, struct random_key key,
-                                                 RECORD_WORD first_ray)
+                                                 int strip, int stratum, float shift,
+                                                 struct random_key key, RECORD_WORD first_ray)
 {
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     struct wavefront_cell cell;
@@ -42,9 +54,10 @@ FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
     cell.offset_along = (along - 0.5f) * cell.width_along;
     const float middle = strip_position(fan, strip) +
                          ((float)stratum + 0.5f - 0.5f * (float)fan->strata) * cell.width_along;
-    cell.ray = fan_ray_at(fan, pieces, middle + cell.offset_along,
-                          fan->first_elevation +
-                              (VFLOAT_OF(number) + cell.fraction_across) * fan->elevation_step);
+    cell.ray =
+        fan_ray_at(fan, pieces, middle + cell.offset_along,
+                   fan->first_elevation +
+                       (VFLOAT_OF(number) + cell.fraction_across + shift) * fan->elevation_step);
     return cell;
 }
 
@@ -148,8 +161,8 @@ FUNCTION struct smooth_cells trace_smooth_group(const struct fan_record *fan,
                                                 int strip, int stratum, struct random_key key,
                                                 RECORD_WORD first_ray)
 {
-    const struct wavefront_cell cell =
-        wavefront_cell_at(fan, pieces, strip, stratum, key, first_ray);
+    const struct wavefront_cell cell = wavefront_cell_at(
+        fan, pieces, strip, stratum, cell_shift_of(fan, strip, stratum), key, first_ray);
     const struct fan_ray ray = cell.ray;
     const struct nearest_hit nearest =
         find_nearest_hit(objects, fan->objects, ray.closest, ray.direction, -fan->reference_range);

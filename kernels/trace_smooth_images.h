@@ -14,8 +14,8 @@ FUNCTION struct smooth_cells trace_smooth_images_group(const struct fan_record *
                                                        struct random_key key, RECORD_WORD first_ray,
                                                        struct outcome_record *outcome)
 {
-    const struct wavefront_cell cell =
-        wavefront_cell_at(fan, pieces, strip, stratum, key, first_ray);
+    const struct wavefront_cell cell = wavefront_cell_at(
+        fan, pieces, strip, stratum, cell_shift_of(fan, strip, stratum), key, first_ray);
     GLOBAL const struct object_record *object = &objects[fan->only_object];
     const struct image_hit hit =
         find_image_hit(fan, pair, objects, FACE_OF_OPTICS, &cell.ray, cell.is_ray);

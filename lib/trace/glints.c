@@ -9,6 +9,7 @@
 #include "trace/object_buffer.h"
 
 #define STRIP_WAVELENGTHS  0.25 /* widest sub-strip: wider ones alias glints */
+#define SMALL_WAVELENGTHS  2.0  /* parts of smaller radius have few rays, and may have more */
 #define BINS_PER_DEVIATION 16.0 /* linear sharing between bins then errs by 5e-4 */
 #define IMAGE_STRIPS       64   /* of a launch: there may be dozens of pairs at a time */
 
@@ -101,7 +102,10 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
         fan->stream = STREAM_SMOOTH_RAYS + part;
         status = object_rays_add(&trace->launch.rays, tracer, part, &sonar.path, &fan->table);
     }
-    glint_fan_init(fan, tracer, part, pair ? &pair->outgoing->path : &sonar.path, 1.0);
+    const bool is_small =
+        tracer->placements[part].bounding_radius_m < SMALL_WAVELENGTHS * tracer->view.wavelength_m;
+    glint_fan_init(fan, tracer, part, pair ? &pair->outgoing->path : &sonar.path,
+                   is_small ? 4.0 : 1.0);
     choose_quanta(trace, tracer);
     THEN(status, begin_launch(trace, tracer, part, pair ? &sources : NULL));
     if (status != SONJECT_OK)

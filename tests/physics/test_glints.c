@@ -386,13 +386,17 @@ CLAIM(faces_seen_flat_return_nothing_but_edges)
         const struct image *image = sea_image(sea);
         const double middle = sea_column(sea, sea_slant_range(sea, 0) - 0.2 * altitudes[i] / RANGE);
         const size_t first = (size_t)(middle - 10.0);
-        double sum = 0.0;
+        double sum = 0.0, at_edge = 0.0;
         for (size_t row = 100 - 10; row <= 100 + 10; row++)
-            for (size_t column = first; column < first + 20; column++)
-                sum += pow(cabs(image->target[row * COLUMNS + column]), 2.0);
+            for (size_t column = first; column < first + 60; column++) {
+                const double energy = pow(cabs(image->target[row * COLUMNS + column]), 2.0);
+                sum += column < first + 20 ? energy : 0.0;
+                at_edge = fmax(at_edge, column < first + 20 ? 0.0 : energy);
+            }
         print_message("grazing %.1f degrees: ", asin((altitudes[i] - 0.4) / RANGE) * 180.0 / PI);
         expect_below("between the edges, dB re 1 m^2", decibels_of_energy(sum / (21.0 * 20.0)),
                      -100.0);
+        expect_below("at the far edge", decibels_of_energy(at_edge), -64.0);
     }
 }
 
