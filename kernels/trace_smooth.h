@@ -205,24 +205,32 @@ FUNCTION void tally_smooth_echo(GLOBAL TALLY *tally, const struct smooth_echo *e
     outcome->impulses++;
 }
 
-/* Counts the echoes of a group's cells, all of their parts. */
+FUNCTION void tally_smooth_echoes(const struct fan_record *fan, const struct smooth_cells *cells,
+                                  mask is_counted, struct cell_phase phase, GLOBAL TALLY *line,
+                                  struct outcome_record *outcome)
+{
+    struct smooth_echo echo;
+    put_smooth_echo(fan, is_counted, phase, cells->reflection_real, cells->reflection_imaginary,
+                    &echo);
+    for (int lane = 0; lane < WIDTH; lane++)
+        tally_smooth_echo(line, &echo, lane, outcome);
+}
+
+/* Counts the echoes of a group's cells, all of their parts; most have but one. */
 FUNCTION void tally_smooth_cells(const struct fan_record *fan, const struct smooth_cells *cells,
                                  GLOBAL TALLY *line, struct outcome_record *outcome)
 {
     const vint parts = parts_of_cell(cells->phase);
-    int lanes[WIDTH];
-    int most = 1;
-    const vint counted = SELECT(cells->is_hit, parts, parts - parts);
-    STORE_VINT(counted, lanes);
-    for (int lane = 0; lane < WIDTH; lane++)
-        most = lanes[lane] > most ? lanes[lane] : most;
-    for (int part = 0; part < most; part++) {
-        struct smooth_echo echo;
-        put_smooth_echo(fan, cells->is_hit & MASK_OF(parts > part),
-                        part_of_cell(fan, cells->phase, part, parts), cells->reflection_real,
-                        cells->reflection_imaginary, &echo);
-        for (int lane = 0; lane < WIDTH; lane++)
-            tally_smooth_echo(line, &echo, lane, outcome);
+    if (!ANY(cells->is_hit & MASK_OF(parts > 1))) {
+        tally_smooth_echoes(fan, cells, cells->is_hit, whole_cell(cells->phase), line, outcome);
+        return;
+    }
+    for (int part = 0; part < CELL_PARTS_MAX; part++) {
+        const mask is_part = cells->is_hit & MASK_OF(parts > part);
+        if (!ANY(is_part))
+            break;
+        tally_smooth_echoes(fan, cells, is_part, part_of_cell(fan, cells->phase, part, parts), line,
+                            outcome);
     }
 }
 
