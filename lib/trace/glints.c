@@ -106,6 +106,9 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
         tracer->placements[part].bounding_radius_m < SMALL_WAVELENGTHS * tracer->view.wavelength_m;
     glint_fan_init(fan, tracer, part, pair ? &pair->outgoing->path : &sonar.path,
                    is_small ? 4.0 : 1.0);
+    /* cells begin up to half of one off (cell_shift_of) */
+    fan->first_elevation -= 0.5f * fan->elevation_step;
+    fan->rays++;
     choose_quanta(trace, tracer);
     THEN(status, begin_launch(trace, tracer, part, pair ? &sources : NULL));
     if (status != SONJECT_OK)

@@ -372,6 +372,23 @@ CLAIM(more_rays_change_no_glint)
     expect_close("16 times the rays, dB", level[2], level[0], 0.06);
 }
 
+/* A bar so thin that three cells of the default spacing cover it. */
+CLAIM(more_rays_change_no_thin_bar)
+{
+    double mean[2] = {0.0, 0.0};
+    for (size_t i = 0; i < 17; i++) { /* one of many rays, 16 of few */
+        struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+        sonject_object_params *bar = sea_add(sea, SHAPE_BOX, 1.0, 0.1, 0.0);
+        bar->height_m = 0.006;
+        bar->burial_m = -1.0;
+        sea->injection->ray_scale = i ? 1.0 : 256.0;
+        sea->injection->seed = i;
+        mean[i > 0] += sea_peak(sea, NULL) / (i ? 16.0 : 1.0);
+    }
+    expect_close("default rays over 256 times as many, dB",
+                 decibels_of_amplitude(mean[1] / mean[0]), 0.0, 0.25);
+}
+
 /* A level face that is seen flat returns nothing from between its edges, at grazing angles at which
  * the path changes by 0.6 to 2.1 wavelengths from one ray of the default spacing to the next. */
 CLAIM(faces_seen_flat_return_nothing_but_edges)
