@@ -23,20 +23,20 @@ __kernel void draw_speckle(__global const float *energy, int bins, int first_bin
     }
 }
 
-/* Of lines one behind the other, each stride * bins_per_pixel long once it is sorted. Global size:
- * groups of WIDTH columns x strips. */
-__kernel void sort_bins(__global const float *lines, int bins, int first, int bins_per_pixel,
-                        int stride, __global float *sorted)
+/* Of lines one behind the other, from first_line on, each stride * bins_per_pixel long once it is
+ * sorted. Global size: groups of WIDTH columns x strips. */
+__kernel void sort_bins(__global const float *lines, int first_line, int bins, int first,
+                        int bins_per_pixel, int stride, __global float *sorted)
 {
     const long strip = (long)get_global_id(1);
-    sort_bins_of(lines + strip * bins, bins, first, bins_per_pixel, stride,
+    sort_bins_of(lines + (first_line + strip) * bins, bins, first, bins_per_pixel, stride,
                  (int)get_global_id(0) * WIDTH, sorted + strip * stride * bins_per_pixel);
 }
 
 /* Global size: groups of WIDTH columns x strips x planes. */
 __kernel void compress_range(__global const float *sorted_real,
                              __global const float *sorted_imaginary, int sorted_stride,
-                             __global const struct filled_span *filled, int first,
+                             __global const struct filled_span *filled, int first_line, int first,
                              int bins_per_pixel, __global const float *pulse, int taps, int stride,
                              int first_out_strip, __global float *out_real,
                              __global float *out_imaginary)
@@ -44,26 +44,25 @@ __kernel void compress_range(__global const float *sorted_real,
     const long strip = (long)get_global_id(1);
     __global const float *sorted = get_global_id(2) ? sorted_imaginary : sorted_real;
     __global float *out = get_global_id(2) ? out_imaginary : out_real;
-    compress_range_of(sorted + strip * sorted_stride * bins_per_pixel, sorted_stride, filled[strip],
-                      first, bins_per_pixel, pulse, taps, (int)get_global_id(0) * WIDTH,
-                      out + (strip + first_out_strip) * stride);
+    compress_range_of(sorted + strip * sorted_stride * bins_per_pixel, sorted_stride,
+                      filled[first_line + strip], first, bins_per_pixel, pulse, taps,
+                      (int)get_global_id(0) * WIDTH, out + (strip + first_out_strip) * stride);
 }
 
 /* Global size: groups of WIDTH columns x strips. */
-__kernel void compress_range_complex(__global const float *sorted_real,
-                                     __global const float *sorted_imaginary, int sorted_stride,
-                                     __global const struct filled_span *filled, int first,
-                                     int bins_per_pixel, __global const float *pulse_real,
-                                     __global const float *pulse_imaginary, int taps, int stride,
-                                     int first_out_strip, __global float *out_real,
-                                     __global float *out_imaginary)
+__kernel void compress_range_complex(
+    __global const float *sorted_real, __global const float *sorted_imaginary, int sorted_stride,
+    __global const struct filled_span *filled, int first_line, int first, int bins_per_pixel,
+    __global const float *pulse_real, __global const float *pulse_imaginary, int taps, int stride,
+    int first_out_strip, __global float *out_real, __global float *out_imaginary)
 {
     const long strip = (long)get_global_id(1);
     const long in = strip * sorted_stride * bins_per_pixel;
     const long out = (strip + first_out_strip) * stride;
-    compress_complex_of(sorted_real + in, sorted_imaginary + in, sorted_stride, filled[strip],
-                        first, bins_per_pixel, pulse_real, pulse_imaginary, taps,
-                        (int)get_global_id(0) * WIDTH, out_real + out, out_imaginary + out);
+    compress_complex_of(sorted_real + in, sorted_imaginary + in, sorted_stride,
+                        filled[first_line + strip], first, bins_per_pixel, pulse_real,
+                        pulse_imaginary, taps, (int)get_global_id(0) * WIDTH, out_real + out,
+                        out_imaginary + out);
 }
 
 /* Global size: groups of WIDTH columns x groups of FORM_ROWS rows x planes. */

@@ -62,7 +62,8 @@ FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
 }
 
 /* Half the path by way of the cell's middle (less the reference range), and the amplitude of the
- * cell over its reflection coefficient, in quanta, before the integral across the ray. */
+ * cell over its reflection coefficient, in quanta; whole_cell puts the integral across the ray in.
+ */
 struct cell_phase {
     vfloat range;
     vfloat amplitude;
@@ -100,9 +101,9 @@ FUNCTION struct cell_phase whole_cell(struct cell_phase phase)
     return phase;
 }
 
-/* Cells of a face that is seen so flat that the path changes by a wavelength from each to the next
- * would add up as a mirror's do. So a cell is cut across the ray into parts, between which it
- * changes by no more than 0.8. */
+/* Cells of a face that is seen so flat that the whole path changes by a wavelength from each to the
+ * next would add up as a mirror's do. So a cell is cut across the ray into parts, between which it
+ * changes by no more than 0.8, as long as eight are enough. */
 #define CELL_PARTS_MAX 8
 FUNCTION vint parts_of_cell(struct cell_phase phase)
 {

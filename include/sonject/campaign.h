@@ -79,10 +79,11 @@ typedef struct sonject_campaign_run_params {
     uint32_t only_one;    /* 1: only the image `only`, anew if it is there */
     uint64_t only;        /* id */
     const char *folder;   /* for the data set; made where missing */
-    double exit_after_s;  /* stops as if cancelled, after the images of that moment; 0: never */
-    uint32_t overwrites;  /* 1: another campaign's images in the folder are removed, not with
-                             shards; 0: they are refused */
-    uint32_t reserved;    /* 0 */
+    double
+        exit_after_s; /* stops as if cancelled, once the images then under way are done; 0: never */
+    uint32_t overwrites; /* 1: another campaign's images in the folder are removed, not with
+                            shards; 0: they are refused */
+    uint32_t reserved;   /* 0 */
 } sonject_campaign_run_params;
 
 /* Makes the images that are not in the folder yet, each published file by file with its record
@@ -93,8 +94,8 @@ typedef struct sonject_campaign_run_params {
  * another version, is refused unless params->overwrites. progress (may be NULL): fractions of what
  * was missing; its stage tells the rate.
  * Threads: images are made by threads of the library's own, two for each processor, 16 at most, and
- * fewer where images are large; progress and log are called by the calling thread alone. Of images
- * that fail, the first is told; those that were under way then are finished.
+ * fewer where images are large; progress and log are called by the calling thread alone. Where
+ * images fail, the message is of the one with the lowest id; those under way are finished.
  * Errors: ARGUMENT (also a folder of another campaign: the message names what differs), INPUT,
  * DEVICE, STORAGE, MEMORY, UNSUPPORTED, CANCELLED (finished images stay).
  */

@@ -491,7 +491,7 @@ struct image_work {
     void *user;
 };
 
-/* Makes the images by as many threads as the machine has processors, fewer where images are large.
+/* Makes the images by two threads for each processor, 16 at most, fewer where images are large.
  * After a failure those that are under way are finished, and no other is begun; the message is of
  * the first image that failed. slot: how each thread opens the device. Errors: those of make,
  * CANCELLED, MEMORY. */

@@ -372,7 +372,7 @@ static void leave_out_faint(struct fit *fit, size_t first)
 static sonject_status run_round(struct fit *fit, const struct device_slot *slot, uint32_t number,
                                 sonject_progress_function progress, void *user)
 {
-    struct sonject_campaign *campaign;
+    struct sonject_campaign *campaign = NULL;
     struct fit_round *round = allocate_array(1, sizeof *round);
     CHECK_MEMORY(fit->report, round, "the fit");
     *round = (struct fit_round){.fit = fit, .number = number, .progress = progress, .user = user};

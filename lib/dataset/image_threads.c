@@ -55,14 +55,16 @@ static void keep_line(void *user, const char *line)
     growing_text_add(&thread->lines, "%s\n", line);
 }
 
+/* While a thread waits for another process; the caller is asked meanwhile. */
 static int is_cancelled(void *user, double fraction, const char *stage)
 {
-    const struct image_thread *thread = user;
+    struct image_pool *pool = ((struct image_thread *)user)->pool;
     (void)fraction;
     (void)stage;
-    pthread_mutex_lock(&thread->pool->lock);
-    const bool is_it = thread->pool->is_cancelled;
-    pthread_mutex_unlock(&thread->pool->lock);
+    pthread_mutex_lock(&pool->lock);
+    const bool is_it = pool->is_cancelled;
+    tell_news(pool);
+    pthread_mutex_unlock(&pool->lock);
     return is_it;
 }
 
@@ -226,6 +228,8 @@ sonject_status campaign_work(struct sonject_campaign *campaign, const struct dev
 {
     struct image_pool pool = {.campaign = campaign, .work = work};
     const size_t count = thread_count(campaign, work->count);
+    if (work->count == 0)
+        return SONJECT_OK;
     struct image_thread *threads = allocate_array(count + 1, sizeof *threads);
     CHECK_MEMORY(campaign->report, threads, "the campaign's images");
     pthread_mutex_init(&pool.lock, NULL);
@@ -241,7 +245,7 @@ sonject_status campaign_work(struct sonject_campaign *campaign, const struct dev
     pthread_mutex_destroy(&pool.calibrating);
     pthread_mutex_destroy(&pool.lock);
     free(threads);
-    if (started == 0 && work->count > 0)
+    if (started == 0)
         return report_failure(campaign->report, SONJECT_ERROR_MEMORY,
                               "the system starts no thread for the campaign's images");
     if (pool.status == SONJECT_OK && pool.is_cancelled)

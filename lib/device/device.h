@@ -62,7 +62,7 @@ void host_context_release(void *opencl_context);
 sonject_status buffer_create(struct report *report, struct device *device, size_t bytes,
                              const void *contents, device_buffer *buffer);
 
-/* The same, of which nothing is known until something is written. */
+/* A buffer likewise, whose contents are undefined until they are written. */
 sonject_status buffer_reserve(struct report *report, struct device *device, size_t bytes,
                               device_buffer *buffer);
 

@@ -7,10 +7,11 @@
 #include "base/memory.h"
 #include "scene/point_response.h"
 
-#define SEARCH_STEP          64    /* bins that are looked at together */
-#define SHORT_GAP            8     /* strips: their copy takes as long as another launch */
-#define SPECKLE_ENERGY_SHARE 0.001 /* of |W|^2 that is cut off from speckle and energies */
-#define COLUMN_STEP          16    /* lines are padded to whole groups of any width */
+#define SEARCH_STEP          64        /* bins that are looked at together */
+#define SHORT_GAP            8         /* strips: their copy takes as long as another launch */
+#define SPECKLE_ENERGY_SHARE 0.001     /* of |W|^2 that is cut off from speckle and energies */
+#define SORTED_FLOATS        (1 << 22) /* of a plane at a time */
+#define COLUMN_STEP          16        /* lines are padded to whole groups of any width */
 
 typedef char filled_span_is_packed[sizeof(struct filled_span) == 2 * 4 ? 1 : -1];
 
@@ -167,32 +168,33 @@ void form_lines_end(struct form_lines *lines)
     lines->filled_columns = NULL;
 }
 
-/* Sorts each plane of lines, 0 where it is NULL, by the pixels that take their bins. */
-static sonject_status sort_bins(struct form_lines *lines, int32_t count,
+/* Sorts some lines of each plane, 0 where it is NULL, by the pixels that take their bins. */
+static sonject_status sort_bins(struct form_lines *lines, struct span some,
                                 const device_buffer bins[2], int32_t stride,
                                 device_buffer sorted[2])
 {
     const int32_t bin_count = lines->grid.bins.count;
     const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
     const int32_t first = lines->pulse_first + (int32_t)lines->first_column * per_pixel;
-    const size_t bytes = (size_t)count * (size_t)per_pixel * (size_t)stride * sizeof(float);
-    const size_t global[2] = {(size_t)stride / lines->device->width, (size_t)count};
+    const size_t bytes = (size_t)some.count * (size_t)per_pixel * (size_t)stride * sizeof(float);
+    const size_t global[2] = {(size_t)stride / lines->device->width, (size_t)some.count};
     for (size_t part = 0; part < lines->planes; part++) {
         if (!bins[part]) {
             CHECK(buffer_create(lines->report, lines->device, bytes, NULL, &sorted[part]));
             continue;
         }
         CHECK(buffer_reserve(lines->report, lines->device, bytes, &sorted[part]));
-        const struct kernel_argument arguments[] = {ARGUMENT(bins[part]), ARGUMENT(bin_count),
-                                                    ARGUMENT(first),      ARGUMENT(per_pixel),
-                                                    ARGUMENT(stride),     ARGUMENT(sorted[part])};
+        const struct kernel_argument arguments[] = {
+            ARGUMENT(bins[part]), ARGUMENT(some.first), ARGUMENT(bin_count),   ARGUMENT(first),
+            ARGUMENT(per_pixel),  ARGUMENT(stride),     ARGUMENT(sorted[part])};
         CHECK(kernel_run(lines->report, lines->device, lines->sort, arguments, COUNT(arguments), 2,
                          global));
     }
     return SONJECT_OK;
 }
 
-static sonject_status compress_sorted(struct form_lines *lines, int32_t strip, int32_t count,
+/* Compresses those; strip: the first one's. */
+static sonject_status compress_sorted(struct form_lines *lines, int32_t strip, struct span some,
                                       const device_buffer sorted[2], int32_t sorted_stride,
                                       device_buffer filled)
 {
@@ -200,11 +202,11 @@ static sonject_status compress_sorted(struct form_lines *lines, int32_t strip, i
     const int32_t first = lines->pulse_first + (int32_t)lines->first_column * per_pixel;
     const int32_t taps = lines->pulse_taps;
     const int32_t stride = (int32_t)lines->stride;
-    const int32_t out_strip = strip - lines->grid.strips.first;
+    const int32_t out_strip = strip + some.first - lines->grid.strips.first;
     const bool is_complex = lines->imaginary_pulse != NULL; /* else its place is the next one's */
-    struct kernel_argument arguments[13] = {
-        ARGUMENT(sorted[0]), ARGUMENT(sorted[1]), ARGUMENT(sorted_stride), ARGUMENT(filled),
-        ARGUMENT(first),     ARGUMENT(per_pixel), ARGUMENT(lines->pulse)};
+    struct kernel_argument arguments[14] = {
+        ARGUMENT(sorted[0]),  ARGUMENT(sorted[1]), ARGUMENT(sorted_stride), ARGUMENT(filled),
+        ARGUMENT(some.first), ARGUMENT(first),     ARGUMENT(per_pixel),     ARGUMENT(lines->pulse)};
     const struct kernel_argument rest[] = {ARGUMENT(lines->imaginary_pulse),
                                            ARGUMENT(taps),
                                            ARGUMENT(stride),
@@ -212,23 +214,32 @@ static sonject_status compress_sorted(struct form_lines *lines, int32_t strip, i
                                            ARGUMENT(lines->lines[0]),
                                            ARGUMENT(lines->lines[1])};
     const size_t left = is_complex ? 6 : 5;
-    memcpy(&arguments[7], &rest[6 - left], left * sizeof *rest);
-    const size_t global[3] = {lines->stride / lines->device->width, (size_t)count, lines->planes};
-    return kernel_run(lines->report, lines->device, lines->compress, arguments, 7 + left,
+    memcpy(&arguments[8], &rest[6 - left], left * sizeof *rest);
+    const size_t global[3] = {lines->stride / lines->device->width, (size_t)some.count,
+                              lines->planes};
+    return kernel_run(lines->report, lines->device, lines->compress, arguments, 8 + left,
                       is_complex ? 2 : 3, global);
 }
 
+/* A long pulse makes sorted lines far longer than the bins: they are made some at a time. */
 static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t count,
                                const device_buffer bins[2], device_buffer filled)
 {
     const int32_t columns =
         (int32_t)lines->stride + (lines->pulse_taps - 1) / (int32_t)lines->grid.bins_per_pixel + 1;
     const int32_t stride = (columns + COLUMN_STEP - 1) / COLUMN_STEP * COLUMN_STEP;
-    device_buffer sorted[2] = {NULL, NULL};
-    sonject_status status = sort_bins(lines, count, bins, stride, sorted);
-    THEN(status, compress_sorted(lines, strip, count, sorted, stride, filled));
-    buffer_release(&sorted[0]);
-    buffer_release(&sorted[1]);
+    const int32_t fitting = SORTED_FLOATS / (stride * (int32_t)lines->grid.bins_per_pixel);
+    const int32_t most = fitting > 1 ? fitting : 1;
+    struct span some = {0, 0};
+    sonject_status status = SONJECT_OK;
+    for (; status == SONJECT_OK && some.first < count; some.first += most) {
+        device_buffer sorted[2] = {NULL, NULL};
+        some.count = count - some.first < most ? count - some.first : most;
+        status = sort_bins(lines, some, bins, stride, sorted);
+        THEN(status, compress_sorted(lines, strip, some, sorted, stride, filled));
+        buffer_release(&sorted[0]);
+        buffer_release(&sorted[1]);
+    }
     return status;
 }
 

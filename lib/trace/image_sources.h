@@ -66,9 +66,11 @@ struct span image_pair_bins_in_patch(const struct tracer *tracer, uint32_t part,
 struct span bins_in_patch(const struct tracer *tracer, const struct line_grid *grid,
                           struct span bins);
 
-/* Whether any pair, the straight one or another, keeps more than exp(-12), -104 dB, of the part's
- * glint: roughness takes exp(-P^2/2), P = 2 k eta cos(theta), of which half the angle between the
- * directions to both sources is theta. */
+/* Whether any pair, the straight one or another, keeps more than exp(-12), -104 dB, of what the
+ * part returns as a mirror: roughness takes exp(-P^2/2), P = 2 k eta cos(theta), of which half the
+ * angle between the directions to both sources is theta. Where none does, the echoes of edges of
+ * slanting faces, of which roughness would leave more, are not traced either: edges are as rough.
+ */
 bool part_has_glints(const struct tracer *tracer, uint32_t part);
 
 /* The bins in the patch of all the part's pairs but the straight one; count 0 if there is none.

@@ -99,7 +99,10 @@ def test_a_data_set_is_made_once(campaign, tmp_path):
         assert whole.run(tmp_path / "set", shard=part,
                          progress=lambda fraction, stage: seen.append(stage))
     sonject.merge_campaign(tmp_path / "set")
-    assert not whole.run(tmp_path / "set")
+    fractions = []
+    assert not whole.run(tmp_path / "set",
+                         progress=lambda fraction, stage: fractions.append(fraction))
+    assert all(0 <= fraction <= 1 for fraction in fractions)
     assert any(stage.endswith("images/s") for stage in seen)
     assert (tmp_path / "set" / "all" / "coco.json").exists()
     other = sonject.Campaign(tmp_path / "campaign.yaml", {"images": 5})
