@@ -79,11 +79,10 @@ typedef struct sonject_campaign_run_params {
     uint32_t only_one;    /* 1: only the image `only`, anew if it is there */
     uint64_t only;        /* id */
     const char *folder;   /* for the data set; made where missing */
-    double
-        exit_after_s; /* stops as if cancelled, once the images then under way are done; 0: never */
-    uint32_t overwrites; /* 1: another campaign's images in the folder are removed, not with
-                            shards; 0: they are refused */
-    uint32_t reserved;   /* 0 */
+    double exit_after_s;  /* stops as if cancelled, when images then under way are done; 0: never */
+    uint32_t overwrites;  /* 1: another campaign's images in the folder are removed, not with
+                             shards; 0: they are refused */
+    uint32_t reserved;    /* 0 */
 } sonject_campaign_run_params;
 
 /* Makes the images that are not in the folder yet, each published file by file with its record
@@ -139,8 +138,8 @@ typedef struct sonject_campaign_fit_params {
  * over the seabed, and the noise floor, until contacts that it injects measure as the real ones do;
  * sets chip.slant_range and visible from the contacts. What cannot be told from contacts stays as
  * it is: classes' shares, headings, burial, materials, fixed sizes. Some 830 images are made, by
- * threads as in sonject_campaign_run. path,
- * params: as of sonject_campaign_read. The same inputs give the same bytes. progress may be NULL.
+ * threads as in sonject_campaign_run. path, params: as of sonject_campaign_read. The same inputs
+ * give the same bytes. progress may be NULL.
  * Errors: ARGUMENT, INPUT (fewer than ten contacts, labels that cannot be read, ...), DEVICE,
  * STORAGE, MEMORY, UNSUPPORTED, CANCELLED; then fit_params->fitted is not written. */
 SONJECT_API sonject_status sonject_campaign_fit(sonject_context *context, const char *path,

@@ -35,10 +35,9 @@ struct image_thread {
     struct image_maker maker;
     struct sonject_campaign campaign;
     struct report report;
-    struct report_host host;
+    struct report_host host; /* whose fraction, of its image, the pool's lock guards */
     struct decoder decoder;
     struct device_slot slot;
-    double fraction;           /* of its image; guarded by the pool's lock */
     struct growing_text lines; /* of its image */
 };
 
@@ -55,26 +54,14 @@ static void keep_line(void *user, const char *line)
     growing_text_add(&thread->lines, "%s\n", line);
 }
 
-/* While a thread waits for another process; the caller is asked meanwhile. */
-static int is_cancelled(void *user, double fraction, const char *stage)
-{
-    struct image_pool *pool = ((struct image_thread *)user)->pool;
-    (void)fraction;
-    (void)stage;
-    pthread_mutex_lock(&pool->lock);
-    const bool is_it = pool->is_cancelled;
-    tell_news(pool);
-    pthread_mutex_unlock(&pool->lock);
-    return is_it;
-}
-
+/* Also asked while a thread waits for another process, with the fraction that it told last. */
 static int note_fraction(void *user, double fraction, const char *stage)
 {
     struct image_thread *thread = user;
     struct image_pool *pool = thread->pool;
     (void)stage;
     pthread_mutex_lock(&pool->lock);
-    thread->fraction = fraction;
+    thread->host.fraction = fraction;
     const bool is_it = pool->is_cancelled;
     tell_news(pool);
     pthread_mutex_unlock(&pool->lock);
@@ -102,7 +89,7 @@ static void end_image(struct image_thread *thread, uint64_t index, sonject_statu
     if (thread->lines.length > 0)
         growing_text_add(&pool->lines, "%s", thread->lines.characters);
     thread->lines.length = 0;
-    thread->fraction = 0.0;
+    thread->host.fraction = 0.0;
     pool->done += status == SONJECT_OK;
     if (status != SONJECT_OK && (pool->status == SONJECT_OK || index < pool->failed)) {
         pool->status = status;
@@ -165,7 +152,7 @@ static bool start_thread(struct image_thread *thread, struct image_pool *pool,
         report->host && report->host->decoder && report->host->decoder->is_in_process;
     thread->host = (struct report_host){.log_user = thread,
                                         .decoder = &thread->decoder,
-                                        .progress = is_cancelled,
+                                        .progress = note_fraction,
                                         .progress_user = thread};
     thread->report.log = report->log ? keep_line : NULL;
     thread->report.host = &thread->host;
@@ -209,7 +196,7 @@ static void watch(struct image_pool *pool, const struct image_thread *threads, s
         memset(&pool->lines, 0, sizeof pool->lines);
         double done = (double)pool->done;
         for (size_t i = 0; i < count; i++)
-            done += threads[i].fraction;
+            done += threads[i].host.fraction;
         pthread_mutex_unlock(&pool->lock);
         if (lines.length > 0)
             tell_lines(pool->campaign->report, lines.characters);

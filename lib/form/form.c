@@ -168,6 +168,12 @@ void form_lines_end(struct form_lines *lines)
     lines->filled_columns = NULL;
 }
 
+/* Column j takes the bins from j * bins_per_pixel + this on. */
+static int32_t first_bin_of_columns(const struct form_lines *lines)
+{
+    return lines->pulse_first + (int32_t)(lines->first_column * lines->grid.bins_per_pixel);
+}
+
 /* Sorts some lines of each plane, 0 where it is NULL, by the pixels that take their bins. */
 static sonject_status sort_bins(struct form_lines *lines, struct span some,
                                 const device_buffer bins[2], int32_t stride,
@@ -175,7 +181,7 @@ static sonject_status sort_bins(struct form_lines *lines, struct span some,
 {
     const int32_t bin_count = lines->grid.bins.count;
     const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
-    const int32_t first = lines->pulse_first + (int32_t)lines->first_column * per_pixel;
+    const int32_t first = first_bin_of_columns(lines);
     const size_t bytes = (size_t)some.count * (size_t)per_pixel * (size_t)stride * sizeof(float);
     const size_t global[2] = {(size_t)stride / lines->device->width, (size_t)some.count};
     for (size_t part = 0; part < lines->planes; part++) {
@@ -199,7 +205,7 @@ static sonject_status compress_sorted(struct form_lines *lines, int32_t strip, s
                                       device_buffer filled)
 {
     const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
-    const int32_t first = lines->pulse_first + (int32_t)lines->first_column * per_pixel;
+    const int32_t first = first_bin_of_columns(lines);
     const int32_t taps = lines->pulse_taps;
     const int32_t stride = (int32_t)lines->stride;
     const int32_t out_strip = strip + some.first - lines->grid.strips.first;
@@ -243,12 +249,11 @@ static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t 
     return status;
 }
 
-/* Notes the columns of a strip's line that filled bins reach: column j takes the bins from
- * j * bins_per_pixel + `first` on. */
+/* Notes the columns of a strip's line that filled bins reach. */
 static void note_filled(struct form_lines *lines, int32_t strip, struct filled_span bins)
 {
     const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
-    const int32_t first = lines->pulse_first + (int32_t)lines->first_column * per_pixel;
+    const int32_t first = first_bin_of_columns(lines);
     const int32_t before = bins.first - first - lines->pulse_taps; /* the last bin too early */
     struct filled_span *columns = &lines->filled_columns[strip - lines->grid.strips.first];
     columns->first = before < 0 ? 0 : before / per_pixel + 1;
