@@ -207,6 +207,10 @@ typedef struct sonject_statistics {
     uint32_t noise_floor_source; /* sonject_source */
     uint32_t looks_source;       /* sonject_source */
     double seabed_lambert;       /* mu of the seabed, as given or of its sediment */
+    double ray_scale;            /* factor on the number of rays that were traced */
+    double energy_error;         /* standard error of the expected energies, over them and the noise
+                                    floor, rms over the changed pixels; NaN unless the scene asks for
+                                    an accuracy */
 } sonject_statistics;
 
 /* statistics->struct_size must be set. Errors: ARGUMENT. */

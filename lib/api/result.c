@@ -91,6 +91,7 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *han
         return status;
     }
     tell_noise_floor(&context->report, scene, &made->result.statistics);
+    tell_accuracy(&context->report, &made->result.statistics);
     *result = made;
     return SONJECT_OK;
 }

@@ -22,6 +22,7 @@ struct units {
 
 static const struct units units_of[] = {
     [QUANTITY_NUMBER] = {NULL, {{NULL, 0}}},
+    [QUANTITY_FRACTION] = {"%", {{"%", -2}}},
     [QUANTITY_LENGTH] = {"m, km, cm, mm", {{"m", 0}, {"km", 3}, {"cm", -2}, {"mm", -3}}},
     [QUANTITY_FREQUENCY] = {"Hz, kHz, MHz", {{"Hz", 0}, {"kHz", 3}, {"MHz", 6}}},
     [QUANTITY_SPEED] = {"m/s, km/s", {{"m/s", 0}, {"km/s", 3}}},

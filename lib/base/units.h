@@ -9,6 +9,7 @@
 
 enum quantity {
     QUANTITY_NUMBER,      /* no unit allowed */
+    QUANTITY_FRACTION,    /* bare numbers; % */
     QUANTITY_LENGTH,      /* m (bare numbers too); km, cm, mm */
     QUANTITY_FREQUENCY,   /* Hz (bare numbers too); kHz, MHz */
     QUANTITY_SPEED,       /* m/s (bare numbers too); km/s */

@@ -20,6 +20,15 @@
 #define TRACE_START 0.1
 #define WRITE_START 0.8
 
+void tell_accuracy(struct report *report, const sonject_statistics *statistics)
+{
+    if (!isnan(statistics->energy_error))
+        report_log(report,
+                   "accuracy: energies of changed pixels are known to %.2g %%, by %.3g times the "
+                   "usual number of rays",
+                   100.0 * statistics->energy_error, statistics->ray_scale);
+}
+
 void tell_noise_floor(struct report *report, const struct scene *scene,
                       const sonject_statistics *statistics)
 {
@@ -160,6 +169,7 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
     tell_empty(report, swath);
     tell_calibration(report, scene);
     tell_noise_floor(report, scene, &result.statistics);
+    tell_accuracy(report, &result.statistics);
     tell_sediment(report, scene);
     tell_seen(report, scene, &result);
     result.statistics.input_clipped = swath->clipped;

@@ -25,6 +25,9 @@ sonject_status run_scene(struct report *report, struct device_slot *slot,
 void tell_noise_floor(struct report *report, const struct scene *scene,
                       const sonject_statistics *statistics);
 
+/* How many rays the scene's accuracy took, if it asked for one. */
+void tell_accuracy(struct report *report, const sonject_statistics *statistics);
+
 /* Traces the request's scene and writes its sums to the file, and its impulses to export_file where
  * that is neither NULL nor "": sonject_trace. */
 sonject_status trace_scene(struct report *report, struct device_slot *slot,

@@ -202,7 +202,8 @@ sonject_status write_truth(struct report *report, const struct run_facts *facts,
         JSON_OBJECT({"image", json_text(facts->image_name)}, {"range_axis", json_string("slant")},
                     {"range_grows",
                      json_string(geometry_is_reversed(&facts->scene->geometry) ? "left" : "right")},
-                    {"patch", place}, {"blending", blending_document(&facts->result->statistics)},
+                    {"patch", place}, JSON_NUMBER(&facts->result->statistics, energy_error),
+                    {"blending", blending_document(&facts->result->statistics)},
                     {"numbers", sources_document(facts->scene, &facts->result->statistics)},
                     {"objects", objects});
     if (facts->jpeg_quality > 0)
@@ -210,7 +211,7 @@ sonject_status write_truth(struct report *report, const struct run_facts *facts,
     return json_document_write(report, document, 12, path);
 }
 
-static json_t *options_document(const struct scene *scene, double lambert)
+static json_t *options_document(const struct scene *scene, const sonject_statistics *statistics)
 {
     const sonject_injection_params *injection = &scene->injection;
     const bool resynthesises = injection->mode == SONJECT_MODE_RESYNTHESISE;
@@ -221,12 +222,12 @@ static json_t *options_document(const struct scene *scene, double lambert)
         {"mode", json_string(resynthesises ? "resynthesise" : "composite")},
         {"columns",
          json_string(scene->injection.column_rule == SONJECT_COLUMNS_PAPER ? "paper" : "focused")},
-        JSON_NUMBER(injection, ray_scale), JSON_NUMBER(injection, influence_db),
+        JSON_NUMBER(statistics, ray_scale), JSON_NUMBER(injection, influence_db),
         {"match_response", json_string(matches_response ? "image" : "nominal")},
         {"match_looks", injection->match_looks == 0.0 ? json_string("image")
                                                       : json_number(injection->match_looks)},
         {"match_saturation", json_string(matches_saturation ? "image" : "full_scale")},
-        {"seabed_lambert_db", json_number(10.0 * log10(lambert))},
+        {"seabed_lambert_db", json_number(10.0 * log10(statistics->seabed_lambert))},
         JSON_COUNT(injection, interactions),
         {"estimator", json_string(is_brute ? "brute_force" : "connect")});
 }
@@ -298,7 +299,7 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
         {"sonject", json_string(sonject_version())}, {"scene_hash", json_string(facts->scene_hash)},
         {"seed", json_seed(facts->scene->injection.seed)},
         {"device", device_document(facts->device)},
-        {"options", options_document(facts->scene, facts->result->statistics.seabed_lambert)},
+        {"options", options_document(facts->scene, statistics)},
         {"band", band ? json_text(band) : json_null()},
         {"bands", band ? bands_document(facts->scene) : json_null()},
         {"image", json_text(facts->image_name)}, {"labels", labels_document(facts->label_formats)},

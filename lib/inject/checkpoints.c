@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/progress.h"
 #include "base/report.h"
+#include "inject/accuracy.h"
 #include "inject/scene_hash.h"
 #include "trace/checkpoint.h"
 
@@ -21,6 +22,9 @@
 struct tracing {
     const struct checkpoint_job *job;
     struct report *report;
+    const struct scene *scene; /* the job's, and its input, as the pilots tell */
+    struct injection_input input;
+    struct pilots pilots;
     char *folder;          /* work; owned */
     struct sums_head head; /* of what the call traces, or merges */
     struct checkpoint checkpoint;
@@ -69,6 +73,24 @@ static sonject_status identify(struct tracing *tracing)
     hash_add_text(hash, job->device->platform);
     hash_add_text(hash, job->device->driver);
     hash_end(hash, identity->device);
+    return SONJECT_OK;
+}
+
+/* After it, also on failure, the pilots are to be cleared. */
+static sonject_status begin(struct tracing *tracing, const struct checkpoint_job *job)
+{
+    const struct run_request *request = job->request;
+    memset(tracing, 0, sizeof *tracing);
+    tracing->job = job;
+    tracing->report = job->report;
+    tracing->scene = request->scene;
+    tracing->input = *job->input;
+    if (request->traced != request->scene)
+        tracing->input.traced = request->traced;
+    CHECK(identify(tracing));
+    CHECK(pilots_find(&tracing->pilots, job->report, job->device, &tracing->scene, &tracing->input,
+                      job->progress, job->user));
+    tracing->input.checkpoint = &tracing->checkpoint;
     return SONJECT_OK;
 }
 
@@ -191,25 +213,25 @@ static sonject_status end_checkpoint(struct tracing *tracing, sonject_status tra
 sonject_status trace_into_file(const struct checkpoint_job *job, const char *path,
                                const struct impulse_sink *sink, struct trace_counts *counts)
 {
-    struct tracing tracing = {.job = job, .report = job->report};
-    const struct scene *scene = job->request->scene;
-    struct injection_input whole = *job->input;
-    struct injection_input input = *job->input;
+    struct tracing tracing;
     struct trace_counts kept;
     const double exported = sink ? EXPORT_SHARE : 0.0;
     struct progress_share exporting = {job->progress, job->user, 0.0, exported};
     struct progress_share keeping = {job->progress, job->user, exported, 1.0 - exported};
-    whole.is_whole = true;
-    input.checkpoint = &tracing.checkpoint;
-    sonject_status status = identify(&tracing);
-    if (status == SONJECT_OK && sink) /* an export is of the whole patch */
-        status = injection_trace(job->report, job->device, scene, &whole, sink, progress_share_tell,
-                                 &exporting, counts);
+    sonject_status status = begin(&tracing, job);
+    if (status == SONJECT_OK && sink) { /* an export is of the whole patch */
+        struct injection_input whole = tracing.input;
+        whole.is_whole = true;
+        whole.checkpoint = NULL;
+        status = injection_trace(job->report, job->device, tracing.scene, &whole, sink,
+                                 progress_share_tell, &exporting, counts);
+    }
     THEN(status, checkpoint_begin(&tracing.checkpoint, job->report, path, NULL, &tracing.head));
-    THEN(status, injection_trace(job->report, job->device, scene, &input, NULL, progress_share_tell,
-                                 &keeping, &kept));
+    THEN(status, injection_trace(job->report, job->device, tracing.scene, &tracing.input, NULL,
+                                 progress_share_tell, &keeping, &kept));
     THEN(status, checkpoint_publish(&tracing.checkpoint, job->request->source));
     checkpoint_clear(&tracing.checkpoint);
+    pilots_clear(&tracing.pilots);
     if (status == SONJECT_OK && !sink)
         *counts = kept;
     return status;
@@ -219,14 +241,12 @@ sonject_status trace_into_file(const struct checkpoint_job *job, const char *pat
 static sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is_complete)
 {
     const struct checkpoint_job *job = tracing->job;
-    struct injection_input input = *job->input;
-    input.checkpoint = &tracing->checkpoint;
     while (!is_complete) {
         struct trace_counts counts;
         CHECK(begin_checkpoint(tracing, next));
         const sonject_status status =
-            injection_trace(tracing->report, job->device, job->request->scene, &input, NULL, tell,
-                            tracing, &counts);
+            injection_trace(tracing->report, job->device, tracing->scene, &tracing->input, NULL,
+                            tell, tracing, &counts);
         CHECK(end_checkpoint(tracing, status, &next, &is_complete));
     }
     return SONJECT_OK;
@@ -237,12 +257,8 @@ static sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is
 static sonject_status form_traced(struct tracing *tracing, struct injection_result *result)
 {
     const struct checkpoint_job *job = tracing->job;
-    struct injection_input input = *job->input;
-    input.checkpoint = &tracing->checkpoint;
-    if (job->request->traced != job->request->scene)
-        input.traced = job->request->traced;
-    return injection_run(tracing->report, job->device, job->request->scene, &input, tell, tracing,
-                         result);
+    return injection_run(tracing->report, job->device, tracing->scene, &tracing->input, tell,
+                         tracing, result);
 }
 
 /* Traces all in one go and forms the result as it does, or, where it is stopped between, keeps what
@@ -371,16 +387,15 @@ sonject_status inject_by_checkpoints(const struct checkpoint_job *job,
                                      struct injection_result *result, bool *is_formed)
 {
     struct tracing tracing;
-    memset(&tracing, 0, sizeof tracing);
-    tracing.job = job;
-    tracing.report = job->report;
+    sonject_status status = begin(&tracing, job);
     tracing.folder = checkpoints_folder(job->request->folder);
-    CHECK_MEMORY(job->report, tracing.folder, "a file name");
-    sonject_status status = identify(&tracing);
+    if (status == SONJECT_OK && !tracing.folder)
+        status = report_out_of_memory(job->report, "a file name");
     *is_formed = status == SONJECT_OK && (job->request->merges || job->request->sums);
     THEN(status, job->request->merges ? merge(&tracing, result)
                  : job->request->sums ? form_sums(&tracing, result)
                                       : run_shard(&tracing, result, is_formed));
     free(tracing.folder);
+    pilots_clear(&tracing.pilots);
     return status;
 }

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/progress.h"
 #include "elements/elements.h"
+#include "inject/accuracy.h"
 #include "inject/compose.h"
 #include "scene/placement.h"
 
@@ -177,9 +178,13 @@ sonject_status element_echoes_compute(struct report *report, struct device *devi
                                       const sonject_element_layout *layout, float *series)
 {
     struct injection_setup setup;
+    struct injection_input with = *input;
+    struct pilots pilots;
     CHECK(check_scene(report, scene));
-    sonject_status status = injection_setup_init(&setup, report, device, scene, input);
+    CHECK(pilots_find(&pilots, report, device, &scene, &with, progress, user));
+    sonject_status status = injection_setup_init(&setup, report, device, scene, &with);
     THEN(status, trace_and_hear(&setup, input->is_complex, progress, user, layout, series));
     injection_setup_clear(&setup);
+    pilots_clear(&pilots);
     return status;
 }

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "base/progress.h"
+#include "inject/accuracy.h"
 #include "inject/compose.h"
 #include "inject/windows.h"
 #include "scene/point_response.h"
@@ -248,10 +249,9 @@ static sonject_status inject_windows(struct prepared *prepared, struct prepared 
     return status;
 }
 
-sonject_status injection_run(struct report *report, struct device *device,
-                             const struct scene *scene, const struct injection_input *input,
-                             sonject_progress_function progress, void *user,
-                             struct injection_result *result)
+static sonject_status run(struct report *report, struct device *device, const struct scene *scene,
+                          const struct injection_input *input, sonject_progress_function progress,
+                          void *user, struct injection_result *result)
 {
     struct prepared prepared, other;
     struct prepared *traced = input->traced ? &other : &prepared;
@@ -268,6 +268,7 @@ sonject_status injection_run(struct report *report, struct device *device,
         for (size_t i = 0; i < result->window_count; i++)
             injection_result_paste(result, &result->windows[i]);
         fill_statistics(&prepared, result);
+        result->statistics.ray_scale = traced->setup.tracer.scene->injection.ray_scale;
         injection_result_turn_back(result, &prepared.setup.tracer.view);
     }
     prepared_clear(&prepared);
@@ -277,10 +278,27 @@ sonject_status injection_run(struct report *report, struct device *device,
     return status;
 }
 
-sonject_status injection_trace(struct report *report, struct device *device,
-                               const struct scene *scene, const struct injection_input *input,
-                               const struct impulse_sink *sink, sonject_progress_function progress,
-                               void *user, struct trace_counts *counts)
+sonject_status injection_run(struct report *report, struct device *device,
+                             const struct scene *scene, const struct injection_input *input,
+                             sonject_progress_function progress, void *user,
+                             struct injection_result *result)
+{
+    struct injection_input with = *input;
+    struct pilots own;
+    memset(result, 0, sizeof *result);
+    CHECK(pilots_find(&own, report, device, &scene, &with, progress, user));
+    const sonject_status status = run(report, device, scene, &with, progress, user, result);
+    /* what another response forms is not what the pilots formed */
+    if (status == SONJECT_OK && with.pilots && !input->traced)
+        result->statistics.energy_error = pilots_error_of(with.pilots, result);
+    pilots_clear(&own);
+    return status;
+}
+
+static sonject_status trace(struct report *report, struct device *device, const struct scene *scene,
+                            const struct injection_input *input, const struct impulse_sink *sink,
+                            sonject_progress_function progress, void *user,
+                            struct trace_counts *counts)
 {
     struct prepared prepared;
     sonject_status status = prepare(&prepared, report, device, scene, input);
@@ -296,5 +314,18 @@ sonject_status injection_trace(struct report *report, struct device *device,
     THEN(status, end_tracing(&prepared.setup.tracer));
     *counts = prepared.setup.tracer.counts;
     prepared_clear(&prepared);
+    return status;
+}
+
+sonject_status injection_trace(struct report *report, struct device *device,
+                               const struct scene *scene, const struct injection_input *input,
+                               const struct impulse_sink *sink, sonject_progress_function progress,
+                               void *user, struct trace_counts *counts)
+{
+    struct injection_input with = *input;
+    struct pilots own;
+    CHECK(pilots_find(&own, report, device, &scene, &with, progress, user));
+    const sonject_status status = trace(report, device, scene, &with, sink, progress, user, counts);
+    pilots_clear(&own);
     return status;
 }

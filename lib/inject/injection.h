@@ -28,6 +28,7 @@ struct injection_input {
     double ceiling; /* amplitude from which on the image's file stores its largest number; 0: not
                        known */
     struct checkpoint *checkpoint; /* how tracing is cut; NULL: not at all */
+    const struct pilots *pilots; /* that told the number of rays; NULL: none did yet */
     bool is_whole;              /* all of the patch is traced, whatever objects can change of it */
     const struct scene *traced; /* NULL, or the scene of another response that is traced: its
                                    grids must be fine and wide enough */

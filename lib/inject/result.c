@@ -39,7 +39,7 @@ sonject_status injection_result_init(struct injection_result *result, const stru
     result->is_complex = is_complex;
     result->object_count = tracer->scene->object_count;
     statistics->level_change_db = statistics->histogram_distance = statistics->correlation = NAN;
-    statistics->input_contrast = statistics->output_contrast = NAN;
+    statistics->input_contrast = statistics->output_contrast = statistics->energy_error = NAN;
     statistics->struct_size = sizeof *statistics;
     result->highlight = allocate_array(pixels, 4);
     result->windows = allocate_array(windows, sizeof *result->windows);

@@ -433,7 +433,9 @@ typedef struct sonject_injection_params {
     double noise_floor_db; /* noise energy over local mean seabed energy */
     double influence_db;   /* composite: a pixel is the target's when the change that it makes is
                               above this level over the seabed */
-    double ray_scale;
+    double ray_scale; /* factor on the number of rays, unless there is an accuracy */
+    double accuracy;  /* relative standard error of expected energies, which decides the number of
+                         rays; 0: ray_scale does */
     uint64_t seed;
     uint32_t interactions;     /* surfaces that a path may meet */
     uint32_t estimator;        /* sonject_estimator */

@@ -15,6 +15,7 @@ static const struct quantity_text {
     const char *si;    /* behind a number in a message */
 } quantity_texts[] = {
     [QUANTITY_NUMBER] = {"number", ""},
+    [QUANTITY_FRACTION] = {"%, or a fraction", ""},
     [QUANTITY_LENGTH] = {"m, km, cm, mm", " m"},
     [QUANTITY_FREQUENCY] = {"Hz, kHz, MHz", " Hz"},
     [QUANTITY_SPEED] = {"m/s, km/s", " m/s"},

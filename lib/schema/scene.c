@@ -381,6 +381,9 @@ static void relate_injection(struct check *check, const void *structure)
         injection->mode != SONJECT_MODE_RESYNTHESISE)
         check_relation(check, "estimator", "mode",
                        "brute_force traces the whole patch and needs mode: resynthesise");
+    if (injection->accuracy > 0.0 && injection->ray_scale != 1.0)
+        check_relation(check, "rays", "accuracy",
+                       "accuracy decides the number of rays: take one of them away");
 }
 
 static const struct field match_fields[] = {
@@ -415,6 +418,10 @@ static const struct field injection_fields[] = {
      QUANTITY(influence_db, DECIBEL), WITHIN(-200.0, 0.0), .preset = -40.0},
     {"rays", "factor on the number of rays", QUANTITY(ray_scale, NUMBER),
      WITHIN(1.0 / 64.0, 4096.0), .per = " times the usual number", .preset = 1.0},
+    {"accuracy",
+     "standard error of the energies that targets change, which decides the number of rays instead "
+     "of rays",
+     QUANTITY(accuracy, FRACTION), WITHIN(0.001, 1.0), NONE_IF_ZERO},
     {"seed", "of all random numbers of the injection", COUNT64(seed, 0, 0), .preset = 1},
     {"interactions", "surfaces that a path may meet, 1 to 8",
      COUNT32(interactions, 1, SCENE_INTERACTIONS_MAX), .per = " surfaces", .preset = 1},

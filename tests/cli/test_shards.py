@@ -211,3 +211,28 @@ def test_shards_of_bands_are_merged_at_once(sonject, scene, tmp_path):
         assert json.loads((band / "run.json").read_text())["band"] == band.name
     answer = sonject("merge", "parts")
     assert answer.returncode == 0 and "already holds" in answer.stderr
+
+
+def test_an_accuracy_takes_as_many_rays_in_shards_and_stages(sonject, scene, tmp_path):
+    """Pilots tell the number of rays before anything is shared out."""
+    asked = ["--set", "injection.accuracy=4 %"]
+    answer = sonject("run", scene, "-o", "one", "--verbose", *asked)
+    assert answer.returncode == 0
+    rays = json.loads((tmp_path / "one/run.json").read_text())["options"]["ray_scale"]
+    error = json.loads((tmp_path / "one/truth.json").read_text())["energy_error"]
+    assert rays != 1 and 0 < error < 0.04
+    assert f"accuracy: energies of changed pixels are known to {100 * error:.2g} %" in answer.stderr
+    for shard in ("1/2", "2/2"):
+        command(sonject, "run", scene, "-o", "parts", "--shard", shard, *asked)
+    command(sonject, "merge", "parts")
+    command(sonject, "trace", scene, "-o", "impulses.sums", *asked)
+    command(sonject, "form", "impulses.sums", "-o", "formed")
+    whole = contents(tmp_path / "one")
+    assert contents(tmp_path / "parts") == whole
+    assert contents(tmp_path / "formed") == whole
+    command(sonject, "run", scene, "-o", "given", "--set", f"injection.rays={rays}")
+    given = json.loads((tmp_path / "given/truth.json").read_text())
+    assert given["energy_error"] is None
+    assert (tmp_path / "given/energy.tif").read_bytes() == (tmp_path / "one/energy.tif").read_bytes()
+    assert_refused(sonject("run", scene, "-o", "both", *asked, "--set", "injection.rays=2"), 3,
+                   "injection.rays: accuracy decides the number of rays")

@@ -343,6 +343,7 @@ static const struct key_case {
     {"injection.noise_floor", "-30 dB", S(DOUBLE, injection.noise_floor_db), .number = -30.0},
     {"injection.influence", "-35 dB", S(DOUBLE, injection.influence_db), .number = -35.0},
     {"injection.rays", "0.5", S(DOUBLE, injection.ray_scale), .number = 0.5},
+    {"injection.accuracy", "2 %", S(DOUBLE, injection.accuracy), .number = 0.02},
     {"injection.seed", "2199023255552", S(U64, injection.seed), .number = 2199023255552.0},
     {"injection.interactions", "3", S(U32, injection.interactions), .number = 3.0},
     {"injection.estimator", "brute_force", S(U32, injection.estimator),

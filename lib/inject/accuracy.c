@@ -1,0 +1,149 @@
+#include "inject/accuracy.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/progress.h"
+
+#define REACH       2      /* pixels */
+#define PILOT_SCALE 0.5    /* of the usual number of rays; pilots of fewer foretell badly */
+#define MARGIN      1.15   /* pilots foretell the error within 12 % */
+#define MOST_RAYS   4096.0 /* as injection.rays */
+#define SCALE_STEPS 64.0   /* so that run.json has a short number */
+
+/* The number of rays of a result over that of both pilots. */
+static double rays_of_result(const struct pilots *pilots)
+{
+    return pilots->scene->injection.ray_scale / (2.0 * PILOT_SCALE);
+}
+
+/* The mean of both pilots' energies over the pixels of a window about one of them: single ones may
+ * be missed by few rays, and their neighbours within the point response share their fate. */
+static double energy_about(const struct pilots *pilots, size_t window, size_t row, size_t column)
+{
+    const struct injected_window *const one = &pilots->result[0].windows[window];
+    const float *const other = pilots->result[1].windows[window].energy;
+    const size_t first_row = row > REACH ? row - REACH : 0;
+    const size_t first_column = column > REACH ? column - REACH : 0;
+    double sum = 0.0, count = 0.0;
+    for (size_t i = first_row; i <= row + REACH && i < one->at.rows; i++)
+        for (size_t k = first_column; k <= column + REACH && k < one->at.columns; k++) {
+            sum += one->energy[i * one->at.columns + k] + other[i * one->at.columns + k];
+            count += 2.0;
+        }
+    return sum / count;
+}
+
+/* Mean square of what a result differs from the mean of both pilots by, or, where that is NULL, the
+ * pilots from each other: over the energy about and the noise, over the pixels that the pilots
+ * change. NaN where there are none. */
+static double mean_square_difference(const struct pilots *pilots,
+                                     const struct injection_result *result)
+{
+    const struct injection_result *const one = &pilots->result[0], *const two = &pilots->result[1];
+    const double noise_ratio = pow(10.0, one->statistics.noise_floor_db / 10.0);
+    double sum = 0.0, count = 0.0;
+    for (size_t k = 0; k < one->window_count; k++) {
+        const struct window at = one->windows[k].at;
+        for (size_t i = 0; i < at.rows * at.columns; i++) {
+            const size_t row = i / at.columns, column = i % at.columns;
+            const size_t pixel = (at.first_row + row) * one->columns + at.first_column + column;
+            if (!one->influence[pixel] && !two->influence[pixel])
+                continue;
+            const double a = one->windows[k].energy[i], b = two->windows[k].energy[i];
+            const double difference = result ? result->windows[k].energy[i] - 0.5 * (a + b) : a - b;
+            const double ratio =
+                difference / (energy_about(pilots, k, row, column) +
+                              noise_ratio * one->seabed_energy[at.first_column + column]);
+            sum += ratio * ratio;
+            count += 1.0;
+        }
+    }
+    return sum / count;
+}
+
+double pilots_error_of(const struct pilots *pilots, const struct injection_result *result)
+{
+    if (result->window_count != pilots->result[0].window_count)
+        return NAN;
+    /* variances go with one over the number of rays */
+    return sqrt(mean_square_difference(pilots, result) / (1.0 + rays_of_result(pilots)));
+}
+
+static sonject_status choose_rays(struct pilots *pilots, struct report *report,
+                                  const struct scene *scene)
+{
+    const double accuracy = scene->injection.accuracy;
+    const double variance = 0.5 * mean_square_difference(pilots, NULL); /* of one pilot */
+    const double wanted = PILOT_SCALE * MARGIN * MARGIN * variance / (accuracy * accuracy);
+    if (wanted > MOST_RAYS) {
+        const double least = accuracy * sqrt(wanted / MOST_RAYS);
+        return scene_locate(scene, report,
+                            report_failure(report, SONJECT_ERROR_INPUT,
+                                           "takes %.0f times the usual number of rays, and at most "
+                                           "%g times can be traced: ask for %.2g %% or more",
+                                           wanted, MOST_RAYS, 100.0 * least),
+                            "injection.accuracy");
+    }
+    /* where nothing is changed, nothing is asked */
+    pilots->scene->injection.ray_scale =
+        isnan(wanted) ? 1.0 : fmax(ceil(wanted * SCALE_STEPS) / SCALE_STEPS, PILOT_SCALE);
+    pilots->scene->injection.seed = scene->injection.seed;
+    return SONJECT_OK;
+}
+
+static sonject_status run_pilots(struct pilots *pilots, struct report *report,
+                                 struct device *device, const struct scene *scene,
+                                 const struct injection_input *input,
+                                 sonject_progress_function progress, void *user)
+{
+    /* random numbers that no run of a user's has by chance */
+    static const uint64_t seeds[2] = {0x9e3779b97f4a7c15u, 0xd1b54a32d192ed03u};
+    struct progress_share none = {progress, user, 0.0, 0.0};
+    struct injection_input whole = *input;
+    struct scene *pilot = pilots->scene = allocate_array(1, sizeof *pilot);
+    sonject_status status = SONJECT_OK;
+    CHECK_MEMORY(report, pilot, "a pilot");
+    *pilot = *scene;
+    pilot->injection.accuracy = 0.0;
+    pilot->injection.ray_scale = PILOT_SCALE;
+    whole.checkpoint = NULL;
+    whole.traced = NULL;
+    for (int i = 0; status == SONJECT_OK && i < 2; i++) {
+        pilot->injection.seed = scene->injection.seed ^ seeds[i];
+        status = injection_run(report, device, pilot, &whole, progress_share_tell, &none,
+                               &pilots->result[i]);
+        free(pilots->result[i].image);
+        pilots->result[i].image = NULL;
+    }
+    return status;
+}
+
+sonject_status pilots_find(struct pilots *own, struct report *report, struct device *device,
+                           const struct scene **scene, struct injection_input *input,
+                           sonject_progress_function progress, void *user)
+{
+    const struct scene **traced = input->traced ? &input->traced : scene;
+    memset(own, 0, sizeof *own);
+    if (!((*traced)->injection.accuracy > 0.0))
+        return SONJECT_OK;
+    sonject_status status = run_pilots(own, report, device, *traced, input, progress, user);
+    THEN(status, choose_rays(own, report, *traced));
+    if (status != SONJECT_OK) {
+        pilots_clear(own);
+        return status;
+    }
+    *traced = own->scene;
+    input->pilots = own;
+    return SONJECT_OK;
+}
+
+void pilots_clear(struct pilots *pilots)
+{
+    for (int i = 0; i < 2; i++)
+        injection_result_clear(&pilots->result[i]);
+    free(pilots->scene);
+    memset(pilots, 0, sizeof *pilots);
+}
