@@ -90,7 +90,7 @@ static sonject_status choose_rays(struct pilots *pilots, struct report *report,
     /* where nothing is changed, nothing is asked */
     pilots->scene->injection.ray_scale =
         isnan(wanted) ? 1.0 : fmax(ceil(wanted * SCALE_STEPS) / SCALE_STEPS, PILOT_SCALE);
-    pilots->scene->injection.seed = scene->injection.seed;
+    pilots->scene->injection.pilot = 0;
     return SONJECT_OK;
 }
 
@@ -99,8 +99,8 @@ static sonject_status run_pilots(struct pilots *pilots, struct report *report,
                                  const struct injection_input *input,
                                  sonject_progress_function progress, void *user)
 {
-    /* random numbers that no run of a user's has by chance */
-    static const uint64_t seeds[2] = {0x9e3779b97f4a7c15u, 0xd1b54a32d192ed03u};
+    /* what grows on objects is the same in both */
+    static const uint64_t turns[2] = {0x9e3779b97f4a7c15u, 0xd1b54a32d192ed03u};
     struct progress_share none = {progress, user, 0.0, 0.0};
     struct injection_input whole = *input;
     struct scene *pilot = pilots->scene = allocate_array(1, sizeof *pilot);
@@ -112,7 +112,7 @@ static sonject_status run_pilots(struct pilots *pilots, struct report *report,
     whole.checkpoint = NULL;
     whole.traced = NULL;
     for (int i = 0; status == SONJECT_OK && i < 2; i++) {
-        pilot->injection.seed = scene->injection.seed ^ seeds[i];
+        pilot->injection.pilot = turns[i];
         status = injection_run(report, device, pilot, &whole, progress_share_tell, &none,
                                &pilots->result[i]);
         free(pilots->result[i].image);

@@ -4,8 +4,8 @@
 
 #include "inject/injection.h"
 
-/* Two injections of the scene with half the usual number of rays each and random numbers of their
- * own. How far they differ tells how many rays the scene's accuracy takes. Neither depends on
+/* Two injections of the scene with half the usual number of rays each, whose random numbers are
+ * their own. How far they differ tells how many rays the scene's accuracy takes. Neither depends on
  * device, shard or checkpoint, so every part of a run finds the same number. */
 struct pilots {
     struct injection_result result[2]; /* without their images */

@@ -5,11 +5,17 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "scene/shapes/shape.h"
 #include "trace/fan.h"
 #include "trace/object_buffer.h"
 
-#define STRIP_WAVELENGTHS  0.25 /* widest sub-strip: wider ones alias glints */
-#define SMALL_WAVELENGTHS  2.0  /* parts of smaller radius have few rays, and may have more */
+#define STRIP_WAVELENGTHS 0.25 /* widest sub-strip: wider ones alias glints */
+#define SMALL_WAVELENGTHS 2.0  /* parts of smaller radius have few rays, and may have more */
+/* Of the whole path from a cell to the next, across the ray, on flat faces: their edges' echoes
+ * then keep all but 0.2 dB. Faces that are seen so flat that it takes more than so many times the
+ * usual rays return little. */
+#define EDGE_WAVELENGTHS   0.1
+#define EDGE_FINER_MOST    16.0
 #define BINS_PER_DEVIATION 16.0 /* linear sharing between bins then errs by 5e-4 */
 #define IMAGE_STRIPS       64   /* of a launch: there may be dozens of pairs at a time */
 
@@ -40,6 +46,37 @@ void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_
     fan_aim_at_part(fan, tracer, part, path, cell);
     fan->strata = (uint32_t)ceil(fan->strip_width / cell - 1e-6);
     fan->only_object = (int32_t)part;
+}
+
+/* The gradient across the ray, of the whole path, on a flat face of a part; 0: it is not one. */
+static double face_gradient(const double normal[3], double grazing_rad)
+{
+    const double cosine = normal[1] * cos(grazing_rad) - normal[2] * sin(grazing_rad);
+    const double across = normal[1] * sin(grazing_rad) + normal[2] * cos(grazing_rad);
+    return across == 0.0 ? 0.0 : 2.0 * fabs(across / cosine);
+}
+
+/* How much finer than usual cells have to be across the ray for the edges of flat faces. */
+static double finer_for_edges(const struct tracer *tracer, uint32_t part,
+                              const struct ray_path *path, double cell_m)
+{
+    const struct placement *placement = &tracer->placements[part];
+    const struct shape_size *size = &placement->size;
+    const double grazing = ray_path_grazing(path, placement->centre[1], placement->centre[2]);
+    const uint32_t flat = shape_of(placement->shape)->flat;
+    double steepest = 0.0;
+    for (uint32_t axis = 0; axis < 3; axis++)
+        if (flat & (FLAT_ALONG_X << axis))
+            steepest = fmax(steepest, face_gradient(placement->axes[axis], grazing));
+    for (uint32_t i = 0; i < size->cut_count; i++) {
+        double normal[3] = {0.0, 0.0, 0.0};
+        for (int axis = 0; axis < 3; axis++)
+            for (int k = 0; k < 3; k++)
+                normal[k] += size->cuts[i].normal[axis] * placement->axes[axis][k];
+        steepest = fmax(steepest, face_gradient(normal, grazing));
+    }
+    const double finer = cell_m * steepest / (EDGE_WAVELENGTHS * tracer->view.wavelength_m);
+    return fmin(fmax(finer, 1.0), EDGE_FINER_MOST);
 }
 
 static void choose_quanta(struct smooth_trace *trace, const struct tracer *tracer)
@@ -104,8 +141,10 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
     }
     const bool is_small =
         tracer->placements[part].bounding_radius_m < SMALL_WAVELENGTHS * tracer->view.wavelength_m;
-    glint_fan_init(fan, tracer, part, pair ? &pair->outgoing->path : &sonar.path,
-                   is_small ? 4.0 : 1.0);
+    const struct ray_path *path = pair ? &pair->outgoing->path : &sonar.path;
+    glint_fan_init(fan, tracer, part, path, is_small ? 4.0 : 1.0);
+    const double cell = (double)fan->strip_width / fan->strata;
+    fan_aim_at_part(fan, tracer, part, path, cell / finer_for_edges(tracer, part, path, cell));
     /* cells begin up to half of one off (cell_shift_of) */
     fan->first_elevation -= 0.5f * fan->elevation_step;
     fan->rays++;

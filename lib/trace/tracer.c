@@ -46,6 +46,7 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
     const double row_of_strip0 = 0.5 / grid->strips_per_row - 0.5;
     const double bins_per_processor_metre = grid->bins_per_pixel / view->column_spacing_m;
     const double cycles = 2.0 * range / view->wavelength_m;
+    const uint64_t seed = tracer->scene->injection.seed ^ tracer->scene->injection.pilot;
     memset(fan, 0, sizeof *fan);
     fan->reference_range = (float)range;
     fan->cosine_depression = (float)cos(grazing);
@@ -68,8 +69,8 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
     fan->cycles_per_metre = (float)(2.0 / view->wavelength_m);
     fan->first_cycles = (float)(cycles - floor(cycles));
     fan->inverse_wavelength = (float)(1.0 / view->wavelength_m);
-    fan->seed_low = (uint32_t)(tracer->scene->injection.seed & 0xffffffffu);
-    fan->seed_high = (uint32_t)(tracer->scene->injection.seed >> 32);
+    fan->seed_low = (uint32_t)(seed & 0xffffffffu);
+    fan->seed_high = (uint32_t)(seed >> 32);
     fan->objects = (int32_t)tracer->part_count;
     fan->segments = 1;
     fan->track_strip = (int32_t)(view->first_row * grid->strips_per_row);

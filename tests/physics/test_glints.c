@@ -417,6 +417,32 @@ CLAIM(faces_seen_flat_return_nothing_but_edges)
     }
 }
 
+/* The far edge of a level face that ends along the track: what is left of the integral over the
+ * face is W tan(grazing) / 4 pi, here of all sub-strips, whatever the number of rays. */
+CLAIM(far_edges_return_what_is_left_of_the_face)
+{
+    static const double altitudes[] = {25.0, 15.0, 11.0, 8.5};
+    static const double scales[] = {0.5, 1.0, 16.0};
+    for (size_t i = 0; i < COUNT(altitudes); i++)
+        for (size_t k = 0; k < COUNT(scales); k++) {
+            struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+            sonject_object_params *box = sea_add(sea, SHAPE_BOX, 1.0, 1.2, 0.0);
+            box->height_m = 0.4;
+            sea->sonar->altitude_m = altitudes[i];
+            sea->injection->ray_scale = scales[k];
+            sea_ready(sea);
+            const double below = altitudes[i] - 0.4;
+            const double ground = sea_centre(sea, 0)[1] + 0.6;
+            const double expected = below / ground / (4.0 * PI);
+            const struct line line = sea_line(sea, 0);
+            const double echo = cabs(line_at(sea, &line, hypot(ground, below)));
+            print_message("grazing %.1f degrees, %g times the rays: ",
+                          atan2(below, ground) * 180.0 / PI, scales[k]);
+            expect_close("far edge over the closed form, dB",
+                         decibels_of_amplitude(echo / expected), 0.0, 0.5);
+        }
+}
+
 /* What is left where a smooth convex body returns nothing: -78 dB re 1 m^2, where a seabed pixel at
  * -27 dB lies at -73. */
 CLAIM(little_is_left_beside_a_glint)

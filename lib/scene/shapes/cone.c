@@ -28,11 +28,13 @@ static void init(struct shape_size *size, const sonject_object_params *object)
 }
 
 const struct shape shape_cone = {.needs = SHAPE_HAS_DIAMETER | SHAPE_HAS_HEIGHT,
+                                 .flat = FLAT_ALONG_Z,
                                  .init = init,
                                  .extent = extent,
                                  .record = record};
 const struct shape shape_truncated_cone = {.needs = SHAPE_HAS_DIAMETER | SHAPE_HAS_HEIGHT |
                                                     SHAPE_HAS_TOP_DIAMETER,
+                                           .flat = FLAT_ALONG_Z,
                                            .init = init,
                                            .extent = extent,
                                            .record = record};

@@ -87,6 +87,7 @@ static void record(struct object_record *record, const struct shape_size *size)
 
 const struct shape shape_cylinder = {.needs = SHAPE_HAS_LENGTH | SHAPE_HAS_DIAMETER,
                                      .may_have = SHAPE_HAS_ENDS,
+                                     .flat = FLAT_ALONG_X,
                                      .check = check,
                                      .init = init,
                                      .extent = extent,

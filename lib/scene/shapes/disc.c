@@ -8,4 +8,5 @@ static double extent(const struct shape_size *size, const double v[3])
     return size->radius_m * hypot(v[0], v[1]);
 }
 
-const struct shape shape_disc = {.needs = SHAPE_HAS_DIAMETER, .extent = extent};
+const struct shape shape_disc = {
+    .needs = SHAPE_HAS_DIAMETER, .flat = FLAT_ALONG_Z, .extent = extent};

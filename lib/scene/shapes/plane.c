@@ -16,5 +16,7 @@ static void init(struct shape_size *size, const sonject_object_params *object)
     size->radius_about_nose_m = size->half_width_m;
 }
 
-const struct shape shape_plane = {
-    .needs = SHAPE_HAS_LENGTH | SHAPE_HAS_WIDTH, .init = init, .extent = extent};
+const struct shape shape_plane = {.needs = SHAPE_HAS_LENGTH | SHAPE_HAS_WIDTH,
+                                  .flat = FLAT_ALONG_Z,
+                                  .init = init,
+                                  .extent = extent};
