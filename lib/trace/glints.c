@@ -16,6 +16,7 @@
  * usual rays return little. */
 #define EDGE_WAVELENGTHS   0.1
 #define EDGE_FINER_MOST    16.0
+#define FACET_WAVELENGTHS  2.0
 #define BINS_PER_DEVIATION 16.0 /* linear sharing between bins then errs by 5e-4 */
 #define IMAGE_STRIPS       64   /* of a launch: there may be dozens of pairs at a time */
 
@@ -48,34 +49,71 @@ void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_
     fan->only_object = (int32_t)part;
 }
 
-/* The gradient across the ray, of the whole path, on a flat face of a part; 0: it is not one. */
-static double face_gradient(const double normal[3], double grazing_rad)
+/* A part's own vector in view coordinates. */
+static void turn_to_view(double turned[3], const struct placement *placement, const double own[3])
 {
+    for (int k = 0; k < 3; k++)
+        turned[k] = own[0] * placement->axes[0][k] + own[1] * placement->axes[1][k] +
+                    own[2] * placement->axes[2][k];
+}
+
+/* The gradient across the ray, of the whole path, on a flat face of a part, whose normal (its own,
+ * of any length) is given; 0 where there is none. */
+static double face_gradient(const struct placement *placement, const double own_normal[3],
+                            double grazing_rad)
+{
+    double normal[3];
+    turn_to_view(normal, placement, own_normal);
     const double cosine = normal[1] * cos(grazing_rad) - normal[2] * sin(grazing_rad);
     const double across = normal[1] * sin(grazing_rad) + normal[2] * cos(grazing_rad);
     return across == 0.0 ? 0.0 : 2.0 * fabs(across / cosine);
+}
+
+/* The steepest gradient of a mesh's facets that have a side of this length: smaller ones are part
+ * of something round. */
+static double facet_gradient(const struct placement *placement, double least_m, double grazing_rad)
+{
+    const struct mesh *mesh = placement->size.mesh;
+    double steepest = 0.0;
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        const uint32_t *corners = &mesh->corners[3 * i];
+        double sides[3][3], longest = 0.0, normal[3];
+        for (int side = 0; side < 3; side++) {
+            const float *from = &mesh->vertices[3 * corners[side]];
+            const float *to = &mesh->vertices[3 * corners[(side + 1) % 3]];
+            for (int k = 0; k < 3; k++)
+                sides[side][k] = (double)to[k] - from[k];
+            longest =
+                fmax(longest, sides[side][0] * sides[side][0] + sides[side][1] * sides[side][1] +
+                                  sides[side][2] * sides[side][2]);
+        }
+        if (longest < least_m * least_m)
+            continue;
+        for (int k = 0; k < 3; k++)
+            normal[k] = sides[0][(k + 1) % 3] * sides[1][(k + 2) % 3] -
+                        sides[0][(k + 2) % 3] * sides[1][(k + 1) % 3];
+        steepest = fmax(steepest, face_gradient(placement, normal, grazing_rad));
+    }
+    return steepest;
 }
 
 /* How much finer than usual cells have to be across the ray for the edges of flat faces. */
 static double finer_for_edges(const struct tracer *tracer, uint32_t part,
                               const struct ray_path *path, double cell_m)
 {
+    static const double own[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
     const struct placement *placement = &tracer->placements[part];
     const struct shape_size *size = &placement->size;
+    const double wavelength = tracer->view.wavelength_m;
     const double grazing = ray_path_grazing(path, placement->centre[1], placement->centre[2]);
-    const uint32_t flat = shape_of(placement->shape)->flat;
-    double steepest = 0.0;
+    double steepest =
+        size->mesh ? facet_gradient(placement, FACET_WAVELENGTHS * wavelength, grazing) : 0.0;
     for (uint32_t axis = 0; axis < 3; axis++)
-        if (flat & (FLAT_ALONG_X << axis))
-            steepest = fmax(steepest, face_gradient(placement->axes[axis], grazing));
-    for (uint32_t i = 0; i < size->cut_count; i++) {
-        double normal[3] = {0.0, 0.0, 0.0};
-        for (int axis = 0; axis < 3; axis++)
-            for (int k = 0; k < 3; k++)
-                normal[k] += size->cuts[i].normal[axis] * placement->axes[axis][k];
-        steepest = fmax(steepest, face_gradient(normal, grazing));
-    }
-    const double finer = cell_m * steepest / (EDGE_WAVELENGTHS * tracer->view.wavelength_m);
+        if (shape_of(placement->shape)->flat & (FLAT_ALONG_X << axis))
+            steepest = fmax(steepest, face_gradient(placement, own[axis], grazing));
+    for (uint32_t i = 0; i < size->cut_count; i++)
+        steepest = fmax(steepest, face_gradient(placement, size->cuts[i].normal, grazing));
+    const double finer = cell_m * steepest / (EDGE_WAVELENGTHS * wavelength);
     return fmin(fmax(finer, 1.0), EDGE_FINER_MOST);
 }
 

@@ -107,8 +107,5 @@ void shape_size_of_mesh(struct shape_size *size, const struct mesh *mesh)
     size->bounding_radius_m = (1.0 + 1e-6) * mesh->radius_m;
 }
 
-const struct shape shape_mesh = {.needs = SHAPE_HAS_MESH,
-                                 .flat = FLAT_ALONG_Z,
-                                 .extent = extent,
-                                 .cut_extent = cut_extent,
-                                 .is_left = is_left};
+const struct shape shape_mesh = {
+    .needs = SHAPE_HAS_MESH, .extent = extent, .cut_extent = cut_extent, .is_left = is_left};

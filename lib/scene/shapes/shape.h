@@ -66,8 +66,7 @@ extern const struct shape_key_name {
     uint32_t bit;
 } shape_keys[];
 
-/* Own axes that flat faces stand across; of a mesh or code, whose faces are not known, what lies
- * level when the object does. */
+/* Own axes that flat faces stand across. */
 enum flat_axis {
     FLAT_ALONG_X = 1,
     FLAT_ALONG_Y = 2,
@@ -78,7 +77,8 @@ enum flat_axis {
 struct shape {
     uint32_t needs;    /* bits of enum shape_key */
     uint32_t may_have; /* besides those */
-    uint32_t flat;     /* bits of enum flat_axis */
+    uint32_t flat;     /* bits of enum flat_axis; a mesh has its facets, those of code are not known
+                        */
     /* Relations between its sizes; NULL: none. */
     void (*check)(struct check *check, const sonject_object_params *object);
     /* Sizes and radii. Sizes come in halved; both bounding radii start at radius_m, the least

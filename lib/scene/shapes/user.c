@@ -37,11 +37,8 @@ static bool is_left(const struct shape_size *size)
     return shape_is_left(size, SHAPE_BOX) && shape_is_left(&sphere, SHAPE_SPHERE);
 }
 
-const struct shape shape_user = {.needs = SHAPE_HAS_CODE,
-                                 .flat = FLAT_ALONG_Z,
-                                 .extent = extent,
-                                 .cut_extent = extent,
-                                 .is_left = is_left};
+const struct shape shape_user = {
+    .needs = SHAPE_HAS_CODE, .extent = extent, .cut_extent = extent, .is_left = is_left};
 
 static sonject_status find_snippet(struct user_shapes *shapes, struct report *report,
                                    const sonject_user_shape_params *shape, uint32_t *number)
