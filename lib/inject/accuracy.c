@@ -90,7 +90,7 @@ static sonject_status choose_rays(struct pilots *pilots, struct report *report,
     /* where nothing is changed, nothing is asked */
     pilots->scene->injection.ray_scale =
         isnan(wanted) ? 1.0 : fmax(ceil(wanted * SCALE_STEPS) / SCALE_STEPS, PILOT_SCALE);
-    pilots->scene->injection.pilot = 0;
+    pilots->scene->injection.ray_seed = scene->injection.ray_seed;
     return SONJECT_OK;
 }
 
@@ -112,7 +112,7 @@ static sonject_status run_pilots(struct pilots *pilots, struct report *report,
     whole.checkpoint = NULL;
     whole.traced = NULL;
     for (int i = 0; status == SONJECT_OK && i < 2; i++) {
-        pilot->injection.pilot = turns[i];
+        pilot->injection.ray_seed = scene->injection.ray_seed ^ turns[i];
         status = injection_run(report, device, pilot, &whole, progress_share_tell, &none,
                                &pilots->result[i]);
         free(pilots->result[i].image);

@@ -437,7 +437,7 @@ typedef struct sonject_injection_params {
     double accuracy;  /* relative standard error of expected energies, which decides the number of
                          rays; 0: ray_scale does */
     uint64_t seed;
-    uint64_t pilot;            /* turns the rays' random numbers alone into others; 0: not at all */
+    uint64_t ray_seed;         /* turns the rays' random numbers alone into others; no key */
     uint32_t interactions;     /* surfaces that a path may meet */
     uint32_t estimator;        /* sonject_estimator */
     bool order_energies;       /* keep the energy of each number of interactions (layers) */

@@ -46,7 +46,7 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
     const double row_of_strip0 = 0.5 / grid->strips_per_row - 0.5;
     const double bins_per_processor_metre = grid->bins_per_pixel / view->column_spacing_m;
     const double cycles = 2.0 * range / view->wavelength_m;
-    const uint64_t seed = tracer->scene->injection.seed ^ tracer->scene->injection.pilot;
+    const uint64_t seed = tracer->scene->injection.seed ^ tracer->scene->injection.ray_seed;
     memset(fan, 0, sizeof *fan);
     fan->reference_range = (float)range;
     fan->cosine_depression = (float)cos(grazing);

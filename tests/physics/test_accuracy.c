@@ -38,7 +38,15 @@ static void lay_beam(struct sea *sea)
     add_capsule(sea);
 }
 
-static void (*const scenes[])(struct sea *) = {lay_one_interaction, lay_two_interactions, lay_beam};
+/* What grows on objects is the scene's, and no error of rays. */
+static void lay_fouled(struct sea *sea)
+{
+    add_capsule(sea);
+    sea_object(sea, 0)->fouling = (sonject_fouling_params){4.0, 0.05, 1e-3, 0.05};
+}
+
+static void (*const scenes[])(struct sea *) = {lay_one_interaction, lay_two_interactions, lay_beam,
+                                               lay_fouled};
 
 static struct sea *open_sea(size_t scene)
 {
@@ -87,7 +95,7 @@ static double error_of(const struct sea *sea, const struct injected *result,
     return sqrt(sum / count);
 }
 
-/* Results of one accuracy: seeds 100 and on. */
+/* Results of one accuracy, by rays of their own. */
 struct results {
     const struct injected *of_seed[SEEDS];
     double rays, told;
@@ -100,7 +108,7 @@ static struct results inject_to(struct sea *sea, const float *pixels, double acc
     sea->injection->accuracy = accuracy;
     sea->injection->ray_scale = 1.0;
     for (size_t seed = 0; seed < SEEDS; seed++) {
-        sea->injection->seed = 100 + seed;
+        sea->injection->ray_seed = 100 + seed;
         results.of_seed[seed] = sea_inject(sea, pixels, false);
         square += pow(results.of_seed[seed]->statistics.energy_error, 2.0) / SEEDS;
         results.rays = fmax(results.rays, results.of_seed[seed]->statistics.ray_scale);
@@ -133,7 +141,7 @@ CLAIM(rays_are_as_many_as_the_accuracy_takes)
         assert_true(fine.rays > coarse.rays);
         sea->injection->accuracy = 0.0;
         sea->injection->ray_scale = REFERENCE_RAYS * fine.rays;
-        sea->injection->seed = 200;
+        sea->injection->ray_seed = 200;
         const struct injected *reference = sea_inject(sea, pixels, false);
         assert_true(isnan(reference->statistics.energy_error));
         assert_true(reference->statistics.ray_scale == REFERENCE_RAYS * fine.rays);
