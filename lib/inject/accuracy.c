@@ -102,18 +102,18 @@ static sonject_status run_pilots(struct pilots *pilots, struct report *report,
     /* what grows on objects is the same in both */
     static const uint64_t turns[2] = {0x9e3779b97f4a7c15u, 0xd1b54a32d192ed03u};
     struct progress_share none = {progress, user, 0.0, 0.0};
-    struct injection_input whole = *input;
+    struct injection_input alone = *input;
     struct scene *pilot = pilots->scene = allocate_array(1, sizeof *pilot);
     sonject_status status = SONJECT_OK;
     CHECK_MEMORY(report, pilot, "a pilot");
     *pilot = *scene;
     pilot->injection.accuracy = 0.0;
     pilot->injection.ray_scale = PILOT_SCALE;
-    whole.checkpoint = NULL;
-    whole.traced = NULL;
+    alone.checkpoint = NULL;
+    alone.traced = NULL;
     for (int i = 0; status == SONJECT_OK && i < 2; i++) {
         pilot->injection.ray_seed = scene->injection.ray_seed ^ turns[i];
-        status = injection_run(report, device, pilot, &whole, progress_share_tell, &none,
+        status = injection_run(report, device, pilot, &alone, progress_share_tell, &none,
                                &pilots->result[i]);
         free(pilots->result[i].image);
         pilots->result[i].image = NULL;

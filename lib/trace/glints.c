@@ -12,7 +12,7 @@
 #define STRIP_WAVELENGTHS 0.25 /* widest sub-strip: wider ones alias glints */
 #define SMALL_WAVELENGTHS 2.0  /* parts of smaller radius have few rays, and may have more */
 /* Of the whole path from a cell to the next, across the ray, on flat faces: their edges' echoes
- * then keep all but 0.2 dB. Faces that are seen so flat that it takes more than so many times the
+ * then keep all but 0.4 dB. Faces that are seen so flat that it takes more than so many times the
  * usual rays return little. */
 #define EDGE_WAVELENGTHS   0.1
 #define EDGE_FINER_MOST    16.0
@@ -49,28 +49,23 @@ void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_
     fan->only_object = (int32_t)part;
 }
 
-/* A part's own vector in view coordinates. */
-static void turn_to_view(double turned[3], const struct placement *placement, const double own[3])
-{
-    for (int k = 0; k < 3; k++)
-        turned[k] = own[0] * placement->axes[0][k] + own[1] * placement->axes[1][k] +
-                    own[2] * placement->axes[2][k];
-}
-
-/* The gradient across the ray, of the whole path, on a flat face of a part, whose normal (its own,
- * of any length) is given; 0 where there is none. */
-static double face_gradient(const struct placement *placement, const double own_normal[3],
+/* The gradient across the ray, of the whole path, on a flat face of a part with this normal in the
+ * part's own axes, of any length; 0: there is no face. */
+static double face_gradient(const struct placement *placement, const double normal[3],
                             double grazing_rad)
 {
-    double normal[3];
-    turn_to_view(normal, placement, own_normal);
-    const double cosine = normal[1] * cos(grazing_rad) - normal[2] * sin(grazing_rad);
-    const double across = normal[1] * sin(grazing_rad) + normal[2] * cos(grazing_rad);
+    double y = 0.0, z = 0.0; /* of the normal in the view */
+    for (int axis = 0; axis < 3; axis++) {
+        y += normal[axis] * placement->axes[axis][1];
+        z += normal[axis] * placement->axes[axis][2];
+    }
+    const double cosine = y * cos(grazing_rad) - z * sin(grazing_rad);
+    const double across = y * sin(grazing_rad) + z * cos(grazing_rad);
     return across == 0.0 ? 0.0 : 2.0 * fabs(across / cosine);
 }
 
-/* The steepest gradient of a mesh's facets that have a side of this length: smaller ones are part
- * of something round. */
+/* The steepest gradient of a mesh's facets that have a side of this length: smaller ones are taken
+ * for parts of something round. */
 static double facet_gradient(const struct placement *placement, double least_m, double grazing_rad)
 {
     const struct mesh *mesh = placement->size.mesh;

@@ -85,7 +85,7 @@ SIZES = {
     "sonject_quicklook_params": 80,
     "sonject_run_params": 48,
     "sonject_scene_read_params": 32,
-    "sonject_statistics": 224,
+    "sonject_statistics": 240,
 }
 
 

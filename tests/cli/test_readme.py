@@ -196,6 +196,7 @@ FRAGMENTS = {
     "mesh: {file: rock.obj, unit: cm, up: y}": ("objects[0].", [ROCK], []),
     "smooth: 40 deg": ("objects[0].mesh.", [ROCK], []),
     "open: true": ("objects[0].mesh.", [ROCK], []),
+    "injection.accuracy: 2 %": ("", [], []),
     "order_energies: true": ("injection.", [], []),
     "estimator: brute_force": ("injection.", ["injection.mode=resynthesise", "sonar.transducer=5 cm"],
                                []),
