@@ -180,6 +180,8 @@ struct fan_record {
     float strip_width;                        /* m */
     float first_elevation;  /* lower edge of the fan, rad from the central direction, upward */
     float elevation_step;   /* rad a ray; of rays that have edges of their own the widest */
+    float edge_across;      /* wavelengths that half the path changes across a cell, up to which
+                               what edges lose by it is made up */
     RECORD_WORD rays;       /* in elevation, a strip and along-track stratum */
     RECORD_WORD first_ray;  /* number of the first for random numbers, so that a window's rays are
                                those of the patch */

@@ -242,13 +242,13 @@ FUNCTION void keep_multibounce_echo(const struct fan_record *fan,
     const vfloat lengthened = shift * shift / (SQUARE_ROOT(first * first + shift * shift) + first);
     const vfloat range = 0.5f * (path->range + lengthened + path->length + returned.excess);
     const vfloat half_path = 0.5f * (fan->reference_range + pair->returning.range) + range;
-    struct cell_phase phase =
-        whole_cell(integrate_cell(fan, cell,
-                                  path_gradient(path, &path->tube.along, returned.direction, cosine,
-                                                1.0f, receiver_x, multibounce->is_focused),
-                                  path_gradient(path, &path->tube.across, returned.direction,
-                                                cosine, 0.0f, receiver_x, multibounce->is_focused),
-                                  range, path->first_wavefront));
+    struct cell_phase phase = whole_cell(
+        fan, integrate_cell(fan, cell,
+                            path_gradient(path, &path->tube.along, returned.direction, cosine, 1.0f,
+                                          receiver_x, multibounce->is_focused),
+                            path_gradient(path, &path->tube.across, returned.direction, cosine,
+                                          0.0f, receiver_x, multibounce->is_focused),
+                            range, path->first_wavefront));
     const vfloat section =
         magnitude(tube_section(&path->tube, reversed3(hit->back))); /* of the wavefront's */
     const vfloat amplitude = phase.amplitude * (0.5f * pair->echoes) *

@@ -94,10 +94,14 @@ FUNCTION struct cell_phase integrate_cell(const struct fan_record *fan,
     return phase;
 }
 
-/* The cell as one echo. */
-FUNCTION struct cell_phase whole_cell(struct cell_phase phase)
+/* The cell as one echo. A cell at an edge counts all or nothing, as its ray does, and at its
+ * middle: in the mean an edge then returns sinc^2 of what it should, which is made up where asked.
+ */
+FUNCTION struct cell_phase whole_cell(const struct fan_record *fan, struct cell_phase phase)
 {
-    phase.amplitude = phase.amplitude * sinc_of_cycles(magnitude(phase.across));
+    const vfloat integral = sinc_of_cycles(magnitude(phase.across));
+    phase.amplitude = phase.amplitude * SELECT(MASK_OF(magnitude(phase.across) < fan->edge_across),
+                                               1.0f / integral, integral);
     return phase;
 }
 
@@ -119,7 +123,7 @@ FUNCTION struct cell_phase part_of_cell(const struct fan_record *fan, struct cel
     phase.across = phase.across * share;
     phase.range = phase.range + off_middle * phase.across / fan->inverse_wavelength;
     phase.amplitude = phase.amplitude * share;
-    return whole_cell(phase);
+    return whole_cell(fan, phase);
 }
 
 /* -i times amplitude times reflection, at the phase and in the bin of a half path. */
@@ -223,7 +227,8 @@ FUNCTION void tally_smooth_cells(const struct fan_record *fan, const struct smoo
 {
     const vint parts = parts_of_cell(cells->phase);
     if (!ANY(cells->is_hit & MASK_OF(parts > 1))) {
-        tally_smooth_echoes(fan, cells, cells->is_hit, whole_cell(cells->phase), line, outcome);
+        tally_smooth_echoes(fan, cells, cells->is_hit, whole_cell(fan, cells->phase), line,
+                            outcome);
         return;
     }
     for (int part = 0; part < CELL_PARTS_MAX; part++) {

@@ -11,12 +11,12 @@
 
 #define STRIP_WAVELENGTHS 0.25 /* widest sub-strip: wider ones alias glints */
 #define SMALL_WAVELENGTHS 2.0  /* parts of smaller radius have few rays, and may have more */
-/* Of the whole path from a cell to the next, across the ray, on flat faces: their edges' echoes
- * then keep all but 0.4 dB. Faces that are seen so flat that it takes more than so many times the
- * usual rays return little. */
-#define EDGE_WAVELENGTHS   0.1
-#define EDGE_FINER_MOST    16.0
-#define FACET_WAVELENGTHS  2.0
+/* Of the whole path from a cell to the next, across the ray, on flat faces; and up to what share of
+ * a wavelength it is made up what their edges lose by it, beyond which it would be noise. Faces
+ * that are seen so flat that it takes more than so many times the usual rays return little. */
+#define EDGE_WAVELENGTHS   0.3
+#define EDGE_MADE_UP       0.4f
+#define EDGE_FINER_MOST    8.0
 #define BINS_PER_DEVIATION 16.0 /* linear sharing between bins then errs by 5e-4 */
 #define IMAGE_STRIPS       64   /* of a launch: there may be dozens of pairs at a time */
 
@@ -49,67 +49,75 @@ void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_
     fan->only_object = (int32_t)part;
 }
 
-/* The gradient across the ray, of the whole path, on a flat face of a part with this normal in the
- * part's own axes, of any length; 0: there is no face. */
-static double face_gradient(const struct placement *placement, const double normal[3],
-                            double grazing_rad)
+/* How a part's faces and edges are seen. */
+struct sight {
+    const struct placement *placement;
+    double sine, cosine;   /* of the grazing angle */
+    double aspects, slack; /* sines: of the aspects that the image is made of, and what the length
+                              of an edge adds */
+};
+
+static struct sight sight_of_part(const struct tracer *tracer, uint32_t part,
+                                  const struct ray_path *path)
 {
-    double y = 0.0, z = 0.0; /* of the normal in the view */
-    for (int axis = 0; axis < 3; axis++) {
-        y += normal[axis] * placement->axes[axis][1];
-        z += normal[axis] * placement->axes[axis][2];
-    }
-    const double cosine = y * cos(grazing_rad) - z * sin(grazing_rad);
-    const double across = y * sin(grazing_rad) + z * cos(grazing_rad);
-    return across == 0.0 ? 0.0 : 2.0 * fabs(across / cosine);
+    const struct placement *placement = &tracer->placements[part];
+    const double grazing = ray_path_grazing(path, placement->centre[1], placement->centre[2]);
+    const double wavelength = tracer->view.wavelength_m;
+    const double aspects = tracer->scene->sonar.kind == SONJECT_SONAR_REAL
+                               ? beam_largest_sine(tracer)
+                               : 0.25 * wavelength / tracer->response.resolution_m;
+    const struct sight sight = {placement, sin(grazing), cos(grazing), aspects,
+                                0.5 * wavelength / placement->bounding_radius_m};
+    return sight;
 }
 
-/* The steepest gradient of a mesh's facets that have a side of this length: smaller ones are taken
- * for parts of something round. */
-static double facet_gradient(const struct placement *placement, double least_m, double grazing_rad)
+/* A part's own vector in the view, along the track, along the ray and across it. */
+static void see(double seen[3], const struct sight *sight, const double own[3])
 {
-    const struct mesh *mesh = placement->size.mesh;
-    double steepest = 0.0;
-    for (size_t i = 0; i < mesh->triangle_count; i++) {
-        const uint32_t *corners = &mesh->corners[3 * i];
-        double sides[3][3], longest = 0.0, normal[3];
-        for (int side = 0; side < 3; side++) {
-            const float *from = &mesh->vertices[3 * corners[side]];
-            const float *to = &mesh->vertices[3 * corners[(side + 1) % 3]];
-            for (int k = 0; k < 3; k++)
-                sides[side][k] = (double)to[k] - from[k];
-            longest =
-                fmax(longest, sides[side][0] * sides[side][0] + sides[side][1] * sides[side][1] +
-                                  sides[side][2] * sides[side][2]);
-        }
-        if (longest < least_m * least_m)
-            continue;
+    double view[3] = {0.0, 0.0, 0.0};
+    for (int axis = 0; axis < 3; axis++)
         for (int k = 0; k < 3; k++)
-            normal[k] = sides[0][(k + 1) % 3] * sides[1][(k + 2) % 3] -
-                        sides[0][(k + 2) % 3] * sides[1][(k + 1) % 3];
-        steepest = fmax(steepest, face_gradient(placement, normal, grazing_rad));
-    }
-    return steepest;
+            view[k] += own[axis] * sight->placement->axes[axis][k];
+    seen[0] = view[0];
+    seen[1] = view[1] * sight->cosine - view[2] * sight->sine;
+    seen[2] = view[1] * sight->sine + view[2] * sight->cosine;
 }
 
-/* How much finer than usual cells have to be across the ray for the edges of flat faces. */
-static double finer_for_edges(const struct tracer *tracer, uint32_t part,
-                              const struct ray_path *path, double cell_m)
+/* Whether all of an edge is as far from the sonar at one of the aspects: others do not echo. */
+static bool is_edge_heard(const struct sight *sight, const double edge[3])
+{
+    double seen[3];
+    see(seen, sight, edge);
+    const double length = sqrt(seen[0] * seen[0] + seen[1] * seen[1] + seen[2] * seen[2]);
+    return fabs(seen[1]) <= sight->aspects * fabs(seen[0]) + sight->slack * length;
+}
+
+/* The gradient across the ray, of the whole path, on a flat face with this normal of any length; 0:
+ * there is no face. */
+static double face_gradient(const struct sight *sight, const double normal[3])
+{
+    double seen[3];
+    see(seen, sight, normal);
+    return seen[2] == 0.0 ? 0.0 : 2.0 * fabs(seen[2] / seen[1]);
+}
+
+/* The steepest gradient of a part's flat faces that have edges which are heard; 0: it has none. */
+static double steepest_face(const struct sight *sight)
 {
     static const double own[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
-    const struct placement *placement = &tracer->placements[part];
-    const struct shape_size *size = &placement->size;
-    const double wavelength = tracer->view.wavelength_m;
-    const double grazing = ray_path_grazing(path, placement->centre[1], placement->centre[2]);
-    double steepest =
-        size->mesh ? facet_gradient(placement, FACET_WAVELENGTHS * wavelength, grazing) : 0.0;
+    const struct shape_size *size = &sight->placement->size;
+    const uint32_t flat = shape_of(sight->placement->shape)->flat;
+    const bool has_corners = isinf(size->least_radius_of_curvature_m) &&
+                             sight->placement->shape != SHAPE_DISC; /* others have round rims */
+    double steepest = 0.0;
     for (uint32_t axis = 0; axis < 3; axis++)
-        if (shape_of(placement->shape)->flat & (FLAT_ALONG_X << axis))
-            steepest = fmax(steepest, face_gradient(placement, own[axis], grazing));
+        if ((flat & (FLAT_ALONG_X << axis)) &&
+            (!has_corners || is_edge_heard(sight, own[(axis + 1) % 3]) ||
+             is_edge_heard(sight, own[(axis + 2) % 3])))
+            steepest = fmax(steepest, face_gradient(sight, own[axis]));
     for (uint32_t i = 0; i < size->cut_count; i++)
-        steepest = fmax(steepest, face_gradient(placement, size->cuts[i].normal, grazing));
-    const double finer = cell_m * steepest / (EDGE_WAVELENGTHS * wavelength);
-    return fmin(fmax(finer, 1.0), EDGE_FINER_MOST);
+        steepest = fmax(steepest, face_gradient(sight, size->cuts[i].normal));
+    return steepest;
 }
 
 static void choose_quanta(struct smooth_trace *trace, const struct tracer *tracer)
@@ -177,7 +185,13 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
     const struct ray_path *path = pair ? &pair->outgoing->path : &sonar.path;
     glint_fan_init(fan, tracer, part, path, is_small ? 4.0 : 1.0);
     const double cell = (double)fan->strip_width / fan->strata;
-    fan_aim_at_part(fan, tracer, part, path, cell / finer_for_edges(tracer, part, path, cell));
+    const struct sight sight = sight_of_part(tracer, part, path);
+    const double steepest = steepest_face(&sight);
+    const struct shape_size *size = &tracer->placements[part].size;
+    const bool is_bent = !isinf(size->least_radius_of_curvature_m) || size->mesh;
+    const double finer = cell * steepest / (EDGE_WAVELENGTHS * tracer->view.wavelength_m);
+    fan_aim_at_part(fan, tracer, part, path, cell / fmin(fmax(finer, 1.0), EDGE_FINER_MOST));
+    fan->edge_across = finer > 1.0 || (steepest > 0.0 && !is_bent) ? EDGE_MADE_UP : 0.0f;
     /* cells begin up to half of one off (cell_shift_of) */
     fan->first_elevation -= 0.5f * fan->elevation_step;
     fan->rays++;

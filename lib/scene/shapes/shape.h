@@ -77,8 +77,7 @@ enum flat_axis {
 struct shape {
     uint32_t needs;    /* bits of enum shape_key */
     uint32_t may_have; /* besides those */
-    uint32_t flat;     /* bits of enum flat_axis; a mesh has its facets, those of code are not known
-                        */
+    uint32_t flat;     /* bits of enum flat_axis; of a mesh or code they are not known */
     /* Relations between its sizes; NULL: none. */
     void (*check)(struct check *check, const sonject_object_params *object);
     /* Sizes and radii. Sizes come in halved; both bounding radii start at radius_m, the least
