@@ -11,9 +11,9 @@
 
 #define STRIP_WAVELENGTHS 0.25 /* widest sub-strip: wider ones alias glints */
 #define SMALL_WAVELENGTHS 2.0  /* parts of smaller radius have few rays, and may have more */
-/* Of the whole path from a cell to the next, across the ray, on flat faces; and up to what share of
- * a wavelength it is made up what their edges lose by it, beyond which it would be noise. Faces
- * that are seen so flat that it takes more than so many times the usual rays return little. */
+/* How much the whole path may change across a cell of a flat face, but for faces that are seen so
+ * flat that it would take more than so many times the usual rays: they return little. And by how
+ * much half the path may change where what edges lose is made up; beyond, that would be noise. */
 #define EDGE_WAVELENGTHS   0.3
 #define EDGE_MADE_UP       0.4f
 #define EDGE_FINER_MOST    8.0
