@@ -107,12 +107,10 @@ static double steepest_face(const struct sight *sight)
     static const double own[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
     const struct shape_size *size = &sight->placement->size;
     const uint32_t flat = shape_of(sight->placement->shape)->flat;
-    const bool has_corners = isinf(size->least_radius_of_curvature_m) &&
-                             sight->placement->shape != SHAPE_DISC; /* others have round rims */
     double steepest = 0.0;
     for (uint32_t axis = 0; axis < 3; axis++)
         if ((flat & (FLAT_ALONG_X << axis)) &&
-            (!has_corners || is_edge_heard(sight, own[(axis + 1) % 3]) ||
+            (!(flat & FLAT_WITH_CORNERS) || is_edge_heard(sight, own[(axis + 1) % 3]) ||
              is_edge_heard(sight, own[(axis + 2) % 3])))
             steepest = fmax(steepest, face_gradient(sight, own[axis]));
     for (uint32_t i = 0; i < size->cut_count; i++)

@@ -17,6 +17,7 @@ void shape_init_box(struct shape_size *size, const sonject_object_params *object
 }
 
 const struct shape shape_box = {.needs = SHAPE_HAS_LENGTH | SHAPE_HAS_WIDTH | SHAPE_HAS_HEIGHT,
-                                .flat = FLAT_ALONG_X | FLAT_ALONG_Y | FLAT_ALONG_Z,
+                                .flat =
+                                    FLAT_ALONG_X | FLAT_ALONG_Y | FLAT_ALONG_Z | FLAT_WITH_CORNERS,
                                 .init = shape_init_box,
                                 .extent = extent};

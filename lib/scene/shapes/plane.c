@@ -17,6 +17,6 @@ static void init(struct shape_size *size, const sonject_object_params *object)
 }
 
 const struct shape shape_plane = {.needs = SHAPE_HAS_LENGTH | SHAPE_HAS_WIDTH,
-                                  .flat = FLAT_ALONG_Z,
+                                  .flat = FLAT_ALONG_Z | FLAT_WITH_CORNERS,
                                   .init = init,
                                   .extent = extent};

@@ -70,7 +70,8 @@ extern const struct shape_key_name {
 enum flat_axis {
     FLAT_ALONG_X = 1,
     FLAT_ALONG_Y = 2,
-    FLAT_ALONG_Z = 4
+    FLAT_ALONG_Z = 4,
+    FLAT_WITH_CORNERS = 8 /* edges along the other two axes; else rims */
 };
 
 /* What a shape is. v: of any length. */

@@ -36,7 +36,8 @@ static void record(struct object_record *record, const struct shape_size *size)
 
 const struct shape shape_wedge = {.needs = SHAPE_HAS_LENGTH | SHAPE_HAS_WIDTH | SHAPE_HAS_HEIGHT,
                                   .may_have = SHAPE_HAS_FRONT_HEIGHT,
-                                  .flat = FLAT_ALONG_X | FLAT_ALONG_Y | FLAT_ALONG_Z,
+                                  .flat = FLAT_ALONG_X | FLAT_ALONG_Y | FLAT_ALONG_Z |
+                                          FLAT_WITH_CORNERS,
                                   .check = check,
                                   .init = init,
                                   .extent = extent,
