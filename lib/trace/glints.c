@@ -109,8 +109,8 @@ static double steepest_face(const struct sight *sight)
     const uint32_t flat = shape_of(sight->placement->shape)->flat;
     double steepest = 0.0;
     for (uint32_t axis = 0; axis < 3; axis++)
-        if ((flat & (FLAT_ALONG_X << axis)) &&
-            (!(flat & FLAT_WITH_CORNERS) || is_edge_heard(sight, own[(axis + 1) % 3]) ||
+        if ((flat & ((uint32_t)FLAT_ALONG_X << axis)) &&
+            (!(flat & (uint32_t)FLAT_WITH_CORNERS) || is_edge_heard(sight, own[(axis + 1) % 3]) ||
              is_edge_heard(sight, own[(axis + 2) % 3])))
             steepest = fmax(steepest, face_gradient(sight, own[axis]));
     for (uint32_t i = 0; i < size->cut_count; i++)
