@@ -7,11 +7,10 @@
 #include "base/memory.h"
 #include "base/progress.h"
 
-#define REACH       2      /* pixels */
-#define PILOT_SCALE 0.5    /* of the usual number of rays; pilots of fewer foretell badly */
-#define MARGIN      1.15   /* pilots foretell the error within 12 % */
-#define MOST_RAYS   4096.0 /* as injection.rays */
-#define SCALE_STEPS 64.0   /* so that run.json has a short number */
+#define REACH       2    /* pixels */
+#define PILOT_SCALE 0.5  /* of the usual number of rays; pilots of fewer foretell badly */
+#define MARGIN      1.15 /* pilots foretell the error within 12 % */
+#define SCALE_STEPS 64.0 /* so that run.json has a short number */
 
 /* The number of rays of a result over that of both pilots. */
 static double rays_of_result(const struct pilots *pilots)
@@ -78,13 +77,13 @@ static sonject_status choose_rays(struct pilots *pilots, struct report *report,
     const double accuracy = scene->injection.accuracy;
     const double variance = 0.5 * mean_square_difference(pilots, NULL); /* of one pilot */
     const double wanted = PILOT_SCALE * MARGIN * MARGIN * variance / (accuracy * accuracy);
-    if (wanted > MOST_RAYS) {
-        const double least = accuracy * sqrt(wanted / MOST_RAYS);
+    if (wanted > RAY_SCALE_MAX) {
+        const double least = accuracy * sqrt(wanted / RAY_SCALE_MAX);
         return scene_locate(scene, report,
                             report_failure(report, SONJECT_ERROR_INPUT,
                                            "takes %.0f times the usual number of rays, and at most "
                                            "%g times can be traced: ask for %.2g %% or more",
-                                           wanted, MOST_RAYS, 100.0 * least),
+                                           wanted, RAY_SCALE_MAX, 100.0 * least),
                             "injection.accuracy");
     }
     /* where nothing is changed, nothing is asked */

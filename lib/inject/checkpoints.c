@@ -87,11 +87,18 @@ static sonject_status begin(struct tracing *tracing, const struct checkpoint_job
     tracing->input = *job->input;
     if (request->traced != request->scene)
         tracing->input.traced = request->traced;
-    CHECK(identify(tracing));
-    CHECK(pilots_find(&tracing->pilots, job->report, job->device, &tracing->scene, &tracing->input,
-                      job->progress, job->user));
     tracing->input.checkpoint = &tracing->checkpoint;
-    return SONJECT_OK;
+    return identify(tracing);
+}
+
+/* Before anything is traced, once it is known that it has to be. */
+static sonject_status find_rays(struct tracing *tracing)
+{
+    const struct checkpoint_job *job = tracing->job;
+    return tracing->input.pilots
+               ? SONJECT_OK
+               : pilots_find(&tracing->pilots, job->report, job->device, &tracing->scene,
+                             &tracing->input, job->progress, job->user);
 }
 
 /* NULL where the tallies are of the same scene, image and version, and traced on that device; else
@@ -219,6 +226,7 @@ sonject_status trace_into_file(const struct checkpoint_job *job, const char *pat
     struct progress_share exporting = {job->progress, job->user, 0.0, exported};
     struct progress_share keeping = {job->progress, job->user, exported, 1.0 - exported};
     sonject_status status = begin(&tracing, job);
+    THEN(status, find_rays(&tracing));
     if (status == SONJECT_OK && sink) { /* an export is of the whole patch */
         struct injection_input whole = tracing.input;
         whole.is_whole = true;
@@ -241,6 +249,8 @@ sonject_status trace_into_file(const struct checkpoint_job *job, const char *pat
 static sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is_complete)
 {
     const struct checkpoint_job *job = tracing->job;
+    if (!is_complete)
+        CHECK(find_rays(tracing));
     while (!is_complete) {
         struct trace_counts counts;
         CHECK(begin_checkpoint(tracing, next));
@@ -256,9 +266,9 @@ static sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is
  * than was traced where the request says so. */
 static sonject_status form_traced(struct tracing *tracing, struct injection_result *result)
 {
-    const struct checkpoint_job *job = tracing->job;
-    return injection_run(tracing->report, job->device, tracing->scene, &tracing->input, tell,
-                         tracing, result);
+    CHECK(find_rays(tracing));
+    return injection_run(tracing->report, tracing->job->device, tracing->scene, &tracing->input,
+                         tell, tracing, result);
 }
 
 /* Traces all in one go and forms the result as it does, or, where it is stopped between, keeps what
@@ -268,6 +278,7 @@ static sonject_status trace_and_form(struct tracing *tracing, struct injection_r
 {
     uint64_t next;
     bool is_complete;
+    CHECK(find_rays(tracing));
     CHECK(begin_checkpoint(tracing, 0));
     const sonject_status status = form_traced(tracing, result);
     *is_formed = status == SONJECT_OK;

@@ -295,10 +295,10 @@ sonject_status injection_run(struct report *report, struct device *device,
     return status;
 }
 
-static sonject_status trace(struct report *report, struct device *device, const struct scene *scene,
-                            const struct injection_input *input, const struct impulse_sink *sink,
-                            sonject_progress_function progress, void *user,
-                            struct trace_counts *counts)
+sonject_status injection_trace(struct report *report, struct device *device,
+                               const struct scene *scene, const struct injection_input *input,
+                               const struct impulse_sink *sink, sonject_progress_function progress,
+                               void *user, struct trace_counts *counts)
 {
     struct prepared prepared;
     sonject_status status = prepare(&prepared, report, device, scene, input);
@@ -314,18 +314,5 @@ static sonject_status trace(struct report *report, struct device *device, const 
     THEN(status, end_tracing(&prepared.setup.tracer));
     *counts = prepared.setup.tracer.counts;
     prepared_clear(&prepared);
-    return status;
-}
-
-sonject_status injection_trace(struct report *report, struct device *device,
-                               const struct scene *scene, const struct injection_input *input,
-                               const struct impulse_sink *sink, sonject_progress_function progress,
-                               void *user, struct trace_counts *counts)
-{
-    struct injection_input with = *input;
-    struct pilots own;
-    CHECK(pilots_find(&own, report, device, &scene, &with, progress, user));
-    const sonject_status status = trace(report, device, scene, &with, sink, progress, user, counts);
-    pilots_clear(&own);
     return status;
 }

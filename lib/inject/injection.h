@@ -103,7 +103,7 @@ enum injected_plane {
 void injection_result_plane(const struct injection_result *result, enum injected_plane plane,
                             float *out);
 
-/* The first stage of it, whose impulses go to the sink. Errors: as sonject_inject, and the sink's
+/* The first stage of it by the scene's own number of rays, whose impulses go to the sink. Errors: as sonject_inject, and the sink's
  * own. */
 sonject_status injection_trace(struct report *report, struct device *device,
                                const struct scene *scene, const struct injection_input *input,

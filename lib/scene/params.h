@@ -426,6 +426,8 @@ typedef enum sonject_match {
     SONJECT_MATCH_IMAGE = 1    /* the image around the objects, where it clearly differs */
 } sonject_match;
 
+#define RAY_SCALE_MAX 4096.0
+
 typedef struct sonject_injection_params {
     uint32_t mode;         /* sonject_injection_mode */
     uint32_t column_rule;  /* sonject_column_rule */
@@ -433,9 +435,10 @@ typedef struct sonject_injection_params {
     double noise_floor_db; /* noise energy over local mean seabed energy */
     double influence_db;   /* composite: a pixel is the target's when the change that it makes is
                               above this level over the seabed */
-    double ray_scale; /* factor on the number of rays, unless there is an accuracy */
-    double accuracy;  /* relative standard error of expected energies, which decides the number of
-                         rays; 0: ray_scale does */
+    double ray_scale;      /* up to RAY_SCALE_MAX; factor on the number of rays, unless there is an
+                              accuracy */
+    double accuracy; /* relative standard error of expected energies, which decides the number of
+                        rays; 0: ray_scale does */
     uint64_t seed;
     uint64_t ray_seed;         /* turns the rays' random numbers alone into others; no key */
     uint32_t interactions;     /* surfaces that a path may meet */

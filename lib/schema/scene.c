@@ -417,7 +417,7 @@ static const struct field injection_fields[] = {
     {"influence", "change over the seabed from which a pixel is the target's",
      QUANTITY(influence_db, DECIBEL), WITHIN(-200.0, 0.0), .preset = -40.0},
     {"rays", "factor on the number of rays", QUANTITY(ray_scale, NUMBER),
-     WITHIN(1.0 / 64.0, 4096.0), .per = " times the usual number", .preset = 1.0},
+     WITHIN(1.0 / 64.0, RAY_SCALE_MAX), .per = " times the usual number", .preset = 1.0},
     {"accuracy",
      "standard error of the energies that targets change, which decides the number of rays instead "
      "of rays",

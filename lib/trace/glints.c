@@ -40,21 +40,24 @@ void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint
 }
 
 void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
-                    const struct ray_path *path, double finer)
+                    const struct ray_path *path, double finer, double steepest)
 {
     const double cell = GLINT_CELL_WAVELENGTHS * tracer->view.wavelength_m /
                         sqrt(tracer->scene->injection.ray_scale) / finer;
-    fan_aim_at_part(fan, tracer, part, path, cell);
+    const double for_edges = cell * steepest / (EDGE_WAVELENGTHS * tracer->view.wavelength_m);
+    fan_aim_at_part(fan, tracer, part, path, cell / fmin(fmax(for_edges, 1.0), EDGE_FINER_MOST));
+    /* what is round and needs no finer cells has none made up, either */
+    const bool has_corners =
+        shape_of(tracer->placements[part].shape)->flat & (uint32_t)FLAT_WITH_CORNERS;
+    fan->edge_across = for_edges > 1.0 || (steepest > 0.0 && has_corners) ? EDGE_MADE_UP : 0.0f;
     fan->strata = (uint32_t)ceil(fan->strip_width / cell - 1e-6);
     fan->only_object = (int32_t)part;
 }
 
-/* How a part's faces and edges are seen. */
+/* How the axes of a part are seen: along the track, along the ray and across it. */
 struct sight {
-    const struct placement *placement;
-    double sine, cosine;   /* of the grazing angle */
-    double aspects, slack; /* sines: of the aspects that the image is made of, and what the length
-                              of an edge adds */
+    double track[3], ray[3], across[3];
+    double aspects; /* sine of the widest aspect that the image is made of */
 };
 
 static struct sight sight_of_part(const struct tracer *tracer, uint32_t part,
@@ -62,59 +65,61 @@ static struct sight sight_of_part(const struct tracer *tracer, uint32_t part,
 {
     const struct placement *placement = &tracer->placements[part];
     const double grazing = ray_path_grazing(path, placement->centre[1], placement->centre[2]);
-    const double wavelength = tracer->view.wavelength_m;
-    const double aspects = tracer->scene->sonar.kind == SONJECT_SONAR_REAL
-                               ? beam_largest_sine(tracer)
-                               : 0.25 * wavelength / tracer->response.resolution_m;
-    const struct sight sight = {placement, sin(grazing), cos(grazing), aspects,
-                                0.5 * wavelength / placement->bounding_radius_m};
+    struct sight sight;
+    for (int i = 0; i < 3; i++) {
+        const double *axis = placement->axes[i];
+        sight.track[i] = axis[0];
+        sight.ray[i] = axis[1] * cos(grazing) - axis[2] * sin(grazing);
+        sight.across[i] = axis[1] * sin(grazing) + axis[2] * cos(grazing);
+    }
+    /* glints have the aspects of the along-track response itself, whatever rough surfaces have */
+    sight.aspects = tracer->scene->sonar.kind == SONJECT_SONAR_REAL
+                        ? beam_largest_sine(tracer)
+                        : 0.25 * tracer->view.wavelength_m / tracer->response.resolution_m;
     return sight;
 }
 
-/* A part's own vector in the view, along the track, along the ray and across it. */
-static void see(double seen[3], const struct sight *sight, const double own[3])
+/* Whether an edge along an axis is as far from the sonar all along at one of the aspects, up to the
+ * second zero of its directivity: others do not echo. half_m: half its length. */
+static bool is_edge_heard(const struct sight *sight, uint32_t axis, double half_m,
+                          double wavelength_m)
 {
-    double view[3] = {0.0, 0.0, 0.0};
-    for (int axis = 0; axis < 3; axis++)
-        for (int k = 0; k < 3; k++)
-            view[k] += own[axis] * sight->placement->axes[axis][k];
-    seen[0] = view[0];
-    seen[1] = view[1] * sight->cosine - view[2] * sight->sine;
-    seen[2] = view[1] * sight->sine + view[2] * sight->cosine;
+    return fabs(sight->ray[axis]) <=
+           sight->aspects * fabs(sight->track[axis]) + 0.5 * wavelength_m / half_m;
 }
 
-/* Whether all of an edge is as far from the sonar at one of the aspects: others do not echo. */
-static bool is_edge_heard(const struct sight *sight, const double edge[3])
-{
-    double seen[3];
-    see(seen, sight, edge);
-    const double length = sqrt(seen[0] * seen[0] + seen[1] * seen[1] + seen[2] * seen[2]);
-    return fabs(seen[1]) <= sight->aspects * fabs(seen[0]) + sight->slack * length;
-}
-
-/* The gradient across the ray, of the whole path, on a flat face with this normal of any length; 0:
- * there is no face. */
+/* The gradient across the ray, of the whole path, on a face; normal: in the part's axes. */
 static double face_gradient(const struct sight *sight, const double normal[3])
 {
-    double seen[3];
-    see(seen, sight, normal);
-    return seen[2] == 0.0 ? 0.0 : 2.0 * fabs(seen[2] / seen[1]);
+    double ray = 0.0, across = 0.0;
+    for (int i = 0; i < 3; i++) {
+        ray += normal[i] * sight->ray[i];
+        across += normal[i] * sight->across[i];
+    }
+    return across == 0.0 ? 0.0 : 2.0 * fabs(across / ray);
 }
 
 /* The steepest gradient of a part's flat faces that have edges which are heard; 0: it has none. */
-static double steepest_face(const struct sight *sight)
+static double steepest_face(const struct tracer *tracer, uint32_t part, const struct ray_path *path)
 {
     static const double own[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
-    const struct shape_size *size = &sight->placement->size;
-    const uint32_t flat = shape_of(sight->placement->shape)->flat;
+    const struct placement *placement = &tracer->placements[part];
+    const struct shape_size *size = &placement->size;
+    const double half[3] = {size->half_length_m, size->half_width_m, size->half_height_m};
+    const double wavelength = tracer->view.wavelength_m;
+    const struct sight sight = sight_of_part(tracer, part, path);
+    const uint32_t flat = shape_of(placement->shape)->flat;
     double steepest = 0.0;
-    for (uint32_t axis = 0; axis < 3; axis++)
+    for (uint32_t axis = 0; axis < 3; axis++) {
+        const uint32_t next = (axis + 1) % 3, last = (axis + 2) % 3;
         if ((flat & ((uint32_t)FLAT_ALONG_X << axis)) &&
-            (!(flat & (uint32_t)FLAT_WITH_CORNERS) || is_edge_heard(sight, own[(axis + 1) % 3]) ||
-             is_edge_heard(sight, own[(axis + 2) % 3])))
-            steepest = fmax(steepest, face_gradient(sight, own[axis]));
+            (!(flat & (uint32_t)FLAT_WITH_CORNERS) ||
+             is_edge_heard(&sight, next, half[next], wavelength) ||
+             is_edge_heard(&sight, last, half[last], wavelength)))
+            steepest = fmax(steepest, face_gradient(&sight, own[axis]));
+    }
     for (uint32_t i = 0; i < size->cut_count; i++)
-        steepest = fmax(steepest, face_gradient(sight, size->cuts[i].normal));
+        steepest = fmax(steepest, face_gradient(&sight, size->cuts[i].normal));
     return steepest;
 }
 
@@ -181,15 +186,8 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
     const bool is_small =
         tracer->placements[part].bounding_radius_m < SMALL_WAVELENGTHS * tracer->view.wavelength_m;
     const struct ray_path *path = pair ? &pair->outgoing->path : &sonar.path;
-    glint_fan_init(fan, tracer, part, path, is_small ? 4.0 : 1.0);
-    const double cell = (double)fan->strip_width / fan->strata;
-    const struct sight sight = sight_of_part(tracer, part, path);
-    const double steepest = steepest_face(&sight);
-    const struct shape_size *size = &tracer->placements[part].size;
-    const bool is_bent = !isinf(size->least_radius_of_curvature_m) || size->mesh;
-    const double finer = cell * steepest / (EDGE_WAVELENGTHS * tracer->view.wavelength_m);
-    fan_aim_at_part(fan, tracer, part, path, cell / fmin(fmax(finer, 1.0), EDGE_FINER_MOST));
-    fan->edge_across = finer > 1.0 || (steepest > 0.0 && !is_bent) ? EDGE_MADE_UP : 0.0f;
+    glint_fan_init(fan, tracer, part, path, is_small ? 4.0 : 1.0,
+                   steepest_face(tracer, part, path));
     /* cells begin up to half of one off (cell_shift_of) */
     fan->first_elevation -= 0.5f * fan->elevation_step;
     fan->rays++;

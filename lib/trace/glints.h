@@ -30,9 +30,10 @@ double glint_shortest_deviation(const struct line_grid *grid, double column_spac
 void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint32_t part);
 
 /* Rays of a fan, whose strips are known, from a source to a part; `finer` than glints need them by
- * that factor each way, >= 1. */
+ * that factor each way, >= 1, and across it as the edges of faces need it on which the path has
+ * this gradient there; 0: none have to be heard. */
 void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
-                    const struct ray_path *path, double finer);
+                    const struct ray_path *path, double finer, double steepest);
 
 /* Prepares a trace of one part's glints, straight there and back (pair NULL) or by way of
  * boundaries; as rough_trace_begin. A part without a smooth part has grid.strips.count 0 and

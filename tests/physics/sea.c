@@ -101,6 +101,17 @@ sonject_object_params *sea_add_sphere(struct sea *sea, double radius_m, double h
     return sphere;
 }
 
+sonject_object_params *sea_add_capsule(struct sea *sea)
+{
+    sonject_object_params *capsule = sea_add(sea, SHAPE_CAPSULE, 1.0, 0.0, 0.4);
+    capsule->heading_rad = 0.6;
+    capsule->burial_m = 0.1;
+    capsule->material.reflection = 0.3;
+    capsule->material.roughness_m = 2e-3;
+    capsule->material.lambert = 0.1;
+    return capsule;
+}
+
 void place_in_pixels(sonject_object_params *object, double row, double column)
 {
     object->position_kind = SONJECT_POSITION_PIXELS;

@@ -66,6 +66,8 @@ struct sea *sea_open(size_t rows, size_t columns, double middle_range_m);
 
 /* A sphere in the middle, its lowest point at a height. */
 sonject_object_params *sea_add_sphere(struct sea *sea, double radius_m, double height_m);
+/* A capsule that lies across the sight, a bit buried, with glints and a rough part. */
+sonject_object_params *sea_add_capsule(struct sea *sea);
 void place_in_pixels(sonject_object_params *object, double row, double column);
 void place_in_metres(sonject_object_params *object, double along_m, double range_m);
 

@@ -10,38 +10,28 @@
 #define SEEDS          6
 #define NOISE_DB       (-20.0)
 
-static void add_capsule(struct sea *sea)
-{
-    sonject_object_params *target = sea_add(sea, SHAPE_CAPSULE, 1.0, 0.0, 0.4);
-    target->heading_rad = 0.6;
-    target->burial_m = 0.1;
-    target->material.reflection = 0.3;
-    target->material.roughness_m = 2e-3;
-    target->material.lambert = 0.1;
-}
-
 static void lay_one_interaction(struct sea *sea)
 {
-    add_capsule(sea);
+    sea_add_capsule(sea);
 }
 
 static void lay_two_interactions(struct sea *sea)
 {
     sea->injection->interactions = 2;
-    add_capsule(sea);
+    sea_add_capsule(sea);
 }
 
 static void lay_beam(struct sea *sea)
 {
     sea->sonar->kind = SONJECT_SONAR_REAL;
     sea->sonar->array_length_m = 2.0;
-    add_capsule(sea);
+    sea_add_capsule(sea);
 }
 
 /* What grows on objects is the scene's, and no error of rays. */
 static void lay_fouled(struct sea *sea)
 {
-    add_capsule(sea);
+    sea_add_capsule(sea);
     sea_object(sea, 0)->fouling = (sonject_fouling_params){4.0, 0.05, 1e-3, 0.05};
 }
 

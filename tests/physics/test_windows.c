@@ -22,13 +22,7 @@ static struct sea *open_sea(void)
 
 static void add_target(struct sea *sea, double row, double column)
 {
-    sonject_object_params *target = sea_add(sea, SHAPE_CAPSULE, 1.0, 0.0, 0.4);
-    place_in_pixels(target, row, column);
-    target->heading_rad = 0.6;
-    target->burial_m = 0.1;
-    target->material.reflection = 0.3;
-    target->material.roughness_m = 2e-3;
-    target->material.lambert = 0.1;
+    place_in_pixels(sea_add_capsule(sea), row, column);
 }
 
 /* One after the other; each adds its objects and says how many windows they need. */
