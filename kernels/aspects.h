@@ -16,24 +16,16 @@ struct aspect_ray {
     vfloat weight;            /* of the aspect: 1 on the mean; within a beam: see there */
 };
 
-/* A device builds without them where a scene has broadside rays alone; plain C has them unless it
- * is told otherwise. */
-#if defined(WITH_ASPECTS) || !(defined(__OPENCL_C_VERSION__) || defined(WITHOUT_ASPECTS))
-#define HAS_ASPECTS 1
-#else
-#define HAS_ASPECTS 0
-#endif
-
 /* Whether the launch's rays have aspects of a synthetic aperture. */
 FUNCTION int has_aspects(const struct fan_record *fan)
 {
-    return HAS_ASPECTS && fan->aspects.sine > 0.0f;
+    return fan->aspects.sine > 0.0f;
 }
 
 /* Whether they go out within the beam of a real one. */
 FUNCTION int has_beam(const struct fan_record *fan)
 {
-    return HAS_ASPECTS && fan->beam.reach > 0.0f;
+    return fan->beam.reach > 0.0f;
 }
 
 /* The share 0...1 of the aperture that a ray looks from: the lattice of the plastic number, even

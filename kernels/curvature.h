@@ -31,14 +31,14 @@ FUNCTION struct vector3 own_normal_change(GLOBAL const struct object_record *obj
     const struct vector3 here = own_normal(object, point, direction);
     const struct vector3 ahead = own_normal(object, along3(point, shift, step), direction);
     const struct vector3 behind = own_normal(object, along3(point, shift, -step), direction);
-    const struct vector3 forth = along3(ahead, here, -1.0f);
-    const struct vector3 back = along3(here, behind, -1.0f);
+    const struct vector3 forth = along3(ahead, here, SPLAT(-1.0f));
+    const struct vector3 back = along3(here, behind, SPLAT(-1.0f));
     const vfloat square_forth = dot3(forth, forth);
     const vfloat square_back = dot3(back, back);
-    const struct vector3 unlike = along3(forth, back, -1.0f);
+    const struct vector3 unlike = along3(forth, back, SPLAT(-1.0f));
     const mask is_even = MASK_OF(dot3(unlike, unlike) <= 0.25f * (square_forth + square_back));
     struct vector3 change = choose3(MASK_OF(square_forth < square_back), forth, back);
-    change = choose3(is_even, along3(back, unlike, 0.5f), change);
+    change = choose3(is_even, along3(back, unlike, SPLAT(0.5f)), change);
     /* the hit's normal is on the side that the ray is on, which may be the inner one */
     const vfloat side = SELECT(MASK_OF(dot3(here, normal) < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
     const struct vector3 off = along3(normal, here, -side);

@@ -116,7 +116,7 @@ FUNCTION float bin_of_sample(const struct impulse_grid_record *grid, struct elem
         return -4.0e8f;
     const float square = (way * way - apart * apart) * (0.25f - middle * middle / (way * way));
     const float inside = way * way > apart * apart && square > 0.0f ? square : 0.0f;
-    const float bin = ((float)sqrt(inside) - grid->reference_range) / grid->bin_width;
+    const float bin = (ROOT_OF_ONE(inside) - grid->reference_range) / grid->bin_width;
     return bin < -4.0e8f ? -4.0e8f : bin > 4.0e8f ? 4.0e8f : bin;
 }
 

@@ -1,17 +1,10 @@
 /* What grows on objects: random fields of albedo and of relief over their surface (kernels/MATH.md,
- * "Fouling"). A device builds without it where a scene has none; plain C has it unless it is told
- * otherwise. */
+ * "Fouling"). */
 #ifndef SONJECT_KERNELS_FOULING_H
 #define SONJECT_KERNELS_FOULING_H
 
 #include "elementary.h"
 #include "vector3.h"
-
-#if defined(WITH_FOULING) || !(defined(__OPENCL_C_VERSION__) || defined(WITHOUT_FOULING))
-#define HAS_FOULING 1
-#else
-#define HAS_FOULING 0
-#endif
 
 /* The most that a facet's turn to the sound brightens it: beyond, facets would shade each other. */
 #define FACET_BRIGHTEST 4.0f

@@ -8,16 +8,16 @@ __kernel void draw_speckle(__global const float *energy, int bins, int first_bin
 {
     const int strip = (int)get_global_id(1);
     const struct random_key key =
-        random_key_of(seed_low, seed_high, stream, (uint)(first_strip + strip));
+        random_key_of(seed_low, seed_high, stream, (RECORD_WORD)(first_strip + strip));
     const int first = (int)get_global_id(0) * WIDTH;
     vfloat a, b;
-    complex_normal(key, SPLAT_WORD((uint)(first_bin + first)) + LANE_NUMBERS, &a, &b);
+    complex_normal(key, SPLAT_WORD((RECORD_WORD)(first_bin + first)) + LANE_NUMBERS, &a, &b);
     float lanes_a[WIDTH], lanes_b[WIDTH];
     STORE_VFLOAT(a, lanes_a);
     STORE_VFLOAT(b, lanes_b);
     for (int lane = 0; lane < WIDTH && first + lane < bins; lane++) {
         const long at = (long)strip * bins + first + lane;
-        const float amplitude = sqrt(energy[at]);
+        const float amplitude = ROOT_OF_ONE(energy[at]);
         out_real[at] = amplitude * lanes_a[lane];
         out_imaginary[at] = amplitude * lanes_b[lane];
     }

@@ -7,13 +7,8 @@
 #include "mesh_ray.h" /* boxes, which many objects need too */
 #define SHAPE_FILES
 #include "shapes/shapes.h"
-/* A device builds without meshes where a scene has none: it takes half the time. Plain C has them
- * unless it is told otherwise. */
-#if defined(WITH_MESHES) || !(defined(__OPENCL_C_VERSION__) || defined(WITHOUT_MESHES))
-#define HAS_MESHES 1
+#if HAS_MESHES
 #include "mesh_object.h"
-#else
-#define HAS_MESHES 0
 #endif
 #ifdef WITH_USER_SHAPES /* only where a scene has some, in OpenCL C */
 #include "user_object.h"

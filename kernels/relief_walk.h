@@ -8,12 +8,6 @@
 #include "interval.h"
 #include "layout.h"
 
-#ifdef __OPENCL_C_VERSION__
-#define ROOT_OF_ONE(value) sqrt(value)
-#else
-#define ROOT_OF_ONE(value) sqrtf(value)
-#endif
-
 /* A ray that starts so little below the surface started on it (m). */
 #define RELIEF_SLACK 1.0e-4f
 

@@ -1,14 +1,10 @@
-/* The seabed that rays meet: the mean plane, or a relief over it. A device builds without relief
- * where a scene has none; plain C has it unless it is told otherwise. */
+/* The seabed that rays meet: the mean plane, or a relief over it. */
 #ifndef SONJECT_KERNELS_SEABED_H
 #define SONJECT_KERNELS_SEABED_H
 
 #include "fan.h"
-#if defined(WITH_RELIEF) || !(defined(__OPENCL_C_VERSION__) || defined(WITHOUT_RELIEF))
-#define HAS_RELIEF 1
+#if HAS_RELIEF
 #include "relief.h"
-#else
-#define HAS_RELIEF 0
 #endif
 
 FUNCTION int has_relief(const struct fan_record *fan)

@@ -8,6 +8,9 @@
 
 #ifdef __OPENCL_C_VERSION__
 #pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
+#define ATOMIC_ADD(tally, count) atom_add((volatile GLOBAL TALLY *)(tally), count)
+#else
+#define ATOMIC_ADD(tally, count) __atomic_fetch_add(tally, count, __ATOMIC_RELAXED)
 #endif
 
 /* A value this large is a fault of scaling: 2^12 of them would still fit. */
@@ -47,15 +50,10 @@ FUNCTION void tally_add(GLOBAL TALLY *tally, int is_shared, float quanta, float 
 {
     if (!is_countable(quanta, faults))
         return;
-#ifdef __OPENCL_C_VERSION__
-    if (is_shared || TALLIES_ARE_SHARED) {
-        atom_add((volatile GLOBAL TALLY *)tally, whole_quanta(quanta, chance));
-        return;
-    }
-#else
-    (void)is_shared;
-#endif
-    *tally += whole_quanta(quanta, chance);
+    if (is_shared || TALLIES_ARE_SHARED)
+        ATOMIC_ADD(tally, whole_quanta(quanta, chance));
+    else
+        *tally += whole_quanta(quanta, chance);
 }
 
 /* Shares an echo between two neighbours of a line of bins, `later` being the share of the second:

@@ -1,8 +1,5 @@
 /* Entry point: one work-item follows one segment of one strip. Echoes of chains end in other strips
  * too, so all work-items share the tallies. */
-#ifndef TALLY_IS_SHARED
-#define TALLY_IS_SHARED
-#endif
 #include "trace_chains.h"
 
 __kernel void trace_chains(__global const struct fan_record *fan_buffer,

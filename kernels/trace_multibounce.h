@@ -274,7 +274,7 @@ FUNCTION RECORD_WORD next_in_list(GLOBAL RECORD_WORD *listed)
 #ifdef __OPENCL_C_VERSION__
     return atomic_inc((volatile GLOBAL RECORD_WORD *)listed);
 #else
-    return (*listed)++;
+    return __atomic_fetch_add(listed, 1u, __ATOMIC_RELAXED);
 #endif
 }
 

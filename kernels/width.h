@@ -1,6 +1,6 @@
 /* One source, any width: the physics is written on `vfloat`, which holds WIDTH lanes.
- * OpenCL C at WIDTH 1, 4, 8 or 16, and plain C99 at WIDTH 1 (unit tests) or, with the vector
- * extension of gcc and clang, at WIDTH 16 (benchmark). Every operation used on `vfloat` is exact or
+ * OpenCL C at WIDTH 1, 4, 8 or 16, and plain C99 at WIDTH 1 or, with the vector extension of gcc
+ * and clang, at the same widths (lib/device/native). Every operation used on `vfloat` is exact or
  * correctly rounded lane by lane, so all of them give the same bits. A mask lane is 0 or -1. */
 #ifndef SONJECT_KERNELS_WIDTH_H
 #define SONJECT_KERNELS_WIDTH_H
@@ -69,6 +69,7 @@ typedef JOIN(int, WIDTH) mask;
 #define SPLAT_WORD(value)  ((word)(value))
 #define SPLAT_VINT(value)  ((vint)(value))
 #define SQUARE_ROOT(value) sqrt(value)
+#define ROOT_OF_ONE(value) sqrt(value)
 #define SELECT(m, yes, no) select(no, yes, m)
 #if WIDTH == 1
 #define ANY(m)   any(m)
@@ -97,7 +98,11 @@ FUNCTION RECORD_WORD UNION(mask m)
 #include <stdint.h>
 #include <string.h>
 
+#ifdef NATIVE_KERNELS /* tests do without: they are compiled in a fraction of the time */
+#define FUNCTION static inline __attribute__((always_inline))
+#else
 #define FUNCTION static inline
+#endif
 #ifdef __GNUC__
 #define NOINLINE static __attribute__((noinline, unused))
 #else
@@ -105,7 +110,8 @@ FUNCTION RECORD_WORD UNION(mask m)
 #endif
 #define GLOBAL
 #define UNROLLED
-#define LOWEST_BIT(bits) __builtin_ctz(bits)
+#define LOWEST_BIT(bits)   __builtin_ctz(bits)
+#define ROOT_OF_ONE(value) sqrtf(value)
 #if WIDTH == 1
 typedef float vfloat;
 typedef int32_t vint;
@@ -184,9 +190,17 @@ FUNCTION uint32_t UNION(mask m)
 #define ANY(m)                     (UNION(m) != 0)
 #define STORE_VFLOAT(value, array) memcpy(array, &(value), sizeof(vfloat))
 #define STORE_VINT(value, array)   memcpy(array, &(value), sizeof(vint))
-#define LANE_NUMBERS               ((word){0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15})
+#if WIDTH == 4
+#define LANE_NUMBERS ((word){0, 1, 2, 3})
+#define LANE_FLAGS   ((mask){1, 2, 4, 8})
+#elif WIDTH == 8
+#define LANE_NUMBERS ((word){0, 1, 2, 3, 4, 5, 6, 7})
+#define LANE_FLAGS   ((mask){1, 2, 4, 8, 16, 32, 64, 128})
+#else
+#define LANE_NUMBERS ((word){0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15})
 #define LANE_FLAGS                                                                                 \
     ((mask){1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768})
+#endif
 #endif
 
 #endif

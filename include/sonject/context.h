@@ -1,4 +1,4 @@
-/* A context: one OpenCL device, its programs, and the message of the last failure. */
+/* A context: one device, its programs, and the message of the last failure. */
 #ifndef SONJECT_CONTEXT_H
 #define SONJECT_CONTEXT_H
 
@@ -27,7 +27,9 @@ typedef struct sonject_context_params {
     uint32_t struct_size; /* sizeof(sonject_context_params) */
     uint32_t reserved;    /* 0 */
     const char
-        *device_name;     /* part of a device's name, case-insensitive; NULL: the default device */
+        *device_name; /* part of a device's name, case-insensitive; NULL: what the environment's
+                         SONJECT_DEVICE names, else a GPU of OpenCL, else native: this processor,
+                         which needs no driver */
     void *opencl_context; /* a host's cl_context to work in; NULL: the library makes its own */
     void *opencl_device;  /* the cl_device_id to use in that context; NULL with no context */
     sonject_log_function log; /* NULL: silent */
@@ -36,7 +38,8 @@ typedef struct sonject_context_params {
                                     process, the program sonject-decoder, so that one that ends a
                                     library ends only a call; 1: in this process, for hosts that may
                                     not start others */
-    uint32_t reserved_end;       /* 0 */
+    uint32_t threads;            /* that a launch takes of the processors, on the device native; 0:
+                                    as many as there are */
 } sonject_context_params;
 
 /* Makes a context. It opens no device yet: that happens at the first call that needs one, so that a
@@ -45,10 +48,13 @@ typedef struct sonject_context_params {
  * On success *context is the caller's, to be given to sonject_context_release. On failure *context
  * is NULL. Errors: ARGUMENT, MEMORY.
  * Threads: a context and whatever was made with it belong to one thread at a time; different
- * contexts may be used by different threads at once, also when these are the first to use OpenCL.
+ * contexts may be used by different threads at once, also when these are the first to use a
+ * device.
  * Contexts of one device share what is compiled for it, which is given back with the last of them.
- * Forks: a child of a process in which a call needed OpenCL (one that opened a device or listed
- * them) is answered ERROR_DEVICE by all such calls. Where none did, parent and child may both.
+ * Forks: the device native works in children, also with contexts that were made before. OpenCL does
+ * not, in a child of a process in which a call asked for it (one that opened a device that was not
+ * named native, or listed them): there the default is native, and other devices answer
+ * ERROR_DEVICE.
  * The program sonject-decoder, if a call needed it, has no descriptors but its own, ends with the
  * context or this process, and is started anew where a file ended it. It is looked for in the
  * folder sonject beside the library (or beside the program that has it linked in), in the folder of
@@ -66,7 +72,7 @@ SONJECT_API void sonject_context_release(sonject_context **context);
  * until the next call on the context. */
 SONJECT_API const char *sonject_context_message(const sonject_context *context);
 
-/* An OpenCL device. */
+/* A device. */
 typedef struct sonject_device_info {
     char name[128];
     char platform[128];
@@ -77,9 +83,9 @@ typedef struct sonject_device_info {
     uint32_t reserved;
 } sonject_device_info;
 
-/* Lists the OpenCL devices. devices: room for capacity entries (NULL if capacity is 0); *count gets
- * the number found, which may exceed capacity. Zero devices is not an error here.
- * Errors: ARGUMENT, DEVICE (there are drivers, but none answers), MEMORY. */
+/* Lists the devices: native, then OpenCL's. devices: room for capacity entries (NULL if capacity is 0); *count gets
+ * the number found, which may exceed capacity. Where OpenCL's cannot be asked, the log says why.
+ * Errors: ARGUMENT, MEMORY. */
 SONJECT_API sonject_status sonject_devices(sonject_context *context, sonject_device_info *devices,
                                            size_t capacity, size_t *count);
 

@@ -127,7 +127,7 @@ sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaig
         return null_argument(&context->report, "campaign");
     struct device *device;
     CHECK(campaign_check_id(campaign, id));
-    CHECK(device_slot_open(&context->report, &context->device, &device));
+    CHECK(device_slot_open(&context->report, &context->device, campaign->has_user_shapes, &device));
     struct sonject_result *made = allocate_array(1, sizeof *made);
     CHECK_MEMORY(&context->report, made, "a result");
     memset(&image, 0, sizeof image);

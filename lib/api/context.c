@@ -157,7 +157,7 @@ void sonject_context_release(sonject_context **context)
 {
     if (!context || !*context)
         return;
-    device_close(&(*context)->device.device);
+    device_slot_close(&(*context)->device);
     decoder_stop(&(*context)->decoder);
     host_context_release((*context)->device.params.opencl_context);
     free((char *)(*context)->device.params.device_name);

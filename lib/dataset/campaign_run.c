@@ -102,7 +102,7 @@ static sonject_status begin_set(struct sweep *sweep)
 {
     struct device *device = NULL;
     if (sweep->campaign->has_user_shapes)
-        CHECK(device_slot_open(sweep->campaign->report, sweep->slot, &device));
+        CHECK(device_slot_open(sweep->campaign->report, sweep->slot, true, &device));
     return data_set_begin(&sweep->set, sweep->campaign, device, sweep->params->folder,
                           sweep->params->overwrites != 0);
 }

@@ -108,7 +108,8 @@ static void *make_images(void *user)
     uint64_t index;
     while (begin_image(thread, &index)) {
         sonject_status status =
-            device_slot_open(&thread->report, &thread->slot, &thread->maker.device);
+            device_slot_open(&thread->report, &thread->slot, thread->campaign.has_user_shapes,
+                             &thread->maker.device);
         THEN(status, pool->work->make(pool->work->user, &thread->maker, index));
         end_image(thread, index, status);
     }
@@ -172,7 +173,7 @@ static void end_thread(struct image_thread *thread)
     swath_store_close(&thread->campaign.store);
     mesh_store_clear(&thread->campaign.meshes);
     decoder_stop(&thread->decoder);
-    device_close(&thread->slot.device);
+    device_slot_close(&thread->slot);
     free(thread->lines.characters);
 }
 

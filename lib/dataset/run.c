@@ -158,7 +158,7 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
                                    WRITE_START - TRACE_START};
     const struct injection_input input = swath_input(swath);
     bool is_formed = true;
-    sonject_status status = device_slot_open(report, slot, &device);
+    sonject_status status = device_slot_open(report, slot, scene->user_shapes.count > 0, &device);
     const struct checkpoint_job job = {report,          device, request, facts->scene_hash,
                                        swath->identity, &input, start,   progress_share_tell,
                                        &stage};
@@ -238,7 +238,7 @@ static sonject_status check_earlier(struct report *report, struct device_slot *s
     struct device *device = NULL;
     CHECK(scene_inputs(report, request->scene, swath->identity, hash, &facts->inputs));
     if (request->scene->user_shapes.count > 0)
-        CHECK(device_slot_open(report, slot, &device));
+        CHECK(device_slot_open(report, slot, true, &device));
     json_add(&facts->inputs, "image", json_text(facts->image_name));
     if (device)
         json_add(&facts->inputs, "device", device_document(device));
@@ -299,7 +299,7 @@ static sonject_status trace_swath(struct report *report, struct device_slot *slo
     sonject_status status = scene_hash(report, scene, swath->identity, hash);
     if (status == SONJECT_OK && export_file && *export_file)
         status = impulse_export_begin(report, export_file, &export);
-    THEN(status, device_slot_open(report, slot, &device));
+    THEN(status, device_slot_open(report, slot, scene->user_shapes.count > 0, &device));
     const struct impulse_sink sink = {export_lines, export};
     const struct checkpoint_job job = {report,          device, request,         hash,
                                        swath->identity, &input, clock_seconds(), request->progress,

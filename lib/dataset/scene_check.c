@@ -179,7 +179,7 @@ static sonject_status try_user_shapes(struct growing_text *text, struct report *
     struct device *device = NULL;
     sonject_status status = SONJECT_OK;
     if (shapes->count > 0)
-        status = device_slot_open(report, slot, &device);
+        status = device_slot_open(report, slot, true, &device);
     for (uint32_t i = 0; status == SONJECT_OK && i < shapes->count; i++) {
         struct shape_check check;
         status = shape_check_run(report, device, shapes, i, &check);

@@ -1,384 +1,72 @@
-/* Finding and opening devices, and what a process has one of. */
+/* The device that is asked for, and what it does by its own calls. */
 #define _POSIX_C_SOURCE 200809L
+#include "device/device.h"
+
 #include <ctype.h>
-#include <pthread.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/memory.h"
-#include "device/opencl.h"
+#include "device/backend.h"
 
-#define DEVICES_MAX 64
-
-static pid_t process_of_driver; /* 0: no call was made yet; atomic */
-static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
-static struct shared_device *devices_in_use;
-
-struct found_device {
-    cl_platform_id platform;
-    cl_device_id id;
-    cl_device_type type;
-};
-
-const char *opencl_error_name(cl_int error)
+bool contains_ignoring_case(const char *text, const char *needle)
 {
-    static const struct {
-        cl_int error;
-        const char *name;
-    } names[] = {
-#define NAME(error) {error, #error}
-        NAME(CL_DEVICE_NOT_FOUND),
-        NAME(CL_DEVICE_NOT_AVAILABLE),
-        NAME(CL_COMPILER_NOT_AVAILABLE),
-        NAME(CL_MEM_OBJECT_ALLOCATION_FAILURE),
-        NAME(CL_OUT_OF_RESOURCES),
-        NAME(CL_OUT_OF_HOST_MEMORY),
-        NAME(CL_BUILD_PROGRAM_FAILURE),
-        NAME(CL_COMPILE_PROGRAM_FAILURE),
-        NAME(CL_LINKER_NOT_AVAILABLE),
-        NAME(CL_LINK_PROGRAM_FAILURE),
-        NAME(CL_MAP_FAILURE),
-        NAME(CL_INVALID_VALUE),
-        NAME(CL_INVALID_DEVICE),
-        NAME(CL_INVALID_CONTEXT),
-        NAME(CL_INVALID_COMMAND_QUEUE),
-        NAME(CL_INVALID_MEM_OBJECT),
-        NAME(CL_INVALID_BINARY),
-        NAME(CL_INVALID_BUILD_OPTIONS),
-        NAME(CL_INVALID_PROGRAM),
-        NAME(CL_INVALID_PROGRAM_EXECUTABLE),
-        NAME(CL_INVALID_KERNEL_NAME),
-        NAME(CL_INVALID_KERNEL),
-        NAME(CL_INVALID_ARG_INDEX),
-        NAME(CL_INVALID_ARG_VALUE),
-        NAME(CL_INVALID_ARG_SIZE),
-        NAME(CL_INVALID_KERNEL_ARGS),
-        NAME(CL_INVALID_WORK_DIMENSION),
-        NAME(CL_INVALID_WORK_GROUP_SIZE),
-        NAME(CL_INVALID_WORK_ITEM_SIZE),
-        NAME(CL_INVALID_OPERATION),
-        NAME(CL_INVALID_BUFFER_SIZE),
-        NAME(CL_INVALID_GLOBAL_WORK_SIZE)
-#undef NAME
-    };
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (names[i].error == error)
-            return names[i].name;
-    return "unknown OpenCL error";
-}
-
-sonject_status opencl_answer(struct report *report, const struct device *device, const char *call,
-                             cl_int error)
-{
-    if (error == CL_SUCCESS)
-        return SONJECT_OK;
-    return report_failure(
-        report, error == CL_OUT_OF_HOST_MEMORY ? SONJECT_ERROR_MEMORY : SONJECT_ERROR_DEVICE,
-        "device '%s': %s failed with %s (%d)", device->name, call, opencl_error_name(error),
-        (int)error);
-}
-
-/* The process is noted before the lock is taken, so that no child waits for one that a thread of
- * its parent held. */
-sonject_status driver_claim(struct report *report)
-{
-    pid_t first = 0;
-    const pid_t process = getpid();
-    if (__atomic_compare_exchange_n(&process_of_driver, &first, process, false, __ATOMIC_SEQ_CST,
-                                    __ATOMIC_SEQ_CST) ||
-        first == process)
-        return SONJECT_OK;
-    return report_failure(report, SONJECT_ERROR_DEVICE,
-                          "OpenCL was in use when this process was forked, and its calls would "
-                          "wait for ever: start a new process instead (in Python, spawn it), or "
-                          "fork before OpenCL is used");
-}
-
-sonject_status driver_enter(struct report *report)
-{
-    const sonject_status status = driver_claim(report);
-    if (status == SONJECT_OK)
-        pthread_mutex_lock(&one_at_a_time);
-    return status;
-}
-
-void driver_leave(void)
-{
-    pthread_mutex_unlock(&one_at_a_time);
-}
-
-void host_context_retain(struct report *report, void *opencl_context)
-{
-    if (opencl_context && driver_claim(report) == SONJECT_OK)
-        clRetainContext(opencl_context);
-}
-
-void host_context_release(void *opencl_context)
-{
-    const pid_t first = __atomic_load_n(&process_of_driver, __ATOMIC_SEQ_CST);
-    const bool is_inherited = first != 0 && first != getpid(); /* then nothing may be released */
-    if (opencl_context && !is_inherited)
-        clReleaseContext(opencl_context);
-}
-
-/* None may be for want of memory: the loader passes over drivers that cannot be loaded. */
-static sonject_status explain_no_device(struct report *report, cl_int error)
-{
-    if (error == CL_OUT_OF_HOST_MEMORY || memory_is_short())
-        return report_failure(report, SONJECT_ERROR_MEMORY,
-                              "too little memory to find OpenCL devices: allow the process more, "
-                              "a gigabyte at least (ulimit -v)");
-    if (error == CL_SUCCESS)
-        return SONJECT_OK;
-    return report_failure(report, SONJECT_ERROR_DEVICE, "no OpenCL device answers: %s (%d)",
-                          opencl_error_name(error), (int)error);
-}
-
-/* A platform that fails is passed over where another has a device. */
-static sonject_status find_devices(struct report *report, struct found_device *found, size_t *count)
-{
-    cl_platform_id platforms[16];
-    cl_uint platform_count = 0;
-    cl_int error = clGetPlatformIDs(16, platforms, &platform_count);
-    *count = 0;
-    if (error != CL_SUCCESS)
-        platform_count = 0;
-    if (error == CL_PLATFORM_NOT_FOUND_KHR)
-        error = CL_SUCCESS;
-    for (cl_uint p = 0; p < platform_count && p < 16; p++) {
-        cl_device_id ids[DEVICES_MAX];
-        cl_uint ids_count = 0;
-        const cl_int answer =
-            clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, DEVICES_MAX, ids, &ids_count);
-        if (answer != CL_SUCCESS && answer != CL_DEVICE_NOT_FOUND)
-            error = answer;
-        for (cl_uint d = 0; answer == CL_SUCCESS && d < ids_count && *count < DEVICES_MAX; d++) {
-            struct found_device *device = &found[(*count)++];
-            *device = (struct found_device){platforms[p], ids[d], 0};
-            clGetDeviceInfo(ids[d], CL_DEVICE_TYPE, sizeof device->type, &device->type, NULL);
-        }
+    for (; *text; text++) {
+        size_t i = 0;
+        while (needle[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)needle[i]))
+            i++;
+        if (!needle[i])
+            return true;
     }
-    return *count > 0 ? SONJECT_OK : explain_no_device(report, error);
-}
-
-/* The first GPU, else the first CPU, else the first. */
-static size_t default_device(const struct found_device *found, size_t count)
-{
-    static const cl_device_type preferred[] = {CL_DEVICE_TYPE_GPU, CL_DEVICE_TYPE_CPU};
-    for (size_t kind = 0; kind < 2; kind++)
-        for (size_t i = 0; i < count; i++)
-            if (found[i].type & preferred[kind])
-                return i;
-    return 0;
-}
-
-static void read_text(cl_device_id id, cl_device_info what, char *text, size_t capacity)
-{
-    size_t bytes = 0;
-    text[0] = '\0';
-    char *whole = NULL;
-    if (clGetDeviceInfo(id, what, 0, NULL, &bytes) == CL_SUCCESS)
-        whole = allocate_array(bytes + 1, 1);
-    if (whole && clGetDeviceInfo(id, what, bytes, whole, NULL) == CL_SUCCESS)
-        snprintf(text, capacity, "%s", whole);
-    free(whole);
-}
-
-/* CPUs run as many lanes as their registers hold; GPUs make lanes of work-items themselves. */
-static uint32_t lanes_for(cl_device_id id, cl_device_type type)
-{
-    cl_uint native = 1;
-    if (!(type & CL_DEVICE_TYPE_CPU))
-        return 1;
-    clGetDeviceInfo(id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof native, &native, NULL);
-    return native >= 16 ? 16 : native >= 8 ? 8 : native >= 4 ? 4 : 1;
-}
-
-static void describe(cl_device_id id, cl_device_type type, cl_platform_id platform,
-                     sonject_device_info *info)
-{
-    cl_uint units = 0;
-    memset(info, 0, sizeof *info);
-    read_text(id, CL_DEVICE_NAME, info->name, sizeof info->name);
-    read_text(id, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
-    if (clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof info->platform, info->platform,
-                          NULL) != CL_SUCCESS)
-        info->platform[0] = '\0';
-    clGetDeviceInfo(id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
-    info->compute_units = units;
-    info->vector_width = lanes_for(id, type);
+    return needle[0] == '\0';
 }
 
 sonject_status device_list(struct report *report, sonject_device_info *devices, size_t capacity,
                            size_t *count)
 {
-    struct found_device found[DEVICES_MAX];
-    *count = 0;
-    CHECK(driver_enter(report));
-    const sonject_status status = find_devices(report, found, count);
-    const size_t chosen = default_device(found, *count);
-    for (size_t i = 0; i < *count && i < capacity; i++) {
-        describe(found[i].id, found[i].type, found[i].platform, &devices[i]);
+    const size_t rest = capacity > 1 ? capacity - 1 : 0;
+    struct report of_opencl = {{0}, NULL, NULL};
+    size_t gpu;
+    if (capacity > 0)
+        native_describe(&devices[0]);
+    if (opencl_list(&of_opencl, rest > 0 ? devices + 1 : NULL, rest, count, &gpu) != SONJECT_OK)
+        report_log(report, "note: %s", of_opencl.message);
+    const size_t chosen = gpu < *count ? gpu + 1 : 0;
+    *count += 1;
+    for (size_t i = 0; i < *count && i < capacity; i++)
         devices[i].is_default = i == chosen;
-    }
-    driver_leave();
-    return status;
-}
-
-static bool contains_ignoring_case(const char *text, const char *part)
-{
-    for (; *text; text++) {
-        size_t i = 0;
-        while (part[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i]))
-            i++;
-        if (!part[i])
-            return true;
-    }
-    return part[0] == '\0';
-}
-
-static sonject_status choose_device(struct report *report, const char *name,
-                                    struct found_device *chosen)
-{
-    struct found_device found[DEVICES_MAX];
-    size_t count;
-    CHECK(find_devices(report, found, &count));
-    if (count == 0)
-        return report_failure(report, SONJECT_ERROR_DEVICE,
-                              "no OpenCL device found: install a driver, such as the package "
-                              "pocl-opencl-icd for the CPU");
-    if (!name) {
-        *chosen = found[default_device(found, count)];
-        return SONJECT_OK;
-    }
-    for (size_t i = 0; i < count; i++) {
-        char device_name[128];
-        read_text(found[i].id, CL_DEVICE_NAME, device_name, sizeof device_name);
-        if (contains_ignoring_case(device_name, name)) {
-            *chosen = found[i];
-            return SONJECT_OK;
-        }
-    }
-    return report_failure(report, SONJECT_ERROR_DEVICE,
-                          "no OpenCL device has '%s' in its name: `sonject devices` lists them",
-                          name);
-}
-
-/* The device's record, made for its first user and released by its last. */
-static struct shared_device *find_shared(cl_device_id id, cl_context host_context, cl_int *error)
-{
-    *error = CL_SUCCESS;
-    struct shared_device *device = devices_in_use;
-    while (device && (device->id != id || device->host_context != host_context))
-        device = device->next;
-    if (!device) {
-        device = allocate_array(1, sizeof *device);
-        if (!device) {
-            *error = CL_OUT_OF_HOST_MEMORY;
-            return NULL;
-        }
-        if (host_context)
-            *error = clRetainContext(host_context);
-        else
-            device->context = clCreateContext(NULL, 1, &id, NULL, NULL, error);
-        if (*error != CL_SUCCESS) {
-            free(device);
-            return NULL;
-        }
-        device->id = id;
-        if (host_context)
-            device->context = device->host_context = host_context;
-        device->next = devices_in_use;
-        devices_in_use = device;
-    }
-    device->users++;
-    return device;
-}
-
-static void release_shared(struct shared_device *device)
-{
-    if (--device->users > 0)
-        return;
-    struct shared_device **link = &devices_in_use;
-    while (*link != device)
-        link = &(*link)->next;
-    *link = device->next;
-    for (size_t i = 0; i < device->program_count; i++)
-        clReleaseProgram(device->programs[i].program);
-    clReleaseContext(device->context);
-    free(device);
-}
-
-static sonject_status open_queue(struct report *report, struct device *device,
-                                 cl_context host_context)
-{
-    cl_int error;
-    device->shared = find_shared(device->id, host_context, &error);
-    CHECK(opencl_answer(report, device, "clCreateContext", error));
-    device->context = device->shared->context;
-    cl_command_queue queue = clCreateCommandQueue(device->context, device->id, 0, &error);
-    CHECK(opencl_answer(report, device, "clCreateCommandQueue", error));
-    device->queue = queue;
     return SONJECT_OK;
 }
 
-static sonject_status check_abilities(struct report *report, struct device *device)
+/* A GPU that cannot be asked for, as in a forked child, is none. */
+static bool has_gpu(void)
 {
-    cl_ulong limit = 0;
-    cl_device_fp_config precision = 0;
-    cl_int error =
-        clGetDeviceInfo(device->id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof limit, &limit, NULL);
-    CHECK(opencl_answer(report, device, "clGetDeviceInfo", error));
-    error =
-        clGetDeviceInfo(device->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof precision, &precision, NULL);
-    CHECK(opencl_answer(report, device, "clGetDeviceInfo", error));
-    device->allocation_limit = limit > SIZE_MAX ? SIZE_MAX : (size_t)limit;
-    if (!(precision & CL_FP_INF_NAN) || !(precision & CL_FP_ROUND_TO_NEAREST))
-        return report_failure(report, SONJECT_ERROR_DEVICE,
-                              "device '%s' does not compute single precision as IEEE 754 does: "
-                              "choose another",
-                              device->name);
-    return SONJECT_OK;
+    struct report ignored = {{0}, NULL, NULL};
+    size_t count, gpu;
+    return opencl_list(&ignored, NULL, 0, &count, &gpu) == SONJECT_OK && gpu < count;
 }
 
 static sonject_status open_chosen(struct report *report, const sonject_context_params *params,
-                                  struct device *device)
+                                  bool compiles, struct device *device)
 {
-    struct found_device chosen = {NULL, params->opencl_device, 0};
-    if (params->opencl_context) {
-        clGetDeviceInfo(chosen.id, CL_DEVICE_TYPE, sizeof chosen.type, &chosen.type, NULL);
-        clGetDeviceInfo(chosen.id, CL_DEVICE_PLATFORM, sizeof chosen.platform, &chosen.platform,
-                        NULL);
-    } else {
-        CHECK(choose_device(report, params->device_name, &chosen));
-    }
-    sonject_device_info info;
-    describe(chosen.id, chosen.type, chosen.platform, &info);
-    memcpy(device->name, info.name, sizeof device->name);
-    memcpy(device->platform, info.platform, sizeof device->platform);
-    memcpy(device->driver, info.driver, sizeof device->driver);
-    device->id = chosen.id;
-    device->is_cpu = (chosen.type & CL_DEVICE_TYPE_CPU) != 0;
-    device->is_pocl = strcmp(info.platform, "Portable Computing Language") == 0;
-    device->width = info.vector_width;
-    device->compute_units = info.compute_units;
-    CHECK(check_abilities(report, device));
-    return open_queue(report, device, params->opencl_context);
+    const char *environment = getenv("SONJECT_DEVICE");
+    const char *name = params->device_name ? params->device_name
+                       : environment && environment[0] ? environment
+                                                       : NULL;
+    const bool is_native = params->opencl_context ? false
+                           : name                 ? native_is_named(name)
+                                                  : !compiles && !has_gpu();
+    return is_native ? native_open(report, params, device)
+                     : opencl_open(report, params, name, device);
 }
 
-sonject_status device_open(struct report *report, const sonject_context_params *params,
-                           struct device **out)
+static sonject_status open_device(struct report *report, const sonject_context_params *params,
+                                  bool compiles, struct device **out)
 {
     *out = NULL;
     struct device *device = allocate_array(1, sizeof *device);
     CHECK_MEMORY(report, device, "the device");
-    sonject_status status = driver_enter(report);
-    if (status == SONJECT_OK) {
-        status = open_chosen(report, params, device);
-        driver_leave();
-    }
+    const sonject_status status = open_chosen(report, params, compiles, device);
     if (status != SONJECT_OK) {
         device_close(&device);
         return status;
@@ -389,26 +77,133 @@ sonject_status device_open(struct report *report, const sonject_context_params *
     return SONJECT_OK;
 }
 
-sonject_status device_slot_open(struct report *report, struct device_slot *slot,
+sonject_status device_open(struct report *report, const sonject_context_params *params,
+                           struct device **device)
+{
+    return open_device(report, params, false, device);
+}
+
+sonject_status device_slot_open(struct report *report, struct device_slot *slot, bool compiles,
                                 struct device **device)
 {
-    const sonject_status status =
-        slot->device ? driver_claim(report) : device_open(report, &slot->params, &slot->device);
-    *device = slot->device;
-    return status;
+    struct device **place = compiles ? &slot->compiler : &slot->device;
+    *device = NULL;
+    if (*place)
+        CHECK((*place)->calls->claim(report));
+    else
+        CHECK(open_device(report, &slot->params, compiles, place));
+    *device = *place;
+    return SONJECT_OK;
+}
+
+void device_slot_close(struct device_slot *slot)
+{
+    device_close(&slot->device);
+    device_close(&slot->compiler);
 }
 
 void device_close(struct device **device)
 {
-    struct report ignored = {{0}, NULL, NULL};
     if (!device || !*device)
         return;
-    if ((*device)->shared && driver_enter(&ignored) == SONJECT_OK) {
-        if ((*device)->queue)
-            clReleaseCommandQueue((*device)->queue);
-        release_shared((*device)->shared);
-        driver_leave();
-    }
+    if ((*device)->calls)
+        (*device)->calls->close(*device);
     free(*device);
     *device = NULL;
+}
+
+sonject_status buffer_reserve(struct report *report, struct device *device, size_t bytes,
+                              device_buffer *buffer)
+{
+    const size_t size = bytes > 0 ? bytes : 1;
+    *buffer = NULL;
+    if (size > device->allocation_limit)
+        return report_failure(report, SONJECT_ERROR_DEVICE,
+                              "device '%s' allows buffers of %zu MB, %zu MB are needed: use a "
+                              "smaller patch",
+                              device->name, device->allocation_limit >> 20, size >> 20);
+    return device->calls->buffer_reserve(report, device, size, buffer);
+}
+
+sonject_status buffer_create(struct report *report, struct device *device, size_t bytes,
+                             const void *contents, device_buffer *buffer)
+{
+    CHECK(buffer_reserve(report, device, bytes, buffer));
+    const sonject_status status = contents
+                                      ? buffer_write(report, device, *buffer, 0, bytes, contents)
+                                      : buffer_clear(report, device, *buffer, bytes);
+    if (status != SONJECT_OK)
+        buffer_release(device, buffer);
+    return status;
+}
+
+void buffer_release(struct device *device, device_buffer *buffer)
+{
+    if (*buffer)
+        device->calls->buffer_release(*buffer);
+    *buffer = NULL;
+}
+
+sonject_status buffer_read(struct report *report, struct device *device, device_buffer buffer,
+                           size_t offset, size_t bytes, void *contents)
+{
+    return bytes == 0
+               ? SONJECT_OK
+               : device->calls->buffer_read(report, device, buffer, offset, bytes, contents);
+}
+
+sonject_status buffer_write(struct report *report, struct device *device, device_buffer buffer,
+                            size_t offset, size_t bytes, const void *contents)
+{
+    return bytes == 0
+               ? SONJECT_OK
+               : device->calls->buffer_write(report, device, buffer, offset, bytes, contents);
+}
+
+sonject_status buffer_map(struct report *report, struct device *device, device_buffer buffer,
+                          size_t bytes, const void **contents)
+{
+    return device->calls->buffer_map(report, device, buffer, bytes > 0 ? bytes : 1, contents);
+}
+
+void buffer_unmap(struct device *device, device_buffer buffer, const void *contents)
+{
+    device->calls->buffer_unmap(device, buffer, contents);
+}
+
+sonject_status buffer_clear(struct report *report, struct device *device, device_buffer buffer,
+                            size_t bytes)
+{
+    return bytes == 0 ? SONJECT_OK : device->calls->buffer_clear(report, device, buffer, bytes);
+}
+
+sonject_status kernel_create(struct report *report, struct device *device,
+                             enum device_program program, enum program_variant variant,
+                             const char *name, device_kernel *kernel)
+{
+    return kernel_create_with_code(report, device, program, variant, NULL, name, kernel);
+}
+
+sonject_status kernel_create_with_code(struct report *report, struct device *device,
+                                       enum device_program program, enum program_variant variant,
+                                       const struct user_code *code, const char *name,
+                                       device_kernel *kernel)
+{
+    *kernel = NULL;
+    return device->calls->kernel_create(report, device, program, variant, code, name, kernel);
+}
+
+void kernel_release(struct device *device, device_kernel *kernel)
+{
+    if (*kernel)
+        device->calls->kernel_release(*kernel);
+    *kernel = NULL;
+}
+
+sonject_status kernel_run(struct report *report, struct device *device, device_kernel kernel,
+                          const struct kernel_argument *arguments, size_t argument_count,
+                          uint32_t dimensions, const size_t *global)
+{
+    return device->calls->kernel_run(report, device, kernel, arguments, argument_count, dimensions,
+                                     global);
 }

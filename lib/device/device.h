@@ -1,5 +1,6 @@
-/* Devices: which there are, one that is open, its buffers, and kernels that run on it. OpenCL runs
- * them all; its own names stay in this folder (opencl.h). */
+/* Devices: which there are, one that is open, its buffers, and kernels that run on it. The device
+ * "native" runs what the C compiler made of the kernels (native/), OpenCL all others (opencl/);
+ * nothing outside this folder knows which. */
 #ifndef SONJECT_DEVICE_DEVICE_H
 #define SONJECT_DEVICE_DEVICE_H
 
@@ -11,11 +12,14 @@
 
 #include "base/report.h"
 
-typedef struct _cl_mem *device_buffer;
-typedef struct _cl_kernel *device_kernel;
+/* What they point to is the device's. */
+typedef void *device_buffer, *device_kernel;
+
+struct device_calls;
 
 struct device {
-    bool is_cpu, is_pocl;
+    const struct device_calls *calls; /* backend.h */
+    bool is_cpu;
     uint32_t width; /* lanes that the kernels are compiled for */
     uint32_t compute_units;
     size_t allocation_limit; /* bytes of one buffer */
@@ -23,7 +27,8 @@ struct device {
     char platform[128];
     char driver[128];
 
-    /* OpenCL's. */
+    /* OpenCL's */
+    bool is_pocl;
     struct _cl_device_id *id;
     struct shared_device *shared; /* with all contexts of the device */
     struct _cl_context *context;  /* its */
@@ -34,20 +39,25 @@ struct device {
 sonject_status device_list(struct report *report, sonject_device_info *devices, size_t capacity,
                            size_t *count);
 
-/* Opens the device that the parameters name. Default: the first GPU, else the first CPU, else the
- * first of any kind. Errors: DEVICE, MEMORY. On failure *device is NULL. */
+/* Opens the device that the parameters name, else the environment's SONJECT_DEVICE, else the
+ * default: the first GPU of OpenCL, else native. Errors: DEVICE, MEMORY. On failure *device is NULL.
+ */
 sonject_status device_open(struct report *report, const sonject_context_params *params,
                            struct device **device);
 void device_close(struct device **device);
 
-/* A device that is opened when it is first needed: all zeros but for the parameters, whose strings
- * must outlive it. */
+/* Devices that are opened when they are first needed: all zeros but for the parameters, whose
+ * strings must outlive it. */
 struct device_slot {
     sonject_context_params params;
-    struct device *device; /* NULL until then; for device_close */
+    struct device *device, *compiler; /* NULL until then */
 };
-sonject_status device_slot_open(struct report *report, struct device_slot *slot,
+
+/* The device for a call. compiles: users' code is to be compiled, which takes a device of OpenCL
+ * where none is named. Errors: as device_open, and DEVICE in a forked child that may not use it. */
+sonject_status device_slot_open(struct report *report, struct device_slot *slot, bool compiles,
                                 struct device **device);
+void device_slot_close(struct device_slot *slot);
 
 /* A driver's threads do not come along into a forked child, whose calls would wait for them for
  * ever: refuses in a child of a process that used the driver. Errors: DEVICE. */
@@ -67,7 +77,7 @@ sonject_status buffer_reserve(struct report *report, struct device *device, size
                               device_buffer *buffer);
 
 /* Nothing where it is NULL, which it becomes. */
-void buffer_release(device_buffer *buffer);
+void buffer_release(struct device *device, device_buffer *buffer);
 
 /* Copies between host and buffer; both wait until it is done. Errors: DEVICE, MEMORY. */
 sonject_status buffer_read(struct report *report, struct device *device, device_buffer buffer,
@@ -83,6 +93,8 @@ void buffer_unmap(struct device *device, device_buffer buffer, const void *conte
 
 sonject_status buffer_clear(struct report *report, struct device *device, device_buffer buffer,
                             size_t bytes);
+
+#define KERNEL_ARGUMENTS_MAX 20
 
 struct kernel_argument {
     size_t bytes;
@@ -101,7 +113,7 @@ sonject_status kernel_run(struct report *report, struct device *device, device_k
                           uint32_t dimensions, const size_t *global);
 
 /* Nothing where it is NULL, which it becomes. */
-void kernel_release(device_kernel *kernel);
+void kernel_release(struct device *device, device_kernel *kernel);
 
 enum device_program {
     PROGRAM_TRACE_ROUGH,
@@ -116,16 +128,14 @@ enum device_program {
     PROGRAM_COUNT
 };
 
-/* What a program is built with, bits: each takes its time to build, so most scenes do without. */
+/* Each program is built in two ways: see kernels/layout.h. */
 enum program_variant {
-    PROGRAM_WITH_MESHES = 1,
-    PROGRAM_WITH_RELIEF = 2,
-    PROGRAM_WITH_ASPECTS = 4, /* the rough part's */
-    PROGRAM_WITH_FOULING = 8  /* of what scatters */
+    PROGRAM_PLAIN, /* without meshes, relief and fouling, as most scenes are */
+    PROGRAM_FULL
 };
 
-/* The kernels' sources, flattened at build time (embed.py) so that no file is needed at run time.
- */
+/* The kernels' sources, flattened at build time (opencl/embed.py) so that no file is needed at run
+ * time. */
 struct embedded_source {
     const char *name;
     const char *text; /* terminated */
@@ -148,18 +158,17 @@ struct user_code {
     const void *user; /* for explain */
 };
 
-/* A kernel of a program, to be given to kernel_release; NULL on failure. The program is built once
- * a device for all contexts of a process; what of it is kept between processes is the driver's to
- * say. variant: bits of enum program_variant. Errors: DEVICE (with the first line of the build
- * log), MEMORY. */
+/* A kernel of a program, to be given to kernel_release; NULL on failure. OpenCL builds the program
+ * once a device for all contexts of a process; what of it is kept between processes is the driver's
+ * to say. Errors: DEVICE (with the first line of the build log), MEMORY. */
 sonject_status kernel_create(struct report *report, struct device *device,
-                             enum device_program program, uint32_t variant, const char *name,
-                             device_kernel *kernel);
+                             enum device_program program, enum program_variant variant,
+                             const char *name, device_kernel *kernel);
 
 /* The same of a program that users' code is linked to; NULL: none is. Errors: also those of
- * code->explain. */
+ * code->explain, and DEVICE where the device has no compiler. */
 sonject_status kernel_create_with_code(struct report *report, struct device *device,
-                                       enum device_program program, uint32_t variant,
+                                       enum device_program program, enum program_variant variant,
                                        const struct user_code *code, const char *name,
                                        device_kernel *kernel);
 

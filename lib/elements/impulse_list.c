@@ -141,7 +141,7 @@ sonject_status impulse_list_add_speckle(struct impulse_list *list, const struct 
     for (size_t part = 0; part < 2; part++) {
         THEN(status, buffer_read(list->report, list->device, drawn[part], 0, cells * sizeof *parts,
                                  parts + part * cells));
-        buffer_release(&drawn[part]);
+        buffer_release(list->device, &drawn[part]);
     }
     THEN(status, impulse_list_add(list, grid, strips, parts, parts + cells));
     free(parts);

@@ -203,12 +203,12 @@ struct series_work {
 
 static void work_clear(struct series_work *work)
 {
-    kernel_release(&work->hear);
-    kernel_release(&work->pulse_kernel);
+    kernel_release(work->device, &work->hear);
+    kernel_release(work->device, &work->pulse_kernel);
     for (int part = 0; part < 2; part++) {
-        buffer_release(&work->lines[part]);
-        buffer_release(&work->series[part]);
-        buffer_release(&work->pulses[part]);
+        buffer_release(work->device, &work->lines[part]);
+        buffer_release(work->device, &work->series[part]);
+        buffer_release(work->device, &work->pulses[part]);
         free(work->parts[part]);
     }
     free(work->records);
@@ -250,8 +250,8 @@ static sonject_status work_init(struct series_work *work, const struct series_re
         CHECK(buffer_create(report, device, series_bytes, NULL, &work->series[part]));
         CHECK(buffer_create(report, device, pulse_bytes, pulses[part], &work->pulses[part]));
     }
-    CHECK(kernel_create(report, device, PROGRAM_ELEMENT_SERIES, 0, "hear_elements", &work->hear));
-    return kernel_create(report, device, PROGRAM_ELEMENT_SERIES, 0, "pulse_elements",
+    CHECK(kernel_create(report, device, PROGRAM_ELEMENT_SERIES, PROGRAM_PLAIN, "hear_elements", &work->hear));
+    return kernel_create(report, device, PROGRAM_ELEMENT_SERIES, PROGRAM_PLAIN, "pulse_elements",
                          &work->pulse_kernel);
 }
 
@@ -314,7 +314,7 @@ static sonject_status hear_piece(struct series_work *work, const struct impulse_
                             sizeof arguments / sizeof *arguments, 2, global);
     }
     for (int i = 0; i < BUFFERS; i++)
-        buffer_release(&buffers[i]);
+        buffer_release(work->device, &buffers[i]);
     return status;
 }
 

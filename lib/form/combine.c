@@ -39,7 +39,7 @@ static sonject_status combine_plain(struct form_lines *lines, const device_buffe
     device_kernel kernel = NULL;
     float *taps = response_taps(lines, &count);
     CHECK_MEMORY(lines->report, taps, "image formation");
-    sonject_status status = kernel_create(lines->report, lines->device, PROGRAM_IMAGE_FORMATION, 0,
+    sonject_status status = kernel_create(lines->report, lines->device, PROGRAM_IMAGE_FORMATION, PROGRAM_PLAIN,
                                           "combine_aspects", &kernel);
     THEN(status, buffer_create(lines->report, lines->device, count * sizeof *taps, taps, &buffer));
     if (status == SONJECT_OK) {
@@ -53,8 +53,8 @@ static sonject_status combine_plain(struct form_lines *lines, const device_buffe
         status = kernel_run(lines->report, lines->device, kernel, arguments,
                             sizeof arguments / sizeof *arguments, 3, global);
     }
-    buffer_release(&buffer);
-    kernel_release(&kernel);
+    buffer_release(lines->device, &buffer);
+    kernel_release(lines->device, &kernel);
     free(taps);
     return status;
 }
@@ -170,8 +170,8 @@ static sonject_status run_rows(struct form_lines *lines, device_kernel kernel,
         status = kernel_run(lines->report, lines->device, kernel, arguments,
                             sizeof arguments / sizeof *arguments, 2, global);
     }
-    buffer_release(&parts[0]);
-    buffer_release(&parts[1]);
+    buffer_release(lines->device, &parts[0]);
+    buffer_release(lines->device, &parts[1]);
     return status;
 }
 
@@ -200,7 +200,7 @@ static sonject_status combine_varied(struct form_lines *lines, const device_buff
     struct taps taps;
     device_kernel kernel = NULL;
     sonject_status status = taps_init(&taps, lines);
-    THEN(status, kernel_create(lines->report, lines->device, PROGRAM_IMAGE_FORMATION, 0,
+    THEN(status, kernel_create(lines->report, lines->device, PROGRAM_IMAGE_FORMATION, PROGRAM_PLAIN,
                                "combine_varied", &kernel));
     if (status == SONJECT_OK && lines->response.motion) {
         status = run_moved(lines, kernel, &taps, out);
@@ -208,7 +208,7 @@ static sonject_status combine_varied(struct form_lines *lines, const device_buff
         fill_blocks(&taps, lines);
         status = run_rows(lines, kernel, &taps, 0, out);
     }
-    kernel_release(&kernel);
+    kernel_release(lines->device, &kernel);
     taps_clear(&taps);
     return status;
 }

@@ -147,8 +147,8 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
     for (int part = 0; part < 2; part++)
         THEN(status, buffer_reserve(report, device, bytes, &lines->lines[part]));
     THEN(status,
-         kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "sort_bins", &lines->sort));
-    THEN(status, kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0,
+         kernel_create(report, device, PROGRAM_IMAGE_FORMATION, PROGRAM_PLAIN, "sort_bins", &lines->sort));
+    THEN(status, kernel_create(report, device, PROGRAM_IMAGE_FORMATION, PROGRAM_PLAIN,
                                lines->imaginary_pulse ? "compress_range_complex" : "compress_range",
                                &lines->compress));
     if (status != SONJECT_OK)
@@ -158,12 +158,12 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
 
 void form_lines_end(struct form_lines *lines)
 {
-    kernel_release(&lines->sort);
-    kernel_release(&lines->compress);
+    kernel_release(lines->device, &lines->sort);
+    kernel_release(lines->device, &lines->compress);
     for (int part = 0; part < 2; part++)
-        buffer_release(&lines->lines[part]);
-    buffer_release(&lines->pulse);
-    buffer_release(&lines->imaginary_pulse);
+        buffer_release(lines->device, &lines->lines[part]);
+    buffer_release(lines->device, &lines->pulse);
+    buffer_release(lines->device, &lines->imaginary_pulse);
     free(lines->filled_columns);
     lines->filled_columns = NULL;
 }
@@ -243,8 +243,8 @@ static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t 
         some.count = count - some.first < most ? count - some.first : most;
         status = sort_bins(lines, some, bins, stride, sorted);
         THEN(status, compress_sorted(lines, strip, some, sorted, stride, filled));
-        buffer_release(&sorted[0]);
-        buffer_release(&sorted[1]);
+        buffer_release(lines->device, &sorted[0]);
+        buffer_release(lines->device, &sorted[1]);
     }
     return status;
 }
@@ -271,7 +271,7 @@ static sonject_status compress_filled(struct form_lines *lines, int32_t strip, i
     sonject_status status = buffer_create(lines->report, lines->device,
                                           (size_t)count * sizeof *filled, filled, &buffer);
     THEN(status, compress(lines, strip, count, bins, buffer));
-    buffer_release(&buffer);
+    buffer_release(lines->device, &buffer);
     return status;
 }
 
@@ -298,8 +298,8 @@ sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t c
                  buffer_create(lines->report, lines->device, bytes, parts[part], &bins[part]));
         THEN(status,
              compress_filled(lines, strip + run.first, run.count, bins, filled + run.first));
-        buffer_release(&bins[0]);
-        buffer_release(&bins[1]);
+        buffer_release(lines->device, &bins[0]);
+        buffer_release(lines->device, &bins[1]);
     }
     free(filled);
     return status;
@@ -316,7 +316,7 @@ sonject_status speckle_draw(struct report *report, struct device *device, struct
     device_kernel kernel = NULL;
     parts[0] = parts[1] = NULL;
     sonject_status status =
-        kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "draw_speckle", &kernel);
+        kernel_create(report, device, PROGRAM_IMAGE_FORMATION, PROGRAM_PLAIN, "draw_speckle", &kernel);
     THEN(status, buffer_create(report, device, bytes, energy, &energies));
     THEN(status, buffer_reserve(report, device, bytes, &parts[0]));
     THEN(status, buffer_reserve(report, device, bytes, &parts[1]));
@@ -330,8 +330,8 @@ sonject_status speckle_draw(struct report *report, struct device *device, struct
         status = kernel_run(report, device, kernel, arguments, sizeof arguments / sizeof *arguments,
                             2, global);
     }
-    buffer_release(&energies);
-    kernel_release(&kernel);
+    buffer_release(device, &energies);
+    kernel_release(device, &kernel);
     return status;
 }
 
@@ -355,8 +355,8 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
     sonject_status status =
         speckle_draw(lines->report, lines->device, numbers, strips, energy, seed, stream, bins);
     THEN(status, compress_filled(lines, strip, count, bins, filled));
-    buffer_release(&bins[0]);
-    buffer_release(&bins[1]);
+    buffer_release(lines->device, &bins[0]);
+    buffer_release(lines->device, &bins[1]);
     free(filled);
     return status;
 }
@@ -390,8 +390,8 @@ sonject_status form_lines_finish(struct form_lines *lines, float *real_part, flo
     THEN(status, read_plane(lines, out[0], real_part));
     if (status == SONJECT_OK && lines->planes == 2 && imaginary_part)
         status = read_plane(lines, out[1], imaginary_part);
-    buffer_release(&out[0]);
-    buffer_release(&out[1]);
-    buffer_release(&lines->filled);
+    buffer_release(lines->device, &out[0]);
+    buffer_release(lines->device, &out[1]);
+    buffer_release(lines->device, &lines->filled);
     return status;
 }

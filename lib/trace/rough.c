@@ -333,7 +333,7 @@ static sonject_status trace_pair(struct rough_trace *trace, struct tracer *trace
     THEN(status, launch_add(launch, tracer, sizeof record, &record));
     THEN(status, launch_run(launch, tracer));
     launch->buffers[IMAGES_TILES] = NULL;
-    buffer_release(&launch->buffers[IMAGES_SOURCES]);
+    buffer_release(tracer->device, &launch->buffers[IMAGES_SOURCES]);
     ray_table_clear(&launch->rays);
     return status;
 }

@@ -199,9 +199,9 @@ static sonject_status run_turns(struct launch *launch, struct tracer *tracer, st
     THEN(status, kernel_run(report, device, launch->kernel, arguments, last + 1, 1, &items));
     THEN(status, buffer_read(report, device, buffers[last], 0, items * sizeof *outcomes, outcomes));
     THEN(status, add_outcomes(tracer, outcomes, items));
-    buffer_release(&buffers[0]);
-    buffer_release(&buffers[1]);
-    buffer_release(&buffers[last]);
+    buffer_release(device, &buffers[0]);
+    buffer_release(device, &buffers[1]);
+    buffer_release(device, &buffers[last]);
     free(outcomes);
     return status;
 }
@@ -229,29 +229,22 @@ sonject_status launch_run(struct launch *launch, struct tracer *tracer)
 sonject_status launch_begin(struct launch *launch, struct tracer *tracer,
                             enum device_program program, const char *kernel_name)
 {
-    const bool has_aspects =
-        program == PROGRAM_TRACE_ROUGH &&
-        (aspects_sine(tracer) > 0.0 || tracer->scene->sonar.kind == SONJECT_SONAR_REAL);
-    const bool scatters = program == PROGRAM_TRACE_ROUGH || program == PROGRAM_TRACE_ROUGH_IMAGES ||
-                          program == PROGRAM_TRACE_CHAINS;
-    bool has_fouling = false;
+    bool is_plain = tracer->scene->mesh_count == 0 && !tracer->relief;
     for (uint32_t i = 0; i < tracer->scene->object_count; i++)
-        has_fouling = has_fouling || object_is_fouled(tracer, i);
-    const uint32_t variant = (tracer->scene->mesh_count > 0 ? PROGRAM_WITH_MESHES : 0u) |
-                             (tracer->relief ? PROGRAM_WITH_RELIEF : 0u) |
-                             (has_aspects ? PROGRAM_WITH_ASPECTS : 0u) |
-                             (has_fouling && scatters ? PROGRAM_WITH_FOULING : 0u);
+        is_plain = is_plain && !object_is_fouled(tracer, i);
+    launch->device = tracer->device;
     if (tracer->checkpoint && tracer->checkpoint->files)
         return SONJECT_OK;
-    return scene_kernel_create(tracer->report, tracer->device, tracer->scene, variant, program,
-                               kernel_name, &launch->kernel);
+    return scene_kernel_create(tracer->report, tracer->device, tracer->scene,
+                               is_plain ? PROGRAM_PLAIN : PROGRAM_FULL, program, kernel_name,
+                               &launch->kernel);
 }
 
 void launch_end(struct launch *launch)
 {
-    kernel_release(&launch->kernel);
+    kernel_release(launch->device, &launch->kernel);
     for (size_t i = 0; i < launch->buffer_count; i++)
-        buffer_release(&launch->buffers[i]);
+        buffer_release(launch->device, &launch->buffers[i]);
     launch->buffer_count = 0;
     ray_table_clear(&launch->rays);
 }

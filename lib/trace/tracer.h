@@ -78,6 +78,7 @@ struct ray_table {
 /* A kernel and its arguments: the fan and its rays first, then the buffers, then what the
  * work-items report. All that it holds is its own. */
 struct launch {
+    struct device *device; /* the tracer's */
     device_kernel kernel; /* NULL where checkpoints are added up and nothing is traced */
     struct fan_record fan;
     struct ray_table rays;

@@ -68,8 +68,8 @@ struct trial {
 
 static void shape_probe_end(struct shape_probe *probe)
 {
-    kernel_release(&probe->kernel);
-    buffer_release(&probe->shape);
+    kernel_release(probe->device, &probe->kernel);
+    buffer_release(probe->device, &probe->shape);
 }
 
 static sonject_status shape_probe_begin(struct shape_probe *probe, struct report *report,
@@ -80,7 +80,7 @@ static sonject_status shape_probe_begin(struct shape_probe *probe, struct report
     memset(probe, 0, sizeof *probe);
     probe->report = report;
     probe->device = device;
-    sonject_status status = user_kernel_create(report, device, shapes, 0, PROGRAM_PROBE_USER_SHAPE,
+    sonject_status status = user_kernel_create(report, device, shapes, PROGRAM_FULL, PROGRAM_PROBE_USER_SHAPE,
                                                "probe_user_shape", &probe->kernel);
     THEN(status, buffer_create(report, device, sizeof record, &record, &probe->shape));
     if (status != SONJECT_OK)
@@ -106,8 +106,8 @@ static sonject_status shape_probe_ask(struct shape_probe *probe, const struct pr
         status = kernel_run(report, device, probe->kernel, arguments, 3, 1, &count);
     }
     THEN(status, buffer_read(report, device, hit_buffer, 0, count * sizeof *hits, hits));
-    buffer_release(&ray_buffer);
-    buffer_release(&hit_buffer);
+    buffer_release(probe->device, &ray_buffer);
+    buffer_release(probe->device, &hit_buffer);
     return status;
 }
 

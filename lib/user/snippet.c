@@ -341,7 +341,7 @@ static sonject_status explain(struct report *report, const struct device *device
 }
 
 sonject_status user_kernel_create(struct report *report, struct device *device,
-                                  const struct user_shapes *shapes, uint32_t variant,
+                                  const struct user_shapes *shapes, enum program_variant variant,
                                   enum device_program number, const char *name,
                                   device_kernel *kernel)
 {
@@ -364,7 +364,7 @@ sonject_status user_kernel_create(struct report *report, struct device *device,
 }
 
 sonject_status scene_kernel_create(struct report *report, struct device *device,
-                                   const struct scene *scene, uint32_t variant,
+                                   const struct scene *scene, enum program_variant variant,
                                    enum device_program program, const char *name,
                                    device_kernel *kernel)
 {

@@ -59,8 +59,8 @@ static void *run(void *argument)
         device_buffer parts[2] = {NULL, NULL};
         THEN(runner->status,
              speckle_draw(&runner->report, device, cells, cells, energy, 1, 2, parts));
-        buffer_release(&parts[0]);
-        buffer_release(&parts[1]);
+        buffer_release(device, &parts[0]);
+        buffer_release(device, &parts[1]);
     }
     device_close(&device);
     return NULL;

@@ -17,9 +17,9 @@ static void require(const struct report *report, int is_well, const char *what)
     abort();
 }
 
-static cl_mem upload(struct probe_device *probe, const void *contents, size_t count, size_t size)
+static device_buffer upload(struct probe_device *probe, const void *contents, size_t count, size_t size)
 {
-    cl_mem buffer;
+    device_buffer buffer;
     require(probe->report,
             buffer_create(probe->report, probe->device, contents ? count * size : 1,
                           contents ? contents : "", &buffer) == SONJECT_OK,
@@ -80,10 +80,10 @@ void probe_device_begin(struct probe_device *probe, struct report *report, struc
 
 void probe_device_end(struct probe_device *probe)
 {
-    buffer_release(&probe->record);
-    buffer_release(&probe->branches);
-    buffer_release(&probe->leaves);
-    buffer_release(&probe->normals);
+    buffer_release(probe->device, &probe->record);
+    buffer_release(probe->device, &probe->branches);
+    buffer_release(probe->device, &probe->leaves);
+    buffer_release(probe->device, &probe->normals);
     clReleaseProgram(probe->program);
 }
 
@@ -102,8 +102,8 @@ double probe_device_run(struct probe_device *probe, const char *name, const floa
     double best = 1e9;
     cl_kernel kernel = clCreateKernel(probe->program, name, &error);
     require(probe->report, error == CL_SUCCESS, name);
-    cl_mem from = upload(probe, input, PROBE_INPUTS * (size_t)rays, sizeof *input);
-    cl_mem to = upload(probe, output, PROBE_OUTPUTS * (size_t)rays, sizeof *output);
+    device_buffer from = upload(probe, input, PROBE_INPUTS * (size_t)rays, sizeof *input);
+    device_buffer to = upload(probe, output, PROBE_OUTPUTS * (size_t)rays, sizeof *output);
     const struct kernel_argument arguments[] = {ARGUMENT(probe->record), ARGUMENT(probe->branches),
                                                 ARGUMENT(probe->leaves), ARGUMENT(probe->normals),
                                                 ARGUMENT(from),          ARGUMENT(to),
@@ -119,8 +119,8 @@ double probe_device_run(struct probe_device *probe, const char *name, const floa
     }
     require(probe->report,
             buffer_read(probe->report, probe->device, to, 0, bytes, output) == SONJECT_OK, "read");
-    buffer_release(&from);
-    buffer_release(&to);
+    buffer_release(probe->device, &from);
+    buffer_release(probe->device, &to);
     clReleaseKernel(kernel);
     return best;
 }

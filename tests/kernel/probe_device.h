@@ -2,7 +2,7 @@
 #ifndef SONJECT_TESTS_PROBE_DEVICE_H
 #define SONJECT_TESTS_PROBE_DEVICE_H
 
-#include "device/opencl.h"
+#include "device/opencl/opencl.h"
 #include "mesh/mesh.h"
 
 struct probe_device {

@@ -59,7 +59,7 @@ static void cut_solid_begin(struct cut_solid *solid, const struct mesh_sample *s
                              &buffer) != SONJECT_OK)
         fail_msg("%s", solid->bench.report.message);
     solid->record = bench_copy_buffer(&solid->bench, buffer);
-    buffer_release(&buffer);
+    buffer_release(solid->bench.tracer.device, &buffer);
 }
 
 static void cut_solid_end(struct cut_solid *solid)

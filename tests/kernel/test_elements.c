@@ -104,7 +104,7 @@ static device_buffer buffer_of(struct bench *bench, size_t bytes, const void *co
 static device_kernel kernel_of(struct bench *bench, const char *name)
 {
     device_kernel kernel;
-    expect_ok(bench, kernel_create(&bench->report, bench->tracer.device, PROGRAM_ELEMENT_SERIES, 0,
+    expect_ok(bench, kernel_create(&bench->report, bench->tracer.device, PROGRAM_ELEMENT_SERIES, PROGRAM_PLAIN,
                                    name, &kernel));
     return kernel;
 }
@@ -114,7 +114,7 @@ static void read_and_release(struct bench *bench, device_buffer *buffer, size_t 
 {
     expect_ok(bench,
               buffer_read(&bench->report, bench->tracer.device, *buffer, 0, bytes, contents));
-    buffer_release(buffer);
+    buffer_release(bench->tracer.device, buffer);
 }
 
 static void compute_on_device(struct bench *bench, struct workload *work, int32_t segments,
@@ -151,8 +151,8 @@ static void compute_on_device(struct bench *bench, struct workload *work, int32_
     device_kernel pulse = kernel_of(bench, "pulse_elements");
     expect_ok(bench, kernel_run(&bench->report, device, hear, hearing, 9, 2, hear_global));
     expect_ok(bench, kernel_run(&bench->report, device, pulse, pulsing, 10, 2, pulse_global));
-    kernel_release(&hear);
-    kernel_release(&pulse);
+    kernel_release(bench->tracer.device, &hear);
+    kernel_release(bench->tracer.device, &pulse);
     read_and_release(bench, &line_real, sizeof lines->line_real, lines->line_real);
     read_and_release(bench, &line_imaginary, sizeof lines->line_imaginary, lines->line_imaginary);
     read_and_release(bench, &out_real, sizeof lines->out_real, lines->out_real);
@@ -160,7 +160,7 @@ static void compute_on_device(struct bench *bench, struct workload *work, int32_
     device_buffer *const rest[] = {&grid,      &pairs,     &starts,     &bins,
                                    &real_part, &imaginary, &pulse_real, &pulse_imaginary};
     for (size_t i = 0; i < COUNT(rest); i++)
-        buffer_release(rest[i]);
+        buffer_release(bench->tracer.device, rest[i]);
 }
 
 /* How many fine samples hold something: a test of nothing but zeros would pass. */

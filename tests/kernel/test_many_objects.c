@@ -97,7 +97,7 @@ static void searched_begin(struct searched *searched, uint32_t count)
     assert_true(searched->with_tree[0].tree_words != 0);
     searched->looped[0].tree_words = 0;
     free(records);
-    buffer_release(&buffer);
+    buffer_release(tracer->device, &buffer);
 }
 
 static void searched_end(struct searched *searched)
@@ -280,7 +280,7 @@ static size_t compare_smooth(struct bench *bench, uint32_t number)
     free(records);
     free(objects);
     free(from_device);
-    buffer_release(&buffer);
+    buffer_release(tracer->device, &buffer);
     smooth_trace_end(&trace);
     return filled;
 }

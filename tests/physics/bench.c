@@ -1,7 +1,9 @@
 #include "bench.h"
 
+#include <malloc.h>
+
 #include "claims.h"
-#include "device/opencl.h"
+#include "device/opencl/opencl.h"
 #include "mesh_arrays.h"
 
 static void expect_ok(struct bench *bench, sonject_status status)
@@ -158,11 +160,19 @@ void bench_add_tetrahedron(struct bench *bench)
                                       &options, &bench->scene.meshes[0]));
 }
 
-void *bench_copy_buffer(struct bench *bench, device_buffer buffer)
+size_t bench_buffer_bytes(struct bench *bench, device_buffer buffer)
 {
     size_t bytes = 0;
+    if (native_is_named(bench->tracer.device->name))
+        return malloc_usable_size(buffer);
     assert_int_equal(clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, NULL),
                      CL_SUCCESS);
+    return bytes;
+}
+
+void *bench_copy_buffer(struct bench *bench, device_buffer buffer)
+{
+    const size_t bytes = bench_buffer_bytes(bench, buffer);
     void *copy = malloc(bytes);
     assert_non_null(copy);
     expect_ok(bench, buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, copy));
@@ -202,20 +212,17 @@ void bench_ready(struct bench *bench)
                          tracer->view.range_ratio * bench->water.straight_speed_mps));
 }
 
-static uint32_t native_width(void)
-{
-    struct bench bench;
-    bench_open(&bench, 1, 1, 18.0);
-    const uint32_t width = bench.device_width;
-    bench_close(&bench);
-    return width;
-}
-
 size_t bench_widths(uint32_t widths[BENCH_WIDTHS])
 {
-    static const uint32_t all[BENCH_WIDTHS] = {1, 4, 8, 16};
-    memcpy(widths, all, sizeof all);
-    return native_width() > 1 ? BENCH_WIDTHS : 1;
+    struct bench bench;
+    size_t count = 0;
+    bench_open(&bench, 1, 1, 18.0);
+    const bool is_native = native_is_named(bench.device->name);
+    for (uint32_t width = 1; width <= 16; width *= width == 1 ? 4 : 2)
+        if (is_native ? native_has_width(width) : width == 1 || bench.device_width > 1)
+            widths[count++] = width;
+    bench_close(&bench);
+    return count;
 }
 
 size_t bench_end_widths(uint32_t ends[2])
@@ -241,19 +248,37 @@ size_t bench_devices(char names[BENCH_DEVICES][128])
     return count;
 }
 
+static int run_on(const char *device, const struct CMUnitTest *tests, size_t count)
+{
+    bench_device = device;
+    print_message("device: %s\n", device ? device : "the default");
+    const int failures = _cmocka_run_group_tests(device ? device : "", tests, count, NULL, NULL);
+    device_close(&free_device);
+    bench_device = NULL;
+    return failures;
+}
+
 int bench_run_on_devices(const struct CMUnitTest *tests, size_t count)
 {
     char names[BENCH_DEVICES][128];
     const size_t devices = bench_devices(names);
     int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        bench_device = names[i];
-        print_message("device: %s\n", bench_device);
-        failures += _cmocka_run_group_tests(bench_device, tests, count, NULL, NULL);
-        device_close(&free_device);
-    }
-    bench_device = NULL;
+    for (size_t i = 0; i < devices; i++)
+        failures += run_on(names[i], tests, count);
     return failures;
+}
+
+int bench_run_on_one(const struct CMUnitTest *tests, size_t count, bool compiles)
+{
+    char names[BENCH_DEVICES][128];
+    const size_t devices = bench_devices(names);
+    size_t i = 0;
+    while (compiles && i < devices && native_is_named(names[i]))
+        i++;
+    if (i < devices)
+        return run_on(compiles ? names[i] : NULL, tests, count);
+    print_message("no device compiles users' code: install pocl-opencl-icd\n");
+    return 1;
 }
 
 void expect_close(const char *what, double measured, double expected, double tolerance)

@@ -58,6 +58,9 @@ struct relief_feature *bench_add_relief(struct bench *bench, enum relief_kind ki
 /* A mesh, the scene's only one: a tetrahedron within 0.5 m of its middle. */
 void bench_add_tetrahedron(struct bench *bench);
 
+/* Bytes of a buffer of the device; native's may be rounded up. */
+size_t bench_buffer_bytes(struct bench *bench, device_buffer buffer);
+
 /* A copy of a whole buffer of the device, for free(). */
 void *bench_copy_buffer(struct bench *bench, device_buffer buffer);
 
@@ -71,8 +74,9 @@ void bench_ready(struct bench *bench);
 /* The device that bench_open opens: one whose name contains this; NULL: the default one. */
 extern const char *bench_device;
 
-/* The numbers of lanes to try on bench_device: 1 to 16 where it has vectors; on others 1, since
- * their drivers take minutes to compile what they are never given. Returns how many there are. */
+/* The numbers of lanes to try on bench_device: 1 to 16 where it has vectors; on native those that
+ * were built and that the processor has; on others 1, since their drivers take minutes to compile
+ * what they are never given. Returns how many there are. */
 #define BENCH_WIDTHS 4
 size_t bench_widths(uint32_t widths[BENCH_WIDTHS]);
 
@@ -82,6 +86,9 @@ size_t bench_end_widths(uint32_t ends[2]);
 /* Runs the tests on every device; the number of those that failed, which a program returns. */
 struct CMUnitTest;
 int bench_run_on_devices(const struct CMUnitTest *tests, size_t count);
+
+/* The same on the default device alone; compiles: on the first that compiles users' code. */
+int bench_run_on_one(const struct CMUnitTest *tests, size_t count, bool compiles);
 
 /* The names of all devices; the number of them. */
 #define BENCH_DEVICES 16

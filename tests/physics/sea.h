@@ -14,7 +14,8 @@
 
 /* ---- claims ---- */
 
-/* CLAIM(name) { ... } is held on every device by the program. */
+/* CLAIM(name) { ... } is held by the program, on the default device: kernel tests compare the bits of
+ * all. */
 #define CLAIM(name)                                                                                \
     static void name(void);                                                                        \
     __attribute__((constructor)) static void add_##name(void)                                      \
@@ -22,6 +23,15 @@
         add_claim(#name, name);                                                                    \
     }                                                                                              \
     static void name(void)
+
+/* In a program whose claims have users' code: they are held on a device that compiles it. */
+#define CLAIMS_COMPILE                                                                             \
+    __attribute__((constructor)) static void compile_claims(void)                                  \
+    {                                                                                              \
+        claims_compile();                                                                          \
+    }
+
+void claims_compile(void);
 
 void add_claim(const char *name, void (*hold)(void));
 

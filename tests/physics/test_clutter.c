@@ -75,7 +75,7 @@ static void make_plain(struct bench *bench, struct chain_trace *trace)
     chains->spheres = 0;
     chains->groups = 0;
     chains->seabed_share = 0.0f;
-    buffer_release(&trace->launch.buffers[CHAIN_RECORD]);
+    buffer_release(bench->tracer.device, &trace->launch.buffers[CHAIN_RECORD]);
     assert_int_equal(buffer_create(&bench->report, bench->tracer.device, sizeof *chains, chains,
                                    &trace->launch.buffers[CHAIN_RECORD]),
                      SONJECT_OK);

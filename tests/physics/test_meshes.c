@@ -5,9 +5,10 @@
 #include "trace_rough.h"
 
 #include "../kernel/mesh_samples.h"
-#include "device/opencl.h"
 #include "sea.h"
 #include "user_codes.h"
+
+CLAIMS_COMPILE
 
 #define ROWS    121
 #define COLUMNS 121
@@ -475,9 +476,7 @@ static size_t lay_rings(struct sea *sea, bool is_shared)
     }
     sea_ready(sea);
     assert_int_equal(rough_trace_begin(&trace, &sea->bench->tracer, NULL), SONJECT_OK);
-    assert_int_equal(clGetMemObjectInfo(trace.launch.buffers[ROUGH_OBJECTS], CL_MEM_SIZE,
-                                        sizeof bytes, &bytes, NULL),
-                     CL_SUCCESS);
+    bytes = bench_buffer_bytes(sea->bench, trace.launch.buffers[ROUGH_OBJECTS]);
     rough_trace_end(&trace);
     return bytes;
 }

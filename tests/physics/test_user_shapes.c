@@ -6,6 +6,8 @@
 #include "user/snippet.h"
 #include "user_codes.h"
 
+CLAIMS_COMPILE
+
 #define ROWS    121
 #define COLUMNS 121
 #define RANGE   50.0
@@ -226,10 +228,11 @@ static sonject_status compile(struct sea *sea, const char *code, enum device_pro
     sea_add_code(sea, "sound.cl", SPHERE_CODE, 1.0, 1.0, 0.0);
     sea_add_code(sea, "my shape.cl", code, 1.0, 1.0, 0.0);
     const sonject_status status =
-        scene_kernel_create(&sea->bench->report, sea->bench->tracer.device, &sea->bench->scene, 0,
+        scene_kernel_create(&sea->bench->report, sea->bench->tracer.device, &sea->bench->scene,
+                            PROGRAM_FULL,
                             program, kernel_name, &kernel);
     if (status == SONJECT_OK)
-        kernel_release(&kernel);
+        kernel_release(sea->bench->tracer.device, &kernel);
     return status;
 }
 

@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "base/report.h"
-#include "device/opencl.h"
+#include "device/opencl/opencl.h"
 
 #define OPTIONS_CAPACITY 256
 
@@ -25,15 +25,13 @@ static size_t language_options(const struct device *device, char options[OPTIONS
 #define NVIDIA_REGISTERS " -cl-nv-maxrregcount=96"
 
 /* A CPU's work-items own their tallies; a GPU's share them. */
-static void program_options(const struct device *device, uint32_t variant, bool has_user_code,
+static void program_options(const struct device *device, enum program_variant variant,
+                            bool has_user_code,
                             char options[OPTIONS_CAPACITY])
 {
     const size_t length = language_options(device, options);
-    snprintf(options + length, OPTIONS_CAPACITY - length, " -DWIDTH=%u%s%s%s%s%s%s%s",
-             (unsigned)device->width, variant & PROGRAM_WITH_MESHES ? " -DWITH_MESHES" : "",
-             variant & PROGRAM_WITH_RELIEF ? " -DWITH_RELIEF" : "",
-             variant & PROGRAM_WITH_ASPECTS ? " -DWITH_ASPECTS" : "",
-             variant & PROGRAM_WITH_FOULING ? " -DWITH_FOULING" : "",
+    snprintf(options + length, OPTIONS_CAPACITY - length, " -DWIDTH=%u%s%s%s%s",
+             (unsigned)device->width, variant == PROGRAM_PLAIN ? " -DPLAIN" : "",
              device->is_cpu ? "" : " -DTALLY_IS_SHARED", has_user_code ? " -DWITH_USER_SHAPES" : "",
              strstr(device->platform, "NVIDIA") ? NVIDIA_REGISTERS : "");
 }
@@ -186,24 +184,16 @@ static cl_program find_or_build(struct building *building)
     return kept.program;
 }
 
-sonject_status kernel_create(struct report *report, struct device *device,
-                             enum device_program program, uint32_t variant, const char *name,
-                             device_kernel *kernel)
-{
-    return kernel_create_with_code(report, device, program, variant, NULL, name, kernel);
-}
-
-sonject_status kernel_create_with_code(struct report *report, struct device *device,
-                                       enum device_program program, uint32_t variant,
-                                       const struct user_code *code, const char *name,
-                                       device_kernel *kernel)
+sonject_status opencl_kernel_create(struct report *report, struct device *device,
+                                    enum device_program program, enum program_variant variant,
+                                    const struct user_code *code, const char *name,
+                                    device_kernel *kernel)
 {
     static const struct user_code none = {0};
     struct building building = {.device = device,
                                 .source = &embedded_sources[program],
                                 .code = code ? code : &none,
                                 .error = CL_SUCCESS};
-    *kernel = NULL;
     program_options(device, variant, code != NULL, building.options);
     CHECK(make_key(report, &building));
     CHECK(driver_enter(report));

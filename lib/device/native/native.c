@@ -1,0 +1,235 @@
+/* The device native: kernels that the C compiler built for instruction sets of processors. */
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "device/backend.h"
+#include "device/native/native.h"
+
+#define NAME "native"
+
+/* In the order of enum device_program. */
+#define PROGRAMS(set)                                                                              \
+    {                                                                                              \
+        set##_trace_rough, set##_trace_rough_images, set##_trace_smooth,                           \
+            set##_trace_smooth_images, set##_trace_chains, set##_trace_multibounce,                \
+            set##_image_formation, set##_element_series                                            \
+    }
+#define DECLARE(set)                                                                               \
+    extern const struct native_kernel set##_trace_rough[], set##_trace_rough_images[],             \
+        set##_trace_smooth[], set##_trace_smooth_images[], set##_trace_chains[],                   \
+        set##_trace_multibounce[], set##_image_formation[], set##_element_series[];
+
+struct instruction_set {
+    const char *name;
+    uint32_t width;
+    bool (*is_there)(void);
+    native_program programs[2][PROGRAM_PROBE_USER_SHAPE]; /* by variant */
+};
+
+DECLARE(baseline_full)
+static bool is_always_there(void)
+{
+    return true;
+}
+
+#ifdef HAS_AVX2
+DECLARE(avx2_plain)
+DECLARE(avx2_full)
+static bool has_avx2(void)
+{
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
+           __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
+}
+#endif
+
+#ifdef HAS_AVX512
+DECLARE(avx512_plain)
+DECLARE(avx512_full)
+static bool has_avx512(void)
+{
+    return has_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
+           __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl");
+}
+#endif
+
+/* The best last. */
+static const struct instruction_set instruction_sets[] = {
+    {"baseline", 4, is_always_there, {PROGRAMS(baseline_full), PROGRAMS(baseline_full)}},
+#ifdef HAS_AVX2
+    {"AVX2", 8, has_avx2, {PROGRAMS(avx2_plain), PROGRAMS(avx2_full)}},
+#endif
+#ifdef HAS_AVX512
+    {"AVX-512", 16, has_avx512, {PROGRAMS(avx512_plain), PROGRAMS(avx512_full)}},
+#endif
+};
+
+/* The best that the processor has; of `width` lanes if that is not 0. NULL: there is none. */
+static const struct instruction_set *find_instruction_set(uint32_t width)
+{
+    const struct instruction_set *best = NULL;
+    for (size_t i = 0; i < COUNT(instruction_sets); i++)
+        if (instruction_sets[i].is_there() && (width == 0 || instruction_sets[i].width == width))
+            best = &instruction_sets[i];
+    return best;
+}
+
+bool native_has_width(uint32_t width)
+{
+    return find_instruction_set(width) != NULL;
+}
+
+bool native_is_named(const char *name)
+{
+    return contains_ignoring_case(NAME, name);
+}
+
+void native_describe(sonject_device_info *info)
+{
+    const struct instruction_set *set = find_instruction_set(0);
+    memset(info, 0, sizeof *info);
+    strcpy(info->name, NAME);
+    strcpy(info->platform, "built in");
+    strcpy(info->driver, set->name);
+    info->compute_units = processor_count();
+    info->vector_width = set->width;
+}
+
+static sonject_status native_claim(struct report *report)
+{
+    (void)report;
+    return SONJECT_OK;
+}
+
+static void native_close(struct device *device)
+{
+    (void)device;
+    threads_release();
+}
+
+static sonject_status native_reserve(struct report *report, struct device *device, size_t bytes,
+                                     device_buffer *buffer)
+{
+    (void)device;
+    *buffer = malloc(bytes);
+    CHECK_MEMORY(report, *buffer, "a buffer of the device");
+    return SONJECT_OK;
+}
+
+static sonject_status native_read(struct report *report, struct device *device,
+                                  device_buffer buffer, size_t offset, size_t bytes, void *contents)
+{
+    (void)report, (void)device;
+    memcpy(contents, (const char *)buffer + offset, bytes);
+    return SONJECT_OK;
+}
+
+static sonject_status native_write(struct report *report, struct device *device,
+                                   device_buffer buffer, size_t offset, size_t bytes,
+                                   const void *contents)
+{
+    (void)report, (void)device;
+    memcpy((char *)buffer + offset, contents, bytes);
+    return SONJECT_OK;
+}
+
+static sonject_status native_map(struct report *report, struct device *device, device_buffer buffer,
+                                 size_t bytes, const void **contents)
+{
+    (void)report, (void)device, (void)bytes;
+    *contents = buffer;
+    return SONJECT_OK;
+}
+
+static void native_unmap(struct device *device, device_buffer buffer, const void *contents)
+{
+    (void)device, (void)buffer, (void)contents;
+}
+
+static sonject_status native_clear(struct report *report, struct device *device,
+                                   device_buffer buffer, size_t bytes)
+{
+    (void)report, (void)device;
+    memset(buffer, 0, bytes);
+    return SONJECT_OK;
+}
+
+static sonject_status native_kernel_create(struct report *report, struct device *device,
+                                           enum device_program program,
+                                           enum program_variant variant,
+                                           const struct user_code *code, const char *name,
+                                           device_kernel *kernel)
+{
+    const struct instruction_set *set = find_instruction_set(device->width);
+    if (code)
+        return report_failure(report, SONJECT_ERROR_DEVICE,
+                              "device '%s' has no compiler, which users' shapes need: name another "
+                              "(`sonject devices` lists them)",
+                              device->name);
+    if (!set)
+        return report_failure(report, SONJECT_ERROR_DEVICE, "device '%s' has no kernels of %u lanes",
+                              device->name, (unsigned)device->width);
+    const struct native_kernel *found = set->programs[variant][program];
+    while (strcmp(found->name, name) != 0)
+        found++;
+    *kernel = (void *)(uintptr_t)found;
+    return SONJECT_OK;
+}
+
+static void native_kernel_release(device_kernel kernel)
+{
+    (void)kernel;
+}
+
+static sonject_status native_kernel_run(struct report *report, struct device *device,
+                                        device_kernel kernel,
+                                        const struct kernel_argument *arguments,
+                                        size_t argument_count, uint32_t dimensions,
+                                        const size_t *global)
+{
+    const struct native_kernel *native = kernel;
+    const void *values[KERNEL_ARGUMENTS_MAX];
+    size_t items[3] = {1, 1, 1};
+    (void)report;
+    memcpy(items, global, dimensions * sizeof *global);
+    for (size_t i = 0; i < argument_count; i++)
+        values[i] = arguments[i].value;
+    threads_run(device->compute_units, native->run, values, items);
+    return SONJECT_OK;
+}
+
+sonject_status native_open(struct report *report, const sonject_context_params *params,
+                           struct device *device)
+{
+    static const struct device_calls calls = {
+        .claim = native_claim,
+        .close = native_close,
+        .buffer_reserve = native_reserve,
+        .buffer_release = free,
+        .buffer_read = native_read,
+        .buffer_write = native_write,
+        .buffer_map = native_map,
+        .buffer_unmap = native_unmap,
+        .buffer_clear = native_clear,
+        .kernel_create = native_kernel_create,
+        .kernel_release = native_kernel_release,
+        .kernel_run = native_kernel_run,
+    };
+    sonject_device_info info;
+    (void)report;
+    native_describe(&info);
+    memcpy(device->name, info.name, sizeof device->name);
+    memcpy(device->platform, info.platform, sizeof device->platform);
+    memcpy(device->driver, info.driver, sizeof device->driver);
+    device->calls = &calls;
+    device->is_cpu = true;
+    device->width = info.vector_width;
+    device->compute_units = params->threads > 0 && params->threads < info.compute_units
+                                ? params->threads
+                                : info.compute_units;
+    device->allocation_limit = PTRDIFF_MAX;
+    threads_retain();
+    return SONJECT_OK;
+}

@@ -1,0 +1,22 @@
+/* What this folder's files share: the threads that run launches (threads.c). */
+#ifndef SONJECT_DEVICE_NATIVE_NATIVE_H
+#define SONJECT_DEVICE_NATIVE_NATIVE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "device/native/kernel.h"
+
+/* Processors that this process may run on. */
+uint32_t processor_count(void);
+
+/* The threads of this process are kept for as long as a device uses them. */
+void threads_retain(void);
+void threads_release(void);
+
+/* Runs work-items on the calling thread and on up to most - 1 others, and waits for all. Any threads
+ * may do so at once; those of this process are shared among them. A forked child starts its own. */
+void threads_run(uint32_t most, native_function *run, const void *const *values,
+                 const size_t global[3]);
+
+#endif

@@ -1,0 +1,35 @@
+"""Writes the C file that builds an entry point's kernels for the processor itself.
+
+usage: native.py ENTRY.cl OUTPUT.c
+
+The file is compiled once for each instruction set, with -DNATIVE_PROGRAM=name of its table.
+"""
+import pathlib
+import re
+import sys
+
+
+def arguments_of(text):
+    """The types of a kernel's arguments; its buffers are pointers."""
+    for argument in " ".join(text.replace("__global", "").split()).split(","):
+        yield re.fullmatch(r"\s*(.*?)\s*\b\w+\s*", argument).group(1)
+
+
+def main():
+    entry, output = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    kernels = re.findall(r"__kernel void (\w+)\((.*?)\)\n\{", entry.read_text(encoding="utf-8"), re.DOTALL)
+    lines = ['#include "device/native/entry.h"', f'#include "{entry.name}"', ""]
+    for name, arguments in kernels:
+        values = ", ".join(f"*({type_name} const *)values[{i}]" for i, type_name in enumerate(arguments_of(arguments)))
+        lines += [
+            f"static void run_{name}(const void *const *values, const size_t *global, size_t first, size_t end)", "{",
+            "    native_item_begin(global, first);",
+            "    for (size_t item = first; item < end; item++, native_item_next(global))",
+            f"        {name}({values});", "}", ""]
+    lines += ["extern const struct native_kernel NATIVE_PROGRAM[];", "const struct native_kernel NATIVE_PROGRAM[] = {",
+              *(f'    {{"{name}", run_{name}}},' for name, _ in kernels), "    {NULL, NULL}};", ""]
+    output.write_text("\n".join(lines), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,204 @@
+/* Threads that run launches. Each launch is run by its caller, too, so that none waits for a thread
+ * to be free, and a system that gives no threads is slow but right. */
+#define _GNU_SOURCE
+#include <fenv.h>
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "device/native/native.h"
+
+#define THREADS_MAX 256
+#define SHARES      4 /* a thread takes this part of its even share of what is left */
+
+/* A launch under way; its caller's. */
+struct job {
+    struct job *next;
+    native_function *run;
+    const void *const *values;
+    const size_t *global;
+    size_t total;
+    size_t begun;    /* work-items; atomic */
+    uint32_t most;   /* threads, with the caller */
+    uint32_t inside; /* threads of the pool that run its work-items now */
+};
+
+static struct {
+    pthread_mutex_t lock;
+    pthread_cond_t has_work, has_ended;
+    struct job *jobs; /* that may have work-items left */
+    size_t users;
+    uint32_t count;   /* threads started */
+    uint32_t waiting; /* of them, for a job */
+    bool is_ending;
+    pthread_t threads[THREADS_MAX];
+} pool = {.lock = PTHREAD_MUTEX_INITIALIZER,
+          .has_work = PTHREAD_COND_INITIALIZER,
+          .has_ended = PTHREAD_COND_INITIALIZER};
+
+uint32_t processor_count(void)
+{
+    long count = sysconf(_SC_NPROCESSORS_ONLN);
+#ifdef CPU_COUNT /* a batch system gives a job few of many */
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set) == 0)
+        count = CPU_COUNT(&set);
+#endif
+    return count < 1 ? 1 : count > THREADS_MAX ? THREADS_MAX : (uint32_t)count;
+}
+
+/* The next run of work-items: long ones first, since each costs a little to begin, and single ones
+ * in the end, that all threads end together. Returns false where all are begun. */
+static bool begin_items(struct job *job, size_t *first, size_t *end)
+{
+    *first = __atomic_load_n(&job->begun, __ATOMIC_RELAXED);
+    do {
+        if (*first >= job->total)
+            return false;
+        const size_t share = (job->total - *first) / (SHARES * (size_t)job->most);
+        *end = *first + (share > 1 ? share : 1);
+    } while (!__atomic_compare_exchange_n(&job->begun, first, *end, true, __ATOMIC_RELAXED,
+                                          __ATOMIC_RELAXED));
+    return true;
+}
+
+/* Whatever a host does to its threads' rounding or denormal numbers, images are the same. */
+static void run_items(struct job *job)
+{
+    size_t first, end;
+    fenv_t before;
+    fegetenv(&before);
+    fesetenv(FE_DFL_ENV);
+    while (begin_items(job, &first, &end))
+        job->run(job->values, job->global, first, end);
+    fesetenv(&before);
+}
+
+/* A job that wants one thread more; NULL: none does. With the lock. */
+static struct job *find_job(void)
+{
+    struct job *job = pool.jobs;
+    while (job && (job->inside + 1 >= job->most ||
+                   __atomic_load_n(&job->begun, __ATOMIC_RELAXED) >= job->total))
+        job = job->next;
+    return job;
+}
+
+static void *serve(void *unused)
+{
+    pthread_mutex_lock(&pool.lock);
+    while (!pool.is_ending) {
+        struct job *job = find_job();
+        if (!job) {
+            pool.waiting++;
+            pthread_cond_wait(&pool.has_work, &pool.lock);
+            pool.waiting--;
+            continue;
+        }
+        job->inside++;
+        pthread_mutex_unlock(&pool.lock);
+        run_items(job);
+        pthread_mutex_lock(&pool.lock);
+        job->inside--;
+        pthread_cond_broadcast(&pool.has_ended);
+    }
+    pthread_mutex_unlock(&pool.lock);
+    return unused;
+}
+
+/* The parent's threads and launches are not the child's, which may have been forked while a thread
+ * held the lock. */
+static void begin_child(void)
+{
+    pthread_mutex_init(&pool.lock, NULL);
+    pthread_cond_init(&pool.has_work, NULL);
+    pthread_cond_init(&pool.has_ended, NULL);
+    pool.jobs = NULL;
+    pool.count = pool.waiting = 0;
+    pool.is_ending = false;
+}
+
+static void watch_forks(void)
+{
+    pthread_atfork(NULL, NULL, begin_child);
+}
+
+void threads_retain(void)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, watch_forks);
+    pthread_mutex_lock(&pool.lock);
+    pool.users++;
+    pthread_mutex_unlock(&pool.lock);
+}
+
+void threads_release(void)
+{
+    uint32_t count = 0;
+    pthread_t ended[THREADS_MAX];
+    pthread_mutex_lock(&pool.lock);
+    if (--pool.users == 0 && !pool.is_ending) {
+        count = pool.count;
+        memcpy(ended, pool.threads, count * sizeof *ended);
+        pool.is_ending = count > 0;
+        pthread_cond_broadcast(&pool.has_work);
+    }
+    pthread_mutex_unlock(&pool.lock);
+    for (uint32_t i = 0; i < count; i++)
+        pthread_join(ended[i], NULL);
+    if (count == 0)
+        return;
+    pthread_mutex_lock(&pool.lock);
+    pool.count = 0;
+    pool.is_ending = false;
+    pthread_mutex_unlock(&pool.lock);
+}
+
+/* Threads for a job, as long as those that wait do not suffice. Signals are the host's threads' to
+ * receive. With the lock. */
+static void start_threads(uint32_t wanted)
+{
+    const uint32_t most = processor_count() - 1;
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    while (pool.waiting < wanted && pool.count < most && !pool.is_ending &&
+           pthread_create(&pool.threads[pool.count], NULL, serve, NULL) == 0) {
+        pool.count++;
+        wanted--;
+    }
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+}
+
+void threads_run(uint32_t most, native_function *run, const void *const *values,
+                 const size_t global[3])
+{
+    struct job job = {.run = run,
+                      .values = values,
+                      .global = global,
+                      .total = global[0] * global[1] * global[2],
+                      .most = most};
+    struct job **link = &pool.jobs;
+    if (most <= 1 || job.total <= 1) {
+        run_items(&job);
+        return;
+    }
+    pthread_mutex_lock(&pool.lock);
+    job.next = pool.jobs;
+    pool.jobs = &job;
+    start_threads(most - 1);
+    pthread_cond_broadcast(&pool.has_work);
+    pthread_mutex_unlock(&pool.lock);
+    run_items(&job);
+    pthread_mutex_lock(&pool.lock);
+    while (*link != &job)
+        link = &(*link)->next;
+    *link = job.next;
+    while (job.inside > 0)
+        pthread_cond_wait(&pool.has_ended, &pool.lock);
+    pthread_mutex_unlock(&pool.lock);
+}

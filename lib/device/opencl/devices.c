@@ -1,0 +1,392 @@
+/* Finding and opening OpenCL devices, and what a process has one of. */
+#define _POSIX_C_SOURCE 200809L
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "device/opencl/opencl.h"
+
+#define DEVICES_MAX 64
+
+static pid_t process_of_driver; /* 0: no call was made yet; atomic */
+static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
+static struct shared_device *devices_in_use;
+
+struct found_device {
+    cl_platform_id platform;
+    cl_device_id id;
+    cl_device_type type;
+};
+
+const char *opencl_error_name(cl_int error)
+{
+    static const struct {
+        cl_int error;
+        const char *name;
+    } names[] = {
+#define NAME(error) {error, #error}
+        NAME(CL_DEVICE_NOT_FOUND),
+        NAME(CL_DEVICE_NOT_AVAILABLE),
+        NAME(CL_COMPILER_NOT_AVAILABLE),
+        NAME(CL_MEM_OBJECT_ALLOCATION_FAILURE),
+        NAME(CL_OUT_OF_RESOURCES),
+        NAME(CL_OUT_OF_HOST_MEMORY),
+        NAME(CL_BUILD_PROGRAM_FAILURE),
+        NAME(CL_COMPILE_PROGRAM_FAILURE),
+        NAME(CL_LINKER_NOT_AVAILABLE),
+        NAME(CL_LINK_PROGRAM_FAILURE),
+        NAME(CL_MAP_FAILURE),
+        NAME(CL_INVALID_VALUE),
+        NAME(CL_INVALID_DEVICE),
+        NAME(CL_INVALID_CONTEXT),
+        NAME(CL_INVALID_COMMAND_QUEUE),
+        NAME(CL_INVALID_MEM_OBJECT),
+        NAME(CL_INVALID_BINARY),
+        NAME(CL_INVALID_BUILD_OPTIONS),
+        NAME(CL_INVALID_PROGRAM),
+        NAME(CL_INVALID_PROGRAM_EXECUTABLE),
+        NAME(CL_INVALID_KERNEL_NAME),
+        NAME(CL_INVALID_KERNEL),
+        NAME(CL_INVALID_ARG_INDEX),
+        NAME(CL_INVALID_ARG_VALUE),
+        NAME(CL_INVALID_ARG_SIZE),
+        NAME(CL_INVALID_KERNEL_ARGS),
+        NAME(CL_INVALID_WORK_DIMENSION),
+        NAME(CL_INVALID_WORK_GROUP_SIZE),
+        NAME(CL_INVALID_WORK_ITEM_SIZE),
+        NAME(CL_INVALID_OPERATION),
+        NAME(CL_INVALID_BUFFER_SIZE),
+        NAME(CL_INVALID_GLOBAL_WORK_SIZE)
+#undef NAME
+    };
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (names[i].error == error)
+            return names[i].name;
+    return "unknown OpenCL error";
+}
+
+sonject_status opencl_answer(struct report *report, const struct device *device, const char *call,
+                             cl_int error)
+{
+    if (error == CL_SUCCESS)
+        return SONJECT_OK;
+    return report_failure(
+        report, error == CL_OUT_OF_HOST_MEMORY ? SONJECT_ERROR_MEMORY : SONJECT_ERROR_DEVICE,
+        "device '%s': %s failed with %s (%d)", device->name, call, opencl_error_name(error),
+        (int)error);
+}
+
+/* The process is noted before the lock is taken, so that no child waits for one that a thread of
+ * its parent held. */
+sonject_status driver_claim(struct report *report)
+{
+    pid_t first = 0;
+    const pid_t process = getpid();
+    if (__atomic_compare_exchange_n(&process_of_driver, &first, process, false, __ATOMIC_SEQ_CST,
+                                    __ATOMIC_SEQ_CST) ||
+        first == process)
+        return SONJECT_OK;
+    return report_failure(report, SONJECT_ERROR_DEVICE,
+                          "OpenCL was in use when this process was forked, and its calls would "
+                          "wait for ever: start a new process instead (in Python, spawn it), or "
+                          "fork before OpenCL is used");
+}
+
+sonject_status driver_enter(struct report *report)
+{
+    const sonject_status status = driver_claim(report);
+    if (status == SONJECT_OK)
+        pthread_mutex_lock(&one_at_a_time);
+    return status;
+}
+
+void driver_leave(void)
+{
+    pthread_mutex_unlock(&one_at_a_time);
+}
+
+void host_context_retain(struct report *report, void *opencl_context)
+{
+    if (opencl_context && driver_claim(report) == SONJECT_OK)
+        clRetainContext(opencl_context);
+}
+
+void host_context_release(void *opencl_context)
+{
+    const pid_t first = __atomic_load_n(&process_of_driver, __ATOMIC_SEQ_CST);
+    const bool is_inherited = first != 0 && first != getpid(); /* then nothing may be released */
+    if (opencl_context && !is_inherited)
+        clReleaseContext(opencl_context);
+}
+
+/* None may be for want of memory: the loader passes over drivers that cannot be loaded. */
+static sonject_status explain_no_device(struct report *report, cl_int error)
+{
+    if (error == CL_OUT_OF_HOST_MEMORY || memory_is_short())
+        return report_failure(report, SONJECT_ERROR_MEMORY,
+                              "too little memory to find OpenCL devices: allow the process more, "
+                              "a gigabyte at least (ulimit -v)");
+    if (error == CL_SUCCESS)
+        return SONJECT_OK;
+    return report_failure(report, SONJECT_ERROR_DEVICE, "no OpenCL device answers: %s (%d)",
+                          opencl_error_name(error), (int)error);
+}
+
+/* A platform that fails is passed over where another has a device. */
+static sonject_status find_devices(struct report *report, struct found_device *found, size_t *count)
+{
+    cl_platform_id platforms[16];
+    cl_uint platform_count = 0;
+    cl_int error = clGetPlatformIDs(16, platforms, &platform_count);
+    *count = 0;
+    if (error != CL_SUCCESS)
+        platform_count = 0;
+    if (error == CL_PLATFORM_NOT_FOUND_KHR)
+        error = CL_SUCCESS;
+    for (cl_uint p = 0; p < platform_count && p < 16; p++) {
+        cl_device_id ids[DEVICES_MAX];
+        cl_uint ids_count = 0;
+        const cl_int answer =
+            clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, DEVICES_MAX, ids, &ids_count);
+        if (answer != CL_SUCCESS && answer != CL_DEVICE_NOT_FOUND)
+            error = answer;
+        for (cl_uint d = 0; answer == CL_SUCCESS && d < ids_count && *count < DEVICES_MAX; d++) {
+            struct found_device *device = &found[(*count)++];
+            *device = (struct found_device){platforms[p], ids[d], 0};
+            clGetDeviceInfo(ids[d], CL_DEVICE_TYPE, sizeof device->type, &device->type, NULL);
+        }
+    }
+    return *count > 0 ? SONJECT_OK : explain_no_device(report, error);
+}
+
+static void read_text(cl_device_id id, cl_device_info what, char *text, size_t capacity)
+{
+    size_t bytes = 0;
+    text[0] = '\0';
+    char *whole = NULL;
+    if (clGetDeviceInfo(id, what, 0, NULL, &bytes) == CL_SUCCESS)
+        whole = allocate_array(bytes + 1, 1);
+    if (whole && clGetDeviceInfo(id, what, bytes, whole, NULL) == CL_SUCCESS)
+        snprintf(text, capacity, "%s", whole);
+    free(whole);
+}
+
+/* CPUs run as many lanes as their registers hold; GPUs make lanes of work-items themselves. */
+static uint32_t lanes_for(cl_device_id id, cl_device_type type)
+{
+    cl_uint native = 1;
+    if (!(type & CL_DEVICE_TYPE_CPU))
+        return 1;
+    clGetDeviceInfo(id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof native, &native, NULL);
+    return native >= 16 ? 16 : native >= 8 ? 8 : native >= 4 ? 4 : 1;
+}
+
+static void describe(cl_device_id id, cl_device_type type, cl_platform_id platform,
+                     sonject_device_info *info)
+{
+    cl_uint units = 0;
+    memset(info, 0, sizeof *info);
+    read_text(id, CL_DEVICE_NAME, info->name, sizeof info->name);
+    read_text(id, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
+    if (clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof info->platform, info->platform,
+                          NULL) != CL_SUCCESS)
+        info->platform[0] = '\0';
+    clGetDeviceInfo(id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
+    info->compute_units = units;
+    info->vector_width = lanes_for(id, type);
+}
+
+/* Its place; count if there is none. */
+static size_t first_gpu(const struct found_device *found, size_t count)
+{
+    size_t i = 0;
+    while (i < count && !(found[i].type & CL_DEVICE_TYPE_GPU))
+        i++;
+    return i;
+}
+
+sonject_status opencl_list(struct report *report, sonject_device_info *devices, size_t capacity,
+                           size_t *count, size_t *gpu)
+{
+    struct found_device found[DEVICES_MAX];
+    *count = 0;
+    CHECK(driver_enter(report));
+    const sonject_status status = find_devices(report, found, count);
+    for (size_t i = 0; i < *count && i < capacity; i++)
+        describe(found[i].id, found[i].type, found[i].platform, &devices[i]);
+    *gpu = first_gpu(found, *count);
+    driver_leave();
+    return status;
+}
+
+static sonject_status choose_device(struct report *report, const char *name,
+                                    struct found_device *chosen)
+{
+    struct found_device found[DEVICES_MAX];
+    size_t count;
+    CHECK(find_devices(report, found, &count));
+    size_t i = 0;
+    if (name) {
+        char device_name[128];
+        for (; i < count; i++) {
+            read_text(found[i].id, CL_DEVICE_NAME, device_name, sizeof device_name);
+            if (contains_ignoring_case(device_name, name))
+                break;
+        }
+    } else {
+        const size_t gpu = first_gpu(found, count);
+        i = gpu < count ? gpu : 0;
+    }
+    if (i < count) {
+        *chosen = found[i];
+        return SONJECT_OK;
+    }
+    if (count == 0)
+        return report_failure(report, SONJECT_ERROR_DEVICE,
+                              "no OpenCL device found: install a driver, such as the package "
+                              "pocl-opencl-icd for the CPU%s",
+                              name ? ", or name the device native" : "; users' shapes need one");
+    return report_failure(report, SONJECT_ERROR_DEVICE,
+                          "no device has '%s' in its name: `sonject devices` lists them", name);
+}
+
+/* The device's record, made for its first user and released by its last. */
+static struct shared_device *find_shared(cl_device_id id, cl_context host_context, cl_int *error)
+{
+    *error = CL_SUCCESS;
+    struct shared_device *device = devices_in_use;
+    while (device && (device->id != id || device->host_context != host_context))
+        device = device->next;
+    if (!device) {
+        device = allocate_array(1, sizeof *device);
+        if (!device) {
+            *error = CL_OUT_OF_HOST_MEMORY;
+            return NULL;
+        }
+        if (host_context)
+            *error = clRetainContext(host_context);
+        else
+            device->context = clCreateContext(NULL, 1, &id, NULL, NULL, error);
+        if (*error != CL_SUCCESS) {
+            free(device);
+            return NULL;
+        }
+        device->id = id;
+        if (host_context)
+            device->context = device->host_context = host_context;
+        device->next = devices_in_use;
+        devices_in_use = device;
+    }
+    device->users++;
+    return device;
+}
+
+static void release_shared(struct shared_device *device)
+{
+    if (--device->users > 0)
+        return;
+    struct shared_device **link = &devices_in_use;
+    while (*link != device)
+        link = &(*link)->next;
+    *link = device->next;
+    for (size_t i = 0; i < device->program_count; i++)
+        clReleaseProgram(device->programs[i].program);
+    clReleaseContext(device->context);
+    free(device);
+}
+
+static sonject_status open_queue(struct report *report, struct device *device,
+                                 cl_context host_context)
+{
+    cl_int error;
+    device->shared = find_shared(device->id, host_context, &error);
+    CHECK(opencl_answer(report, device, "clCreateContext", error));
+    device->context = device->shared->context;
+    cl_command_queue queue = clCreateCommandQueue(device->context, device->id, 0, &error);
+    CHECK(opencl_answer(report, device, "clCreateCommandQueue", error));
+    device->queue = queue;
+    return SONJECT_OK;
+}
+
+static sonject_status check_abilities(struct report *report, struct device *device)
+{
+    cl_ulong limit = 0;
+    cl_device_fp_config precision = 0;
+    cl_int error =
+        clGetDeviceInfo(device->id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof limit, &limit, NULL);
+    CHECK(opencl_answer(report, device, "clGetDeviceInfo", error));
+    error =
+        clGetDeviceInfo(device->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof precision, &precision, NULL);
+    CHECK(opencl_answer(report, device, "clGetDeviceInfo", error));
+    device->allocation_limit = limit > SIZE_MAX ? SIZE_MAX : (size_t)limit;
+    if (!(precision & CL_FP_INF_NAN) || !(precision & CL_FP_ROUND_TO_NEAREST))
+        return report_failure(report, SONJECT_ERROR_DEVICE,
+                              "device '%s' does not compute single precision as IEEE 754 does: "
+                              "choose another",
+                              device->name);
+    return SONJECT_OK;
+}
+
+static void opencl_close(struct device *device)
+{
+    struct report ignored = {{0}, NULL, NULL};
+    if (!device->shared || driver_enter(&ignored) != SONJECT_OK)
+        return;
+    if (device->queue)
+        clReleaseCommandQueue(device->queue);
+    release_shared(device->shared);
+    driver_leave();
+}
+
+static const struct device_calls opencl_calls = {
+    .claim = driver_claim,
+    .close = opencl_close,
+    .buffer_reserve = opencl_reserve,
+    .buffer_release = opencl_release,
+    .buffer_read = opencl_read,
+    .buffer_write = opencl_write,
+    .buffer_map = opencl_map,
+    .buffer_unmap = opencl_unmap,
+    .buffer_clear = opencl_clear,
+    .kernel_create = opencl_kernel_create,
+    .kernel_release = opencl_kernel_release,
+    .kernel_run = opencl_kernel_run,
+};
+
+static sonject_status open_in_driver(struct report *report, const sonject_context_params *params,
+                                     const char *name, struct device *device)
+{
+    struct found_device chosen = {NULL, params->opencl_device, 0};
+    if (params->opencl_context) {
+        clGetDeviceInfo(chosen.id, CL_DEVICE_TYPE, sizeof chosen.type, &chosen.type, NULL);
+        clGetDeviceInfo(chosen.id, CL_DEVICE_PLATFORM, sizeof chosen.platform, &chosen.platform,
+                        NULL);
+    } else {
+        CHECK(choose_device(report, name, &chosen));
+    }
+    sonject_device_info info;
+    describe(chosen.id, chosen.type, chosen.platform, &info);
+    memcpy(device->name, info.name, sizeof device->name);
+    memcpy(device->platform, info.platform, sizeof device->platform);
+    memcpy(device->driver, info.driver, sizeof device->driver);
+    device->calls = &opencl_calls;
+    device->id = chosen.id;
+    device->is_cpu = (chosen.type & CL_DEVICE_TYPE_CPU) != 0;
+    device->is_pocl = strcmp(info.platform, "Portable Computing Language") == 0;
+    device->width = info.vector_width;
+    device->compute_units = info.compute_units;
+    CHECK(check_abilities(report, device));
+    return open_queue(report, device, params->opencl_context);
+}
+
+sonject_status opencl_open(struct report *report, const sonject_context_params *params,
+                           const char *name, struct device *device)
+{
+    CHECK(driver_enter(report));
+    const sonject_status status = open_in_driver(report, params, name, device);
+    driver_leave();
+    return status;
+}
