@@ -204,7 +204,7 @@ def test_verbose_tells_what_happens_to_an_8_bit_swath(sonject, scene, tmp_path):
     assert result == "sonject: the result is in usual"
     header = (tmp_path / "usual" / "image.png").read_bytes()[16:26]
     assert struct.unpack(">IIBB", header) == (COLUMNS, ROWS, 8, 0)
-    answer = sonject.done("run", scene, "-o", "result", *chosen, "--verbose")
+    answer = sonject.done("run", scene, "-o", "result", *chosen, "--verbose", "--device", "pthread")
     assert not answer.stdout
     *news, last = answer.stderr.splitlines()
     assert last == "sonject: the result is in result"
@@ -222,18 +222,20 @@ def test_only_the_driver_keeps_programs_and_a_run_needs_no_home(sonject, scene, 
     gone = {"HOME": None, "XDG_CACHE_HOME": None}
     closed = {"HOME": "/dev/null", "XDG_CACHE_HOME": "/dev/null/cache"}
     for name, changes in {"empty": empty, "gone": gone, "closed": closed}.items():
-        sonject.done("run", scene, "-o", name, changes={**changes, **drivers})
+        sonject.done("run", scene, "-o", name, "--device", "pthread", changes={**changes, **drivers})
         assert contents(tmp_path / name) == contents(tmp_path / "empty")
     assert not files_below(tmp_path / "caches") + files_below(tmp_path / "home")
 
 
-def test_no_device(sonject, scene, tmp_path):
+def test_without_opencl_there_is_the_processor(sonject, scene, tmp_path):
     (tmp_path / "vendors").mkdir()
     empty = {"OCL_ICD_VENDORS": str(tmp_path / "vendors")}
-    assert_refused(sonject("devices", changes=empty), 4, "OpenCL")
-    assert_refused(sonject("run", scene, "-o", "result", changes=empty), 4, "OpenCL")
+    pocl = {**empty, "SONJECT_DEVICE": "pthread"}
+    assert_refused(sonject("run", scene, "-o", "result", changes=pocl), 4, "no OpenCL device", "native")
     assert not files_below(tmp_path / "result")
     sonject.done("check", scene, changes=empty)
+    assert sonject.done("devices", changes=empty).stdout.count("\n") == 2
+    sonject.done("run", scene, "-o", "result", changes=empty)
 
 
 def test_an_unknown_device_is_named(sonject, scene, tmp_path):
@@ -322,7 +324,7 @@ def stop_at_the_bar(arguments, output, folder, variables, *numbers):
 
 def test_a_signal_while_the_driver_compiles_stops_a_run(scene, tmp_path, environment):
     cold = {**environment, "XDG_CACHE_HOME": str(tmp_path), "POCL_CACHE_DIR": str(tmp_path / "pocl")}
-    process = subprocess.Popen([COMMAND, "run", scene, "-o", "result"], cwd=tmp_path, env=cold,
+    process = subprocess.Popen([COMMAND, "run", scene, "-o", "result", "--device", "pthread"], cwd=tmp_path, env=cold,
                                text=True, stderr=subprocess.PIPE)
     while process.poll() is None and not (tmp_path / "pocl").exists():
         time.sleep(0.01)

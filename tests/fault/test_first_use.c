@@ -1,4 +1,4 @@
-/* The first use of OpenCL in a process, by several threads, before and after a fork; what contexts
+/* The first use of a device in a process, by several threads, before and after a fork; what contexts
  * hold; and two threads that go on, each with a context of its own, with the same images as one.
  * This process makes no call of the library, so that each of its children is the first to use the
  * driver. */
@@ -125,16 +125,27 @@ static int is_let_in(const char *what, sonject_context *context, sonject_status 
                : 0;
 }
 
+static const sonject_context_params on_pocl = {.struct_size = sizeof on_pocl,
+                                               .device_name = "pthread"};
+static const sonject_context_params on_native = {.struct_size = sizeof on_native,
+                                                 .device_name = "native"};
+
+/* OpenCL is no longer to be had, but the processor is. */
 static int expect_refusal(void)
 {
-    size_t count;
-    sonject_context *own = NULL;
-    if (sonject_context_create(NULL, &own) != SONJECT_OK)
+    size_t count = 0;
+    sonject_context *own = NULL, *native = NULL;
+    if (sonject_context_create(&on_pocl, &own) != SONJECT_OK ||
+        sonject_context_create(&on_native, &native) != SONJECT_OK)
         return 1;
-    const int failures = is_let_in("the parent's context", parents, inject(parents)) +
-                         is_let_in("a context of the child's", own, inject(own)) +
-                         is_let_in("list of devices", own, sonject_devices(own, NULL, 0, &count));
+    int failures = is_let_in("the parent's context", parents, inject(parents)) +
+                   is_let_in("a context of the child's", own, inject(own));
+    if (sonject_devices(own, NULL, 0, &count) != SONJECT_OK || count != 1)
+        failures += say("devices", own);
+    if (inject(native) != SONJECT_OK)
+        failures += say("native", native);
     sonject_context_release(&own);
+    sonject_context_release(&native);
     sonject_context_release(&parents);
     return failures;
 }
@@ -142,7 +153,7 @@ static int expect_refusal(void)
 /* The parent may have used the device, or only listed it, and goes on with it. */
 static int fork_after(sonject_status (*use)(sonject_context *context))
 {
-    if (sonject_context_create(NULL, &parents) != SONJECT_OK || use(parents) != SONJECT_OK)
+    if (sonject_context_create(&on_pocl, &parents) != SONJECT_OK || use(parents) != SONJECT_OK)
         return say("parent", parents);
     if (exit_of(expect_refusal) != 0)
         return say("child", NULL);
@@ -178,6 +189,22 @@ static int inject_in_parents(void)
     const int failed = inject(parents) != SONJECT_OK ? say("child", parents) : 0;
     sonject_context_release(&parents);
     return failed;
+}
+
+/* Threads of the parent's launches are not the child's. */
+static int fork_native(void)
+{
+    if (sonject_context_create(&on_native, &parents) != SONJECT_OK || inject(parents) != SONJECT_OK)
+        return say("parent", parents);
+    for (int run = 0; run < RUNS; run++)
+        if (exit_of(inject_in_parents) != 0)
+            return say("child", NULL);
+    return inject_in_parents();
+}
+
+static void test_children_inject_on_native_as_their_parent_does(void **state)
+{
+    assert_int_equal(exit_of(fork_native), 0);
 }
 
 /* A context that was made but opened no device stands in nobody's way. */
@@ -285,6 +312,7 @@ static void test_two_threads_give_what_one_gives(void **state)
 
 TEST_PROGRAM(NULL, NULL, TEST(test_threads_may_be_the_first_to_use_a_device),
              TEST(test_a_child_of_a_process_that_used_opencl_is_refused),
+             TEST(test_children_inject_on_native_as_their_parent_does),
              TEST(test_parent_and_child_may_both_inject_where_none_did_before),
              TEST(test_a_hundred_contexts_hold_less_than_two),
              TEST(test_two_threads_give_what_one_gives))
