@@ -20,8 +20,8 @@ void message_line(const char *const *texts);
 enum exit_code {
     EXIT_CODE_DONE = 0,
     EXIT_CODE_USAGE = 2,
-    EXIT_CODE_INPUT = 3,        /* a file, scene or image; or this build lacks what it needs */
-    EXIT_CODE_DEVICE = 4,       /* OpenCL */
+    EXIT_CODE_INPUT = 3, /* a file, scene or image; or this build lacks what it needs */
+    EXIT_CODE_DEVICE = 4,
     EXIT_CODE_STORAGE = 5,      /* reading or writing files, or out of memory */
     EXIT_CODE_STOPPED = 85,     /* SIGTERM: the same command again finishes the work */
     EXIT_CODE_INTERRUPTED = 130 /* SIGINT */

@@ -82,7 +82,8 @@ static int work(const void *verb_options)
 
 const struct verb devices_verb = {
     .name = "devices",
-    .summary = "lists the OpenCL devices, * marks the default",
+    .summary =
+        "lists the devices: native, which is this processor, and OpenCL's; * marks the default",
     .notes = "",
     .options_size = sizeof(struct device_options),
     .work = work,

@@ -22,7 +22,7 @@ static void print_help(FILE *file)
         "  sonject help KEY    what a key of scene files means; or all keys of a section: sonar.\n"
         "  sonject --version   the version\n"
         "\n"
-        "Exit status: 0 done, 2 wrong usage, 3 unusable scene or image, 4 OpenCL device,\n"
+        "Exit status: 0 done, 2 wrong usage, 3 unusable scene or image, 4 device,\n"
         "5 files or memory, 85 stopped by SIGTERM (run the same command again).\n",
         file);
 }

@@ -2,11 +2,11 @@
 # To be sourced from the project's top folder.
 # shellcheck shell=sh disable=SC2034
 
-build_packages="build-essential meson ninja-build pkg-config python3
+build_packages="build-essential clang meson ninja-build pkg-config python3
     libopenimageio-dev libpng-dev libtiff-dev libhdf5-dev zlib1g-dev libyaml-dev libjansson-dev
-    libexpat1-dev libxxhash-dev ocl-icd-opencl-dev opencl-headers pocl-opencl-icd"
-test_packages="git cmake doxygen groff-base libcmocka-dev python3-numpy python3-pytest
-    python3-h5py python3-pil python3-scipy python3-venv clang locales"
+    libexpat1-dev libxxhash-dev ocl-icd-opencl-dev opencl-headers"
+test_packages="pocl-opencl-icd git cmake doxygen groff-base libcmocka-dev python3-numpy python3-pytest
+    python3-h5py python3-pil python3-scipy python3-venv locales"
 # From PyPI: readers by others, which tests hold our files to, and what builds, checks and draws with
 # the Python package.
 readers="pyxtf pingverter pycocotools meson-python mypy==1.18.2 matplotlib"

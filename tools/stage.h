@@ -25,7 +25,7 @@ struct stage_options {
     {"--device",                                                                                   \
      NULL,                                                                                         \
      "NAME",                                                                                       \
-     "part of a device's name, see sonject devices",                                       \
+     "part of a device's name, see sonject devices",                                               \
      ARGUMENT_TEXT,                                                                                \
      false,                                                                                        \
      offsetof(structure, stage.device)},                                                           \

@@ -24,14 +24,13 @@ typedef int (*sonject_progress_function)(void *user, double fraction, const char
  * their defaults, so that `sonject_run_params params = {.struct_size = sizeof params, .folder =
  * "out"};` is complete. */
 typedef struct sonject_context_params {
-    uint32_t struct_size; /* sizeof(sonject_context_params) */
-    uint32_t reserved;    /* 0 */
-    const char
-        *device_name; /* part of a device's name, case-insensitive; NULL: what the environment's
-                         SONJECT_DEVICE names, else a GPU of OpenCL, else native: this processor,
-                         which needs no driver */
-    void *opencl_context; /* a host's cl_context to work in; NULL: the library makes its own */
-    void *opencl_device;  /* the cl_device_id to use in that context; NULL with no context */
+    uint32_t struct_size;     /* sizeof(sonject_context_params) */
+    uint32_t reserved;        /* 0 */
+    const char *device_name;  /* part of a device's name, case-insensitive; NULL: what the
+                                 environment's  SONJECT_DEVICE names, else a GPU of OpenCL, else
+                                 native: this processor,  which needs no driver */
+    void *opencl_context;     /* a host's cl_context to work in; NULL: the library makes its own */
+    void *opencl_device;      /* the cl_device_id to use in that context; NULL with no context */
     sonject_log_function log; /* NULL: silent */
     void *log_user;
     uint32_t decodes_in_process; /* 0: images, HDF5 and MATLAB v7.3 files are read by a child
@@ -83,9 +82,9 @@ typedef struct sonject_device_info {
     uint32_t reserved;
 } sonject_device_info;
 
-/* Lists the devices: native, then OpenCL's. devices: room for capacity entries (NULL if capacity is 0); *count gets
- * the number found, which may exceed capacity. Where OpenCL's cannot be asked, the log says why.
- * Errors: ARGUMENT, MEMORY. */
+/* Lists the devices: native, then OpenCL's. devices: room for capacity entries (NULL if capacity is
+ * 0); *count gets the number found, which may exceed capacity. Where OpenCL's cannot be asked, the
+ * log says why. Errors: ARGUMENT, MEMORY. */
 SONJECT_API sonject_status sonject_devices(sonject_context *context, sonject_device_info *devices,
                                            size_t capacity, size_t *count);
 

@@ -12,7 +12,7 @@ typedef enum sonject_status {
     SONJECT_OK = 0,
     SONJECT_ERROR_ARGUMENT = 1, /* the call breaks its contract (null, wrong size, out of range) */
     SONJECT_ERROR_INPUT = 2,    /* a scene or an image cannot be used as it is */
-    SONJECT_ERROR_DEVICE = 3,   /* no OpenCL device, or the device failed */
+    SONJECT_ERROR_DEVICE = 3,   /* no such device, or the device failed */
     SONJECT_ERROR_STORAGE = 4,  /* reading or writing a file failed */
     SONJECT_ERROR_MEMORY = 5,   /* out of host memory */
     SONJECT_ERROR_UNSUPPORTED = 6, /* this build of the library lacks the feature */

@@ -74,7 +74,8 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *han
     float *owned = NULL;
     sonject_status status = find_input(&context->report, scene, pixels, &input, &owned);
     struct device *device = NULL;
-    THEN(status, device_slot_open(&context->report, &context->device, scene->user_shapes.count > 0, &device));
+    THEN(status, device_slot_open(&context->report, &context->device, scene->user_shapes.count > 0,
+                                  &device));
     sonject_result *made = NULL;
     if (status == SONJECT_OK) {
         made = allocate_array(1, sizeof *made);

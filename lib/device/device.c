@@ -51,7 +51,7 @@ static sonject_status open_chosen(struct report *report, const sonject_context_p
                                   bool compiles, struct device *device)
 {
     const char *environment = getenv("SONJECT_DEVICE");
-    const char *name = params->device_name ? params->device_name
+    const char *name = params->device_name             ? params->device_name
                        : environment && environment[0] ? environment
                                                        : NULL;
     const bool is_native = params->opencl_context ? false
@@ -148,9 +148,8 @@ void buffer_release(struct device *device, device_buffer *buffer)
 sonject_status buffer_read(struct report *report, struct device *device, device_buffer buffer,
                            size_t offset, size_t bytes, void *contents)
 {
-    return bytes == 0
-               ? SONJECT_OK
-               : device->calls->buffer_read(report, device, buffer, offset, bytes, contents);
+    return bytes == 0 ? SONJECT_OK
+                      : device->calls->buffer_read(report, device, buffer, offset, bytes, contents);
 }
 
 sonject_status buffer_write(struct report *report, struct device *device, device_buffer buffer,

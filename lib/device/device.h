@@ -40,7 +40,8 @@ sonject_status device_list(struct report *report, sonject_device_info *devices, 
                            size_t *count);
 
 /* Opens the device that the parameters name, else the environment's SONJECT_DEVICE, else the
- * default: the first GPU of OpenCL, else native. Errors: DEVICE, MEMORY. On failure *device is NULL.
+ * default: the first GPU of OpenCL, else native. Errors: DEVICE, MEMORY. On failure *device is
+ * NULL.
  */
 sonject_status device_open(struct report *report, const sonject_context_params *params,
                            struct device **device);

@@ -250,7 +250,8 @@ static sonject_status work_init(struct series_work *work, const struct series_re
         CHECK(buffer_create(report, device, series_bytes, NULL, &work->series[part]));
         CHECK(buffer_create(report, device, pulse_bytes, pulses[part], &work->pulses[part]));
     }
-    CHECK(kernel_create(report, device, PROGRAM_ELEMENT_SERIES, PROGRAM_PLAIN, "hear_elements", &work->hear));
+    CHECK(kernel_create(report, device, PROGRAM_ELEMENT_SERIES, PROGRAM_PLAIN, "hear_elements",
+                        &work->hear));
     return kernel_create(report, device, PROGRAM_ELEMENT_SERIES, PROGRAM_PLAIN, "pulse_elements",
                          &work->pulse_kernel);
 }

@@ -39,8 +39,8 @@ static sonject_status combine_plain(struct form_lines *lines, const device_buffe
     device_kernel kernel = NULL;
     float *taps = response_taps(lines, &count);
     CHECK_MEMORY(lines->report, taps, "image formation");
-    sonject_status status = kernel_create(lines->report, lines->device, PROGRAM_IMAGE_FORMATION, PROGRAM_PLAIN,
-                                          "combine_aspects", &kernel);
+    sonject_status status = kernel_create(lines->report, lines->device, PROGRAM_IMAGE_FORMATION,
+                                          PROGRAM_PLAIN, "combine_aspects", &kernel);
     THEN(status, buffer_create(lines->report, lines->device, count * sizeof *taps, taps, &buffer));
     if (status == SONJECT_OK) {
         const struct kernel_argument arguments[] = {

@@ -146,8 +146,8 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
                                                   : report_out_of_memory(report, "image formation");
     for (int part = 0; part < 2; part++)
         THEN(status, buffer_reserve(report, device, bytes, &lines->lines[part]));
-    THEN(status,
-         kernel_create(report, device, PROGRAM_IMAGE_FORMATION, PROGRAM_PLAIN, "sort_bins", &lines->sort));
+    THEN(status, kernel_create(report, device, PROGRAM_IMAGE_FORMATION, PROGRAM_PLAIN, "sort_bins",
+                               &lines->sort));
     THEN(status, kernel_create(report, device, PROGRAM_IMAGE_FORMATION, PROGRAM_PLAIN,
                                lines->imaginary_pulse ? "compress_range_complex" : "compress_range",
                                &lines->compress));
@@ -315,8 +315,8 @@ sonject_status speckle_draw(struct report *report, struct device *device, struct
     device_buffer energies = NULL;
     device_kernel kernel = NULL;
     parts[0] = parts[1] = NULL;
-    sonject_status status =
-        kernel_create(report, device, PROGRAM_IMAGE_FORMATION, PROGRAM_PLAIN, "draw_speckle", &kernel);
+    sonject_status status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, PROGRAM_PLAIN,
+                                          "draw_speckle", &kernel);
     THEN(status, buffer_create(report, device, bytes, energy, &energies));
     THEN(status, buffer_reserve(report, device, bytes, &parts[0]));
     THEN(status, buffer_reserve(report, device, bytes, &parts[1]));

@@ -79,7 +79,7 @@ struct ray_table {
  * work-items report. All that it holds is its own. */
 struct launch {
     struct device *device; /* the tracer's */
-    device_kernel kernel; /* NULL where checkpoints are added up and nothing is traced */
+    device_kernel kernel;  /* NULL where checkpoints are added up and nothing is traced */
     struct fan_record fan;
     struct ray_table rays;
     device_buffer buffers[LAUNCH_BUFFERS_MAX]; /* in the order in which they were added */

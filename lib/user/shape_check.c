@@ -80,8 +80,9 @@ static sonject_status shape_probe_begin(struct shape_probe *probe, struct report
     memset(probe, 0, sizeof *probe);
     probe->report = report;
     probe->device = device;
-    sonject_status status = user_kernel_create(report, device, shapes, PROGRAM_FULL, PROGRAM_PROBE_USER_SHAPE,
-                                               "probe_user_shape", &probe->kernel);
+    sonject_status status =
+        user_kernel_create(report, device, shapes, PROGRAM_FULL, PROGRAM_PROBE_USER_SHAPE,
+                           "probe_user_shape", &probe->kernel);
     THEN(status, buffer_create(report, device, sizeof record, &record, &probe->shape));
     if (status != SONJECT_OK)
         shape_probe_end(probe);

@@ -69,9 +69,9 @@ sonject_status explain_build_log(struct report *report, const struct user_snippe
 struct user_record user_record_of(const struct user_shape *shape);
 
 /* A kernel of a program for the scene, to be given to kernel_release: the library's own programs
- * where no shape is a user's, else with the code of all its users' shapes linked to them. The first error of a user's code becomes the message "file:line:
- * what"; the compiler's whole log goes to the report's log. Errors: INPUT (code that does not
- * compile), DEVICE, MEMORY. */
+ * where no shape is a user's, else with the code of all its users' shapes linked to them. The first
+ * error of a user's code becomes the message "file:line: what"; the compiler's whole log goes to
+ * the report's log. Errors: INPUT (code that does not compile), DEVICE, MEMORY. */
 sonject_status scene_kernel_create(struct report *report, struct device *device,
                                    const struct scene *scene, enum program_variant variant,
                                    enum device_program program, const char *name,

@@ -25,9 +25,20 @@ void *benchmark_array(size_t count, size_t bytes)
     return array;
 }
 
-void benchmark_begin(struct benchmark_scene *set, size_t pixels)
+size_t benchmark_opencl_devices(char names[BENCHMARK_DEVICES][128])
 {
-    const sonject_context_params params = {.struct_size = sizeof params};
+    static sonject_device_info devices[BENCHMARK_DEVICES + 1];
+    static struct report report;
+    size_t count;
+    benchmark_expect(&report, device_list(&report, devices, BENCHMARK_DEVICES + 1, &count));
+    for (size_t i = 1; i < count && i <= BENCHMARK_DEVICES; i++)
+        memcpy(names[i - 1], devices[i].name, sizeof devices[i].name);
+    return count - 1 < BENCHMARK_DEVICES ? count - 1 : BENCHMARK_DEVICES;
+}
+
+void benchmark_begin(struct benchmark_scene *set, const char *device, size_t pixels)
+{
+    const sonject_context_params params = {.struct_size = sizeof params, .device_name = device};
     memset(set, 0, sizeof *set);
     scene_init(&set->scene);
     set->scene.sonar.aperture_rad = 0.0;
@@ -52,12 +63,10 @@ void benchmark_place(struct benchmark_scene *set, size_t pixels)
     point_response_init(&set->tracer.response, &set->scene.sonar, 1500.0, 0.025);
 }
 
-void benchmark_set_up(struct benchmark_scene *set, size_t pixels)
+void benchmark_set_up(struct benchmark_scene *set, const char *device, size_t pixels)
 {
     sonject_object_params capsule;
-    benchmark_begin(set, pixels);
-    printf("device: %s, %u lanes, %u cores\n", set->tracer.device->name,
-           (unsigned)set->tracer.device->width, (unsigned)set->tracer.device->compute_units);
+    benchmark_begin(set, device, pixels);
     object_init(&capsule);
     capsule.shape = SHAPE_CAPSULE;
     capsule.length_m = 2.3;

@@ -1,5 +1,5 @@
 /* The scene that benchmarks run on: a capsule on a Lambert seabed, as in the paper's Figures 6 and
- * 7, on the default device. What fails ends the program. */
+ * 7. What fails ends the program. */
 #ifndef SONJECT_TESTS_BENCHMARK_SCENE_H
 #define SONJECT_TESTS_BENCHMARK_SCENE_H
 
@@ -15,11 +15,15 @@ struct benchmark_scene {
     struct water water;
 };
 
-/* Lays a patch of pixels x pixels around 50 m. */
-void benchmark_set_up(struct benchmark_scene *set, size_t pixels);
+/* Names of OpenCL's devices; their number. */
+#define BENCHMARK_DEVICES 16
+size_t benchmark_opencl_devices(char names[BENCHMARK_DEVICES][128]);
+
+/* Lays a patch of pixels x pixels around 50 m. device: as sonject_context_params' device_name. */
+void benchmark_set_up(struct benchmark_scene *set, const char *device, size_t pixels);
 
 /* The same in two steps, for other objects: they are appended to the scene in between. */
-void benchmark_begin(struct benchmark_scene *set, size_t pixels);
+void benchmark_begin(struct benchmark_scene *set, const char *device, size_t pixels);
 void benchmark_place(struct benchmark_scene *set, size_t pixels);
 void benchmark_clear(struct benchmark_scene *set);
 

@@ -282,8 +282,13 @@ static double build_mesh(struct bench_set *set, uint32_t around, uint32_t across
 
 static void set_up(struct bench_set *set)
 {
-    sonject_context_params params = {.struct_size = sizeof params};
+    static char names[BENCHMARK_DEVICES][128];
+    sonject_context_params params = {.struct_size = sizeof params, .device_name = names[0]};
     double build_s;
+    if (benchmark_opencl_devices(names) == 0) {
+        printf("no OpenCL device: nothing is timed\n");
+        exit(1);
+    }
     benchmark_expect(&set->report, device_open(&set->report, &params, &set->device));
     const double ready_s = build_mesh(set, 730, 366);
     printf("mesh of %zu triangles: ready after %.2f s on one core", set->mesh.triangle_count,

@@ -132,7 +132,7 @@ static void print_injection(struct benchmark_scene *set)
 static void print_row(uint32_t parts, double size)
 {
     static struct benchmark_scene set;
-    benchmark_begin(&set, PIXELS);
+    benchmark_begin(&set, NULL, PIXELS);
     strew(&set, parts, size);
     set.scene.injection.interactions = 2;
     benchmark_place(&set, PIXELS);

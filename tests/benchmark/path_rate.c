@@ -1,7 +1,7 @@
-/* Rates of the tracing kernels on the OpenCL device beside the same functions compiled as native C
- * with 16 lanes, on the same scenes (those of the paper's Figures 6 and 7) and the same number of
- * cores, in the same run; fails only if the two disagree in a single bit. And the noise of the
- * two-interaction energy around the target, at equal time, of the ways to find its paths. */
+/* Rates of the tracing kernels on the device native beside OpenCL's, on the same scenes (those of
+ * the paper's Figures 6 and 7) in the same run; fails only if two disagree in a single bit. And the
+ * noise of the two-interaction energy around the target, at equal time, of the ways to find its
+ * paths. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +9,6 @@
 
 #include "base/report.h"
 #include "benchmark_scene.h"
-#include "native_kernel.h"
 #include "trace/chains.h"
 #include "trace/fan.h"
 #include "trace/glints.h"
@@ -30,51 +29,18 @@ static void *read_back(struct benchmark_scene *set, device_buffer buffer, size_t
 
 /* What is timed. */
 struct program {
-    const char *name;
-    native_program *run;
     struct launch *launch;
-    size_t bytes[LAUNCH_BUFFERS_MAX]; /* of the launch's buffers */
-    size_t tallies;                   /* the buffer that both sides fill, and must agree in */
-    struct chain_trace *chains;       /* all of whose fans are traced; NULL: the launch's alone */
+    size_t tallies; /* the launch's buffer, and the bytes of it */
+    size_t bytes;
+    struct chain_trace *chains; /* all of whose fans are traced; NULL: the launch's alone */
 };
 
-/* A launch on all threads, with tallies of their own. */
-struct native_work {
-    const struct program *program;
-    void *buffers[LAUNCH_BUFFERS_MAX];
-    void *tallies[THREADS_MAX];
-    struct outcome_record *outcomes;
+/* What a device makes of it. */
+struct measured {
+    double paths_per_s;
+    int64_t *tallies;
+    size_t bytes;
 };
-
-static void run_strips(const void *what, unsigned thread, uint32_t first, uint32_t last)
-{
-    const struct native_work *work = what;
-    void *buffers[LAUNCH_BUFFERS_MAX];
-    memcpy(buffers, work->buffers, sizeof buffers);
-    buffers[work->program->tallies] = work->tallies[thread];
-    work->program->run(&work->program->launch->fan, buffers, first, last, work->outcomes);
-}
-
-/* Adds the tallies of all threads to `sum`; returns the seconds that the tracing took. */
-static double run_native(struct native_work *work, unsigned threads, int64_t *sum)
-{
-    const struct program *program = work->program;
-    const uint32_t strips = (uint32_t)program->launch->fan.strips;
-    const size_t cells = program->bytes[program->tallies] / sizeof *sum;
-    work->outcomes = benchmark_array(strips, sizeof *work->outcomes);
-    for (unsigned i = 0; i < threads; i++)
-        work->tallies[i] = benchmark_array(cells, sizeof *sum);
-    const double start = clock_seconds();
-    benchmark_share_out(run_strips, work, threads, strips, 1);
-    const double taken = clock_seconds() - start;
-    for (unsigned i = 0; i < threads; i++) {
-        for (size_t k = 0; k < cells; k++)
-            sum[k] += ((const int64_t *)work->tallies[i])[k];
-        free(work->tallies[i]);
-    }
-    free(work->outcomes);
-    return taken;
-}
 
 static double trace_fan(struct benchmark_scene *set, struct chain_trace *trace,
                         struct chain_fan *fan)
@@ -85,7 +51,7 @@ static double trace_fan(struct benchmark_scene *set, struct chain_trace *trace,
 }
 
 /* Fan number i, or the launch as it is. */
-static double run_device(struct benchmark_scene *set, const struct program *program, uint32_t i)
+static double run_once(struct benchmark_scene *set, const struct program *program, uint32_t i)
 {
     struct tracer *tracer = &set->tracer;
     struct chain_fan fan;
@@ -99,95 +65,101 @@ static double run_device(struct benchmark_scene *set, const struct program *prog
     return clock_seconds() - start;
 }
 
-/* Runs both versions REPEATS times, prints the best, and returns whether the tallies differ. */
-static int compare(struct benchmark_scene *set, const struct program *program)
+/* The best of REPEATS runs, and the tallies of the last. */
+static struct measured time_program(struct benchmark_scene *set, const struct program *program)
 {
     struct tracer *tracer = &set->tracer;
-    const size_t bytes = program->bytes[program->tallies];
     const device_buffer tallies = program->launch->buffers[program->tallies];
     const uint32_t fans = program->chains ? chain_fan_count(tracer) : 1;
-    int64_t *native = benchmark_array(bytes, 1);
-    double device_s = INFINITY, native_s = INFINITY, paths = 0.0;
-    struct native_work work = {.program = program};
-    for (size_t i = 0; i < program->launch->buffer_count; i++)
-        if (i != program->tallies && program->bytes[i] > 0)
-            work.buffers[i] = read_back(set, program->launch->buffers[i], program->bytes[i]);
+    struct measured measured = {0.0, NULL, program->bytes};
     for (int i = 0; i < REPEATS; i++) {
         const uint64_t rays = tracer->counts.rays;
-        double on_device = 0.0, in_c = 0.0;
-        memset(native, 0, bytes);
-        benchmark_expect(&set->report, buffer_clear(&set->report, tracer->device, tallies, bytes));
-        for (uint32_t fan = 0; fan < fans; fan++) {
-            on_device += run_device(set, program, fan);
-            in_c += run_native(&work, benchmark_threads(tracer->device), native);
-        }
-        device_s = fmin(device_s, on_device);
-        native_s = fmin(native_s, in_c);
-        paths = (double)(tracer->counts.rays - rays);
+        double seconds = 0.0;
+        benchmark_expect(&set->report,
+                         buffer_clear(&set->report, tracer->device, tallies, program->bytes));
+        for (uint32_t fan = 0; fan < fans; fan++)
+            seconds += run_once(set, program, fan);
+        measured.paths_per_s =
+            fmax(measured.paths_per_s, (double)(tracer->counts.rays - rays) / seconds);
     }
-    int64_t *device = read_back(set, tallies, bytes);
-    const int differs = memcmp(device, native, bytes) != 0;
-    printf("%s: %.1f Mpath/s on the device, %.1f Mpath/s native C, ratio %.2f; same bits: %s\n",
-           program->name, paths / device_s / 1e6, paths / native_s / 1e6, native_s / device_s,
-           differs ? "NO" : "yes");
-    for (size_t i = 0; i < LAUNCH_BUFFERS_MAX; i++)
-        free(work.buffers[i]);
-    free(native);
-    free(device);
-    return differs;
+    measured.tallies = read_back(set, tallies, program->bytes);
+    return measured;
 }
 
-static int compare_single_hits(struct benchmark_scene *set)
+static struct measured time_rough(struct benchmark_scene *set)
 {
     static struct rough_trace rough;
-    struct smooth_trace smooth;
     benchmark_expect(&set->report, rough_trace_begin(&rough, &set->tracer, NULL));
     rough.launch.fan.first_strip = rough.grid.strips.first;
     rough.launch.fan.strips = rough.chunk;
-    const size_t lines = (size_t)rough.chunk * (size_t)rough.grid.bins.count;
-    const struct program seabed = {
-        .name = "seabed and rough surfaces",
-        .run = native_trace_rough,
-        .launch = &rough.launch,
-        .bytes = {sizeof(struct object_record), 0, rough.edges.count * sizeof(float),
-                  lines * sizeof(int64_t), rough.tile_elements * sizeof(int64_t)},
-        .tallies = ROUGH_TALLIES};
-    int differs = compare(set, &seabed);
+    const struct program program = {
+        &rough.launch, ROUGH_TALLIES,
+        (size_t)rough.chunk * (size_t)rough.grid.bins.count * sizeof(int64_t), NULL};
+    const struct measured measured = time_program(set, &program);
     rough_trace_end(&rough);
+    return measured;
+}
+
+static struct measured time_glints(struct benchmark_scene *set)
+{
+    struct smooth_trace smooth;
     benchmark_expect(&set->report, smooth_trace_begin(&smooth, &set->tracer, 0, NULL));
     smooth.launch.fan.first_strip = smooth.grid.strips.first;
     smooth.launch.fan.strips = smooth.chunk;
-    const size_t cells = (size_t)smooth.chunk * (size_t)smooth.grid.bins.count;
-    const struct program glints = {
-        .name = "glints",
-        .run = native_trace_smooth,
-        .launch = &smooth.launch,
-        .bytes = {sizeof(struct object_record), 2 * cells * sizeof(int64_t)},
-        .tallies = SMOOTH_TALLIES};
-    differs |= compare(set, &glints);
+    const struct program program = {
+        &smooth.launch, SMOOTH_TALLIES,
+        2 * (size_t)smooth.chunk * (size_t)smooth.grid.bins.count * sizeof(int64_t), NULL};
+    const struct measured measured = time_program(set, &program);
     smooth_trace_end(&smooth);
-    return differs;
+    return measured;
 }
 
-static int compare_chains(struct benchmark_scene *set, uint32_t interactions)
+static struct measured time_chains(struct benchmark_scene *set, uint32_t interactions)
 {
     struct chain_trace trace;
     set->scene.injection.interactions = interactions;
     benchmark_expect(&set->report, chain_trace_begin(&trace, &set->tracer, NULL));
-    struct chain_record *record =
-        read_back(set, trace.launch.buffers[CHAIN_RECORD], sizeof *record);
-    const struct program chains = {
-        .name = interactions == 2 ? "two interactions" : "three interactions",
-        .run = native_trace_chains,
-        .launch = &trace.launch,
-        .bytes = {sizeof *record, sizeof(struct object_record),
-                  record->target_words * sizeof(float) + sizeof(struct target_record), 0,
-                  line_grid_cells(&trace.grid) * sizeof(int64_t)},
-        .tallies = CHAIN_TALLIES,
-        .chains = &trace};
-    const int differs = compare(set, &chains);
-    free(record);
+    const struct program program = {&trace.launch, CHAIN_TALLIES,
+                                    line_grid_cells(&trace.grid) * sizeof(int64_t), &trace};
+    const struct measured measured = time_program(set, &program);
     chain_trace_end(&trace);
+    return measured;
+}
+
+static struct measured time_row(struct benchmark_scene *set, int row)
+{
+    return row == 0   ? time_rough(set)
+           : row == 1 ? time_glints(set)
+                      : time_chains(set, (uint32_t)row);
+}
+
+/* native beside another device, in turn; returns whether their tallies differ. */
+static int compare(const char *other)
+{
+    static const char *const names[] = {"seabed and rough surfaces", "glints", "two interactions",
+                                        "three interactions"};
+    int differs = 0;
+    printf("%s:\n", other);
+    for (int row = 0; row < 4; row++) {
+        struct measured measured[2];
+        for (int i = 0; i < 2; i++) {
+            static struct benchmark_scene set;
+            benchmark_set_up(&set, i == 0 ? "native" : other, row < 2 ? 512 : 256);
+            set.scene.injection.ray_scale =
+                row < 2 ? 16.0 : 8.0; /* kernels are timed, not launches */
+            measured[i] = time_row(&set, row);
+            benchmark_clear(&set);
+        }
+        const int is_other =
+            measured[0].bytes != measured[1].bytes ||
+            memcmp(measured[0].tallies, measured[1].tallies, measured[0].bytes) != 0;
+        printf("%s: %.1f Mpath/s native, %.1f Mpath/s there, ratio %.2f; same bits: %s\n",
+               names[row], measured[0].paths_per_s / 1e6, measured[1].paths_per_s / 1e6,
+               measured[0].paths_per_s / measured[1].paths_per_s, is_other ? "NO" : "yes");
+        differs |= is_other;
+        free(measured[0].tallies);
+        free(measured[1].tallies);
+    }
     return differs;
 }
 
@@ -334,14 +306,13 @@ static void compare_searches(struct benchmark_scene *set)
 int main(void)
 {
     static struct benchmark_scene set;
-    benchmark_set_up(&set, 512);
-    set.scene.injection.ray_scale = 16.0; /* kernels, not launches, are what is timed */
-    int differs = compare_single_hits(&set);
-    benchmark_clear(&set);
-    benchmark_set_up(&set, 256);
+    static char names[BENCHMARK_DEVICES][128];
+    const size_t count = benchmark_opencl_devices(names);
+    int differs = 0;
+    for (size_t i = 0; i < count; i++)
+        differs |= compare(names[i]);
+    benchmark_set_up(&set, NULL, 256);
     set.scene.injection.ray_scale = 8.0;
-    differs |= compare_chains(&set, 2);
-    differs |= compare_chains(&set, 3);
     compare_searches(&set);
     benchmark_clear(&set);
     return differs;

@@ -53,7 +53,7 @@ static void print_row(size_t pixels, uint32_t objects, uint32_t interactions)
 {
     static struct benchmark_scene set;
     struct injection_result result;
-    benchmark_begin(&set, pixels);
+    benchmark_begin(&set, NULL, pixels);
     set.scene.sonar.response_window = SONJECT_WINDOW_TAYLOR;
     set.scene.geometry.first_slant_range_m = FIRST_RANGE_M;
     set.scene.injection.interactions = interactions;

@@ -17,7 +17,8 @@ static void require(const struct report *report, int is_well, const char *what)
     abort();
 }
 
-static device_buffer upload(struct probe_device *probe, const void *contents, size_t count, size_t size)
+static device_buffer upload(struct probe_device *probe, const void *contents, size_t count,
+                            size_t size)
 {
     device_buffer buffer;
     require(probe->report,

@@ -104,8 +104,8 @@ static device_buffer buffer_of(struct bench *bench, size_t bytes, const void *co
 static device_kernel kernel_of(struct bench *bench, const char *name)
 {
     device_kernel kernel;
-    expect_ok(bench, kernel_create(&bench->report, bench->tracer.device, PROGRAM_ELEMENT_SERIES, PROGRAM_PLAIN,
-                                   name, &kernel));
+    expect_ok(bench, kernel_create(&bench->report, bench->tracer.device, PROGRAM_ELEMENT_SERIES,
+                                   PROGRAM_PLAIN, name, &kernel));
     return kernel;
 }
 

@@ -14,8 +14,8 @@
 
 /* ---- claims ---- */
 
-/* CLAIM(name) { ... } is held by the program, on the default device: kernel tests compare the bits of
- * all. */
+/* CLAIM(name) { ... } is held by the program, on the default device: kernel tests compare the bits
+ * of all. */
 #define CLAIM(name)                                                                                \
     static void name(void);                                                                        \
     __attribute__((constructor)) static void add_##name(void)                                      \

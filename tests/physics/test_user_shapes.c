@@ -229,8 +229,7 @@ static sonject_status compile(struct sea *sea, const char *code, enum device_pro
     sea_add_code(sea, "my shape.cl", code, 1.0, 1.0, 0.0);
     const sonject_status status =
         scene_kernel_create(&sea->bench->report, sea->bench->tracer.device, &sea->bench->scene,
-                            PROGRAM_FULL,
-                            program, kernel_name, &kernel);
+                            PROGRAM_FULL, program, kernel_name, &kernel);
     if (status == SONJECT_OK)
         kernel_release(sea->bench->tracer.device, &kernel);
     return status;

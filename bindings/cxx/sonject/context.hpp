@@ -3,6 +3,7 @@
 #define SONJECT_CONTEXT_HPP
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
@@ -28,9 +29,10 @@ struct context_options {
     void *opencl_device = nullptr;
     sonject::log log;
     bool decodes_in_process = false; /* images and HDF5, else by a child process */
+    std::uint32_t threads = 0;       /* of a launch on the device native; 0: one a processor */
 };
 
-/* One OpenCL device and what is compiled for it. */
+/* One device and what is compiled for it. */
 class context
 {
   public:
@@ -42,6 +44,7 @@ class context
         params.opencl_context = options.opencl_context;
         params.opencl_device = options.opencl_device;
         params.decodes_in_process = options.decodes_in_process;
+        params.threads = options.threads;
         params.log = *log_ ? &context::tell : nullptr;
         params.log_user = log_;
         const sonject_status status = sonject_context_create(&params, &handle_);

@@ -1,4 +1,4 @@
-"""Contexts: one OpenCL device each, and whatever was made with them."""
+"""Contexts: one device each, and whatever was made with them."""
 
 from __future__ import annotations
 
@@ -98,15 +98,17 @@ class Handle:
 
 
 class Context:
-    """Works with one OpenCL device.
+    """Works with one device.
 
-    device: part of the device's name, None for the default one; log: called with lines of news;
-    opencl_context, opencl_device: addresses of a host's cl_context and cl_device_id to work in;
-    decodes_in_process: read images and HDF5 here, not in a child (a damaged file may end this).
+    device: part of the device's name, None for the one that SONJECT_DEVICE names, else a GPU, else
+    native, this processor; log: called with lines of news; opencl_context, opencl_device: addresses
+    of a host's cl_context and cl_device_id to work in; decodes_in_process: read images and HDF5
+    here, not in a child (a damaged file may end this); threads: of a launch on native, 0 for one a
+    processor.
 
     Calls from several threads on one context wait for each other; use a context per thread to work
-    at once. OpenCL does not survive os.fork: what needs a device is refused in a child whose parent
-    used one before.
+    at once. The device native works in forked children, too; OpenCL's are refused in a child whose
+    parent used OpenCL.
     """
 
     def __init__(
@@ -116,6 +118,7 @@ class Context:
         opencl_context: Optional[int] = None,
         opencl_device: Optional[int] = None,
         decodes_in_process: bool = False,
+        threads: int = 0,
     ) -> None:
         self._library = load()
         self._lock = threading.Lock()
@@ -129,6 +132,7 @@ class Context:
             opencl_context=opencl_context,
             opencl_device=opencl_device,
             decodes_in_process=int(decodes_in_process),
+            threads=threads,
         )
         if self._log is not None:
             params.log = self._log.callback
@@ -157,7 +161,7 @@ class Context:
         self.close()
 
     def devices(self) -> list[Device]:
-        """The OpenCL devices that there are; empty if none."""
+        """The devices that there are: native, then OpenCL's."""
         count = ctypes.c_size_t()
         self.call("sonject_devices", self, None, 0, ctypes.byref(count))
         found = (s.sonject_device_info * count.value)()
@@ -294,5 +298,5 @@ def default_context() -> Context:
 
 
 def devices() -> list[Device]:
-    """The OpenCL devices that there are; empty if none."""
+    """The devices that there are: native, then OpenCL's."""
     return default_context().devices()

@@ -8,7 +8,7 @@
 
 #include "device/native/kernel.h"
 
-#define __kernel           static
+#define __kernel static
 #define __global
 #define uint               uint32_t
 #define get_global_id(way) native_item[way]

@@ -169,8 +169,9 @@ static sonject_status native_kernel_create(struct report *report, struct device 
                               "(`sonject devices` lists them)",
                               device->name);
     if (!set)
-        return report_failure(report, SONJECT_ERROR_DEVICE, "device '%s' has no kernels of %u lanes",
-                              device->name, (unsigned)device->width);
+        return report_failure(report, SONJECT_ERROR_DEVICE,
+                              "device '%s' has no kernels of %u lanes", device->name,
+                              (unsigned)device->width);
     const struct native_kernel *found = set->programs[variant][program];
     while (strcmp(found->name, name) != 0)
         found++;

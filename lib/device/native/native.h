@@ -14,8 +14,9 @@ uint32_t processor_count(void);
 void threads_retain(void);
 void threads_release(void);
 
-/* Runs work-items on the calling thread and on up to most - 1 others, and waits for all. Any threads
- * may do so at once; those of this process are shared among them. A forked child starts its own. */
+/* Runs work-items on the calling thread and on up to most - 1 others, and waits for all. Any
+ * threads may do so at once; those of this process are shared among them. A forked child starts its
+ * own. */
 void threads_run(uint32_t most, native_function *run, const void *const *values,
                  const size_t global[3]);
 

@@ -41,8 +41,8 @@ sonject_status opencl_map(struct report *report, struct device *device, device_b
                           size_t bytes, const void **contents)
 {
     cl_int error = CL_SUCCESS;
-    *contents = clEnqueueMapBuffer(device->queue, buffer, CL_TRUE, CL_MAP_READ, 0,
-                                   bytes, 0, NULL, NULL, &error);
+    *contents = clEnqueueMapBuffer(device->queue, buffer, CL_TRUE, CL_MAP_READ, 0, bytes, 0, NULL,
+                                   NULL, &error);
     return opencl_answer(report, device, "clEnqueueMapBuffer", error);
 }
 
@@ -62,8 +62,8 @@ sonject_status opencl_clear(struct report *report, struct device *device, device
 }
 
 sonject_status opencl_kernel_run(struct report *report, struct device *device, device_kernel kernel,
-                          const struct kernel_argument *arguments, size_t argument_count,
-                          uint32_t dimensions, const size_t *global)
+                                 const struct kernel_argument *arguments, size_t argument_count,
+                                 uint32_t dimensions, const size_t *global)
 {
     for (size_t i = 0; i < argument_count; i++)
         CHECK(opencl_answer(

@@ -26,8 +26,7 @@ static size_t language_options(const struct device *device, char options[OPTIONS
 
 /* A CPU's work-items own their tallies; a GPU's share them. */
 static void program_options(const struct device *device, enum program_variant variant,
-                            bool has_user_code,
-                            char options[OPTIONS_CAPACITY])
+                            bool has_user_code, char options[OPTIONS_CAPACITY])
 {
     const size_t length = language_options(device, options);
     snprintf(options + length, OPTIONS_CAPACITY - length, " -DWIDTH=%u%s%s%s%s",
