@@ -34,14 +34,17 @@ static bool is_always_there(void)
     return true;
 }
 
-#ifdef HAS_AVX2
-DECLARE(avx2_plain)
-DECLARE(avx2_full)
+#if defined(HAS_AVX2) || defined(HAS_AVX512)
 static bool has_avx2(void)
 {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
            __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
 }
+#endif
+
+#ifdef HAS_AVX2
+DECLARE(avx2_plain)
+DECLARE(avx2_full)
 #endif
 
 #ifdef HAS_AVX512
