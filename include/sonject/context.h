@@ -27,8 +27,8 @@ typedef struct sonject_context_params {
     uint32_t struct_size;     /* sizeof(sonject_context_params) */
     uint32_t reserved;        /* 0 */
     const char *device_name;  /* part of a device's name, case-insensitive; NULL: what the
-                                 environment's  SONJECT_DEVICE names, else a GPU of OpenCL, else
-                                 native: this processor,  which needs no driver */
+                                 environment's SONJECT_DEVICE names, else a GPU of OpenCL, else
+                                 native: this processor, which needs no driver */
     void *opencl_context;     /* a host's cl_context to work in; NULL: the library makes its own */
     void *opencl_device;      /* the cl_device_id to use in that context; NULL with no context */
     sonject_log_function log; /* NULL: silent */

@@ -21,6 +21,15 @@ bool contains_ignoring_case(const char *text, const char *needle)
     return needle[0] == '\0';
 }
 
+void device_take_info(struct device *device, const sonject_device_info *info)
+{
+    memcpy(device->name, info->name, sizeof device->name);
+    memcpy(device->platform, info->platform, sizeof device->platform);
+    memcpy(device->driver, info->driver, sizeof device->driver);
+    device->width = info->vector_width;
+    device->compute_units = info->compute_units;
+}
+
 sonject_status device_list(struct report *report, sonject_device_info *devices, size_t capacity,
                            size_t *count)
 {

@@ -95,8 +95,6 @@ void buffer_unmap(struct device *device, device_buffer buffer, const void *conte
 sonject_status buffer_clear(struct report *report, struct device *device, device_buffer buffer,
                             size_t bytes);
 
-#define KERNEL_ARGUMENTS_MAX 20
-
 struct kernel_argument {
     size_t bytes;
     const void *value;

@@ -26,8 +26,7 @@ enum scene_flag {
     BRUTE_FORCE = 512,
     /* what is compared */
     ROUGH = 1024,
-    ROUGH_AT_8 = 2048, /* at width 8 too: programs take long to compile */
-    ROUGH_AT_1 = 4096,
+    ROUGH_AT_ALL = 4096, /* widths: programs take long to compile */
     GLINTS = 8192,
     IMAGES = 16384,
     CHAINS = 32768,
@@ -51,20 +50,20 @@ static const struct scene_case {
     double source_side; /* m; not 0: visibility is tested */
     uint32_t interactions;
 } scenes[] = {
-    {"plain", FOUR_OBJECTS, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | GLINTS | IMAGES | TILES, 0.0, 1},
-    {"wide source", FOUR_OBJECTS, ROUGH | ROUGH_AT_1, 0.2, 1},
-    {"map", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | WITH_MAP, 0.2, 1},
-    {"seabed alone", NO_OBJECTS, ROUGH | ROUGH_AT_1, 0.0, 1},
-    {"more shapes", MORE_SHAPES, ROUGH | ROUGH_AT_8 | ROUGH_AT_1 | GLINTS, 0.2, 1},
-    {"layers", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | GLINTS | IMAGES | TILES | IN_LAYERS, 0.0, 1},
-    {"relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | GLINTS | IMAGES | TILES | ON_RELIEF, 0.0, 1},
+    {"plain", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL | GLINTS | IMAGES | TILES, 0.0, 1},
+    {"wide source", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL, 0.2, 1},
+    {"map", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL | WITH_MAP, 0.2, 1},
+    {"seabed alone", NO_OBJECTS, ROUGH | ROUGH_AT_ALL, 0.0, 1},
+    {"more shapes", MORE_SHAPES, ROUGH | ROUGH_AT_ALL | GLINTS, 0.2, 1},
+    {"layers", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL | GLINTS | IMAGES | TILES | IN_LAYERS, 0.0, 1},
+    {"relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL | GLINTS | IMAGES | TILES | ON_RELIEF, 0.0, 1},
     {"crowd over relief", CROWD, TILES | ON_RELIEF, 0.0, 1},
-    {"wide source over relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | ON_RELIEF | WITH_MAP, 0.2, 1},
+    {"wide source over relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL | ON_RELIEF | WITH_MAP, 0.2, 1},
     {"aspects", FOUR_OBJECTS, ROUGH | WITH_ASPECTS, 0.0, 1},
-    {"aspects over relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | WITH_ASPECTS | ON_RELIEF | WITH_MAP,
+    {"aspects over relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL | WITH_ASPECTS | ON_RELIEF | WITH_MAP,
      0.2, 1},
     {"beam", FOUR_OBJECTS, ROUGH | WITH_BEAM, 0.0, 1},
-    {"fouling", FOUR_OBJECTS, ROUGH | ROUGH_AT_1 | TILES | FOULED, 0.2, 1},
+    {"fouling", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL | TILES | FOULED, 0.2, 1},
     {"chains", TWO_OBJECTS, CHAINS, 0.0, 3},
     {"chains off what is fouled", TWO_OBJECTS, CHAINS | FOULED | UNDER_SURFACE, 0.0, 3},
     {"chains, paper's columns, map", TWO_OBJECTS, CHAINS | PAPER_COLUMNS | WITH_MAP, 0.0, 3},
@@ -482,8 +481,7 @@ static bool is_compared(const struct bench *bench, const struct subject *subject
     if (w == width_count - 1)
         return true;
     if (subject->part == ROUGH)
-        return (w == 0 && subject->scene->flags & ROUGH_AT_1) ||
-               (widths[w] == 8 && subject->scene->flags & ROUGH_AT_8);
+        return (subject->scene->flags & ROUGH_AT_ALL) != 0;
     return subject->part == GLINTS && w == 0 && !bench->tracer.relief;
 }
 

@@ -324,8 +324,8 @@ static void compare_chains(struct bench *bench)
 /* At the ends of the row of widths: programs take long to compile (see test_bits.c). */
 static void test_devices(void **state)
 {
-    uint32_t widths[2];
-    const size_t count = bench_end_widths(widths);
+    uint32_t widths[BENCH_WIDTHS];
+    const size_t count = bench_widths(widths);
     for (size_t w = 0; w < count; w++) {
         struct bench bench;
         bench_open(&bench, ROWS, COLUMNS, MIDDLE_M);

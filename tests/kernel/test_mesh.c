@@ -493,11 +493,11 @@ static void test_bits_are_the_same_at_every_width(void **state)
     ask(&mesh, &flight);
     expect_same("16 lanes of plain C", &flight, &other_flight);
     for (size_t i = 0; i < devices; i++) {
-        uint32_t widths[2];
+        uint32_t widths[BENCH_WIDTHS];
         if (native_is_named(names[i])) /* is plain C */
             continue;
         bench_device = names[i];
-        const size_t count = bench_end_widths(widths);
+        const size_t count = bench_widths(widths);
         for (size_t w = 0; w < count; w++)
             compare_device(names[i], widths[w], &mesh, &other_flight);
     }

@@ -111,7 +111,7 @@ static void expect_same(const struct multibounce_sums *a, const struct multiboun
 }
 
 /* At the ends of the row of widths: programs take long to compile (see test_bits.c). */
-static struct device *devices[2];
+static struct device *devices[BENCH_WIDTHS];
 static size_t device_count;
 
 /* Echoes of one pair; compares them in launches as they come and, where told to, in small ones. */
@@ -173,9 +173,9 @@ static void compare_variant(struct bench *bench, const struct variant *variant)
 
 static void test_multibounce_tallies(void **state)
 {
-    uint32_t widths[2];
+    uint32_t widths[BENCH_WIDTHS];
     struct bench bench;
-    device_count = bench_end_widths(widths);
+    device_count = bench_widths(widths);
     bench_open(&bench, ROWS, COLUMNS, 18.0);
     for (size_t d = 0; d < device_count; d++) {
         devices[d] = bench_open_device(&bench);

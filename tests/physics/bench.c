@@ -218,20 +218,11 @@ size_t bench_widths(uint32_t widths[BENCH_WIDTHS])
     size_t count = 0;
     bench_open(&bench, 1, 1, 18.0);
     const bool is_native = native_is_named(bench.device->name);
-    for (uint32_t width = 1; width <= 16; width *= width == 1 ? 4 : 2)
-        if (is_native ? native_has_width(width) : width == 1 || bench.device_width > 1)
+    for (uint32_t width = 1; width <= 16; width *= 2)
+        if (is_native ? native_has_width(width) : width == 1 || width == bench.device_width)
             widths[count++] = width;
     bench_close(&bench);
     return count;
-}
-
-size_t bench_end_widths(uint32_t ends[2])
-{
-    uint32_t widths[BENCH_WIDTHS];
-    const size_t count = bench_widths(widths);
-    ends[0] = widths[0];
-    ends[1] = widths[count - 1];
-    return count > 1 ? 2 : 1;
 }
 
 size_t bench_devices(char names[BENCH_DEVICES][128])

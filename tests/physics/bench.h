@@ -74,14 +74,10 @@ void bench_ready(struct bench *bench);
 /* The device that bench_open opens: one whose name contains this; NULL: the default one. */
 extern const char *bench_device;
 
-/* The numbers of lanes to try on bench_device: 1 to 16 where it has vectors; on native those that
- * were built and that the processor has; on others 1, since their drivers take minutes to compile
- * what they are never given. Returns how many there are. */
-#define BENCH_WIDTHS 4
+/* The numbers of lanes to try on bench_device: on native those that were built and that the processor
+ * has, else 1 and the device's own. Returns how many there are. */
+#define BENCH_WIDTHS 3
 size_t bench_widths(uint32_t widths[BENCH_WIDTHS]);
-
-/* The least and the most of them; the number of these. */
-size_t bench_end_widths(uint32_t ends[2]);
 
 /* Runs the tests on every device; the number of those that failed, which a program returns. */
 struct CMUnitTest;

@@ -69,7 +69,7 @@ def test_children_inject_as_their_parent_does(amplitude_patch, make_scene):
 
         def work():
             assert numpy.array_equal(sonject.inject(amplitude_patch, make_scene(context=ours)).image, expected)
-            with sonject.Context() as its_own:
+            with sonject.Context(device="native", threads=1) as its_own:
                 found = sonject.inject(amplitude_patch, make_scene(context=its_own)).image
                 assert numpy.array_equal(found, expected)
 

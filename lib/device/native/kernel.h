@@ -4,10 +4,11 @@
 
 #include <stddef.h>
 
-/* Runs work-items first...end - 1 of global[0] x global[1] x global[2]; values: where each of the
- * kernel's arguments is. */
-typedef void native_function(const void *const *values, const size_t *global, size_t first,
-                             size_t end);
+#include "device/device.h"
+
+/* Runs work-items first...end - 1 of global[0] x global[1] x global[2]. */
+typedef void native_function(const struct kernel_argument *arguments, const size_t *global,
+                             size_t first, size_t end);
 
 struct native_kernel {
     const char *name; /* NULL behind a program's last */

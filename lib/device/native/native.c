@@ -194,13 +194,10 @@ static sonject_status native_kernel_run(struct report *report, struct device *de
                                         const size_t *global)
 {
     const struct native_kernel *native = kernel;
-    const void *values[KERNEL_ARGUMENTS_MAX];
     size_t items[3] = {1, 1, 1};
-    (void)report;
+    (void)report, (void)argument_count;
     memcpy(items, global, dimensions * sizeof *global);
-    for (size_t i = 0; i < argument_count; i++)
-        values[i] = arguments[i].value;
-    threads_run(device->compute_units, native->run, values, items);
+    threads_run(device->compute_units, native->run, arguments, items);
     return SONJECT_OK;
 }
 
@@ -224,15 +221,11 @@ sonject_status native_open(struct report *report, const sonject_context_params *
     sonject_device_info info;
     (void)report;
     native_describe(&info);
-    memcpy(device->name, info.name, sizeof device->name);
-    memcpy(device->platform, info.platform, sizeof device->platform);
-    memcpy(device->driver, info.driver, sizeof device->driver);
+    if (params->threads > 0 && params->threads < info.compute_units)
+        info.compute_units = params->threads;
+    device_take_info(device, &info);
     device->calls = &calls;
     device->is_cpu = true;
-    device->width = info.vector_width;
-    device->compute_units = params->threads > 0 && params->threads < info.compute_units
-                                ? params->threads
-                                : info.compute_units;
     device->allocation_limit = PTRDIFF_MAX;
     threads_retain();
     return SONJECT_OK;

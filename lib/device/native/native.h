@@ -17,7 +17,7 @@ void threads_release(void);
 /* Runs work-items on the calling thread and on up to most - 1 others, and waits for all. Any
  * threads may do so at once; those of this process are shared among them. A forked child starts its
  * own. */
-void threads_run(uint32_t most, native_function *run, const void *const *values,
+void threads_run(uint32_t most, native_function *run, const struct kernel_argument *arguments,
                  const size_t global[3]);
 
 #endif

@@ -20,9 +20,9 @@ def main():
     kernels = re.findall(r"__kernel void (\w+)\((.*?)\)\n\{", entry.read_text(encoding="utf-8"), re.DOTALL)
     lines = ['#include "device/native/entry.h"', f'#include "{entry.name}"', ""]
     for name, arguments in kernels:
-        values = ", ".join(f"*({type_name} const *)values[{i}]" for i, type_name in enumerate(arguments_of(arguments)))
+        values = ", ".join(f"*({type_name} const *)arguments[{i}].value" for i, type_name in enumerate(arguments_of(arguments)))
         lines += [
-            f"static void run_{name}(const void *const *values, const size_t *global, size_t first, size_t end)", "{",
+            f"static void run_{name}(const struct kernel_argument *arguments, const size_t *global, size_t first, size_t end)", "{",
             "    native_item_begin(global, first);",
             "    for (size_t item = first; item < end; item++, native_item_next(global))",
             f"        {name}({values});", "}", ""]

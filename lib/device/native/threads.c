@@ -19,7 +19,7 @@
 struct job {
     struct job *next;
     native_function *run;
-    const void *const *values;
+    const struct kernel_argument *arguments;
     const size_t *global;
     size_t total;
     size_t begun;    /* work-items; atomic */
@@ -32,6 +32,7 @@ static struct {
     pthread_cond_t has_work, has_ended;
     struct job *jobs; /* that may have work-items left */
     size_t users;
+    uint32_t most;    /* threads besides the callers' */
     uint32_t count;   /* threads started */
     uint32_t waiting; /* of them, for a job */
     bool is_ending;
@@ -42,12 +43,9 @@ static struct {
 
 uint32_t processor_count(void)
 {
-    long count = sysconf(_SC_NPROCESSORS_ONLN);
-#ifdef CPU_COUNT /* a batch system gives a job few of many */
-    cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set) == 0)
-        count = CPU_COUNT(&set);
-#endif
+    cpu_set_t set; /* a batch system gives a job few of many */
+    const long count = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set)
+                                                                   : sysconf(_SC_NPROCESSORS_ONLN);
     return count < 1 ? 1 : count > THREADS_MAX ? THREADS_MAX : (uint32_t)count;
 }
 
@@ -66,7 +64,7 @@ static bool begin_items(struct job *job, size_t *first, size_t *end)
     return true;
 }
 
-/* Whatever a host does to its threads' rounding or denormal numbers, images are the same. */
+/* Whatever a host does to its threads' rounding or denormal numbers, kernels give the same bits. */
 static void run_items(struct job *job)
 {
     size_t first, end;
@@ -74,7 +72,7 @@ static void run_items(struct job *job)
     fegetenv(&before);
     fesetenv(FE_DFL_ENV);
     while (begin_items(job, &first, &end))
-        job->run(job->values, job->global, first, end);
+        job->run(job->arguments, job->global, first, end);
     fesetenv(&before);
 }
 
@@ -132,7 +130,8 @@ void threads_retain(void)
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, watch_forks);
     pthread_mutex_lock(&pool.lock);
-    pool.users++;
+    if (pool.users++ == 0)
+        pool.most = processor_count() - 1;
     pthread_mutex_unlock(&pool.lock);
 }
 
@@ -162,11 +161,12 @@ void threads_release(void)
  * receive. With the lock. */
 static void start_threads(uint32_t wanted)
 {
-    const uint32_t most = processor_count() - 1;
     sigset_t all, before;
+    if (pool.waiting >= wanted || pool.count >= pool.most || pool.is_ending)
+        return;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
-    while (pool.waiting < wanted && pool.count < most && !pool.is_ending &&
+    while (pool.waiting < wanted && pool.count < pool.most &&
            pthread_create(&pool.threads[pool.count], NULL, serve, NULL) == 0) {
         pool.count++;
         wanted--;
@@ -174,11 +174,11 @@ static void start_threads(uint32_t wanted)
     pthread_sigmask(SIG_SETMASK, &before, NULL);
 }
 
-void threads_run(uint32_t most, native_function *run, const void *const *values,
+void threads_run(uint32_t most, native_function *run, const struct kernel_argument *arguments,
                  const size_t global[3])
 {
     struct job job = {.run = run,
-                      .values = values,
+                      .arguments = arguments,
                       .global = global,
                       .total = global[0] * global[1] * global[2],
                       .most = most};

@@ -212,7 +212,7 @@ sonject_status opencl_list(struct report *report, sonject_device_info *devices, 
                            size_t *count, size_t *gpu)
 {
     struct found_device found[DEVICES_MAX];
-    *count = 0;
+    *count = *gpu = 0;
     CHECK(driver_enter(report));
     const sonject_status status = find_devices(report, found, count);
     for (size_t i = 0; i < *count && i < capacity; i++)
@@ -330,7 +330,7 @@ static sonject_status check_abilities(struct report *report, struct device *devi
     return SONJECT_OK;
 }
 
-static void opencl_close(struct device *device)
+void opencl_close(struct device *device)
 {
     struct report ignored = {{0}, NULL, NULL};
     if (!device->shared || driver_enter(&ignored) != SONJECT_OK)
@@ -340,21 +340,6 @@ static void opencl_close(struct device *device)
     release_shared(device->shared);
     driver_leave();
 }
-
-static const struct device_calls opencl_calls = {
-    .claim = driver_claim,
-    .close = opencl_close,
-    .buffer_reserve = opencl_reserve,
-    .buffer_release = opencl_release,
-    .buffer_read = opencl_read,
-    .buffer_write = opencl_write,
-    .buffer_map = opencl_map,
-    .buffer_unmap = opencl_unmap,
-    .buffer_clear = opencl_clear,
-    .kernel_create = opencl_kernel_create,
-    .kernel_release = opencl_kernel_release,
-    .kernel_run = opencl_kernel_run,
-};
 
 static sonject_status open_in_driver(struct report *report, const sonject_context_params *params,
                                      const char *name, struct device *device)
@@ -369,15 +354,11 @@ static sonject_status open_in_driver(struct report *report, const sonject_contex
     }
     sonject_device_info info;
     describe(chosen.id, chosen.type, chosen.platform, &info);
-    memcpy(device->name, info.name, sizeof device->name);
-    memcpy(device->platform, info.platform, sizeof device->platform);
-    memcpy(device->driver, info.driver, sizeof device->driver);
+    device_take_info(device, &info);
     device->calls = &opencl_calls;
     device->id = chosen.id;
     device->is_cpu = (chosen.type & CL_DEVICE_TYPE_CPU) != 0;
     device->is_pocl = strcmp(info.platform, "Portable Computing Language") == 0;
-    device->width = info.vector_width;
-    device->compute_units = info.compute_units;
     CHECK(check_abilities(report, device));
     return open_queue(report, device, params->opencl_context);
 }

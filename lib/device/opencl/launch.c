@@ -8,37 +8,38 @@
  * 5.0. A launch uses all cores, so little is lost by one at a time. */
 static pthread_mutex_t one_launch_of_pocl = PTHREAD_MUTEX_INITIALIZER;
 
-sonject_status opencl_reserve(struct report *report, struct device *device, size_t bytes,
-                              device_buffer *buffer)
+static sonject_status opencl_reserve(struct report *report, struct device *device, size_t bytes,
+                                     device_buffer *buffer)
 {
     cl_int error = CL_SUCCESS;
     *buffer = clCreateBuffer(device->context, CL_MEM_READ_WRITE, bytes, NULL, &error);
     return opencl_answer(report, device, "clCreateBuffer", error);
 }
 
-void opencl_release(device_buffer buffer)
+static void opencl_release(device_buffer buffer)
 {
     clReleaseMemObject(buffer);
 }
 
-sonject_status opencl_read(struct report *report, struct device *device, device_buffer buffer,
-                           size_t offset, size_t bytes, void *contents)
+static sonject_status opencl_read(struct report *report, struct device *device,
+                                  device_buffer buffer, size_t offset, size_t bytes, void *contents)
 {
     return opencl_answer(report, device, "clEnqueueReadBuffer",
                          clEnqueueReadBuffer(device->queue, buffer, CL_TRUE, offset, bytes,
                                              contents, 0, NULL, NULL));
 }
 
-sonject_status opencl_write(struct report *report, struct device *device, device_buffer buffer,
-                            size_t offset, size_t bytes, const void *contents)
+static sonject_status opencl_write(struct report *report, struct device *device,
+                                   device_buffer buffer, size_t offset, size_t bytes,
+                                   const void *contents)
 {
     return opencl_answer(report, device, "clEnqueueWriteBuffer",
                          clEnqueueWriteBuffer(device->queue, buffer, CL_TRUE, offset, bytes,
                                               contents, 0, NULL, NULL));
 }
 
-sonject_status opencl_map(struct report *report, struct device *device, device_buffer buffer,
-                          size_t bytes, const void **contents)
+static sonject_status opencl_map(struct report *report, struct device *device, device_buffer buffer,
+                                 size_t bytes, const void **contents)
 {
     cl_int error = CL_SUCCESS;
     *contents = clEnqueueMapBuffer(device->queue, buffer, CL_TRUE, CL_MAP_READ, 0, bytes, 0, NULL,
@@ -46,14 +47,14 @@ sonject_status opencl_map(struct report *report, struct device *device, device_b
     return opencl_answer(report, device, "clEnqueueMapBuffer", error);
 }
 
-void opencl_unmap(struct device *device, device_buffer buffer, const void *contents)
+static void opencl_unmap(struct device *device, device_buffer buffer, const void *contents)
 {
     /* the queue is in order, so nothing that follows can overtake this */
     (void)clEnqueueUnmapMemObject(device->queue, buffer, (void *)contents, 0, NULL, NULL);
 }
 
-sonject_status opencl_clear(struct report *report, struct device *device, device_buffer buffer,
-                            size_t bytes)
+static sonject_status opencl_clear(struct report *report, struct device *device,
+                                   device_buffer buffer, size_t bytes)
 {
     const cl_uchar zero = 0;
     return opencl_answer(
@@ -61,9 +62,11 @@ sonject_status opencl_clear(struct report *report, struct device *device, device
         clEnqueueFillBuffer(device->queue, buffer, &zero, sizeof zero, 0, bytes, 0, NULL, NULL));
 }
 
-sonject_status opencl_kernel_run(struct report *report, struct device *device, device_kernel kernel,
-                                 const struct kernel_argument *arguments, size_t argument_count,
-                                 uint32_t dimensions, const size_t *global)
+static sonject_status opencl_kernel_run(struct report *report, struct device *device,
+                                        device_kernel kernel,
+                                        const struct kernel_argument *arguments,
+                                        size_t argument_count, uint32_t dimensions,
+                                        const size_t *global)
 {
     for (size_t i = 0; i < argument_count; i++)
         CHECK(opencl_answer(
@@ -85,7 +88,22 @@ sonject_status opencl_kernel_run(struct report *report, struct device *device, d
     return opencl_answer(report, device, call, error);
 }
 
-void opencl_kernel_release(device_kernel kernel)
+static void opencl_kernel_release(device_kernel kernel)
 {
     clReleaseKernel(kernel);
 }
+
+const struct device_calls opencl_calls = {
+    .claim = driver_claim,
+    .close = opencl_close,
+    .buffer_reserve = opencl_reserve,
+    .buffer_release = opencl_release,
+    .buffer_read = opencl_read,
+    .buffer_write = opencl_write,
+    .buffer_map = opencl_map,
+    .buffer_unmap = opencl_unmap,
+    .buffer_clear = opencl_clear,
+    .kernel_create = opencl_kernel_create,
+    .kernel_release = opencl_kernel_release,
+    .kernel_run = opencl_kernel_run,
+};

@@ -42,26 +42,12 @@ const char *opencl_error_name(cl_int error);
 sonject_status opencl_answer(struct report *report, const struct device *device, const char *call,
                              cl_int error);
 
-/* What struct device_calls asks for (launch.c, program.c). */
-sonject_status opencl_reserve(struct report *report, struct device *device, size_t bytes,
-                              device_buffer *buffer);
-void opencl_release(device_buffer buffer);
-sonject_status opencl_read(struct report *report, struct device *device, device_buffer buffer,
-                           size_t offset, size_t bytes, void *contents);
-sonject_status opencl_write(struct report *report, struct device *device, device_buffer buffer,
-                            size_t offset, size_t bytes, const void *contents);
-sonject_status opencl_map(struct report *report, struct device *device, device_buffer buffer,
-                          size_t bytes, const void **contents);
-void opencl_unmap(struct device *device, device_buffer buffer, const void *contents);
-sonject_status opencl_clear(struct report *report, struct device *device, device_buffer buffer,
-                            size_t bytes);
+/* What an open device does (launch.c), with what the other files have of it. */
+extern const struct device_calls opencl_calls;
+void opencl_close(struct device *device);
 sonject_status opencl_kernel_create(struct report *report, struct device *device,
                                     enum device_program program, enum program_variant variant,
                                     const struct user_code *code, const char *name,
                                     device_kernel *kernel);
-void opencl_kernel_release(device_kernel kernel);
-sonject_status opencl_kernel_run(struct report *report, struct device *device, device_kernel kernel,
-                                 const struct kernel_argument *arguments, size_t argument_count,
-                                 uint32_t dimensions, const size_t *global);
 
 #endif

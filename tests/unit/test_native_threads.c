@@ -1,0 +1,131 @@
+/* Launches on the device native: each work-item runs once, whoever else launches. */
+#define _POSIX_C_SOURCE 200809L
+#include "claims.h"
+
+#include <fenv.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "device/native/native.h"
+
+#define HOSTS    4
+#define LAUNCHES 50
+#define ITEMS    1200
+#define FORKS    60
+#define SECONDS  60 /* after which a child that waits for ever is ended */
+
+/* Counts its work-items in a buffer, and those at another rounding than the default. */
+static void count(const struct kernel_argument *arguments, const size_t *global, size_t first,
+                  size_t end)
+{
+    int *counts = *(int *const *)arguments[0].value;
+    int *rounded = *(int *const *)arguments[1].value;
+    static const struct timespec moment = {0, 20000};
+    (void)global;
+    nanosleep(&moment, NULL); /* so that who does not wait for a thread is seen to go on without */
+    for (size_t i = first; i < end; i++)
+        counts[i]++;
+    if (fegetround() != FE_TONEAREST)
+        __atomic_add_fetch(rounded, 1, __ATOMIC_RELAXED);
+}
+
+/* Opens, launches and closes; whether all was as it should be. */
+static bool launch(uint32_t most, size_t items)
+{
+    static const size_t rest[2] = {3, 2};
+    int *counts = calloc(items * 6, sizeof *counts), rounding = 0;
+    int *rounded = &rounding;
+    const size_t global[3] = {items, rest[0], rest[1]};
+    const struct kernel_argument arguments[] = {ARGUMENT(counts), ARGUMENT(rounded)};
+    threads_retain();
+    threads_run(most, count, arguments, global);
+    threads_release();
+    bool is_right = rounding == 0;
+    for (size_t i = 0; i < items * 6; i++)
+        is_right = is_right && counts[i] == 1;
+    free(counts);
+    return is_right;
+}
+
+static void *host(void *is_right)
+{
+    *(bool *)is_right = true;
+    for (uint32_t i = 0; i < LAUNCHES; i++)
+        *(bool *)is_right &= launch(1 + i % 6, 1 + i * 7 % (ITEMS / 6));
+    return NULL;
+}
+
+static void test_each_work_item_runs_once_beside_other_hosts(void **state)
+{
+    pthread_t threads[HOSTS];
+    bool are_right[HOSTS];
+    for (int i = 0; i < HOSTS; i++)
+        assert_int_equal(pthread_create(&threads[i], NULL, host, &are_right[i]), 0);
+    for (int i = 0; i < HOSTS; i++)
+        pthread_join(threads[i], NULL);
+    for (int i = 0; i < HOSTS; i++)
+        assert_true(are_right[i]);
+}
+
+#ifndef IS_SANITIZED /* whose own locks do not survive such a fork */
+/* Two work-items that wait for each other, and so for a second thread. */
+static void meet(const struct kernel_argument *arguments, const size_t *global, size_t first,
+                 size_t end)
+{
+    static int here;
+    (void)arguments, (void)global, (void)first, (void)end;
+    __atomic_add_fetch(&here, 1, __ATOMIC_SEQ_CST);
+    while (__atomic_load_n(&here, __ATOMIC_SEQ_CST) < 2)
+        sched_yield();
+}
+
+/* Forked while other threads launch. */
+static void test_children_have_threads_of_their_own(void **state)
+{
+    pthread_t threads[HOSTS];
+    bool are_right[HOSTS];
+    for (int i = 0; i < HOSTS; i++)
+        assert_int_equal(pthread_create(&threads[i], NULL, host, &are_right[i]), 0);
+    for (int i = 0; i < FORKS; i++) {
+        static const size_t two[3] = {2, 1, 1};
+        int status = 0;
+        const pid_t child = fork();
+        if (child == 0) {
+            alarm(SECONDS);
+            threads_retain();
+            if (processor_count() > 1)
+                threads_run(2, meet, NULL, two);
+            threads_release();
+            _exit(launch(4, 20) ? 0 : 1);
+        }
+        assert_true(child > 0 && waitpid(child, &status, 0) == child);
+        assert_int_equal(status, 0);
+    }
+    for (int i = 0; i < HOSTS; i++)
+        pthread_join(threads[i], NULL);
+}
+#endif
+
+static void test_a_hosts_rounding_is_set_aside_and_given_back(void **state)
+{
+    assert_int_equal(fesetround(FE_UPWARD), 0);
+    for (uint32_t most = 1; most <= 4; most++)
+        assert_true(launch(most, 50));
+    assert_int_equal(fegetround(), FE_UPWARD);
+    assert_int_equal(fesetround(FE_TONEAREST), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(test_each_work_item_runs_once_beside_other_hosts),
+        TEST(test_a_hosts_rounding_is_set_aside_and_given_back),
+#ifndef IS_SANITIZED
+        TEST(test_children_have_threads_of_their_own),
+#endif
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
