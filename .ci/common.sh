@@ -1,7 +1,7 @@
 # What the gate and the nightly run share; to be sourced by bash from the project's top folder.
 # shellcheck shell=bash disable=SC2034
 
-# The OpenCL driver and the image library keep memory until the process ends.
+# The OpenCL driver keeps memory until the process ends.
 export LSAN_OPTIONS="suppressions=$PWD/.ci/leaks:print_suppressions=0"
 # The leak checker dies, now and then, when it reads the thread storage of what the driver's compiler
 # has left behind.

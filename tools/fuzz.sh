@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 if [ ! -f build-fuzz/build.ninja ]; then
     CC=clang CXX=clang++ meson setup build-fuzz --buildtype=debugoptimized \
         -Db_sanitize=address,undefined -Db_lundef=false -Dfuzzers=true -Dtests=enabled \
-        -Dopenimageio=disabled -Dhdf5=disabled
+        -Dhdf5=disabled
 fi
 # shellcheck disable=SC2046 # a list of names
 ninja -C build-fuzz $(ninja -C build-fuzz -t targets all |

@@ -3,9 +3,9 @@
 # shellcheck shell=sh disable=SC2034
 
 build_packages="build-essential clang meson ninja-build pkg-config python3
-    libopenimageio-dev libpng-dev libtiff-dev libhdf5-dev zlib1g-dev libyaml-dev libjansson-dev
-    libexpat1-dev libxxhash-dev ocl-icd-opencl-dev opencl-headers"
-test_packages="pocl-opencl-icd git cmake doxygen groff-base libcmocka-dev python3-numpy python3-pytest
+    libpng-dev libtiff-dev libjpeg62-turbo-dev libhdf5-dev zlib1g-dev libyaml-dev libjansson-dev
+    libexpat1-dev libxxhash-dev opencl-headers"
+test_packages="pocl-opencl-icd ocl-icd-opencl-dev git cmake doxygen groff-base libcmocka-dev python3-numpy python3-pytest
     python3-h5py python3-pil python3-scipy python3-venv locales"
 # From PyPI: readers by others, which tests hold our files to, and what builds, checks and draws with
 # the Python package.

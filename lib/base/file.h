@@ -1,5 +1,4 @@
-/* Files that appear whole or not at all, files read by place, folders, and where the library's own
- * modules lie. */
+/* Files that appear whole or not at all, files read by place, and folders. */
 #ifndef SONJECT_BASE_FILE_H
 #define SONJECT_BASE_FILE_H
 
@@ -10,10 +9,6 @@
 
 #include "base/memory.h"
 #include "base/report.h"
-
-#ifdef __cplusplus
-extern "C" {
-#endif
 
 /* The message "path: cannot <action>: <reason>" for an errno. Returns STORAGE, or MEMORY for
  * ENOMEM. */
@@ -135,15 +130,5 @@ char *path_folder(const char *path);
 
 /* What follows the folder part, within path. */
 const char *path_name(const char *path);
-
-/* The path of the file of that name: in the folder sonject beside the library (beside the program,
- * where the library is part of it); right beside it, as in Python's package and where it was built;
- * or where sonject was installed. Tests are told where (MODULE_FOLDER). To be given to free(); NULL
- * when memory is out. */
-char *module_path(const char *name);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -7,10 +7,6 @@
 
 #include "base/report.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Elements of an array. */
 #define COUNT(list) (sizeof(list) / sizeof(list)[0])
 
@@ -45,9 +41,5 @@ char *growing_text_end(struct growing_text *text);
 
 /* For qsort: the smallest first. */
 int compare_doubles(const void *a, const void *b);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

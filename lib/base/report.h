@@ -10,10 +10,6 @@
 #include <sonject/status.h>
 #include <sonject/version.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The library's version, as sonject_version gives it. */
 #define TEXT_OF_(token) #token
 #define TEXT_OF(token)  TEXT_OF_(token)
@@ -127,9 +123,5 @@ void check_coordinate(struct check *check, const char *key, double value_m);
 
 /* Wall-clock seconds since some fixed moment; for differences. */
 double clock_seconds(void);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -11,10 +11,6 @@
 
 #include "base/report.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum pixel_type {
     PIXEL_UINT8,
     PIXEL_UINT16,
@@ -76,9 +72,5 @@ double transfer_ceiling(const sonject_transfer_params *transfer, enum pixel_type
 /* The step of count stored integers: the largest whole number that divides them all; 0 for floats,
  * 1 where that leaves fewer than 16 levels; 8 bit pictures kept in 16 bits have 256 or 257. */
 uint32_t quantisation_step(enum pixel_type type, const void *stored, size_t count);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -1,5 +1,4 @@
-/* Images that the decoder reads and changes, and the two formats of them: those of OpenImageIO and
- * libtiff, and HDF5. */
+/* Images that the decoder reads and changes, and the two formats of them: rasters and HDF5. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

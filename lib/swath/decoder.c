@@ -102,7 +102,7 @@ static int limit_waits(int descriptor)
 static sonject_status start(struct report *report, struct decoder *decoder, const char *path)
 {
     int ends[2];
-    char *program = module_path(DECODER_PROGRAM);
+    char *program = decoder_path();
     CHECK_MEMORY(report, program, "a path");
     int error = socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0 ? 0 : errno;
     sonject_status status = SONJECT_OK;

@@ -24,8 +24,8 @@
 #define DECODER_FILES_MAX    256                 /* open at once */
 #define DECODER_PIECE_BYTES  ((size_t)16 << 20)  /* of samples in a request, or one line */
 
-/* What is asked. `in`: the request's bytes, `out`: the reply's. Images are files of OpenImageIO's
- * or libtiff's, or an array of HDF5's. */
+/* What is asked. `in`: the request's bytes, `out`: the reply's. An image is a raster file,
+ * or an array of an HDF5 file. */
 enum decoder_function {
     DECODER_OPEN_IMAGE, /* in: its name, where it lies, the array ("": the only one), each text with
                            its 0; -> handle, layout, largest, is_turned; out: description, with its
@@ -51,6 +51,12 @@ struct decoder_reply {
     uint32_t is_turned; /* columns lie together in the file */
     uint64_t bytes;     /* that follow */
 };
+
+/* The path of the program: in the folder sonject beside the library (beside the host's program,
+ * where the library is part of it); right beside it, as in Python's package and where it was built;
+ * or where sonject was installed. Tests are told where (BUILT_FOLDER). To be given to free(); NULL
+ * when memory is out. */
+char *decoder_path(void);
 
 /* What the child's first argument must be. */
 void decoder_stamp(char stamp[64]);

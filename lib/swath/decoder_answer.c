@@ -1,5 +1,4 @@
-/* What the decoder does, in its own process or in the library's: images are OpenImageIO's,
- * libtiff's or HDF5's. */
+/* What the decoder does, in its own process or in the library's. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -67,12 +66,17 @@ static bool is_raster(const char *path, enum image_kind *kind)
 }
 
 static sonject_status find_library(const struct question *question,
-                                   const struct image_library **library, enum image_kind *kind)
+                                   const struct image_library **library)
 {
-    const struct raster_module *module;
-    if (!*question->texts[2] && is_raster(question->texts[1], kind)) {
-        CHECK(raster_module_find(question->report, question->texts[0], *kind, &module));
-        *library = module->libraries[*kind];
+    static const struct image_library *const libraries[IMAGE_KINDS] = {
+        [IMAGE_TIFF] = &tiff_library,
+        [IMAGE_PNG] = &png_library,
+        [IMAGE_JPEG] = &jpeg_library,
+        [IMAGE_BMP] = &bmp_pgm_library,
+        [IMAGE_PGM] = &bmp_pgm_library};
+    enum image_kind kind;
+    if (!*question->texts[2] && is_raster(question->texts[1], &kind)) {
+        *library = libraries[kind];
         return SONJECT_OK;
     }
 #ifdef HAS_HDF5
@@ -97,7 +101,7 @@ static sonject_status open_image(struct question *question)
         return report_failure(question->report, SONJECT_ERROR_STORAGE, "%s: %d files are open",
                               name, DECODER_FILES_MAX);
     struct opened *file = question->file = &question->state->files[place];
-    CHECK(find_library(question, &file->library, &facts.kind));
+    CHECK(find_library(question, &file->library));
     file->path = copy_text(name);
     CHECK_MEMORY(question->report, file->path, name);
     const sonject_status status =

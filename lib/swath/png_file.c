@@ -253,7 +253,7 @@ static sonject_status png_read(struct report *report, void *opened, const struct
     return decode_region(image, region, pixels) ? SONJECT_OK : tell_fault(report, image);
 }
 
-static const struct image_library png_library = {png_open, png_close, png_read, NULL};
+const struct image_library png_library = {png_open, png_close, png_read, NULL};
 
 /* ---- New images. */
 
@@ -346,7 +346,7 @@ static sonject_status write_image(struct png_output *output, bool *is_written)
     return SONJECT_OK;
 }
 
-static sonject_status png_encode(struct report *report, const struct image_encoding *encoding)
+sonject_status png_encode(struct report *report, const struct image_encoding *encoding)
 {
     const struct raster_layout *layout = &encoding->layout;
     struct png_output output = {.encoding = encoding};
@@ -379,14 +379,3 @@ static sonject_status png_encode(struct report *report, const struct image_encod
                : report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot write: %s",
                                 encoding->name, output.fault.message);
 }
-
-/* ---- The module of PNG and TIFF. */
-
-static sonject_status encode(struct report *report, const struct image_encoding *encoding)
-{
-    return encoding->kind == IMAGE_TIFF ? tiff_encode(report, encoding)
-                                        : png_encode(report, encoding);
-}
-
-const struct raster_module raster_module_tiff_png = {
-    MODULE_STAMP, {[IMAGE_TIFF] = &tiff_library, [IMAGE_PNG] = &png_library}, encode};

@@ -58,12 +58,12 @@ static sonject_status encode(struct patched_rows *rows, const char *part, const 
                              enum image_kind kind, const char *description, bool is_drawn,
                              const uint8_t *palette)
 {
-    const struct raster_module *module = NULL;
     const struct image_encoding encoding = {part,        name,         kind,    rows->layout,
                                             description, is_drawn,     palette, give_rows,
                                             rows,        rows->quality};
-    CHECK(raster_module_find(rows->report, name, kind, &module));
-    return module->encode(rows->report, &encoding);
+    return kind == IMAGE_TIFF  ? tiff_encode(rows->report, &encoding)
+           : kind == IMAGE_PNG ? png_encode(rows->report, &encoding)
+                               : jpeg_encode(rows->report, &encoding);
 }
 
 sonject_status raster_file_copy_with_patch(struct report *report, struct decoded_image *source,

@@ -1,4 +1,4 @@
-/* New image files, by libtiff, libpng, OpenImageIO, HDF5, and as NumPy arrays. What reads them is
+/* New image files, by libtiff, libpng, libjpeg, HDF5, and as NumPy arrays. What reads them is
  * the decoder (swath/decoder.h). */
 #ifndef SONJECT_SWATH_RASTER_FILE_H
 #define SONJECT_SWATH_RASTER_FILE_H

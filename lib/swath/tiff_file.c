@@ -1,3 +1,4 @@
+/* TIFF by libtiff: read, changed in place, and written. */
 #include "swath/image_library.h"
 
 #include <errno.h>

@@ -131,15 +131,16 @@ def test_few_open_files(reference, scene, tmp_path, sonject):
 
 @pytest.mark.parametrize("megabytes", [100, 200])
 def test_little_memory_is_told_as_such(scene, sonject, megabytes):
-    """And not as a driver, or OpenImageIO, that ought to be installed."""
+    """And not as a driver that ought to be installed."""
     def try_with_little(*arguments):
         limit = (megabytes << 20, megabytes << 20)
         return sonject(*arguments, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, limit))
 
     run = ["run", scene, "-o", "result"]
-    for arguments in ([*run, "--device", "pthread"], ["seabed", "-o", "seabed.png"]):
-        assert_refused(try_with_little(*arguments), 5, "too little memory", "ulimit -v")
-    assert_refused(try_with_little(*run), 5, "memory")
+    assert_refused(try_with_little(*run, "--device", "pthread"), 5, "too little memory", "ulimit -v")
+    answer = try_with_little(*run)  # each of native's threads takes of it
+    if answer.returncode != 0:
+        assert_refused(answer, 5, "memory")
     devices = try_with_little("devices")
     assert devices.returncode == 0 and "* native" in devices.stdout
     assert devices.stderr.startswith("sonject: note: too little memory"), devices.stderr

@@ -73,9 +73,10 @@ static const struct kind kinds[] = {
     {"c.mat", make_mat, PAIRS, "img", "packed", PIXEL_FLOAT32, false, 16, false, 0},
     {"d.mat", make_mat, COMPRESSED, "img", "packed", PIXEL_FLOAT32, false, 0, false, 0},
     {"e.mat", make_mat, COMPRESSED | PAIRS, "img", "packed", PIXEL_FLOAT32, false, 0, false, 0},
-#ifdef HAS_RASTER_FILES
+#ifdef HAS_DECODER
     {"a.pgm", make_pgm, 0, NULL, NULL, PIXEL_UINT8, true, 0, true, SAMPLES},
     {"a.bmp", make_bmp, 0, NULL, NULL, PIXEL_UINT8, true, 0, true, SAMPLES},
+    {"b.bmp", make_bmp, NEGATIVE, NULL, NULL, PIXEL_UINT8, true, 0, true, SAMPLES},
 #endif
 };
 
@@ -450,9 +451,8 @@ static void test_sizes_of_matlab_that_lie(void **state)
     expect_refused("a.mat", NULL, compressed.bytes, compressed.count, "damaged");
 }
 
-#ifdef HAS_RASTER_FILES
-/* What OpenImageIO would hand on as other numbers than the file has; and formats that sonject does
- * not read, which are named beside those that it reads. */
+/* Grey images whose numbers would have to be guessed; and formats that sonject does not read, which
+ * are named beside those that it reads. */
 static void test_files_that_are_not_for_sonject(void **state)
 {
     static const struct {
@@ -483,10 +483,12 @@ static void test_files_that_are_not_for_sonject(void **state)
     make_bmp(&draft, 0);
     draft.bytes[46] = 16; /* levels of grey */
     expect_refused("a.bmp", NULL, draft.bytes, draft.count, "not a plain grey image");
+    make_bmp(&draft, 0);
+    draft.bytes[54 + 4 * 7] = 8; /* of blue, in one level */
+    expect_refused("a.bmp", NULL, draft.bytes, draft.count, "not a plain grey image");
     expect_refused("missing.tif", NULL, NULL, 0, "No such file");
     expect_refused(".", NULL, NULL, 0, "directory");
 }
-#endif
 
 static int begin(void **state)
 {
@@ -505,9 +507,7 @@ int main(void)
                                        CLEAN(arrays_are_told_by_their_names),
                                        CLEAN(test_headers_of_numpy_that_lie_or_end_early),
                                        CLEAN(test_sizes_of_matlab_that_lie),
-#ifdef HAS_RASTER_FILES
                                        CLEAN(test_files_that_are_not_for_sonject),
-#endif
                                        CLEAN(damaged_files_end_no_host)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,18 @@
 #define _GNU_SOURCE /* dladdr, readlink */
-#include "base/file.h"
+#include "swath/decoder.h"
 
 #include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 
-#ifdef MODULE_FOLDER
-char *module_path(const char *name)
+#ifdef BUILT_FOLDER
+char *decoder_path(void)
 {
-    return path_join(MODULE_FOLDER, name);
+    return path_join(BUILT_FOLDER, DECODER_PROGRAM);
 }
 #else
 static const char here;
@@ -29,13 +30,13 @@ static char *folder_of_library(void)
     return path_folder(is_named ? library.dli_fname : program);
 }
 
-char *module_path(const char *name)
+char *decoder_path(void)
 {
     char *beside = folder_of_library();
     char *within = beside ? path_join(beside, "sonject") : NULL;
-    char *places[3] = {within ? path_join(within, name) : NULL,
-                       within ? path_join(beside, name) : NULL,
-                       path_join(INSTALLED_MODULE_FOLDER, name)};
+    char *places[3] = {within ? path_join(within, DECODER_PROGRAM) : NULL,
+                       within ? path_join(beside, DECODER_PROGRAM) : NULL,
+                       path_join(INSTALLED_FOLDER, DECODER_PROGRAM)};
     const int first = beside && *beside ? 0 : 2;
     int chosen = first == 0 ? 1 : 2; /* what a message names where there is none */
     for (int i = 2; i >= first; i--)

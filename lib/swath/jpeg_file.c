@@ -1,0 +1,305 @@
+/* JPEG by libjpeg: grey images are read; grey and coloured ones are written. */
+#include "swath/image_library.h"
+
+#include <errno.h>
+#include <setjmp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jerror.h>
+#include <jpeglib.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+
+#define COMMENT_MAX 65533 /* bytes of a comment, where the description is kept */
+
+/* Coarser coding would show in the noise of every pixel of the swath, not only near the target. */
+#define FINEST_QUALITY 98
+
+/* What libjpeg said of what went wrong. */
+struct fault {
+    struct jpeg_error_mgr manager; /* first: libjpeg hands on its address */
+    jmp_buf back;
+    FILE *file;
+    char message[JMSG_LENGTH_MAX];
+    int error; /* errno then; 0: not the system's fault */
+};
+
+struct jpeg_image {
+    char *name, *path; /* name: in messages; owned */
+    struct raster_layout layout;
+    struct fault fault;
+    struct jpeg_decompress_struct jpeg; /* all 0: not there */
+    uint64_t next_row;                  /* that libjpeg decodes */
+    unsigned char *row;                 /* the last one; owned */
+};
+
+static void hear(j_common_ptr jpeg)
+{
+    struct fault *fault = (struct fault *)jpeg->err;
+    const bool is_of_file = fault->file && (ferror(fault->file) || !jpeg->is_decompressor);
+    fault->error = jpeg->err->msg_code == JERR_OUT_OF_MEMORY ? ENOMEM : is_of_file ? errno : 0;
+    jpeg->err->format_message(jpeg, fault->message);
+    longjmp(fault->back, 1);
+}
+
+/* Warnings (negative levels) are of damaged files: libjpeg would go on with made-up pixels. */
+static void hear_warning(j_common_ptr jpeg, int level)
+{
+    if (level < 0)
+        hear(jpeg);
+}
+
+static struct jpeg_error_mgr *listen(struct fault *fault, FILE *file)
+{
+    memset(fault, 0, sizeof *fault);
+    fault->file = file;
+    jpeg_std_error(&fault->manager);
+    fault->manager.error_exit = hear;
+    fault->manager.emit_message = hear_warning;
+    return &fault->manager;
+}
+
+static sonject_status tell_fault(struct report *report, const struct jpeg_image *image)
+{
+    if (image->fault.error == ENOMEM)
+        return report_out_of_memory(report, image->name);
+    errno = image->fault.error; /* the disk's failures are told by it */
+    return input_failure(report, image->name, "cut short or damaged at row %llu: %s",
+                         (unsigned long long)image->next_row, image->fault.message);
+}
+
+static void end_decoding(struct jpeg_image *image)
+{
+    jpeg_destroy_decompress(&image->jpeg);
+    memset(&image->jpeg, 0, sizeof image->jpeg);
+    if (image->fault.file)
+        fclose(image->fault.file);
+    image->fault.file = NULL;
+}
+
+static bool read_head(struct jpeg_image *image)
+{
+    if (setjmp(image->fault.back) != 0)
+        return false;
+    jpeg_create_decompress(&image->jpeg);
+    jpeg_stdio_src(&image->jpeg, image->fault.file);
+    jpeg_save_markers(&image->jpeg, JPEG_COM, COMMENT_MAX);
+    jpeg_read_header(&image->jpeg, TRUE);
+    if (image->jpeg.num_components == 1)
+        jpeg_start_decompress(&image->jpeg);
+    return true;
+}
+
+/* Opens the file, again where rows are wanted that were decoded before. */
+static sonject_status begin_decoding(struct report *report, struct jpeg_image *image)
+{
+    end_decoding(image);
+    image->next_row = 0;
+    errno = 0;
+    FILE *file = fopen(image->path, "rb");
+    if (!file)
+        return input_failure(report, image->name, "cannot be opened");
+    image->jpeg.err = listen(&image->fault, file);
+    return read_head(image) ? SONJECT_OK : tell_fault(report, image);
+}
+
+static sonject_status take_layout(struct report *report, struct jpeg_image *image)
+{
+    if (image->jpeg.num_components != 1)
+        return input_failure(report, image->name,
+                             "has %d channels; sonject reads 1 (amplitude) or 2 (real, imaginary); "
+                             "convert it to one channel first",
+                             image->jpeg.num_components);
+    image->layout = (struct raster_layout){.rows = image->jpeg.output_height,
+                                           .columns = image->jpeg.output_width,
+                                           .channels = 1,
+                                           .type = PIXEL_UINT8};
+    image->row = allocate_array(1, (size_t)image->layout.columns);
+    CHECK_MEMORY(report, image->row, image->name);
+    return SONJECT_OK;
+}
+
+/* Decodes rows up to the region's end, and copies what is in it unless pixels is NULL. */
+static bool decode_region(struct jpeg_image *image, const struct region *region,
+                          unsigned char *pixels)
+{
+    if (setjmp(image->fault.back) != 0)
+        return false;
+    for (; image->next_row < region->first_row + region->rows; image->next_row++) {
+        jpeg_read_scanlines(&image->jpeg, &image->row, 1);
+        if (pixels && image->next_row >= region->first_row)
+            memcpy(pixels + (size_t)((image->next_row - region->first_row) * region->columns),
+                   image->row + region->first_column, (size_t)region->columns);
+    }
+    if (image->next_row == image->layout.rows)
+        jpeg_finish_decompress(&image->jpeg); /* which hears of bytes that follow */
+    return true;
+}
+
+static sonject_status take_description(struct report *report, const struct jpeg_image *image,
+                                       char **description)
+{
+    const jpeg_saved_marker_ptr comment = image->jpeg.marker_list;
+    const size_t bytes = comment ? comment->data_length : 0;
+    *description = allocate_array(bytes + 1, 1);
+    CHECK_MEMORY(report, *description, image->name);
+    if (bytes > 0)
+        memcpy(*description, comment->data, bytes);
+    return SONJECT_OK;
+}
+
+static sonject_status close_image(struct report *report, void *opened)
+{
+    struct jpeg_image *image = opened;
+    (void)report;
+    end_decoding(image);
+    free(image->name);
+    free(image->path);
+    free(image->row);
+    free(image);
+    return SONJECT_OK;
+}
+
+/* Decodes all: so a file that is cut short is told at once, not after hours of work. */
+static sonject_status open_image(struct report *report, const char *name, const char *path,
+                                 const char *array, bool writes, void **opened,
+                                 struct image_facts *facts)
+{
+    struct jpeg_image *image = allocate_array(1, sizeof *image);
+    (void)array, (void)writes;
+    CHECK_MEMORY(report, image, name);
+    image->name = copy_text(name);
+    image->path = copy_text(path);
+    sonject_status status = image->name && image->path ? begin_decoding(report, image)
+                                                       : report_out_of_memory(report, name);
+    THEN(status, take_layout(report, image));
+    THEN(status, take_description(report, image, &facts->description));
+    if (status == SONJECT_OK) {
+        const struct region whole = {0, 0, image->layout.rows, image->layout.columns};
+        status = decode_region(image, &whole, NULL) ? SONJECT_OK : tell_fault(report, image);
+    }
+    if (status != SONJECT_OK) {
+        free(facts->description);
+        facts->description = NULL;
+        (void)close_image(report, image);
+        return status;
+    }
+    facts->layout = image->layout;
+    *opened = image;
+    return SONJECT_OK;
+}
+
+static sonject_status read_pixels(struct report *report, void *opened, const struct region *region,
+                                  void *pixels)
+{
+    struct jpeg_image *image = opened;
+    if (region->first_row < image->next_row)
+        CHECK(begin_decoding(report, image));
+    return decode_region(image, region, pixels) ? SONJECT_OK : tell_fault(report, image);
+}
+
+const struct image_library jpeg_library = {open_image, close_image, read_pixels, NULL};
+
+/* ---- New images. */
+
+struct jpeg_output {
+    const struct image_encoding *encoding;
+    struct fault fault;
+    struct jpeg_compress_struct jpeg;
+    size_t row_bytes;
+    unsigned char *strip; /* owned */
+};
+
+static bool write_head(struct jpeg_output *output)
+{
+    const struct image_encoding *encoding = output->encoding;
+    struct jpeg_compress_struct *jpeg = &output->jpeg;
+    if (setjmp(output->fault.back) != 0)
+        return false;
+    jpeg_create_compress(jpeg);
+    jpeg_stdio_dest(jpeg, output->fault.file);
+    jpeg->image_width = (JDIMENSION)encoding->layout.columns;
+    jpeg->image_height = (JDIMENSION)encoding->layout.rows;
+    jpeg->input_components = (int)encoding->layout.channels;
+    jpeg->in_color_space = encoding->layout.channels == 3 ? JCS_RGB : JCS_GRAYSCALE;
+    jpeg_set_defaults(jpeg);
+    jpeg_set_quality(jpeg, encoding->quality > 0 ? encoding->quality : FINEST_QUALITY, TRUE);
+    jpeg_start_compress(jpeg, TRUE);
+    if (*encoding->description)
+        jpeg_write_marker(jpeg, JPEG_COM, (const JOCTET *)encoding->description,
+                          (unsigned)strlen(encoding->description));
+    return true;
+}
+
+static bool write_rows(struct jpeg_output *output, uint64_t rows)
+{
+    if (setjmp(output->fault.back) != 0)
+        return false;
+    for (uint64_t row = 0; row < rows; row++) {
+        JSAMPROW pixels = output->strip + row * output->row_bytes;
+        jpeg_write_scanlines(&output->jpeg, &pixels, 1);
+    }
+    return true;
+}
+
+static bool write_end(struct jpeg_output *output)
+{
+    if (setjmp(output->fault.back) != 0)
+        return false;
+    jpeg_finish_compress(&output->jpeg);
+    return true;
+}
+
+/* *is_written: false where libjpeg says why. */
+static sonject_status write_image(struct jpeg_output *output, bool *is_written)
+{
+    const struct image_encoding *encoding = output->encoding;
+    const uint64_t rows = encoding->layout.rows;
+    const uint64_t at_once = rows_at_once(&encoding->layout);
+    *is_written = write_head(output);
+    for (uint64_t row = 0; *is_written && row < rows; row += at_once) {
+        const uint64_t end = rows - row < at_once ? rows : row + at_once;
+        CHECK(encoding->give_rows(encoding->user, row, end, output->strip));
+        *is_written = write_rows(output, end - row);
+    }
+    *is_written = *is_written && write_end(output);
+    return SONJECT_OK;
+}
+
+sonject_status jpeg_encode(struct report *report, const struct image_encoding *encoding)
+{
+    const struct raster_layout *layout = &encoding->layout;
+    struct jpeg_output output = {.encoding = encoding};
+    bool is_written = false;
+    sonject_status status = SONJECT_OK;
+    if (strlen(encoding->description) > COMMENT_MAX)
+        return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                              "%s: JPEG keeps no more than %d bytes of notes: write .tif or .png",
+                              encoding->name, COMMENT_MAX);
+    output.row_bytes = (size_t)layout->columns * layout->channels;
+    output.strip = allocate_array((size_t)rows_at_once(layout), output.row_bytes);
+    CHECK_MEMORY(report, output.strip, encoding->name);
+    errno = 0;
+    output.jpeg.err = listen(&output.fault, fopen(encoding->path, "wb"));
+    if (output.fault.file)
+        status = write_image(&output, &is_written);
+    else
+        output.fault.error = errno;
+    jpeg_destroy_compress(&output.jpeg);
+    if (output.fault.file && fclose(output.fault.file) != 0 && is_written) {
+        is_written = false;
+        output.fault.error = errno;
+    }
+    free(output.strip);
+    if (status != SONJECT_OK || is_written)
+        return status;
+    if (output.fault.error == ENOMEM)
+        return report_out_of_memory(report, encoding->name);
+    return output.fault.error != 0
+               ? file_failure(report, encoding->name, "write", output.fault.error)
+               : report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot write: %s",
+                                encoding->name, output.fault.message);
+}
