@@ -1,4 +1,7 @@
 /* The device native: kernels that the C compiler built for instruction sets of processors. */
+#if defined(HAS_AVX2) || defined(HAS_AVX512)
+#include <cpuid.h>
+#endif
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,16 +38,29 @@ static bool is_always_there(void)
 }
 
 #if defined(HAS_AVX2) || defined(HAS_AVX512)
-static bool has_avx2(void)
+/* Whether the processor has the features of its leaf 7, the bits of ebx, and the system keeps the
+ * registers, the bits of XCR0. Not every compiler's library can be asked for that. */
+static bool has_features(unsigned wanted, unsigned registers)
 {
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
-           __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
+    unsigned eax, ebx, ecx, edx, kept;
+    if (!__get_cpuid(1, &eax, &ebx, &ecx, &edx) || !(ecx & bit_OSXSAVE) || !(ecx & bit_POPCNT))
+        return false;
+    __asm__("xgetbv" : "=a"(kept), "=d"(edx) : "c"(0));
+    return (kept & registers) == registers && __get_cpuid_count(7, 0, &eax, &ebx, &ecx, &edx) &&
+           (ebx & wanted) == wanted;
 }
+
+#define AVX2_FEATURES  (bit_AVX2 | bit_BMI | bit_BMI2)
+#define AVX2_REGISTERS 0x06u
 #endif
 
 #ifdef HAS_AVX2
 DECLARE(avx2_plain)
 DECLARE(avx2_full)
+static bool has_avx2(void)
+{
+    return has_features(AVX2_FEATURES, AVX2_REGISTERS);
+}
 #endif
 
 #ifdef HAS_AVX512
@@ -52,9 +68,9 @@ DECLARE(avx512_plain)
 DECLARE(avx512_full)
 static bool has_avx512(void)
 {
-    return has_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
-           __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl");
+    return has_features(AVX2_FEATURES | bit_AVX512F | bit_AVX512CD | bit_AVX512BW | bit_AVX512DQ |
+                            bit_AVX512VL,
+                        AVX2_REGISTERS | 0xE0u);
 }
 #endif
 
