@@ -83,9 +83,10 @@ static sonject_status find_library(const struct question *question,
     *library = &hdf5_library;
     return SONJECT_OK;
 #else
-    return report_failure(question->report, SONJECT_ERROR_UNSUPPORTED,
-                          "%s: this build of sonject has no HDF5 files: build it with HDF5",
-                          question->texts[0]);
+    return report_failure(
+        question->report, SONJECT_ERROR_UNSUPPORTED,
+        "%s: this build of sonject reads no HDF5: save its arrays as .npy, by h5py say",
+        question->texts[0]);
 #endif
 }
 

@@ -94,7 +94,7 @@ sonject_status hdf5_array_write(struct report *report, const char *path,
 {
     (void)layout, (void)notes, (void)note_count, (void)pixels;
     return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
-                          "%s: this build of sonject has no HDF5 files: build it with HDF5", path);
+                          "%s: this build of sonject writes no HDF5: write .tif or .npy", path);
 }
 #endif
 

@@ -75,7 +75,9 @@ def test_the_wheel_holds_package_and_library(wheel):
     with zipfile.ZipFile(wheel) as archive:
         names = {name for name in archive.namelist() if ".dist-info/" not in name}
     assert {"sonject/scene.py", "sonject/py.typed"} <= MODULES
-    assert names == MODULES | {"sonject/libsonject.so", "sonject/sonject-decoder"}
+    examples = {name for name in names if "/share/sonject/" in name}
+    assert names - examples == MODULES | {f"sonject/{name}" for name in ("libsonject.so", "sonject", "sonject-decoder")}
+    assert any(name.endswith("scenes/demo.yaml") for name in examples)
 
 
 def test_the_installed_package_finds_its_library(installed):

@@ -14,6 +14,7 @@ ranges). Results are in m, radians, Hz, as the names of their members say.
 """
 
 from . import keys
+from ._interface import VERSION as _VERSION
 from ._library import load as _load
 from ._classes import (
     Box, CampaignImage, ContactMeasures, Device, ElementLayout, Measurement, ObjectTruth,
@@ -31,6 +32,8 @@ from .enumerations import (
 from .errors import Cancelled, SonjectError
 from .result import Result
 from .scene import Scene
+
+__version__ = ".".join(str(part) for part in _VERSION)
 
 
 def version() -> str:

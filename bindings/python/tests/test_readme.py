@@ -12,7 +12,7 @@ from conftest import DOCUMENTS, KEYS, PACKAGE
 README = (DOCUMENTS / "README.md").read_text(encoding="utf-8")
 SPANS = list(dict.fromkeys(re.findall(r"(?<!`)`([^`\n]+)`(?!`)", README)))
 # Run elsewhere: shells' by tests/cli/test_readme.py, pictures by test_plotting.py.
-ELSEWHERE = ("SONJECT_LIBRARY", "tools/scenes/KEYS.md", "PYTHONPATH", "sonject.plotting.draw_result(", "examples/", "multiprocessing")
+ELSEWHERE = ("SONJECT_LIBRARY", "tools/scenes/KEYS.md", "PYTHONPATH", "sonject.plotting.draw_result(", "examples/", "tools/", "env/bin/")
 
 
 @pytest.fixture(scope="module")
