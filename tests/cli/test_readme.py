@@ -59,7 +59,7 @@ TYPED = {
 # Commands of ours that other tests run: shapes in code, the campaign that is an example, and what
 # hands shards out.
 ELSEWHERE = re.compile(
-    r"sonject run tools/scenes/user_shape\.yaml|sonject campaign tools/campaigns/|sonject fit |for i in 1 2 3; do "
+    r"env/bin/|sonject run tools/scenes/user_shape\.yaml|sonject campaign tools/campaigns/|sonject fit |for i in 1 2 3; do "
     r"sonject seabed|parallel |condor_submit |dask |sbatch |python3 |scontrol |array=.* run ")
 
 
