@@ -20,6 +20,13 @@ typedef void (*sonject_log_function)(void *user, const char *line);
  * to cancel: the call then answers SONJECT_CANCELLED. */
 typedef int (*sonject_progress_function)(void *user, double fraction, const char *stage);
 
+/* A host's threads: calls task(argument) on some of them, or on the caller's, up to `count` times
+ * at once, and returns when all these calls have ended. A call ends when nothing is left to do, so
+ * that fewer calls than count do the same. Several threads may ask at once. */
+typedef void (*sonject_task_function)(void *argument);
+typedef void (*sonject_run_tasks_function)(void *user, uint32_t count, sonject_task_function task,
+                                           void *argument);
+
 /* All 0: the default device, silent. Of every structure of parameters: members that are 0 stand for
  * their defaults, so that `sonject_run_params params = {.struct_size = sizeof params, .folder =
  * "out"};` is complete. */
@@ -39,6 +46,9 @@ typedef struct sonject_context_params {
                                     not start others */
     uint32_t threads;            /* that a launch takes of the processors, on the device native; 0:
                                     as many as there are */
+    sonject_run_tasks_function run_tasks; /* that runs the device native's launches; NULL: threads
+                                             of the library's own */
+    void *run_tasks_user;
 } sonject_context_params;
 
 /* Makes a context. It opens no device yet: that happens at the first call that needs one, so that a

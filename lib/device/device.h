@@ -27,6 +27,10 @@ struct device {
     char platform[128];
     char driver[128];
 
+    /* native's: a host's threads; NULL: the library's own */
+    sonject_run_tasks_function run_tasks;
+    void *run_tasks_user;
+
     /* OpenCL's */
     bool is_pocl;
     struct _cl_device_id *id;

@@ -81,6 +81,29 @@ static void check_results(const sonject::context &context)
     }
 }
 
+/* A host's threads; here the caller's alone. */
+static void run_tasks(void *calls, std::uint32_t count, sonject_task_function task, void *argument)
+{
+    *static_cast<std::uint32_t *>(calls) += count;
+    task(argument);
+}
+
+static void check_threads(const sonject::context &context)
+{
+    const std::vector<float> seabed(64 * 80, 0.1f);
+    std::uint32_t calls = 0;
+    sonject::context_options options;
+    options.device_name = "native";
+    options.run_tasks = run_tasks;
+    options.run_tasks_user = &calls;
+    const sonject::context by_host(options);
+    const sonject::scene here = scene_with_ball(context), there = scene_with_ball(by_host);
+    expect(sonject::inject(here, {seabed.data(), 64, 80}).image() ==
+               sonject::inject(there, {seabed.data(), 64, 80}).image(),
+           "a host's threads make the same image");
+    expect(calls > 0 || by_host.devices().front().compute_units == 1, "and are asked");
+}
+
 static void check_tables(const sonject::context &context)
 {
     const std::vector<double> sway = {0.0, 1e-4, 1.0, 2e-4}, odd = {0.0, 1e-4, 1.0};
@@ -260,6 +283,7 @@ int main()
     expect(sonject::version().find('.') != std::string::npos, "the version");
     check_errors(context);
     check_results(context);
+    check_threads(context);
     check_tables(context);
     check_elements(context);
     check_measures(context);

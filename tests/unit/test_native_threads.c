@@ -32,8 +32,41 @@ static void count(const struct kernel_argument *arguments, const size_t *global,
         __atomic_add_fetch(rounded, 1, __ATOMIC_RELAXED);
 }
 
-/* Opens, launches and closes; whether all was as it should be. */
-static bool launch(uint32_t most, size_t items)
+/* A host's threads: as many as are asked for, those that it has time for, or none. */
+struct task_host {
+    uint32_t threads_max;
+    uint32_t asked, started; /* atomic */
+};
+
+struct task {
+    sonject_task_function run;
+    void *argument;
+};
+
+static void *run_task(void *task_to_run)
+{
+    const struct task *task = task_to_run;
+    task->run(task->argument);
+    return NULL;
+}
+
+static void run_tasks(void *user, uint32_t wanted, sonject_task_function run, void *argument)
+{
+    struct task_host *host = user;
+    struct task task = {run, argument};
+    pthread_t threads[HOSTS];
+    const uint32_t started = wanted < host->threads_max ? wanted : host->threads_max;
+    host->asked = wanted;
+    for (uint32_t i = 0; i < started; i++)
+        assert_int_equal(pthread_create(&threads[i], NULL, run_task, &task), 0);
+    for (uint32_t i = 0; i < started; i++)
+        pthread_join(threads[i], NULL);
+    host->started += started;
+}
+
+/* Opens, launches and closes; whether all was as it should be. by: a host's threads; NULL: the
+ * library's. */
+static bool launch_by(struct task_host *by, uint32_t most, size_t items)
 {
     static const size_t rest[2] = {3, 2};
     int *counts = calloc(items * 6, sizeof *counts), rounding = 0;
@@ -41,13 +74,38 @@ static bool launch(uint32_t most, size_t items)
     const size_t global[3] = {items, rest[0], rest[1]};
     const struct kernel_argument arguments[] = {ARGUMENT(counts), ARGUMENT(rounded)};
     threads_retain();
-    threads_run(most, count, arguments, global);
+    if (by)
+        threads_run_by_host(run_tasks, by, most, count, arguments, global);
+    else
+        threads_run(most, count, arguments, global);
     threads_release();
     bool is_right = rounding == 0;
     for (size_t i = 0; i < items * 6; i++)
         is_right = is_right && counts[i] == 1;
     free(counts);
     return is_right;
+}
+
+static bool launch(uint32_t most, size_t items)
+{
+    return launch_by(NULL, most, items);
+}
+
+static void test_a_hosts_threads_run_each_work_item_once(void **state)
+{
+    for (uint32_t threads = 0; threads <= HOSTS; threads++) {
+        struct task_host by = {.threads_max = threads};
+        for (uint32_t most = 2; most <= 6; most++) {
+            assert_true(launch_by(&by, most, 40));
+            assert_int_equal(by.asked, most);
+        }
+        assert_true((by.started > 0) == (threads > 0));
+        by.asked = 0;
+        assert_true(launch_by(&by, 1, 40));
+        assert_int_equal(by.asked, 0);
+        assert_true(launch_by(&by, 60, 1)); /* which is 6 with its other sides */
+        assert_int_equal(by.asked, 6);
+    }
 }
 
 static void *host(void *is_right)
@@ -123,6 +181,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(test_each_work_item_runs_once_beside_other_hosts),
         TEST(test_a_hosts_rounding_is_set_aside_and_given_back),
+        TEST(test_a_hosts_threads_run_each_work_item_once),
 #ifndef IS_SANITIZED
         TEST(test_children_have_threads_of_their_own),
 #endif

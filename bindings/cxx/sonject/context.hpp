@@ -30,6 +30,8 @@ struct context_options {
     sonject::log log;
     bool decodes_in_process = false; /* images and HDF5, else by a child process */
     std::uint32_t threads = 0;       /* of a launch on the device native; 0: one a processor */
+    sonject_run_tasks_function run_tasks = nullptr; /* that are a host's own; must not throw */
+    void *run_tasks_user = nullptr;
 };
 
 /* One device and what is compiled for it. */
@@ -45,6 +47,8 @@ class context
         params.opencl_device = options.opencl_device;
         params.decodes_in_process = options.decodes_in_process;
         params.threads = options.threads;
+        params.run_tasks = options.run_tasks;
+        params.run_tasks_user = options.run_tasks_user;
         params.log = *log_ ? &context::tell : nullptr;
         params.log_user = log_;
         const sonject_status status = sonject_context_create(&params, &handle_);

@@ -27,71 +27,75 @@
 struct instruction_set {
     const char *name;
     uint32_t width;
-    bool (*is_there)(void);
+    uint32_t features, registers; /* bits that the processor and the system must have */
     native_program programs[2][PROGRAM_PROBE_USER_SHAPE]; /* by variant */
 };
 
 DECLARE(baseline_full)
-static bool is_always_there(void)
-{
-    return true;
-}
-
-#if defined(HAS_AVX2) || defined(HAS_AVX512)
-/* Whether the processor has the features of its leaf 7, the bits of ebx, and the system keeps the
- * registers, the bits of XCR0. Not every compiler's library can be asked for that. */
-static bool has_features(unsigned wanted, unsigned registers)
-{
-    unsigned eax, ebx, ecx, edx, kept;
-    if (!__get_cpuid(1, &eax, &ebx, &ecx, &edx) || !(ecx & bit_OSXSAVE) || !(ecx & bit_POPCNT))
-        return false;
-    __asm__("xgetbv" : "=a"(kept), "=d"(edx) : "c"(0));
-    return (kept & registers) == registers && __get_cpuid_count(7, 0, &eax, &ebx, &ecx, &edx) &&
-           (ebx & wanted) == wanted;
-}
-
-#define AVX2_FEATURES  (bit_AVX2 | bit_BMI | bit_BMI2)
-#define AVX2_REGISTERS 0x06u
-#endif
-
 #ifdef HAS_AVX2
 DECLARE(avx2_plain)
 DECLARE(avx2_full)
-static bool has_avx2(void)
-{
-    return has_features(AVX2_FEATURES, AVX2_REGISTERS);
-}
 #endif
-
 #ifdef HAS_AVX512
 DECLARE(avx512_plain)
 DECLARE(avx512_full)
-static bool has_avx512(void)
-{
-    return has_features(AVX2_FEATURES | bit_AVX512F | bit_AVX512CD | bit_AVX512BW | bit_AVX512DQ |
-                            bit_AVX512VL,
-                        AVX2_REGISTERS | 0xE0u);
-}
 #endif
+#define AVX2_FEATURES    (bit_AVX2 | bit_BMI | bit_BMI2)
+#define AVX512_FEATURES  (bit_AVX512F | bit_AVX512CD | bit_AVX512BW | bit_AVX512DQ | bit_AVX512VL)
+#define AVX2_REGISTERS   0x06
+#define AVX512_REGISTERS 0xE6
 
 /* The best last. */
 static const struct instruction_set instruction_sets[] = {
-    {"baseline", 4, is_always_there, {PROGRAMS(baseline_full), PROGRAMS(baseline_full)}},
+    {"baseline", 4, 0, 0, {PROGRAMS(baseline_full), PROGRAMS(baseline_full)}},
 #ifdef HAS_AVX2
-    {"AVX2", 8, has_avx2, {PROGRAMS(avx2_plain), PROGRAMS(avx2_full)}},
+    {"AVX2", 8, AVX2_FEATURES, AVX2_REGISTERS, {PROGRAMS(avx2_plain), PROGRAMS(avx2_full)}},
 #endif
 #ifdef HAS_AVX512
-    {"AVX-512", 16, has_avx512, {PROGRAMS(avx512_plain), PROGRAMS(avx512_full)}},
+    {"AVX-512",
+     16,
+     AVX2_FEATURES | AVX512_FEATURES,
+     AVX512_REGISTERS,
+     {PROGRAMS(avx512_plain), PROGRAMS(avx512_full)}},
 #endif
 };
+
+/* The features of leaf 7 in ebx, and the registers that the system keeps, of XCR0, above them. The
+ * processor is asked itself, since not every compiler's library can be, and once, since a virtual
+ * machine takes long to answer. */
+static uint64_t processor_abilities(void)
+{
+#if defined(HAS_AVX2) || defined(HAS_AVX512)
+    static const uint64_t asked = UINT64_C(1) << 63;
+    static uint64_t known; /* atomic */
+    unsigned eax, ebx, ecx, edx, registers;
+    uint64_t abilities = __atomic_load_n(&known, __ATOMIC_RELAXED);
+    if (abilities != 0)
+        return abilities;
+    abilities = asked;
+    if (__get_cpuid(1, &eax, &ebx, &ecx, &edx) && (ecx & bit_OSXSAVE) && (ecx & bit_POPCNT) &&
+        __get_cpuid_count(7, 0, &eax, &ebx, &ecx, &edx)) {
+        __asm__("xgetbv" : "=a"(registers), "=d"(edx) : "c"(0));
+        abilities |= (uint64_t)registers << 32 | ebx;
+    }
+    __atomic_store_n(&known, abilities, __ATOMIC_RELAXED);
+    return abilities;
+#else
+    return 0;
+#endif
+}
 
 /* The best that the processor has; of `width` lanes if that is not 0. NULL: there is none. */
 static const struct instruction_set *find_instruction_set(uint32_t width)
 {
     const struct instruction_set *best = NULL;
-    for (size_t i = 0; i < COUNT(instruction_sets); i++)
-        if (instruction_sets[i].is_there() && (width == 0 || instruction_sets[i].width == width))
-            best = &instruction_sets[i];
+    const uint64_t abilities = processor_abilities();
+    for (size_t i = 0; i < COUNT(instruction_sets); i++) {
+        const struct instruction_set *set = &instruction_sets[i];
+        const uint64_t wanted = (uint64_t)set->registers << 32 | set->features;
+        if ((abilities & wanted) == wanted && (width == 0 || set->width == width))
+            best = set;
+    }
     return best;
 }
 
@@ -213,7 +217,11 @@ static sonject_status native_kernel_run(struct report *report, struct device *de
     size_t items[3] = {1, 1, 1};
     (void)report, (void)argument_count;
     memcpy(items, global, dimensions * sizeof *global);
-    threads_run(device->compute_units, native->run, arguments, items);
+    if (device->run_tasks)
+        threads_run_by_host(device->run_tasks, device->run_tasks_user, device->compute_units,
+                            native->run, arguments, items);
+    else
+        threads_run(device->compute_units, native->run, arguments, items);
     return SONJECT_OK;
 }
 
@@ -242,6 +250,8 @@ sonject_status native_open(struct report *report, const sonject_context_params *
     device_take_info(device, &info);
     device->calls = &calls;
     device->is_cpu = true;
+    device->run_tasks = params->run_tasks;
+    device->run_tasks_user = params->run_tasks_user;
     device->allocation_limit = PTRDIFF_MAX;
     threads_retain();
     return SONJECT_OK;

@@ -5,6 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <sonject/context.h>
+
 #include "device/native/kernel.h"
 
 /* Processors that this process may run on. */
@@ -19,5 +21,10 @@ void threads_release(void);
  * own. */
 void threads_run(uint32_t most, native_function *run, const struct kernel_argument *arguments,
                  const size_t global[3]);
+
+/* The same on a host's threads. */
+void threads_run_by_host(sonject_run_tasks_function run_tasks, void *user, uint32_t most,
+                         native_function *run, const struct kernel_argument *arguments,
+                         const size_t global[3]);
 
 #endif

@@ -65,8 +65,9 @@ static bool begin_items(struct job *job, size_t *first, size_t *end)
 }
 
 /* Whatever a host does to its threads' rounding or denormal numbers, kernels give the same bits. */
-static void run_items(struct job *job)
+static void run_items(void *job_to_run)
 {
+    struct job *job = job_to_run;
     size_t first, end;
     fenv_t before;
     fegetenv(&before);
@@ -174,14 +175,30 @@ static void start_threads(uint32_t wanted)
     pthread_sigmask(SIG_SETMASK, &before, NULL);
 }
 
+static struct job make_job(uint32_t most, native_function *run,
+                           const struct kernel_argument *arguments, const size_t global[3])
+{
+    return (struct job){.run = run,
+                        .arguments = arguments,
+                        .global = global,
+                        .total = global[0] * global[1] * global[2],
+                        .most = most};
+}
+
+void threads_run_by_host(sonject_run_tasks_function run_tasks, void *user, uint32_t most,
+                         native_function *run, const struct kernel_argument *arguments,
+                         const size_t global[3])
+{
+    struct job job = make_job(most, run, arguments, global);
+    if (most > 1 && job.total > 1)
+        run_tasks(user, job.total < most ? (uint32_t)job.total : most, run_items, &job);
+    run_items(&job);
+}
+
 void threads_run(uint32_t most, native_function *run, const struct kernel_argument *arguments,
                  const size_t global[3])
 {
-    struct job job = {.run = run,
-                      .arguments = arguments,
-                      .global = global,
-                      .total = global[0] * global[1] * global[2],
-                      .most = most};
+    struct job job = make_job(most, run, arguments, global);
     struct job **link = &pool.jobs;
     if (most <= 1 || job.total <= 1) {
         run_items(&job);
