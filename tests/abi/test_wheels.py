@@ -98,5 +98,6 @@ def test_python_passes_its_tests_with_it(wheel, tmp_path):
                             env={**variables, "SONJECT_LIBRARY": str(library), "SONJECT_HAS_HDF5": "0"},
                             check=False, capture_output=True, text=True)
     assert answer.returncode == 0, answer.stdout
-    version = subprocess.run([tmp_path / "env" / "bin" / "sonject", "--version"], check=True, capture_output=True, text=True)
+    version = subprocess.run([tmp_path / "env" / "bin" / "sonject", "--version"], env=variables, check=True,
+                             capture_output=True, text=True)
     assert "0.1.0" in version.stdout
