@@ -94,3 +94,5 @@ print(sonject.version(), scene.object_count, pathlib.Path(_library.load()._name)
                             check=False, env={**variables, "PYTHONPATH": str(installed)})
     assert answer.returncode == 0, answer.stderr
     assert answer.stdout.split() == ["0.1.0", "1", str(installed / "sonject")]
+    command = subprocess.run([installed / "sonject" / "sonject", "--version"], capture_output=True, text=True, check=True)
+    assert "0.1.0" in command.stdout
