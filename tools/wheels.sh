@@ -14,8 +14,7 @@ sources="zlib libyaml jansson expat xxhash libpng1.6 libjpeg-turbo tiff"
 project=$(pwd)
 work=$project/build-wheels
 
-# shellcheck disable=SC2086 # a list of words
-install_packages $build_packages cmake dpkg-dev python3-venv
+install_packages build-essential cmake dpkg-dev ninja-build opencl-headers pkg-config python3-venv
 
 # quietly COMMAND...: its output goes to a log, which is shown where it fails.
 quietly() {

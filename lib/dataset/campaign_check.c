@@ -12,7 +12,6 @@
 #include "inject/scene_hash.h"
 #include "schema/scene_file.h"
 #include "swath/geometry_notes.h"
-#include "swath/jpeg_quality.h"
 
 #define TRIALS_MAX 20000 /* scenes, about as many milliseconds at the most */
 
@@ -81,7 +80,7 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
     if (status == SONJECT_OK) {
         swath_file_layout(file, &swath->layout);
         if (campaign->campaign.format == FORMAT_AS_INPUT)
-            swath->jpeg_quality = jpeg_quality(swath->path);
+            swath->jpeg_quality = swath_file_jpeg_quality(file);
         status = measure_rows(campaign, number, &trial.scene, file);
     }
     swath_file_close(&file);

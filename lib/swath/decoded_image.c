@@ -79,6 +79,7 @@ static sonject_status open_at(struct report *report, struct decoded_image *image
     image->layout = reply.layout;
     image->largest = reply.largest;
     image->is_turned = reply.is_turned != 0;
+    image->jpeg_quality = reply.jpeg_quality;
     return SONJECT_OK;
 }
 

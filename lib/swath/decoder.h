@@ -49,7 +49,8 @@ struct decoder_reply {
     struct raster_layout layout;
     uint32_t largest;   /* 0: of its type */
     uint32_t is_turned; /* columns lie together in the file */
-    uint64_t bytes;     /* that follow */
+    int32_t jpeg_quality;
+    uint64_t bytes; /* that follow */
 };
 
 /* The path of the program: in the folder sonject beside the library (beside the host's program,
@@ -111,6 +112,7 @@ struct decoded_image {
     struct raster_layout layout;
     uint32_t largest;  /* that it may hold; 0: its type's */
     bool is_turned;    /* columns lie together in the file */
+    int jpeg_quality;  /* as of swath_file_jpeg_quality */
     char *description; /* texts that are stored with it, each a line "name=value"; NULL: none */
 };
 

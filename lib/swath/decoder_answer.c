@@ -112,6 +112,7 @@ static sonject_status open_image(struct question *question)
     question->reply->handle = place + 1;
     question->reply->largest = facts.largest;
     question->reply->is_turned = facts.is_turned;
+    question->reply->jpeg_quality = facts.jpeg_quality;
     if (status == SONJECT_OK && facts.description &&
         strlen(facts.description) < DESCRIPTION_MAX - 1)
         question->reply->bytes = strlen(facts.description) + 1;

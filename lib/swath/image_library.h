@@ -9,10 +9,17 @@
 
 #define DESCRIPTION_MAX ((size_t)1 << 16) /* bytes of one that is kept, its final 0 among them */
 
+/* What a library said of what went wrong; all 0 before. */
+struct library_fault {
+    char message[256];
+    int error; /* errno then; 0: not the system's fault */
+};
+
 struct image_facts {
     struct raster_layout layout;
     uint32_t largest; /* that it may hold; 0: its type's */
     bool is_turned;   /* columns lie together in the file */
+    int jpeg_quality; /* as of swath_file_jpeg_quality */
     /* what is stored with the image: texts, each a line "name=value"; for free(); NULL: none */
     char *description;
 };
@@ -58,6 +65,16 @@ struct image_encoding {
     void *user;
     int quality; /* of JPEG, 1...100; 0: as a whole swath's should be */
 };
+
+/* Gives an image's rows to a library's `put`, in strips of at most about 64 MB. *are_put: false
+ * where `put` answered that it failed. Errors: MEMORY, those of give_rows. */
+sonject_status encode_rows(struct report *report, const struct image_encoding *encoding,
+                           bool (*put)(void *output, const unsigned char *rows, uint64_t count),
+                           void *output, bool *are_put);
+
+/* The status of a library's fault: STORAGE or MEMORY. */
+sonject_status encoding_failure(struct report *report, const struct image_encoding *encoding,
+                                const struct library_fault *fault);
 
 /* Stream in strips of at most about 64 MB. What failed is left to the caller to remove. Errors:
  * STORAGE, MEMORY, UNSUPPORTED (a description that is too long), those of give_rows. */

@@ -12,37 +12,42 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "swath/swath_file.h"
+
+#define QUALITY_DIFFERENCE 0.2 /* of entries, in the mean, up to which tables are close */
 
 #define COMMENT_MAX 65533 /* bytes of a comment, where the description is kept */
 
 /* Coarser coding would show in the noise of every pixel of the swath, not only near the target. */
 #define FINEST_QUALITY 98
 
-/* What libjpeg said of what went wrong. */
-struct fault {
+/* Where libjpeg's errors arrive. */
+struct listener {
     struct jpeg_error_mgr manager; /* first: libjpeg hands on its address */
     jmp_buf back;
     FILE *file;
-    char message[JMSG_LENGTH_MAX];
-    int error; /* errno then; 0: not the system's fault */
+    struct library_fault fault;
 };
 
 struct jpeg_image {
     char *name, *path; /* name: in messages; owned */
     struct raster_layout layout;
-    struct fault fault;
+    struct listener listener;
     struct jpeg_decompress_struct jpeg; /* all 0: not there */
+    struct jpeg_compress_struct scaled; /* to compare tables with; all 0: not there */
     uint64_t next_row;                  /* that libjpeg decodes */
     unsigned char *row;                 /* the last one; owned */
 };
 
 static void hear(j_common_ptr jpeg)
 {
-    struct fault *fault = (struct fault *)jpeg->err;
-    const bool is_of_file = fault->file && (ferror(fault->file) || !jpeg->is_decompressor);
-    fault->error = jpeg->err->msg_code == JERR_OUT_OF_MEMORY ? ENOMEM : is_of_file ? errno : 0;
-    jpeg->err->format_message(jpeg, fault->message);
-    longjmp(fault->back, 1);
+    struct listener *listener = (struct listener *)jpeg->err;
+    const bool is_of_file = listener->file && (ferror(listener->file) || !jpeg->is_decompressor);
+    listener->fault.error = jpeg->err->msg_code == JERR_OUT_OF_MEMORY ? ENOMEM
+                            : is_of_file                              ? errno
+                                                                      : 0;
+    jpeg->err->format_message(jpeg, listener->fault.message); /* JMSG_LENGTH_MAX bytes at most */
+    longjmp(listener->back, 1);
 }
 
 /* Warnings (negative levels) are of damaged files: libjpeg would go on with made-up pixels. */
@@ -52,40 +57,40 @@ static void hear_warning(j_common_ptr jpeg, int level)
         hear(jpeg);
 }
 
-static struct jpeg_error_mgr *listen(struct fault *fault, FILE *file)
+static struct jpeg_error_mgr *listen(struct listener *listener, FILE *file)
 {
-    memset(fault, 0, sizeof *fault);
-    fault->file = file;
-    jpeg_std_error(&fault->manager);
-    fault->manager.error_exit = hear;
-    fault->manager.emit_message = hear_warning;
-    return &fault->manager;
+    memset(listener, 0, sizeof *listener);
+    listener->file = file;
+    jpeg_std_error(&listener->manager);
+    listener->manager.error_exit = hear;
+    listener->manager.emit_message = hear_warning;
+    return &listener->manager;
 }
 
 static sonject_status tell_fault(struct report *report, const struct jpeg_image *image)
 {
-    if (image->fault.error == ENOMEM)
+    if (image->listener.fault.error == ENOMEM)
         return report_out_of_memory(report, image->name);
-    errno = image->fault.error; /* the disk's failures are told by it */
+    errno = image->listener.fault.error; /* the disk's failures are told by it */
     return input_failure(report, image->name, "cut short or damaged at row %llu: %s",
-                         (unsigned long long)image->next_row, image->fault.message);
+                         (unsigned long long)image->next_row, image->listener.fault.message);
 }
 
 static void end_decoding(struct jpeg_image *image)
 {
     jpeg_destroy_decompress(&image->jpeg);
     memset(&image->jpeg, 0, sizeof image->jpeg);
-    if (image->fault.file)
-        fclose(image->fault.file);
-    image->fault.file = NULL;
+    if (image->listener.file)
+        fclose(image->listener.file);
+    image->listener.file = NULL;
 }
 
 static bool read_head(struct jpeg_image *image)
 {
-    if (setjmp(image->fault.back) != 0)
+    if (setjmp(image->listener.back) != 0)
         return false;
     jpeg_create_decompress(&image->jpeg);
-    jpeg_stdio_src(&image->jpeg, image->fault.file);
+    jpeg_stdio_src(&image->jpeg, image->listener.file);
     jpeg_save_markers(&image->jpeg, JPEG_COM, COMMENT_MAX);
     jpeg_read_header(&image->jpeg, TRUE);
     if (image->jpeg.num_components == 1)
@@ -102,7 +107,7 @@ static sonject_status begin_decoding(struct report *report, struct jpeg_image *i
     FILE *file = fopen(image->path, "rb");
     if (!file)
         return input_failure(report, image->name, "cannot be opened");
-    image->jpeg.err = listen(&image->fault, file);
+    image->jpeg.err = listen(&image->listener, file);
     return read_head(image) ? SONJECT_OK : tell_fault(report, image);
 }
 
@@ -122,11 +127,39 @@ static sonject_status take_layout(struct report *report, struct jpeg_image *imag
     return SONJECT_OK;
 }
 
+/* The quality whose table, as libjpeg scales its own, differs least from the file's; before all
+ * rows are decoded, when libjpeg forgets it. */
+static bool take_quality(struct jpeg_image *image, int *nearest)
+{
+    const JQUANT_TBL *table = image->jpeg.quant_tbl_ptrs[image->jpeg.comp_info->quant_tbl_no];
+    double least = QUALITY_DIFFERENCE * DCTSIZE2;
+    *nearest = JPEG_QUALITY_UNTOLD;
+    image->scaled.err = image->jpeg.err;
+    if (setjmp(image->listener.back) != 0)
+        return false;
+    jpeg_create_compress(&image->scaled);
+    image->scaled.in_color_space = JCS_GRAYSCALE;
+    image->scaled.input_components = 1;
+    jpeg_set_defaults(&image->scaled);
+    for (int quality = 100; quality > 0; quality--) {
+        double sum = 0.0;
+        jpeg_set_quality(&image->scaled, quality, TRUE);
+        const UINT16 *usual = image->scaled.quant_tbl_ptrs[0]->quantval;
+        for (size_t i = 0; i < DCTSIZE2; i++)
+            sum += abs((int)usual[i] - (int)table->quantval[i]) / (double)usual[i];
+        if (sum < least) {
+            least = sum;
+            *nearest = quality;
+        }
+    }
+    return true;
+}
+
 /* Decodes rows up to the region's end, and copies what is in it unless pixels is NULL. */
 static bool decode_region(struct jpeg_image *image, const struct region *region,
                           unsigned char *pixels)
 {
-    if (setjmp(image->fault.back) != 0)
+    if (setjmp(image->listener.back) != 0)
         return false;
     for (; image->next_row < region->first_row + region->rows; image->next_row++) {
         jpeg_read_scanlines(&image->jpeg, &image->row, 1);
@@ -156,6 +189,7 @@ static sonject_status close_image(struct report *report, void *opened)
     struct jpeg_image *image = opened;
     (void)report;
     end_decoding(image);
+    jpeg_destroy_compress(&image->scaled);
     free(image->name);
     free(image->path);
     free(image->row);
@@ -179,7 +213,9 @@ static sonject_status open_image(struct report *report, const char *name, const 
     THEN(status, take_description(report, image, &facts->description));
     if (status == SONJECT_OK) {
         const struct region whole = {0, 0, image->layout.rows, image->layout.columns};
-        status = decode_region(image, &whole, NULL) ? SONJECT_OK : tell_fault(report, image);
+        status = take_quality(image, &facts->jpeg_quality) && decode_region(image, &whole, NULL)
+                     ? SONJECT_OK
+                     : tell_fault(report, image);
     }
     if (status != SONJECT_OK) {
         free(facts->description);
@@ -207,20 +243,18 @@ const struct image_library jpeg_library = {open_image, close_image, read_pixels,
 
 struct jpeg_output {
     const struct image_encoding *encoding;
-    struct fault fault;
+    struct listener listener;
     struct jpeg_compress_struct jpeg;
-    size_t row_bytes;
-    unsigned char *strip; /* owned */
 };
 
 static bool write_head(struct jpeg_output *output)
 {
     const struct image_encoding *encoding = output->encoding;
     struct jpeg_compress_struct *jpeg = &output->jpeg;
-    if (setjmp(output->fault.back) != 0)
+    if (setjmp(output->listener.back) != 0)
         return false;
     jpeg_create_compress(jpeg);
-    jpeg_stdio_dest(jpeg, output->fault.file);
+    jpeg_stdio_dest(jpeg, output->listener.file);
     jpeg->image_width = (JDIMENSION)encoding->layout.columns;
     jpeg->image_height = (JDIMENSION)encoding->layout.rows;
     jpeg->input_components = (int)encoding->layout.channels;
@@ -234,12 +268,14 @@ static bool write_head(struct jpeg_output *output)
     return true;
 }
 
-static bool write_rows(struct jpeg_output *output, uint64_t rows)
+static bool write_rows(void *jpeg_output, const unsigned char *rows, uint64_t count)
 {
-    if (setjmp(output->fault.back) != 0)
+    struct jpeg_output *output = jpeg_output;
+    const struct raster_layout *layout = &output->encoding->layout;
+    if (setjmp(output->listener.back) != 0)
         return false;
-    for (uint64_t row = 0; row < rows; row++) {
-        JSAMPROW pixels = output->strip + row * output->row_bytes;
+    for (uint64_t row = 0; row < count; row++) {
+        JSAMPROW pixels = (JSAMPROW)rows + row * layout->columns * layout->channels;
         jpeg_write_scanlines(&output->jpeg, &pixels, 1);
     }
     return true;
@@ -247,31 +283,14 @@ static bool write_rows(struct jpeg_output *output, uint64_t rows)
 
 static bool write_end(struct jpeg_output *output)
 {
-    if (setjmp(output->fault.back) != 0)
+    if (setjmp(output->listener.back) != 0)
         return false;
     jpeg_finish_compress(&output->jpeg);
     return true;
 }
 
-/* *is_written: false where libjpeg says why. */
-static sonject_status write_image(struct jpeg_output *output, bool *is_written)
-{
-    const struct image_encoding *encoding = output->encoding;
-    const uint64_t rows = encoding->layout.rows;
-    const uint64_t at_once = rows_at_once(&encoding->layout);
-    *is_written = write_head(output);
-    for (uint64_t row = 0; *is_written && row < rows; row += at_once) {
-        const uint64_t end = rows - row < at_once ? rows : row + at_once;
-        CHECK(encoding->give_rows(encoding->user, row, end, output->strip));
-        *is_written = write_rows(output, end - row);
-    }
-    *is_written = *is_written && write_end(output);
-    return SONJECT_OK;
-}
-
 sonject_status jpeg_encode(struct report *report, const struct image_encoding *encoding)
 {
-    const struct raster_layout *layout = &encoding->layout;
     struct jpeg_output output = {.encoding = encoding};
     bool is_written = false;
     sonject_status status = SONJECT_OK;
@@ -279,27 +298,19 @@ sonject_status jpeg_encode(struct report *report, const struct image_encoding *e
         return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
                               "%s: JPEG keeps no more than %d bytes of notes: write .tif or .png",
                               encoding->name, COMMENT_MAX);
-    output.row_bytes = (size_t)layout->columns * layout->channels;
-    output.strip = allocate_array((size_t)rows_at_once(layout), output.row_bytes);
-    CHECK_MEMORY(report, output.strip, encoding->name);
     errno = 0;
-    output.jpeg.err = listen(&output.fault, fopen(encoding->path, "wb"));
-    if (output.fault.file)
-        status = write_image(&output, &is_written);
-    else
-        output.fault.error = errno;
+    FILE *file = fopen(encoding->path, "wb");
+    output.jpeg.err = listen(&output.listener, file);
+    output.listener.fault.error = errno;
+    if (file && write_head(&output))
+        status = encode_rows(report, encoding, write_rows, &output, &is_written);
+    is_written = is_written && status == SONJECT_OK && write_end(&output);
     jpeg_destroy_compress(&output.jpeg);
-    if (output.fault.file && fclose(output.fault.file) != 0 && is_written) {
+    if (file && fclose(file) != 0 && is_written) {
         is_written = false;
-        output.fault.error = errno;
+        output.listener.fault.error = errno;
     }
-    free(output.strip);
-    if (status != SONJECT_OK || is_written)
-        return status;
-    if (output.fault.error == ENOMEM)
-        return report_out_of_memory(report, encoding->name);
-    return output.fault.error != 0
-               ? file_failure(report, encoding->name, "write", output.fault.error)
-               : report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot write: %s",
-                                encoding->name, output.fault.message);
+    return status != SONJECT_OK || is_written
+               ? status
+               : encoding_failure(report, encoding, &output.listener.fault);
 }

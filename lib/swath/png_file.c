@@ -18,16 +18,10 @@
  */
 #define NUMBERS_CHUNK "soNu"
 
-/* What libpng said of what went wrong. */
-struct fault {
-    char message[256];
-    int error; /* errno then; 0: not the system's fault */
-};
-
 struct png_image {
     char *name, *path; /* name: in messages; owned */
     struct raster_layout layout;
-    struct fault fault;
+    struct library_fault fault;
     FILE *file;
     png_structp png;
     png_infop info;
@@ -38,7 +32,7 @@ struct png_image {
 
 static void hear(png_structp png, png_const_charp message)
 {
-    struct fault *fault = png_get_error_ptr(png);
+    struct library_fault *fault = png_get_error_ptr(png);
     fault->error = errno;
     snprintf(fault->message, sizeof fault->message, "%s", message);
     png_longjmp(png, 1);
@@ -259,12 +253,10 @@ const struct image_library png_library = {png_open, png_close, png_read, NULL};
 
 struct png_output {
     const struct image_encoding *encoding;
-    struct fault fault;
+    struct library_fault fault;
     FILE *file;
     png_structp png;
     png_infop info;
-    size_t row_bytes;
-    unsigned char *strip; /* owned */
 };
 
 static void put_palette(struct png_output *output)
@@ -313,12 +305,14 @@ static bool write_head(struct png_output *output)
     return true;
 }
 
-static bool write_rows(struct png_output *output, uint64_t rows)
+static bool write_rows(void *png_output, const unsigned char *rows, uint64_t count)
 {
+    const struct png_output *output = png_output;
+    const size_t row_bytes = png_get_rowbytes(output->png, output->info);
     if (setjmp(png_jmpbuf(output->png)) != 0)
         return false;
-    for (uint64_t row = 0; row < rows; row++)
-        png_write_row(output->png, output->strip + row * output->row_bytes);
+    for (uint64_t row = 0; row < count; row++)
+        png_write_row(output->png, rows + row * row_bytes);
     return true;
 }
 
@@ -330,52 +324,25 @@ static bool write_end(struct png_output *output)
     return true;
 }
 
-/* *is_written: false where libpng says why. */
-static sonject_status write_image(struct png_output *output, bool *is_written)
-{
-    const struct image_encoding *encoding = output->encoding;
-    const uint64_t rows = encoding->layout.rows;
-    const uint64_t at_once = rows_at_once(&encoding->layout);
-    *is_written = write_head(output);
-    for (uint64_t row = 0; *is_written && row < rows; row += at_once) {
-        const uint64_t end = rows - row < at_once ? rows : row + at_once;
-        CHECK(encoding->give_rows(encoding->user, row, end, output->strip));
-        *is_written = write_rows(output, end - row);
-    }
-    *is_written = *is_written && write_end(output);
-    return SONJECT_OK;
-}
-
 sonject_status png_encode(struct report *report, const struct image_encoding *encoding)
 {
-    const struct raster_layout *layout = &encoding->layout;
     struct png_output output = {.encoding = encoding};
     bool is_written = false;
     sonject_status status = SONJECT_OK;
     errno = 0;
-    output.row_bytes = (size_t)layout->columns * layout->channels * pixel_bytes(layout->type);
-    output.strip = allocate_array((size_t)rows_at_once(layout), output.row_bytes);
     output.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &output.fault, hear, ignore);
     output.info = output.png ? png_create_info_struct(output.png) : NULL;
-    output.file = output.strip && output.info ? fopen(encoding->path, "wb") : NULL;
-    output.fault.error = errno;
-    if (!output.strip || !output.info)
-        status = report_out_of_memory(report, encoding->name);
-    else if (output.file)
-        status = write_image(&output, &is_written);
+    output.file = output.info ? fopen(encoding->path, "wb") : NULL;
+    output.fault.error = output.info ? errno : ENOMEM;
+    if (output.file && write_head(&output))
+        status = encode_rows(report, encoding, write_rows, &output, &is_written);
+    is_written = is_written && status == SONJECT_OK && write_end(&output);
     if (output.png)
         png_destroy_write_struct(&output.png, &output.info);
     if (output.file && fclose(output.file) != 0 && is_written) {
         is_written = false;
         output.fault.error = errno;
     }
-    free(output.strip);
-    if (status != SONJECT_OK || is_written)
-        return status;
-    if (output.fault.error == ENOMEM)
-        return report_out_of_memory(report, encoding->name);
-    return output.fault.error != 0
-               ? file_failure(report, encoding->name, "write", output.fault.error)
-               : report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot write: %s",
-                                encoding->name, output.fault.message);
+    return status != SONJECT_OK || is_written ? status
+                                              : encoding_failure(report, encoding, &output.fault);
 }

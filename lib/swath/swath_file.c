@@ -113,6 +113,11 @@ const char *swath_file_new_extension(const struct swath_file *file)
     return file->image == IMAGE_PNG || file->image == IMAGE_JPEG ? ".png" : ".tif";
 }
 
+int swath_file_jpeg_quality(const struct swath_file *file)
+{
+    return file->decoded ? file->decoded->jpeg_quality : 0;
+}
+
 uint32_t swath_file_largest(const struct swath_file *file)
 {
     return file->largest;

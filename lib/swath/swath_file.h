@@ -30,6 +30,11 @@ void swath_file_layout(const struct swath_file *file, struct raster_layout *layo
  * this is the extension (".png" or ".tif"). */
 const char *swath_file_new_extension(const struct swath_file *file);
 
+/* The quality, 1...100 as libjpeg scales it, whose table for luminance is a JPEG's or close to it;
+ * JPEG_QUALITY_UNTOLD where none is; 0 of other files. */
+#define JPEG_QUALITY_UNTOLD 95
+int swath_file_jpeg_quality(const struct swath_file *file);
+
 /* The largest number that the file may hold where that is less than its type's; 0 elsewhere. */
 uint32_t swath_file_largest(const struct swath_file *file);
 

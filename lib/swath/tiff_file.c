@@ -16,12 +16,6 @@
 #define NEW_STRIP_BYTES ((uint64_t)1 << 18)                 /* of a new image */
 #define CLASSIC_MAX     (UINT32_MAX - ((uint64_t)64 << 20)) /* with some for its directory */
 
-/* What libtiff said first of what went wrong; all 0 before. */
-struct fault {
-    char message[256];
-    int error; /* errno then; 0: not the system's fault */
-};
-
 /* A block that was read last: pieces of an image come one after the other. */
 struct kept_block {
     unsigned char *pixels; /* owned */
@@ -33,7 +27,7 @@ struct kept_block {
 struct tiff_image {
     char *name, *path; /* name: in messages; owned */
     TIFF *file;
-    struct fault fault;
+    struct library_fault fault;
     uint32_t rows, columns; /* of the image */
     uint16_t channels, bits, compression;
     uint16_t planes; /* each with blocks of its own: of one channel, or of all */
@@ -45,7 +39,7 @@ struct tiff_image {
 
 static int hear(TIFF *file, void *user, const char *module, const char *format, va_list values)
 {
-    struct fault *fault = user;
+    struct library_fault *fault = user;
     (void)file;
     (void)module;
     if (!*fault->message) {
@@ -63,7 +57,7 @@ static int hear_warning(TIFF *file, void *user, const char *module, const char *
 }
 
 /* Prints nothing. fault stays where it is while the file is open. */
-static TIFF *open_tiff(const char *path, const char *mode, struct fault *fault)
+static TIFF *open_tiff(const char *path, const char *mode, struct library_fault *fault)
 {
     memset(fault, 0, sizeof *fault);
     TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
@@ -444,7 +438,7 @@ static sonject_status change_pixels(struct report *report, void *opened,
                                     const struct region *region, const void *pixels)
 {
     struct tiff_image *image = opened;
-    struct fault fault = {"", 0};
+    struct library_fault fault = {"", 0};
     bool is_done = false;
     TIFFClose(image->file);
     image->file = open_tiff(image->path, "rm", &image->fault);
@@ -494,43 +488,37 @@ static void set_tags(TIFF *file, const struct image_encoding *encoding)
         TIFFSetField(file, TIFFTAG_IMAGEDESCRIPTION, encoding->description);
 }
 
-/* OK with *is_written false: libtiff failed. */
-static sonject_status write_rows(TIFF *file, const struct image_encoding *encoding,
-                                 unsigned char *strip, bool *is_written)
+/* A new image in the making. */
+struct tiff_output {
+    TIFF *file;
+    size_t row_bytes;
+    uint32_t row; /* the next one */
+};
+
+static bool write_rows(void *tiff_output, const unsigned char *rows, uint64_t count)
 {
-    const struct raster_layout *layout = &encoding->layout;
-    const uint64_t at_once = rows_at_once(layout);
-    *is_written = true;
-    for (uint64_t first = 0; *is_written && first < layout->rows; first += at_once) {
-        const uint64_t end = layout->rows - first < at_once ? layout->rows : first + at_once;
-        CHECK(encoding->give_rows(encoding->user, first, end, strip));
-        for (uint64_t row = first; *is_written && row < end; row++)
-            *is_written = TIFFWriteScanline(file, strip + (row - first) * row_bytes(layout),
-                                            (uint32_t)row, 0) >= 0;
-    }
-    *is_written = *is_written && TIFFFlush(file);
-    return SONJECT_OK;
+    struct tiff_output *output = tiff_output;
+    for (uint64_t i = 0; i < count; i++, output->row++)
+        if (TIFFWriteScanline(output->file, (void *)(rows + i * output->row_bytes), output->row,
+                              0) < 0)
+            return false;
+    return true;
 }
 
 sonject_status tiff_encode(struct report *report, const struct image_encoding *encoding)
 {
     const struct raster_layout *layout = &encoding->layout;
     const bool is_large = layout->rows > CLASSIC_MAX / row_bytes(layout);
-    struct fault fault;
+    struct library_fault fault;
+    struct tiff_output output = {open_tiff(encoding->path, is_large ? "w8" : "w", &fault),
+                                 (size_t)row_bytes(layout), 0};
     bool is_written = false;
     sonject_status status = SONJECT_OK;
-    unsigned char *strip = allocate_array((size_t)rows_at_once(layout), (size_t)row_bytes(layout));
-    CHECK_MEMORY(report, strip, encoding->name);
-    TIFF *file = open_tiff(encoding->path, is_large ? "w8" : "w", &fault);
-    if (file) {
-        set_tags(file, encoding);
-        status = write_rows(file, encoding, strip, &is_written);
-        TIFFClose(file);
+    if (output.file) {
+        set_tags(output.file, encoding);
+        status = encode_rows(report, encoding, write_rows, &output, &is_written);
+        is_written = is_written && status == SONJECT_OK && TIFFFlush(output.file);
+        TIFFClose(output.file);
     }
-    free(strip);
-    if (status != SONJECT_OK || is_written)
-        return status;
-    return fault.error != 0 ? file_failure(report, encoding->name, "write", fault.error)
-                            : report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot write: %s",
-                                             encoding->name, fault.message);
+    return status != SONJECT_OK || is_written ? status : encoding_failure(report, encoding, &fault);
 }

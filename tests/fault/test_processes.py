@@ -146,6 +146,17 @@ def test_little_memory_is_told_as_such(scene, sonject, megabytes):
     assert devices.stderr.startswith("sonject: note: too little memory"), devices.stderr
 
 
+def test_without_opencl_there_is_native(scene, sonject, tmp_path):
+    (tmp_path / "libOpenCL.so.1").write_bytes(b"")  # which is found first
+    without = {"changes": {"LD_LIBRARY_PATH": str(tmp_path)}}
+    devices = sonject("devices", **without)
+    assert (devices.returncode, devices.stderr) == (0, "")
+    assert len(devices.stdout.splitlines()) == 2 and "* native" in devices.stdout
+    assert sonject("run", scene, "-o", "result", **without).returncode == 0
+    assert_refused(sonject("run", scene, "-o", "other", "--device", "pthread", **without), 4,
+                   "no OpenCL device found", "native")
+
+
 @pytest.mark.parametrize("is_made", [True, False])
 def test_a_folder_that_may_not_be_written(scene, tmp_path, environment, is_made):
     folder = tmp_path / "closed"

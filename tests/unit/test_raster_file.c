@@ -2,12 +2,13 @@
  * alone. */
 #include "image_drafts.h"
 
+#include <errno.h>
 #include <signal.h>
 #include <sys/resource.h>
 
 #include <zlib.h>
 
-#include "swath/jpeg_quality.h"
+#include "swath/image_library.h"
 
 struct format {
     const char *name;
@@ -171,6 +172,68 @@ static void say_in_png(const char *path, const uint64_t sides[2], unsigned bits,
     write_bytes(path, png, count);
 }
 
+/* A library that takes rows until one fails once; and a source that may fail. */
+struct hand {
+    uint64_t taken, fails_at;
+    bool has_rows;
+};
+
+static bool take_strip(void *user, const unsigned char *rows, uint64_t count)
+{
+    struct hand *hand = user;
+    const bool fails = hand->taken <= hand->fails_at && hand->fails_at < hand->taken + count;
+    assert_non_null(rows);
+    hand->taken += count;
+    return !fails;
+}
+
+static sonject_status give_strip(void *user, uint64_t first, uint64_t end, void *pixels)
+{
+    const struct hand *hand = user;
+    assert_true(first < end && pixels);
+    return hand->has_rows ? SONJECT_OK : SONJECT_ERROR_INPUT;
+}
+
+static void a_failure_in_the_midst_of_writing_ends_it(void **state)
+{
+    const uint64_t rows = 40; /* three strips */
+    struct hand hand = {0, rows, true};
+    const struct image_encoding encoding = {
+        .path = "a.png",
+        .name = "a.png",
+        .layout = {.rows = rows, .columns = (uint64_t)1 << 22, .channels = 1, .type = PIXEL_UINT8},
+        .give_rows = give_strip,
+        .user = &hand};
+    bool are_put = false;
+    assert_true(2 * rows_at_once(&encoding.layout) < rows);
+    EXPECT_OK(&report, encode_rows(&report, &encoding, take_strip, &hand, &are_put));
+    assert_true(are_put && hand.taken == rows);
+    hand = (struct hand){0, rows / 2, true};
+    EXPECT_OK(&report, encode_rows(&report, &encoding, take_strip, &hand, &are_put));
+    assert_true(!are_put && hand.taken < rows);
+    hand = (struct hand){0, rows, false};
+    assert_int_equal(encode_rows(&report, &encoding, take_strip, &hand, &are_put),
+                     SONJECT_ERROR_INPUT);
+    assert_int_equal(hand.taken, 0);
+    assert_int_equal(encoding_failure(&report, &encoding, &(struct library_fault){"", ENOMEM}),
+                     SONJECT_ERROR_MEMORY);
+    assert_int_equal(encoding_failure(&report, &encoding, &(struct library_fault){"", ENOSPC}),
+                     SONJECT_ERROR_STORAGE);
+    assert_non_null(strstr(report.message, "No space left"));
+    assert_int_equal(encoding_failure(&report, &encoding, &(struct library_fault){"odd", 0}),
+                     SONJECT_ERROR_STORAGE);
+    assert_non_null(strstr(report.message, "cannot write: odd"));
+}
+
+static int jpeg_quality(const char *path)
+{
+    struct swath_file *file;
+    EXPECT_OK(&report, swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, NULL, &file));
+    const int quality = swath_file_jpeg_quality(file);
+    swath_file_close(&file);
+    return quality;
+}
+
 static void the_quality_of_a_jpeg_is_that_it_was_written_with(void **state)
 {
     const char *path = file_in("a.jpg");
@@ -180,12 +243,16 @@ static void the_quality_of_a_jpeg_is_that_it_was_written_with(void **state)
         EXPECT_OK(&report, raster_file_write_jpeg(&report, path, &grey8, NULL, 0, pixels, quality));
         assert_int_equal(jpeg_quality(path), quality);
     }
-    const unsigned char *bytes = load(path, &count);
-    write_bytes(path, (const char *)bytes, 20); /* before its tables */
+    char *bytes = (char *)load(path, &count);
+    size_t table = 0;
+    while (memcmp(bytes + table, "\xFF\xDB", 2) != 0)
+        table++;
+    for (size_t i = 0; i < 64; i++) /* behind its mark, length and number */
+        bytes[table + 5 + i] = i % 2 ? 1 : 120;
+    write_bytes(path, bytes, count);
     assert_int_equal(jpeg_quality(path), JPEG_QUALITY_UNTOLD);
     EXPECT_OK(&report, write_image(file_in("a.png"), &grey8, pixels));
     assert_int_equal(jpeg_quality(file_in("a.png")), 0);
-    assert_int_equal(jpeg_quality(file_in("absent.jpg")), 0);
 }
 
 static void png_and_jpeg_that_are_not_for_sonject_are_refused(void **state)
@@ -416,6 +483,7 @@ static void who_cancels_or_has_a_full_disk_gets_no_file(void **state)
 TEST_PROGRAM(NULL, NULL, CLEAN(what_is_written_comes_back), CLEAN(a_region_outside_is_refused),
              CLEAN(attributes_stay_in_copies_of_png_and_jpeg_which_are_png),
              CLEAN(what_a_format_does_not_hold_is_refused),
+             CLEAN(a_failure_in_the_midst_of_writing_ends_it),
              CLEAN(the_quality_of_a_jpeg_is_that_it_was_written_with),
              CLEAN(png_and_jpeg_that_are_not_for_sonject_are_refused),
              CLEAN(absurd_sides_are_refused), CLEAN(files_that_are_cut_short_or_damaged_do_no_harm),

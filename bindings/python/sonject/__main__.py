@@ -11,7 +11,9 @@ def main() -> None:
     try:
         os.execv(program, ["sonject", *sys.argv[1:]])
     except OSError as error:
-        sys.exit(f"sonject: {program} cannot be run: {error.strerror}: install the wheel of sonject, which has it")
+        sys.exit(
+            f"sonject: {program} cannot be run: {error.strerror}: install the wheel of sonject, which has it"
+        )
 
 
 if __name__ == "__main__":

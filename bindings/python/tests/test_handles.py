@@ -14,6 +14,7 @@ from conftest import KEYS, PACKAGE
 
 def test_version_is_the_packages():
     assert sonject.version().split(".")[0] == "0"
+    assert sonject.__version__ == sonject.version()
 
 
 def test_devices_have_names_and_one_default(context):
@@ -164,6 +165,16 @@ def test_a_missing_library_is_explained():
     )
     assert answer.returncode == 1
     assert "ImportError: libsonject was not found: set the environment variable" in answer.stderr
+
+
+def test_the_module_is_the_command_of_a_wheel():
+    """Which a package that was not installed lacks, and says so in a line."""
+    answer = run_python("import runpy, sys\nsys.argv = ['sonject', '--version']\nrunpy.run_module('sonject', run_name='__main__')")
+    if (PACKAGE / "sonject").exists():
+        assert (answer.returncode, answer.stdout) == (0, f"sonject {sonject.__version__}\n")
+    else:
+        assert answer.returncode == 1 and answer.stderr.count("\n") == 1
+        assert f"{PACKAGE / 'sonject'} cannot be run" in answer.stderr and "wheel" in answer.stderr
 
 
 def test_an_interpreter_ends_quietly_with_everything_alive():

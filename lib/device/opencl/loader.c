@@ -26,8 +26,11 @@ static void *find(const char *name)
 #define FORWARD(result, name, parameters, arguments, absent)                                       \
     result CL_API_CALL name parameters                                                             \
     {                                                                                              \
+        static void *kept; /* atomic */                                                            \
         __typeof__(name) *function;                                                                \
-        void *const found = find(#name);                                                           \
+        void *found = __atomic_load_n(&kept, __ATOMIC_RELAXED);                                    \
+        if (!found)                                                                                \
+            __atomic_store_n(&kept, found = find(#name), __ATOMIC_RELAXED);                        \
         memcpy(&function, &found, sizeof function);                                                \
         return function ? function arguments : absent;                                             \
     }

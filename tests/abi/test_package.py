@@ -11,7 +11,7 @@ from test_installed import MODULES, needed_by
 from test_interface import LIBRARY, SOURCE, exported_symbols
 
 READERS = os.environ.get("SONJECT_READERS")
-CORE = ["-Dhdf5=disabled", "-Dtests=disabled", "-Dstatic=disabled", "-Dbuildtype=debug", "-Db_sanitize=none"]
+OPTIONS = ["-Dhdf5=disabled", "-Dtests=disabled", "-Dstatic=disabled", "-Dbuildtype=debug", "-Db_sanitize=none"]
 # What pip asks meson-python for. The build folder is said, so that none is made among the sources.
 BUILD_WHEEL = """\
 import sys, mesonpy
@@ -20,24 +20,24 @@ mesonpy.build_wheel(sys.argv[1], {"build-dir": sys.argv[2], "setup-args": sys.ar
 
 
 def build_wheel(folder):
-    answer = subprocess.run([READERS, "-c", BUILD_WHEEL, folder, folder / "build", *CORE],
+    answer = subprocess.run([READERS, "-c", BUILD_WHEEL, folder, folder / "build", *OPTIONS],
                             cwd=SOURCE, check=False, capture_output=True, text=True)
     assert answer.returncode == 0, answer.stdout + answer.stderr
 
 
 def build_library(folder):
     meson = shutil.which("meson")
-    assert meson, "meson is needed to build the core"
-    subprocess.run([meson, "setup", folder / "build", SOURCE, *CORE], check=True,
+    assert meson, "meson is needed to build the library"
+    subprocess.run([meson, "setup", folder / "build", SOURCE, *OPTIONS], check=True,
                    capture_output=True)
     subprocess.run([meson, "compile", "-C", folder / "build", "sonject:shared_library"], check=True,
                    capture_output=True)
 
 
 @pytest.fixture(scope="module")
-def core(tmp_path_factory):
+def built(tmp_path_factory):
     """The folder of its build: by pip, where SONJECT_READERS names a Python with meson-python."""
-    folder = tmp_path_factory.mktemp("core")
+    folder = tmp_path_factory.mktemp("built")
     if READERS:
         build_wheel(folder)
     else:
@@ -46,15 +46,15 @@ def core(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def library(core):
-    return core / "build" / "lib" / "libsonject.so"
+def library(built):
+    return built / "build" / "lib" / "libsonject.so"
 
 
 @pytest.fixture(scope="module")
-def wheel(core):
+def wheel(built):
     if not READERS:
         pytest.skip("SONJECT_READERS does not name a Python that has meson-python")
-    (found,) = core.glob("*.whl")
+    (found,) = built.glob("*.whl")
     return found
 
 
@@ -66,7 +66,7 @@ def installed(wheel, tmp_path):
     return tmp_path
 
 
-def test_core_needs_no_hdf5(library):
+def test_the_library_needs_no_hdf5(library):
     assert "hdf5" in needed_by(LIBRARY) and "hdf5" not in needed_by(library)
     assert exported_symbols(library) == exported_symbols(LIBRARY)
 
