@@ -1,17 +1,13 @@
-#define _POSIX_C_SOURCE 200809L
-
 #include "console.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
+#include "base/system/process.h"
 #include "base/text.h"
 
 enum {
@@ -21,21 +17,6 @@ enum {
 };
 
 static const double redraw_interval_s = 0.1;
-
-void standard_streams_secure(void)
-{
-    /* Opened the wrong way round: reading the input, writing the output fails as it should. */
-    const int flags[] = {O_WRONLY, O_RDONLY, O_RDONLY};
-    for (int descriptor = 0; descriptor <= 2; descriptor++) {
-        if (fcntl(descriptor, F_GETFD) != -1)
-            continue;
-        int opened = open("/dev/null", flags[descriptor]);
-        if (opened != -1 && opened != descriptor) {
-            dup2(opened, descriptor);
-            close(opened);
-        }
-    }
-}
 
 void message_line(const char *const *texts)
 {
@@ -106,18 +87,7 @@ static void note_signal(int number)
 
 void stop_watch(void)
 {
-    const int numbers[] = {SIGTERM, SIGINT};
-    for (size_t i = 0; i < sizeof(numbers) / sizeof(numbers[0]); i++) {
-        struct sigaction action;
-        memset(&action, 0, sizeof(action));
-        action.sa_handler = note_signal;
-        /* Writing a file is not to fail because a signal came. A second SIGINT ends the command at
-         * once; SIGTERM comes twice from schedulers that signal a job's script, which hands it on,
-         * and its processes. */
-        action.sa_flags = (int)(numbers[i] == SIGINT ? SA_RESTART | SA_RESETHAND : SA_RESTART);
-        sigemptyset(&action.sa_mask);
-        sigaction(numbers[i], &action, NULL);
-    }
+    signals_watch(note_signal);
 }
 
 int stop_is_asked(void)
@@ -135,19 +105,11 @@ int stop_report(void)
     return EXIT_CODE_STOPPED;
 }
 
-static double now_s(void)
-{
-    struct timespec now;
-    if (clock_gettime(CLOCK_MONOTONIC, &now) != 0)
-        return 0;
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 void progress_begin(struct progress *progress, bool is_quiet)
 {
-    progress->is_shown = !is_quiet && isatty(STDERR_FILENO);
+    progress->is_shown = !is_quiet && errors_are_shown();
     progress->is_on_screen = false;
-    progress->start_s = now_s();
+    progress->start_s = clock_seconds();
     progress->drawn_s = -redraw_interval_s;
 }
 
@@ -175,7 +137,7 @@ static void draw(struct progress *progress, double fraction, const char *stage)
     memset(bar + filled, '.', BAR_WIDTH - filled);
     bar[BAR_WIDTH] = '\0';
     char left[40];
-    format_time_left(left, sizeof(left), now_s() - progress->start_s, fraction);
+    format_time_left(left, sizeof(left), clock_seconds() - progress->start_s, fraction);
     fprintf(stderr, "\r%-*.*s [%s] %3d %%  %-20s", STAGE_WIDTH, STAGE_WIDTH, stage, bar,
             (int)(fraction * 100), left);
     fflush(stderr);
@@ -185,7 +147,7 @@ static void draw(struct progress *progress, double fraction, const char *stage)
 int progress_update(void *user, double fraction, const char *stage)
 {
     struct progress *progress = user;
-    double now = now_s();
+    double now = clock_seconds();
     if (progress->is_shown && now - progress->drawn_s >= redraw_interval_s) {
         double within = fraction > 0 ? (fraction < 1 ? fraction : 1) : 0;
         draw(progress, within, stage ? stage : "");

@@ -7,10 +7,6 @@
 
 #include <sonject/sonject.h>
 
-/* Opens the missing ones of descriptors 0, 1 and 2, so that no image file gets such a number and
- * messages end up in it. What is written to an output that was closed still fails. */
-void standard_streams_secure(void);
-
 /* Prints "sonject: ", the texts up to a NULL, and a newline, as one line whatever the texts hold.
  */
 #define message(...) message_line((const char *const[]){__VA_ARGS__, NULL})

@@ -4,6 +4,7 @@
 
 #include <sonject/sonject.h>
 
+#include "base/system/process.h"
 #include "console.h"
 #include "verbs.h"
 
@@ -84,7 +85,7 @@ static int work(const struct verb *verb, int count, char **texts)
 
 int main(int argc, char **argv)
 {
-    standard_streams_secure();
+    program_begin(&argc, &argv);
     if (argc < 2) {
         print_help(stderr);
         return EXIT_CODE_USAGE;

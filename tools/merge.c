@@ -1,14 +1,13 @@
 /* sonject merge: the whole of what shards made. */
-#define _POSIX_C_SOURCE 200809L
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include <sonject/sonject.h>
 
+#include "base/system/file_system.h"
 #include "stage.h"
 #include "verbs.h"
 
@@ -45,7 +44,7 @@ static bool holds_campaign(const char *folder)
     char *path = malloc(bytes);
     if (path)
         snprintf(path, bytes, "%s%s", folder, name);
-    const bool is_there = path && access(path, F_OK) == 0;
+    const bool is_there = path && file_exists(path);
     free(path);
     return is_there;
 }

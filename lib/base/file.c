@@ -1,23 +1,15 @@
-#define _POSIX_C_SOURCE   200809L
-#define _FILE_OFFSET_BITS 64
 #include "base/file.h"
 
-#include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
-#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <sys/types.h>
-#include <time.h>
-#include <unistd.h>
 
-#define PATH_BYTES_MAX ((size_t)1 << 16)
-#define NAMES_MAX      ((size_t)1 << 20) /* in a folder */
+#include "base/system/process.h"
+
+#define NAMES_MAX ((size_t)1 << 20) /* in a folder */
 
 sonject_status input_failure(struct report *report, const char *path, const char *format, ...)
 {
@@ -32,8 +24,7 @@ sonject_status input_failure(struct report *report, const char *path, const char
 sonject_status file_failure(struct report *report, const char *path, const char *action, int error)
 {
     char reason[128];
-    if (strerror_r(error, reason, sizeof reason) != 0)
-        snprintf(reason, sizeof reason, "error %d", error);
+    error_text(error, reason, sizeof reason);
     return report_failure(report, error == ENOMEM ? SONJECT_ERROR_MEMORY : SONJECT_ERROR_STORAGE,
                           "%s: cannot %s: %s", path, action, reason);
 }
@@ -65,45 +56,21 @@ sonject_status file_check_disk(struct report *report, const char *path, sonject_
                                                        : status;
 }
 
+/* The last character that divides a path into parts; NULL: there is none. */
+static const char *last_divider(const char *path)
+{
+    const char *last = NULL;
+    for (; *path; path++)
+        last = is_divider(*path) ? path : last;
+    return last;
+}
+
 /* From a '.' inside the last component to the end; "" if there is none. */
 static const char *extension_of(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    const char *name = slash ? slash + 1 : path;
+    const char *name = path_name(path);
     const char *dot = strrchr(name, '.');
     return dot && dot != name ? dot : "";
-}
-
-/* Random where the system gives random bytes. Process number, clocks and stack address keep
- * processes and threads apart where it does not. */
-static uint64_t unique_number(void)
-{
-    uint64_t number = 0;
-    struct timespec now = {0, 0};
-    const int source = open("/dev/urandom", O_RDONLY | O_CLOEXEC);
-    if (source >= 0) {
-        if (read(source, &number, sizeof number) != (ssize_t)sizeof number)
-            number = 0;
-        close(source);
-    }
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    number ^= (uint64_t)now.tv_nsec * UINT64_C(0x9E3779B97F4A7C15);
-    return number ^ (uint64_t)(uintptr_t)&now;
-}
-
-/* Names where this process's number means something: the host, and on Linux the space of process
- * numbers that a container has for itself. */
-static uint32_t process_place(void)
-{
-    char name[512] = "";
-    gethostname(name, 256);
-    name[255] = '\0';
-    const size_t length = strlen(name);
-    const ssize_t got = readlink("/proc/self/ns/pid", name + length, sizeof name - length);
-    uint32_t place = UINT32_C(2166136261); /* FNV-1a */
-    for (size_t i = 0; i < length + (got > 0 ? (size_t)got : 0); i++)
-        place = (place ^ (unsigned char)name[i]) * UINT32_C(16777619);
-    return place;
 }
 
 char *file_part_name(const char *path)
@@ -113,7 +80,7 @@ char *file_part_name(const char *path)
     char *part = allocate_array(capacity, 1);
     if (part)
         snprintf(part, capacity, "%s.%08" PRIx32 "-%ld-%016" PRIx64 ".part%s", path,
-                 process_place(), (long)getpid(), unique_number(), extension);
+                 process_place(), process_number(), unique_number(), extension);
     return part;
 }
 
@@ -128,69 +95,33 @@ static bool is_orphan(const char *name)
         if (sscanf(dot, ".%8" SCNx32 "-%ld-%16" SCNx64 ".part%n", &place, &process, &unique,
                    &end) == 3 &&
             end > 0 && (dot[end] == '.' || dot[end] == '\0'))
-            return place == process_place() && process > 0 && kill((pid_t)process, 0) != 0 &&
-                   errno == ESRCH;
+            return place == process_place() && process > 0 && process_has_ended(process);
     }
     return false;
 }
 
+/* user: the folder's path. */
+static bool tidy_name(void *user, const char *name)
+{
+    char *path = is_orphan(name) ? path_join(user, name) : NULL;
+    if (path)
+        file_discard(path);
+    free(path);
+    return true;
+}
+
 void folder_tidy(const char *path)
 {
-    DIR *folder = opendir(path);
-    if (!folder)
-        return;
-    for (const struct dirent *entry = readdir(folder); entry; entry = readdir(folder)) {
-        char *name = is_orphan(entry->d_name) ? path_join(path, entry->d_name) : NULL;
-        if (name)
-            file_discard(name);
-        free(name);
-    }
-    closedir(folder);
-}
-
-/* 0, or the errno of what failed. */
-static int flush_to_disk(const char *path)
-{
-    const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0)
-        return errno;
-    int error = fsync(descriptor) == 0 ? 0 : errno;
-    if (close(descriptor) != 0 && error == 0)
-        error = errno;
-    return error;
-}
-
-/* A rename is only safe from a power cut once the folder is on disk. File systems that cannot flush
- * a folder say EINVAL; a folder that may be written but not read says EACCES: neither harms what
- * was written. */
-static int flush_folder_of(const char *path)
-{
-    char *folder = path_folder(path);
-    if (!folder)
-        return ENOMEM;
-    const int error = flush_to_disk(*folder ? folder : ".");
-    free(folder);
-    return error == EINVAL || error == EACCES ? 0 : error;
+    (void)folder_hear_names(path, tidy_name, (void *)path);
 }
 
 sonject_status file_publish(struct report *report, const char *part, const char *path)
 {
-    int error = flush_to_disk(part);
-    if (error == 0 && rename(part, path) != 0)
-        error = errno;
-    if (error != 0) {
-        file_discard(part);
-        return file_failure(report, path, "write", error);
-    }
-    error = flush_folder_of(path);
-    return error == 0 ? SONJECT_OK : file_failure(report, path, "write", error);
-}
-
-void file_discard(const char *part)
-{
-    const int kept = errno;
-    unlink(part);
-    errno = kept;
+    const int error = file_replace(part, path);
+    if (error == 0)
+        return SONJECT_OK;
+    file_discard(part);
+    return file_failure(report, path, "write", error);
 }
 
 sonject_status file_write_parts(struct report *report, const char *path, const void *head,
@@ -199,7 +130,7 @@ sonject_status file_write_parts(struct report *report, const char *path, const v
     char *part = file_part_name(path);
     CHECK_MEMORY(report, part, "a file name");
     errno = 0;
-    FILE *file = fopen(part, "wb");
+    FILE *file = file_open(part, "wb");
     bool is_written = file && fwrite(head, 1, head_bytes, file) == head_bytes &&
                       fwrite(bytes, 1, count, file) == count;
     int error = errno;
@@ -259,41 +190,15 @@ sonject_status growing_text_write(struct report *report, struct growing_text *te
     return status;
 }
 
-FILE *byte_file_open(const char *path, uint64_t *bytes)
-{
-    struct stat facts;
-    FILE *file = NULL;
-    int descriptor = -1;
-    /* looked at first, for some devices do something when they are opened */
-    if (stat(path, &facts) != 0)
-        return NULL;
-    if (S_ISREG(facts.st_mode)) {
-        descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-        if (descriptor < 0)
-            return NULL;
-    }
-    if (descriptor < 0 || fstat(descriptor, &facts) == 0) {
-        errno = S_ISDIR(facts.st_mode) ? EISDIR : ESPIPE;
-        file = S_ISREG(facts.st_mode) ? fdopen(descriptor, "rb") : NULL;
-    }
-    *bytes = (uint64_t)facts.st_size;
-    const int error = errno;
-    if (!file && descriptor >= 0)
-        close(descriptor);
-    errno = error;
-    return file;
-}
-
 bool byte_file_read(FILE *file, uint64_t place, void *bytes, size_t count)
 {
-    return place <= INT64_MAX && fseeko(file, (off_t)place, SEEK_SET) == 0 &&
-           fread(bytes, 1, count, file) == count;
+    return byte_file_seek(file, place) && fread(bytes, 1, count, file) == count;
 }
 
 bool byte_file_copy(FILE *from, uint64_t place, uint64_t count, FILE *to)
 {
     unsigned char buffer[16384];
-    if (place > INT64_MAX || fseeko(from, (off_t)place, SEEK_SET) != 0)
+    if (!byte_file_seek(from, place))
         return false;
     while (count > 0) {
         const size_t some = count < sizeof buffer ? (size_t)count : sizeof buffer;
@@ -304,77 +209,58 @@ bool byte_file_copy(FILE *from, uint64_t place, uint64_t count, FILE *to)
     return true;
 }
 
-static int make_one_folder(const char *path)
-{
-    struct stat facts;
-    if (mkdir(path, 0777) == 0)
-        return 0;
-    const int error = errno;
-    if (stat(path, &facts) == 0)
-        return S_ISDIR(facts.st_mode) ? 0 : ENOTDIR;
-    return error;
-}
-
 sonject_status folder_make(struct report *report, const char *path)
 {
     char *name = copy_text(path);
     CHECK_MEMORY(report, name, "a folder's name");
     int error = 0;
     for (char *end = name; error == 0 && *end; end++) {
-        if (*end != '/' || end == name)
+        if (!is_divider(*end) || end == name)
             continue;
+        const char divider = *end;
         *end = '\0';
-        error = make_one_folder(name);
-        *end = '/';
+        error = folder_make_one(name);
+        *end = divider;
     }
     if (error == 0)
-        error = make_one_folder(name);
+        error = folder_make_one(name);
     free(name);
     return error == 0 ? SONJECT_OK : file_failure(report, path, "make the folder", error);
 }
 
-sonject_status file_identify(struct report *report, const char *path,
-                             struct file_identity *identity)
+sonject_status file_identify(struct report *report, const char *path, struct path_facts *facts)
 {
-    struct stat facts;
-    memset(identity, 0, sizeof *identity);
-    if (stat(path, &facts) != 0)
-        return file_failure(report, path, "open", errno);
-    if (S_ISDIR(facts.st_mode))
+    const int error = path_facts_read(path, facts);
+    if (error != 0)
+        return file_failure(report, path, "open", error);
+    if (facts->kind == PATH_IS_FOLDER)
         return file_failure(report, path, "read", EISDIR);
-    if (!S_ISREG(facts.st_mode))
-        return refuse_endless(report, path);
-    identity->device = (uint64_t)facts.st_dev;
-    identity->number = (uint64_t)facts.st_ino;
-    identity->bytes = (uint64_t)facts.st_size;
-    identity->changed_s = (int64_t)facts.st_mtim.tv_sec;
-    identity->changed_ns = (int64_t)facts.st_mtim.tv_nsec;
-    return SONJECT_OK;
-}
-
-bool file_exists(const char *path)
-{
-    struct stat facts;
-    return stat(path, &facts) == 0;
+    return facts->kind == PATH_IS_FILE ? SONJECT_OK : refuse_endless(report, path);
 }
 
 bool paths_are_same(const char *a, const char *b)
 {
-    struct stat one, other;
-    return stat(*a ? a : ".", &one) == 0 && stat(*b ? b : ".", &other) == 0 &&
-           one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+    struct path_facts one, other;
+    return path_facts_read(*a ? a : ".", &one) == 0 && path_facts_read(*b ? b : ".", &other) == 0 &&
+           one.device == other.device && one.number == other.number;
+}
+
+/* What stands between a folder and a name in it: nothing, where the name stands alone or the folder
+ * ends with it. */
+static const char *divider_behind(const char *folder)
+{
+    const char *divider = last_divider(folder);
+    return *folder == '\0' || (divider && divider[1] == '\0') ? "" : "/";
 }
 
 char *path_join(const char *folder, const char *name)
 {
-    const size_t folder_length = strlen(folder);
-    if (name[0] == '/' || folder_length == 0)
+    if (path_is_absolute(name))
         return copy_text(name);
-    const size_t capacity = folder_length + strlen(name) + 2;
+    const size_t capacity = strlen(folder) + strlen(name) + 2;
     char *path = allocate_array(capacity, 1);
     if (path)
-        snprintf(path, capacity, "%s%s%s", folder, folder[folder_length - 1] == '/' ? "" : "/",
-                 name);
+        snprintf(path, capacity, "%s%s%s", folder, divider_behind(folder), name);
     return path;
 }
 
@@ -386,31 +272,16 @@ sonject_status path_in(struct report *report, char path[PATH_CAPACITY], const ch
     va_start(values, format);
     const int length = vsnprintf(name, sizeof name, format, values);
     va_end(values);
-    const size_t own = strlen(folder);
-    const bool is_alone = own == 0 || name[0] == '/';
-    const char *slash = is_alone || folder[own - 1] == '/' ? "" : "/";
-    const int whole = snprintf(path, PATH_CAPACITY, "%s%s%s", is_alone ? "" : folder, slash, name);
+    const char *where = path_is_absolute(name) ? "" : folder;
+    const int whole = snprintf(path, PATH_CAPACITY, "%s%s%s", where, divider_behind(where), name);
     if (length < 0 || length >= PATH_CAPACITY || whole < 0 || whole >= PATH_CAPACITY)
         return file_failure(report, folder, "name a file below", ENAMETOOLONG);
     return SONJECT_OK;
 }
 
-char *working_folder(void)
-{
-    for (size_t bytes = 256; bytes <= PATH_BYTES_MAX; bytes *= 2) {
-        char *folder = allocate_array(bytes, 1);
-        if (!folder || getcwd(folder, bytes))
-            return folder;
-        free(folder);
-        if (errno != ERANGE)
-            return NULL;
-    }
-    return NULL;
-}
-
 char *path_absolute(const char *path)
 {
-    char *folder = *path == '/' ? NULL : working_folder();
+    char *folder = path_is_absolute(path) ? NULL : working_folder();
     char *whole = path_join(folder ? folder : "", path);
     free(folder);
     return whole;
@@ -418,18 +289,18 @@ char *path_absolute(const char *path)
 
 const char *path_name(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
+    const char *divider = last_divider(path);
+    return divider ? divider + 1 : path;
 }
 
 char *path_folder(const char *path)
 {
-    const char *slash = strrchr(path, '/');
+    const char *divider = last_divider(path);
     char *folder = copy_text(path);
-    if (folder && !slash)
+    if (folder && !divider)
         folder[0] = '\0';
     else if (folder)
-        folder[slash == path ? 1 : slash - path] = '\0';
+        folder[divider == path ? 1 : divider - path] = '\0';
     return folder;
 }
 
@@ -463,28 +334,32 @@ static int compare_names(const void *a, const void *b)
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-static bool is_wanted(const char *name, const char *prefix)
+/* A folder's names as they are heard. */
+struct names_heard {
+    struct folder_names *list;
+    const char *prefix;
+    bool is_out_of_memory;
+};
+
+static bool hear_name(void *user, const char *name)
 {
-    return strcmp(name, ".") != 0 && strcmp(name, "..") != 0 &&
-           strncmp(name, prefix, strlen(prefix)) == 0;
+    struct names_heard *heard = user;
+    if (strncmp(name, heard->prefix, strlen(heard->prefix)) == 0)
+        heard->is_out_of_memory = !add_name(heard->list, name);
+    return !heard->is_out_of_memory;
 }
 
 sonject_status folder_names_read(struct folder_names *list, struct report *report, const char *path,
                                  const char *prefix)
 {
+    struct names_heard heard = {list, prefix, false};
     memset(list, 0, sizeof *list);
-    DIR *folder = opendir(path);
-    if (!folder)
-        return errno == ENOENT || errno == ENOTDIR ? SONJECT_OK
-                                                   : file_failure(report, path, "read", errno);
+    const int error = folder_hear_names(path, hear_name, &heard);
     sonject_status status = SONJECT_OK;
-    struct dirent *entry;
-    while (status == SONJECT_OK && (errno = 0, entry = readdir(folder)) != NULL)
-        if (is_wanted(entry->d_name, prefix) && !add_name(list, entry->d_name))
-            status = report_out_of_memory(report, path);
-    if (status == SONJECT_OK && errno != 0)
-        status = file_failure(report, path, "read", errno);
-    closedir(folder);
+    if (heard.is_out_of_memory)
+        status = report_out_of_memory(report, path);
+    else if (error != 0 && error != ENOENT && error != ENOTDIR)
+        status = file_failure(report, path, "read", error);
     if (status != SONJECT_OK)
         folder_names_clear(list);
     else if (list->count > 0)

@@ -9,6 +9,7 @@
 
 #include "base/memory.h"
 #include "base/report.h"
+#include "base/system/file_system.h"
 
 /* The message "path: cannot <action>: <reason>" for an errno. Returns STORAGE, or MEMORY for
  * ENOMEM. */
@@ -44,9 +45,6 @@ void folder_tidy(const char *path);
  * names path and the reason (errno text). Errors: STORAGE, MEMORY. */
 sonject_status file_publish(struct report *report, const char *part, const char *path);
 
-/* Removes a part if it is there; never fails. */
-void file_discard(const char *part);
-
 /* Writes a head and bytes to path: a part, then published. Errors: STORAGE, MEMORY. */
 sonject_status file_write_parts(struct report *report, const char *path, const void *head,
                                 size_t head_bytes, const void *bytes, size_t count);
@@ -68,15 +66,9 @@ sonject_status file_read_whole(struct report *report, const char *path, size_t l
 /* Makes the folder and its parents where missing. Errors: STORAGE. */
 sonject_status folder_make(struct report *report, const char *path);
 
-bool file_exists(const char *path);
-
 /* Whether two paths, links followed, are of one file or folder that is there; "" is the working
  * folder. */
 bool paths_are_same(const char *a, const char *b);
-
-/* Opens a regular file for reading, and never waits. NULL with errno if that fails: EISDIR for a
- * folder, ESPIPE for pipes and devices, which may have no end. */
-FILE *byte_file_open(const char *path, uint64_t *bytes);
 
 /* False if the file does not hold as much. */
 bool byte_file_read(FILE *file, uint64_t place, void *bytes, size_t count);
@@ -84,17 +76,9 @@ bool byte_file_read(FILE *file, uint64_t place, void *bytes, size_t count);
 /* Copies count bytes of from to where to stands; false if reading or writing fails. */
 bool byte_file_copy(FILE *from, uint64_t place, uint64_t count, FILE *to);
 
-/* What tells a file from others and from what it was before it was written anew. */
-struct file_identity {
-    uint64_t device, number; /* of the file on it */
-    uint64_t bytes;
-    int64_t changed_s, changed_ns; /* when it last changed */
-};
-
 /* Of a regular file, links followed. Errors: STORAGE (there is none, a folder), INPUT (a pipe or a
  * device). */
-sonject_status file_identify(struct report *report, const char *path,
-                             struct file_identity *identity);
+sonject_status file_identify(struct report *report, const char *path, struct path_facts *facts);
 
 /* The names in a folder. */
 struct folder_names {
@@ -102,7 +86,7 @@ struct folder_names {
     size_t count;
 };
 
-/* Lists what begins with prefix, "." and ".." left out; nothing where there is no such folder. On
+/* Lists what begins with prefix; nothing where there is no such folder. On
  * success to be given to folder_names_clear; on failure nothing is held. Errors: STORAGE, MEMORY
  * (of more than a million names, too). */
 sonject_status folder_names_read(struct folder_names *list, struct report *report, const char *path,
@@ -118,9 +102,6 @@ char *path_join(const char *folder, const char *name);
 /* Writes the same of a name that is formatted. Errors: STORAGE (it is too long). */
 sonject_status path_in(struct report *report, char path[PATH_CAPACITY], const char *folder,
                        const char *format, ...) REPORT_FORMAT(4);
-
-/* The working folder, to be given to free(); NULL with errno where it has no name. */
-char *working_folder(void);
 
 /* path, or the working folder and path, to be given to free(); NULL when memory is out. */
 char *path_absolute(const char *path);

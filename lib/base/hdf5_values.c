@@ -1,10 +1,9 @@
-#define _POSIX_C_SOURCE 200809L
 #include "base/hdf5_values.h"
 
-#include <fcntl.h>
 #include <pthread.h>
 #include <string.h>
-#include <unistd.h>
+
+#include "base/system/file_system.h"
 
 #define TEXT_BYTES_MAX ((size_t)65535)
 
@@ -44,11 +43,8 @@ hid_t hdf5_make_group(hid_t file, const char *path)
 void hdf5_abandon(hid_t file)
 {
     void *handle = NULL;
-    const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
-    if (nowhere >= 0 && H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) >= 0 && handle)
-        dup2(nowhere, *(const int *)handle);
-    if (nowhere >= 0)
-        close(nowhere);
+    if (H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) >= 0 && handle)
+        descriptor_lead_nowhere(*(const int *)handle);
 }
 
 static bool write_scalar(hid_t object, const char *name, hid_t stored, hid_t native,

@@ -169,11 +169,11 @@ sonject_status json_document_read(struct report *report, const char *path, json_
 
 sonject_status file_hash(struct report *report, const char *path, char text[HASH_TEXT_CAPACITY])
 {
-    struct file_identity identity;
+    struct path_facts identity;
     sonject_status status = file_identify(report, path, &identity);
     if (status != SONJECT_OK)
         return status;
-    FILE *file = fopen(path, "rb");
+    FILE *file = file_open(path, "rb");
     if (!file)
         return file_failure(report, path, "open", errno);
     struct hash *hash = hash_begin();
@@ -194,7 +194,7 @@ sonject_status file_hash(struct report *report, const char *path, char text[HASH
     return status;
 }
 
-static json_int_t changed_ns(const struct file_identity *identity)
+static json_int_t changed_ns(const struct path_facts *identity)
 {
     return identity->changed_s * NS_PER_S + identity->changed_ns;
 }
@@ -202,7 +202,7 @@ static json_int_t changed_ns(const struct file_identity *identity)
 sonject_status file_entry(struct report *report, const char *path, const char *name, bool has_time,
                           json_t **entry)
 {
-    struct file_identity identity;
+    struct path_facts identity;
     char hash[HASH_TEXT_CAPACITY];
     *entry = NULL;
     sonject_status status = file_identify(report, path, &identity);
@@ -228,7 +228,7 @@ sonject_status file_entry_holds(struct report *report, const json_t *entry, cons
                                 bool hashes_all, bool *holds)
 {
     struct report ignored = {{0}, NULL, NULL};
-    struct file_identity identity;
+    struct path_facts identity;
     char hash[HASH_TEXT_CAPACITY];
     const char *expected = json_string_value(json_object_get(entry, "xxh3"));
     const json_int_t bytes = whole_of(entry, "bytes");

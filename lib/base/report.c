@@ -1,11 +1,9 @@
-#define _POSIX_C_SOURCE 200809L
 #include "base/report.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/text.h"
 
@@ -104,13 +102,6 @@ void check_length(struct check *check, const char *key, double value_m)
 void check_coordinate(struct check *check, const char *key, double value_m)
 {
     check_within(check, key, value_m, -LENGTH_MAX_M, LENGTH_MAX_M, " m");
-}
-
-double clock_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 const char *sonject_version(void)

@@ -121,7 +121,4 @@ void check_positive_length(struct check *check, const char *key, double value_m)
 void check_length(struct check *check, const char *key, double value_m);
 void check_coordinate(struct check *check, const char *key, double value_m);
 
-/* Wall-clock seconds since some fixed moment; for differences. */
-double clock_seconds(void);
-
 #endif

@@ -90,7 +90,7 @@ sonject_status file_sha256(struct report *report, const char *path, char text[SH
                                    0x9b05688c, 0x1f83d9ab, 0x5be0cd19}};
     uint8_t bytes[4096];
     size_t count;
-    FILE *file = fopen(path, "rb");
+    FILE *file = file_open(path, "rb");
     if (!file)
         return file_failure(report, path, "open", errno);
     while ((count = fread(bytes, 1, sizeof bytes, file)) > 0)

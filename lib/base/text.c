@@ -1,5 +1,6 @@
 #include "base/text.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -137,6 +138,18 @@ bool text_to_count(const char *text, uint64_t *count)
     }
     *count = value;
     return true;
+}
+
+bool contains_ignoring_case(const char *text, const char *needle)
+{
+    for (; *text; text++) {
+        size_t i = 0;
+        while (needle[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)needle[i]))
+            i++;
+        if (!needle[i])
+            return true;
+    }
+    return needle[0] == '\0';
 }
 
 unsigned long text_count_lines(const char *text)

@@ -22,6 +22,9 @@ bool text_to_count(const char *text, uint64_t *count);
  * capacity: at least digits + 10. Returns text. */
 const char *text_of_number(char *text, size_t capacity, double number, int digits);
 
+/* Whether a needle, empty or not, is in the text, whatever the case of its letters. */
+bool contains_ignoring_case(const char *text, const char *needle);
+
 /* How many lines end in the text. */
 unsigned long text_count_lines(const char *text);
 

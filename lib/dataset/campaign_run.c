@@ -7,6 +7,7 @@
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "base/report.h"
+#include "base/system/process.h"
 #include "dataset/data_set.h"
 
 /* A run over images, and how far it is. */

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "dataset/contact_reader.h"
@@ -260,8 +261,8 @@ static void pair_all(struct contact_set *set)
 static char *folder_of_images(const char *folder)
 {
     for (size_t at = strlen(folder); at-- > 0;)
-        if ((at == 0 || folder[at - 1] == '/') && begins(folder + at, "labels") &&
-            (folder[at + 6] == 0 || folder[at + 6] == '/')) {
+        if ((at == 0 || is_divider(folder[at - 1])) && begins(folder + at, "labels") &&
+            (folder[at + 6] == 0 || is_divider(folder[at + 6]))) {
             char *images = copy_text(folder);
             if (images)
                 memcpy(images + at, "images", 6);

@@ -1,7 +1,6 @@
 /* The documents of a whole data set: campaign.json, which says what it is, written by whoever
  * begins it and checked by all others; COCO documents of splits, put together image by image; and
  * dataset.json, the last, so that a folder that has it is complete. */
-#define _POSIX_C_SOURCE 200809L
 #include "dataset/data_set.h"
 
 #include <errno.h>
@@ -9,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include <sonject/version.h>
 
@@ -66,7 +64,7 @@ static sonject_status remove_numbered(struct report *report, const char *path)
             file_discard(file);
     }
     folder_names_clear(&list);
-    rmdir(path);
+    folder_discard(path);
     return SONJECT_OK;
 }
 
@@ -102,7 +100,7 @@ static void remove_all(const struct data_set *set)
         each_folder(&ignored, set->folder, set->split_names[i], UINT32_MAX, remove_numbered);
         if (path_in(&ignored, path, set->folder, "%s", set->split_names[i]) == SONJECT_OK) {
             discard(path, "coco.json");
-            rmdir(path);
+            folder_discard(path);
         }
     }
     discard(set->folder, HEAD_FILE);
@@ -453,7 +451,7 @@ static sonject_status write_coco(const struct data_set *set, size_t split)
     CHECK(path_in(set->report, path, set->folder, "%s/coco.json", set->split_names[split]));
     char *part = file_part_name(path);
     CHECK_MEMORY(set->report, part, "a file name");
-    struct coco_file coco = {set, split, fopen(part, "wb"), 0};
+    struct coco_file coco = {set, split, file_open(part, "wb"), 0};
     sonject_status status =
         coco.file ? write_split(&coco) : file_failure(set->report, path, "write", errno);
     if (coco.file && fclose(coco.file) != 0 && status == SONJECT_OK)

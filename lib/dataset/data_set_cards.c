@@ -107,7 +107,7 @@ static const char *format_of(const char *name)
 static sonject_status add_file(json_t **list, const struct data_set *set, const char *name)
 {
     char path[PATH_CAPACITY], digest[SHA256_TEXT_CAPACITY], size[32];
-    struct file_identity identity;
+    struct path_facts identity;
     CHECK(path_in(set->report, path, set->folder, "%s", name));
     CHECK(file_identify(set->report, path, &identity));
     snprintf(size, sizeof size, "%llu B", (unsigned long long)identity.bytes);

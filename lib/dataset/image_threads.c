@@ -1,13 +1,12 @@
 /* Images of a campaign made side by side. Each thread has a copy of the campaign whose message and
  * stores are its own, and a queue of its own on the device. The caller's thread makes no image: it
  * tells progress and the log's lines, since callbacks belong to it. */
-#define _POSIX_C_SOURCE 200809L
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/memory.h"
+#include "base/system/process.h"
 #include "dataset/campaign.h"
 #include "swath/decoder.h"
 
@@ -124,8 +123,7 @@ static void *make_images(void *user)
  * keep all processors busy by themselves, and take memory. */
 static size_t thread_count(const struct sonject_campaign *campaign, uint64_t images)
 {
-    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    uint64_t largest = 1, count = processors > 1 ? 2 * (uint64_t)processors : 2;
+    uint64_t largest = 1, count = 2 * (uint64_t)processor_count();
     for (size_t i = 0; i < campaign->campaign.swath_count; i++) {
         const struct swath_plan *swath = &campaign->campaign.swaths[i];
         const uint64_t pixels = swath->chip_rows * swath->chip_columns;

@@ -1,4 +1,3 @@
-#define _POSIX_C_SOURCE 200809L
 #include "dataset/run.h"
 
 #include <math.h>
@@ -12,6 +11,7 @@
 #include "base/memory.h"
 #include "base/progress.h"
 #include "base/report.h"
+#include "base/system/process.h"
 #include "inject/impulses.h"
 #include "inject/scene_hash.h"
 #include "schema/scene_file.h"

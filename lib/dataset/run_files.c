@@ -1,11 +1,9 @@
-#define _POSIX_C_SOURCE 200809L
 #include "dataset/run.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
 #include <sonject/run.h>
 #include <sonject/version.h>
@@ -13,6 +11,7 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
+#include "base/system/process.h"
 #include "base/units.h"
 #include "dataset/labels.h"
 #include "image/plot.h"
@@ -281,8 +280,6 @@ uint32_t labels_of_document(const json_t *run)
 sonject_status write_run(struct report *report, const struct run_facts *facts, const char *path)
 {
     const sonject_statistics *statistics = &facts->result->statistics;
-    struct rusage usage;
-    const long kilobytes = getrusage(RUSAGE_SELF, &usage) == 0 ? usage.ru_maxrss : 0;
     json_t *times = JSON_OBJECT(
         {"read", json_number(facts->read_s)}, {"trace", json_number(statistics->trace_s)},
         {"form", json_number(statistics->form_s)}, {"inject", json_number(statistics->inject_s)},
@@ -305,7 +302,7 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
         {"image", json_text(facts->image_name)}, {"labels", labels_document(facts->label_formats)},
         {"times_s", times}, JSON_COUNT(statistics, pings), JSON_COUNT(statistics, rays),
         JSON_COUNT(statistics, ray_queries), JSON_COUNT(statistics, impulses),
-        {"peak_memory_bytes", json_count((uint64_t)kilobytes * 1024)},
+        {"peak_memory_bytes", json_count(peak_memory_bytes())},
         JSON_NUMBER(statistics, noise_floor_db), {"blending", blending_document(statistics)},
         {"numbers", sources_document(facts->scene, statistics)},
         {"input_clipped_pixels", json_count(statistics->input_clipped)},

@@ -196,9 +196,8 @@ static json_t *transfer_document(const struct scene *scene)
 json_t *sources_document(const struct scene *scene, const sonject_statistics *statistics)
 {
     json_t *document = json_object();
-    const char *name = scene->calibration ? strrchr(scene->calibration, '/') : NULL;
     if (scene->calibration)
-        json_add(&document, "calibration", json_text(name ? name + 1 : scene->calibration));
+        json_add(&document, "calibration", json_text(path_name(scene->calibration)));
     if (scene->input_kind == SONJECT_INPUT_FILE)
         json_add(&document, "transfer", transfer_document(scene));
     json_add(&document, "noise_floor_db",

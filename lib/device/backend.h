@@ -54,7 +54,4 @@ sonject_status opencl_open(struct report *report, const sonject_context_params *
 /* Sets what a device is called, its lanes and its units. */
 void device_take_info(struct device *device, const sonject_device_info *info);
 
-/* Whether a needle, empty or not, is in the text, whatever the case of its letters. */
-bool contains_ignoring_case(const char *text, const char *needle);
-
 #endif

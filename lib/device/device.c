@@ -1,25 +1,11 @@
 /* The device that is asked for, and what it does by its own calls. */
-#define _POSIX_C_SOURCE 200809L
 #include "device/device.h"
 
-#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "device/backend.h"
-
-bool contains_ignoring_case(const char *text, const char *needle)
-{
-    for (; *text; text++) {
-        size_t i = 0;
-        while (needle[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)needle[i]))
-            i++;
-        if (!needle[i])
-            return true;
-    }
-    return needle[0] == '\0';
-}
 
 void device_take_info(struct device *device, const sonject_device_info *info)
 {

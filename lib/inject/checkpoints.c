@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/progress.h"
 #include "base/report.h"
+#include "base/system/process.h"
 #include "inject/accuracy.h"
 #include "inject/scene_hash.h"
 #include "trace/checkpoint.h"

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/system/process.h"
 #include "trace/checkpoint.h"
 
 #define PATTERN_FLOOR 1e-6f /* a black pixel's share in view must still be known */

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "base/progress.h"
+#include "base/system/process.h"
 #include "inject/accuracy.h"
 #include "inject/compose.h"
 #include "inject/windows.h"

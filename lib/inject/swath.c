@@ -456,9 +456,8 @@ char *swath_image_name(const struct scene *scene, const struct swath *swath)
 {
     const char *extension = swath->new_extension;
     if (!extension) {
-        const char *dot = strrchr(scene->input_path, '.');
-        const char *slash = strrchr(scene->input_path, '/');
-        extension = dot && (!slash || dot > slash) ? dot : ".tif";
+        const char *dot = strrchr(path_name(scene->input_path), '.');
+        extension = dot ? dot : ".tif";
     }
     char *name = allocate_array(strlen("image") + strlen(extension) + 1, 1);
     if (name)

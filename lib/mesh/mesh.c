@@ -26,7 +26,7 @@ void mesh_options_init(struct mesh_options *options)
         options->axes[axis] = axis + 1;
 }
 
-bool mesh_is_of(const struct mesh *mesh, const struct file_identity *file,
+bool mesh_is_of(const struct mesh *mesh, const struct path_facts *file,
                 const struct mesh_options *options)
 {
     return mesh->file.device == file->device && mesh->file.number == file->number &&
@@ -273,7 +273,7 @@ static void remove_mesh(struct mesh_store *store, size_t number, struct mesh *me
             (store->count - number) * sizeof *store->meshes);
 }
 
-bool mesh_store_take(struct mesh_store *store, const struct file_identity *file,
+bool mesh_store_take(struct mesh_store *store, const struct path_facts *file,
                      const struct mesh_options *options, struct mesh *mesh)
 {
     for (size_t i = 0; i < store->count; i++)

@@ -49,7 +49,7 @@ struct mesh {
 
     struct mesh_hierarchy hierarchy;
     char *name;                          /* of its file; owned */
-    struct file_identity file;           /* as it was before it was read */
+    struct path_facts file;              /* as it was before it was read */
     struct mesh_options options;         /* that it was read with */
     struct mesh_corner_normals *normals; /* hierarchy.leaf_count * MESH_SLOTS; NULL: flat; owned */
 };
@@ -57,7 +57,7 @@ struct mesh {
 void mesh_options_init(struct mesh_options *options);
 
 /* Whether a mesh read with these options from that file would be this one. */
-bool mesh_is_of(const struct mesh *mesh, const struct file_identity *file,
+bool mesh_is_of(const struct mesh *mesh, const struct path_facts *file,
                 const struct mesh_options *options);
 
 /* Reads a mesh file: STL, OBJ, PLY. Equal vertices become one (after rounding to single precision
@@ -109,7 +109,7 @@ struct mesh_store {
 
 /* Moves a mesh of that file, as it now is, with those options out of the store into *mesh. False,
  * with nothing done, if there is none. */
-bool mesh_store_take(struct mesh_store *store, const struct file_identity *file,
+bool mesh_store_take(struct mesh_store *store, const struct path_facts *file,
                      const struct mesh_options *options, struct mesh *mesh);
 
 /* Moves a mesh into the store, which drops the oldest where it is full. *mesh is empty then. */

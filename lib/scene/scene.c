@@ -75,7 +75,7 @@ sonject_status scene_append_part(struct scene *scene, struct report *report,
 static sonject_status append_mesh(struct scene *scene, struct report *report, const char *path,
                                   const struct mesh_options *options, bool allows_open)
 {
-    struct file_identity file;
+    struct path_facts file;
     if (scene->mesh_count >= SCENE_MESHES_MAX)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "meshes must be at most %d in a scene; split it", SCENE_MESHES_MAX);
@@ -99,7 +99,7 @@ sonject_status scene_share_mesh(struct scene *scene, struct report *report, cons
                                 const struct mesh_options *options, bool allows_open,
                                 uint32_t *number)
 {
-    struct file_identity file;
+    struct path_facts file;
     CHECK(file_identify(report, path, &file));
     for (*number = 0; *number < scene->mesh_count; ++*number)
         if (mesh_is_of(&scene->meshes[*number], &file, options))

@@ -2,7 +2,6 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/file.h"
 #include "base/memory.h"
@@ -66,7 +65,7 @@ static sonject_status open_at(struct report *report, struct decoded_image *image
                               const char *array)
 {
     struct decoder_reply reply = {0};
-    struct file_identity identity;
+    struct path_facts identity;
     image->decoder = report->host ? report->host->decoder : &image->own;
     image->path = copy_text(path);
     image->array = array ? copy_text(array) : NULL;
@@ -109,9 +108,9 @@ static sonject_status ask(struct report *report, const struct decoded_image *ima
     struct decoder *decoder = image->decoder;
     struct decoder_reply reply;
     size_t count = 0;
-    if (image->handle == 0 ||
-        (!decoder->is_in_process && (decoder->process == 0 || decoder->starts != image->start ||
-                                     decoder->owner != (long)getpid())))
+    if (image->handle == 0 || (!decoder->is_in_process &&
+                               (decoder->child.number == 0 || decoder->starts != image->start ||
+                                decoder->child.owner != process_number())))
         return input_failure(report, image->path,
                              "the program that reads it ended before: copy it again");
     request->handle = image->handle;
@@ -262,7 +261,7 @@ static sonject_status copy_with_patch(struct report *report, const struct swath_
                                       const struct swath_copy *copy)
 {
     struct swath_copy quiet = *copy;
-    FILE *out = fopen(copy->part, "wb");
+    FILE *out = file_open(copy->part, "wb");
     if (!out)
         return file_failure(report, copy->path, "write", errno);
     quiet.progress = NULL;

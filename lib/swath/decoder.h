@@ -2,7 +2,7 @@
  * sonject-decoder, within limits of memory and time: a file that ends it ends one call, and the
  * next one starts another child. A context has one at most (or none: it decodes in this process).
  *
- * The two pass records over a socket: a request and its bytes there, a reply and its bytes back,
+ * The two pass records over a channel: a request and its bytes there, a reply and its bytes back,
  * one after the other. Nothing that comes back is believed. */
 #ifndef SONJECT_SWATH_DECODER_H
 #define SONJECT_SWATH_DECODER_H
@@ -14,9 +14,11 @@
 #include <sonject/context.h>
 
 #include "base/report.h"
+#include "base/system/child.h"
+#include "base/system/process.h"
 #include "image/raster.h"
 
-#define DECODER_PROGRAM      "sonject-decoder"
+#define DECODER_PROGRAM      "sonject-decoder" PROGRAM_ENDING
 #define DECODER_STRANGER     2                   /* its exit status if it is not this library's */
 #define DECODER_MEMORY_BYTES ((uint64_t)2 << 30) /* of the child, all told */
 #define DECODER_CPU_S        60                  /* for a request */
@@ -62,10 +64,10 @@ char *decoder_path(void);
 /* What the child's first argument must be. */
 void decoder_stamp(char stamp[64]);
 
-/* Bytes over the socket; false with errno where the other end is gone or silent for too long, or
- * the caller has cancelled (ECANCELED). */
-bool decoder_send(int descriptor, const void *bytes, size_t count);
-bool decoder_receive(const struct report *report, int descriptor, void *bytes, size_t count);
+/* Bytes from the other; false with errno where it is gone (0) or silent for too long, or the caller
+ * has cancelled (ECANCELED). */
+bool decoder_receive(const struct report *report, const struct channel *channel, void *bytes,
+                     size_t count);
 
 /* The files that one decoder has open, in the process that decodes. */
 struct decoder_state;
@@ -82,8 +84,7 @@ sonject_status decoder_answer(struct report *report, struct decoder_state *state
 struct decoder {
     bool is_in_process;
     struct decoder_state *state; /* in this process; NULL: none is needed yet */
-    long process, owner;         /* 0: none is started; who started it */
-    int socket;
+    struct child child;
     uint32_t starts; /* how often */
 };
 

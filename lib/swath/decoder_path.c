@@ -1,10 +1,6 @@
-#define _GNU_SOURCE /* dladdr, readlink */
 #include "swath/decoder.h"
 
-#include <dlfcn.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "base/file.h"
 #include "base/memory.h"
@@ -17,22 +13,9 @@ char *decoder_path(void)
 #else
 static const char here;
 
-/* Of the library, or the program that it is part of, which may have been found by its name alone;
- * for free(), NULL when memory is out. */
-static char *folder_of_library(void)
-{
-    Dl_info library;
-    char program[4096] = "";
-    const bool is_named =
-        dladdr(&here, &library) != 0 && library.dli_fname && strchr(library.dli_fname, '/');
-    if (!is_named && readlink("/proc/self/exe", program, sizeof program - 1) < 0)
-        program[0] = '\0';
-    return path_folder(is_named ? library.dli_fname : program);
-}
-
 char *decoder_path(void)
 {
-    char *beside = folder_of_library();
+    char *beside = folder_of_code(&here);
     char *within = beside ? path_join(beside, "sonject") : NULL;
     char *places[3] = {within ? path_join(within, DECODER_PROGRAM) : NULL,
                        within ? path_join(beside, DECODER_PROGRAM) : NULL,

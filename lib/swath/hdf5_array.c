@@ -4,8 +4,6 @@
  * together, rows are MATLAB's, the second index. Refused are a damaged file, no such data set or
  * several (lists them), other types, data in other files, filters that sonject does not know or
  * that change numbers. Links are not followed. */
-#define _POSIX_C_SOURCE   200809L
-#define _FILE_OFFSET_BITS 64
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -104,7 +104,7 @@ static sonject_status begin_decoding(struct report *report, struct jpeg_image *i
     end_decoding(image);
     image->next_row = 0;
     errno = 0;
-    FILE *file = fopen(image->path, "rb");
+    FILE *file = file_open(image->path, "rb");
     if (!file)
         return input_failure(report, image->name, "cannot be opened");
     image->jpeg.err = listen(&image->listener, file);
@@ -299,7 +299,7 @@ sonject_status jpeg_encode(struct report *report, const struct image_encoding *e
                               "%s: JPEG keeps no more than %d bytes of notes: write .tif or .png",
                               encoding->name, COMMENT_MAX);
     errno = 0;
-    FILE *file = fopen(encoding->path, "wb");
+    FILE *file = file_open(encoding->path, "wb");
     output.jpeg.err = listen(&output.listener, file);
     output.listener.fault.error = errno;
     if (file && write_head(&output))

@@ -3,8 +3,6 @@
  * complex. Rows and columns are MATLAB's. Copies differ from their source in the array's changed
  * numbers alone; all other variables keep every byte. A variable that is compressed, or whose
  * numbers MATLAB had packed into a smaller type than their own, is written anew. */
-#define _POSIX_C_SOURCE   200809L
-#define _FILE_OFFSET_BITS 64
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -428,8 +426,7 @@ static bool move_subsystem(const struct swath_file *file, FILE *out, uint64_t by
         bytes == variable->bytes)
         return true;
     number_to_bytes(place - variable->bytes + bytes, word, 8, file->mat->is_big_endian);
-    return fseeko(out, SUBSYSTEM_PLACE, SEEK_SET) == 0 &&
-           fwrite(word, 1, sizeof word, out) == sizeof word;
+    return byte_file_seek(out, SUBSYSTEM_PLACE) && fwrite(word, 1, sizeof word, out) == sizeof word;
 }
 
 static sonject_status write_copy(struct report *report, const struct swath_file *file,
@@ -455,7 +452,7 @@ static sonject_status copy_mat(struct report *report, const struct swath_file *f
     size_t bytes = 0;
     FILE *out = NULL;
     sonject_status status = make_element(report, file, copy, &element, &bytes);
-    if (status == SONJECT_OK && !(out = fopen(copy->part, "w+b")))
+    if (status == SONJECT_OK && !(out = file_open(copy->part, "w+b")))
         status = file_failure(report, copy->path, "write", errno);
     THEN(status, write_copy(report, file, copy, out, element, bytes));
     free(element);

@@ -88,7 +88,7 @@ static sonject_status begin_decoding(struct report *report, struct png_image *im
     end_decoding(image);
     image->next_row = 0;
     errno = 0;
-    image->file = fopen(image->path, "rb");
+    image->file = file_open(image->path, "rb");
     if (!image->file)
         return input_failure(report, image->name, "cannot be opened");
     image->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &image->fault, hear, ignore);
@@ -332,7 +332,7 @@ sonject_status png_encode(struct report *report, const struct image_encoding *en
     errno = 0;
     output.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &output.fault, hear, ignore);
     output.info = output.png ? png_create_info_struct(output.png) : NULL;
-    output.file = output.info ? fopen(encoding->path, "wb") : NULL;
+    output.file = output.info ? file_open(encoding->path, "wb") : NULL;
     output.fault.error = output.info ? errno : ENOMEM;
     if (output.file && write_head(&output))
         status = encode_rows(report, encoding, write_rows, &output, &is_written);

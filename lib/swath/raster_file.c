@@ -1,14 +1,13 @@
-#define _POSIX_C_SOURCE 200809L /* strcasecmp */
 #include "swath/raster_file.h"
 
 #include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "swath/image_library.h"
 #include "swath/swath_format.h"
 
@@ -120,7 +119,8 @@ static const struct new_format *format_of(const char *path)
 {
     const char *dot = strrchr(path, '.');
     for (size_t i = 0; dot && i < sizeof new_formats / sizeof *new_formats; i++)
-        if (strcasecmp(dot, new_formats[i].extension) == 0)
+        if (strlen(dot) == strlen(new_formats[i].extension) &&
+            contains_ignoring_case(dot, new_formats[i].extension))
             return &new_formats[i];
     return NULL;
 }

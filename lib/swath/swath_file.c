@@ -1,5 +1,3 @@
-#define _POSIX_C_SOURCE   200809L
-#define _FILE_OFFSET_BITS 64
 #include "swath/swath_file.h"
 
 #include <errno.h>
@@ -264,7 +262,7 @@ static sonject_status exchange_lines(struct report *report, const struct swath_f
             status = samples_exchange(report, file->path, &file->layout, &stored, &part, region,
                                       pixels, out != NULL);
         if (status == SONJECT_OK && out &&
-            (fseeko(out, (off_t)place, SEEK_SET) != 0 || fwrite(line, 1, bytes, out) != bytes))
+            (!byte_file_seek(out, place) || fwrite(line, 1, bytes, out) != bytes))
             status = file_failure(report, copy->path, "write", errno);
     }
     free(line);
@@ -280,7 +278,7 @@ sonject_status sample_lines_read(struct report *report, struct swath_file *file,
 sonject_status sample_lines_copy(struct report *report, const struct swath_file *file,
                                  const struct swath_copy *copy)
 {
-    FILE *out = fopen(copy->part, "w+b");
+    FILE *out = file_open(copy->part, "w+b");
     if (!out)
         return file_failure(report, copy->path, "write", errno);
     sonject_status status = swath_copy_bytes(report, file, copy, 0, file->bytes, out);

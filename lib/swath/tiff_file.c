@@ -293,7 +293,7 @@ static sonject_status close_image(struct report *report, void *opened)
 static sonject_status open_file(struct report *report, struct tiff_image *image, const char *name,
                                 const char *path, struct image_facts *facts)
 {
-    struct file_identity identity;
+    struct path_facts identity;
     const char *description = NULL;
     image->name = copy_text(name);
     image->path = copy_text(path);

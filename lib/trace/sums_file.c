@@ -48,7 +48,7 @@ static sonject_status open_part(struct sums_writer *writer, const char *path)
 {
     writer->private_name = file_part_name(path);
     CHECK_MEMORY(writer->report, writer->private_name, "a file name");
-    writer->file = fopen(writer->private_name, "wb");
+    writer->file = file_open(writer->private_name, "wb");
     if (writer->file)
         return SONJECT_OK;
     const int error = errno;
@@ -338,12 +338,12 @@ static sonject_status read_all(struct sums_file *file, struct report *report, FI
 
 sonject_status sums_file_open(struct sums_file *file, struct report *report, const char *path)
 {
-    struct file_identity identity;
+    struct path_facts identity;
     memset(file, 0, sizeof *file);
     CHECK(file_identify(report, path, &identity));
     file->path = copy_text(path);
     CHECK_MEMORY(report, file->path, "a file name");
-    FILE *opened = fopen(path, "rb");
+    FILE *opened = file_open(path, "rb");
     const sonject_status status = opened ? read_all(file, report, opened, identity.bytes)
                                          : file_failure(report, path, "read", errno);
     if (opened)
@@ -394,9 +394,9 @@ sonject_status sums_file_runs(const struct sums_file *file, struct report *repor
     if (record >= file->head.records)
         return refuse(report, file->path);
     const struct sums_block *sums = &file->sums[record];
-    FILE *opened = fopen(file->path, "rb");
+    FILE *opened = file_open(file->path, "rb");
     sonject_status status =
-        opened && fseek(opened, (long)(sums->at - sizeof block), SEEK_SET) == 0
+        opened && byte_file_seek(opened, sums->at - sizeof block)
             ? read_block(report, file->path, opened, sizeof block + sums->bytes, &block, &content)
             : file_failure(report, file->path, "read", errno);
     if (status == SONJECT_OK &&

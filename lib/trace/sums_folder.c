@@ -1,9 +1,7 @@
 /* A run's folder of checkpoints. */
-#define _POSIX_C_SOURCE 200809L
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/file.h"
 #include "base/memory.h"
@@ -120,7 +118,7 @@ void sums_folder_remove(const char *path)
         file_discard(listing.files[i].path);
     listing_clear(&listing);
     folder_tidy(path);
-    rmdir(path);
+    folder_discard(path);
 }
 
 /* By where they begin; what ends there too comes before what goes on from there. */

@@ -38,3 +38,14 @@ def test_no_room_calls_one_above_it():
     upwards = {f"{room} calls {symbol} of {defined[symbol]}" for room, symbol in wanted
                if symbol in defined and ROOMS.index(defined[symbol]) < ROOMS.index(room)}
     assert not upwards
+
+
+def test_one_folder_knows_the_operating_system():
+    """Its macros, and headers that C does not have; the interface asks how Windows exports."""
+    names = r"_(POSIX|XOPEN|GNU|BSD|DEFAULT)_[A-Z_]*SOURCE|_WIN(32|64)|__(linux|unix|APPLE)|" \
+            r"<(unistd|fcntl|dirent|dlfcn|poll|sched|spawn|windows|io|sys/\w+)\.h>"
+    found = {str(path.relative_to(LIB.parent)) for folder in ("lib", "tools", "include", "kernels")
+             for path in (LIB.parent / folder).rglob("*.[ch]")
+             if re.search(names, path.read_text(encoding="utf-8"))}
+    assert {name for name in found if not name.startswith("lib/base/system/")} == {
+        "include/sonject/export.h"}

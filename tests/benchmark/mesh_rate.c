@@ -11,6 +11,7 @@
 #include <time.h>
 
 #include "base/report.h"
+#include "base/system/process.h"
 #include "benchmark_scene.h"
 #include "kernel/mesh_native.h"
 #include "kernel/mesh_probe.h"

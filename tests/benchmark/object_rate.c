@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "base/report.h"
+#include "base/system/process.h"
 #include "benchmark_scene.h"
 #include "inject/injection.h"
 #include "trace/chains.h"

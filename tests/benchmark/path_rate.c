@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/report.h"
+#include "base/system/process.h"
 #include "benchmark_scene.h"
 #include "trace/chains.h"
 #include "trace/fan.h"

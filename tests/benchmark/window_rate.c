@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/system/process.h"
 #include "benchmark_scene.h"
 #include "inject/injection.h"
 

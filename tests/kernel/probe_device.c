@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/report.h"
+#include "base/system/process.h"
 #include "kernel/mesh_probe.h"
 
 static void require(const struct report *report, int is_well, const char *what)

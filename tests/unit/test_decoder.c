@@ -116,7 +116,7 @@ static void what_was_open_in_a_dead_decoder_is_refused(void **state)
     const char *path = begin(&host, *state);
     for (int i = 0; i < 2; i++)
         EXPECT_OK(&host.report, open_image(&host, path, &files[i]));
-    assert_int_equal(kill((pid_t)host.decoder.process, SIGKILL), 0);
+    assert_int_equal(kill((pid_t)host.decoder.child.number, SIGKILL), 0);
     for (int i = 0; i < 2; i++) {
         assert_int_equal(read_image(&host, files[i]), SONJECT_ERROR_INPUT);
         expect_says(&host, "a.h5");
@@ -141,7 +141,7 @@ static void more_samples_than_a_file_can_hold_are_refused(void **state)
 static rlim_t limit_of(const struct host *host, enum __rlimit_resource resource)
 {
     struct rlimit limits;
-    assert_int_equal(prlimit((pid_t)host->decoder.process, resource, NULL, &limits), 0);
+    assert_int_equal(prlimit((pid_t)host->decoder.child.number, resource, NULL, &limits), 0);
     return limits.rlim_cur;
 }
 
@@ -158,7 +158,7 @@ static void the_child_has_limits_and_nothing_of_the_host(void **state)
 #ifndef IS_SANITIZED
     assert_int_equal(limit_of(&host, RLIMIT_AS), DECODER_MEMORY_BYTES);
 #endif
-    snprintf(list, sizeof list, "/proc/%ld/fd", host.decoder.process);
+    snprintf(list, sizeof list, "/proc/%ld/fd", host.decoder.child.number);
     assert_int_equal(count_entries(list), 3);
     close(kept);
     end(&host);
@@ -177,7 +177,7 @@ static void the_child_ends_with_its_host(void **state)
     const pid_t between = fork();
     if (between == 0) {
         const bool is_read = use_file(&host, path) == SONJECT_OK;
-        const ssize_t told = write(ends[1], &host.decoder.process, sizeof process);
+        const ssize_t told = write(ends[1], &host.decoder.child.number, sizeof process);
         _exit(is_read && told == sizeof process ? 0 : 1);
     }
     int status = -1;
@@ -209,7 +209,7 @@ static void a_caller_may_end_the_wait_for_the_child(void **state)
     host.lent.progress = stop_now;
     host.lent.progress_user = &asked;
     strcpy(host.lent.stage, "reading");
-    assert_int_equal(kill((pid_t)host.decoder.process, SIGSTOP), 0);
+    assert_int_equal(kill((pid_t)host.decoder.child.number, SIGSTOP), 0);
     assert_int_equal(read_image(&host, file), SONJECT_CANCELLED);
     assert_int_equal(asked, 1);
     expect_no_child();
@@ -238,7 +238,7 @@ static void a_run_may_be_ended_while_its_image_is_read(void **state)
     EXPECT_OK(&context->report, sonject_scene_read(context, path, NULL, &scene));
     EXPECT_OK(&context->report, sonject_check(context, scene, &told));
     sonject_text_release(&told);
-    assert_int_equal(kill((pid_t)context->decoder.process, SIGSTOP), 0);
+    assert_int_equal(kill((pid_t)context->decoder.child.number, SIGSTOP), 0);
     params.folder = temporary_file(*state, "result");
     assert_int_equal(sonject_run(context, scene, &params, stop_now, &asked, NULL),
                      SONJECT_CANCELLED);

@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/system/process.h"
 #include "device/native/native.h"
 
 #define HOSTS    4

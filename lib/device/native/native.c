@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/system/process.h"
+#include "base/text.h"
 #include "device/backend.h"
 #include "device/native/native.h"
 

@@ -9,9 +9,6 @@
 
 #include "device/native/kernel.h"
 
-/* Processors that this process may run on. */
-uint32_t processor_count(void);
-
 /* The threads of this process are kept for as long as a device uses them. */
 void threads_retain(void);
 void threads_release(void);

@@ -1,15 +1,12 @@
 /* Threads that run launches. Each launch is run by its caller, too, so that none waits for a thread
  * to be free, and a system that gives no threads is slow but right. */
-#define _GNU_SOURCE
 #include <fenv.h>
 #include <pthread.h>
-#include <sched.h>
-#include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "base/system/process.h"
 #include "device/native/native.h"
 
 #define THREADS_MAX 256
@@ -40,14 +37,6 @@ static struct {
 } pool = {.lock = PTHREAD_MUTEX_INITIALIZER,
           .has_work = PTHREAD_COND_INITIALIZER,
           .has_ended = PTHREAD_COND_INITIALIZER};
-
-uint32_t processor_count(void)
-{
-    cpu_set_t set; /* a batch system gives a job few of many */
-    const long count = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set)
-                                                                   : sysconf(_SC_NPROCESSORS_ONLN);
-    return count < 1 ? 1 : count > THREADS_MAX ? THREADS_MAX : (uint32_t)count;
-}
 
 /* The next run of work-items: long ones first, since each costs a little to begin, and single ones
  * in the end, that all threads end together. Returns false where all are begun. */
@@ -123,7 +112,7 @@ static void begin_child(void)
 
 static void watch_forks(void)
 {
-    pthread_atfork(NULL, NULL, begin_child);
+    forks_watch(begin_child);
 }
 
 void threads_retain(void)
@@ -132,7 +121,7 @@ void threads_retain(void)
     pthread_once(&once, watch_forks);
     pthread_mutex_lock(&pool.lock);
     if (pool.users++ == 0)
-        pool.most = processor_count() - 1;
+        pool.most = processor_count() < THREADS_MAX ? processor_count() - 1 : THREADS_MAX;
     pthread_mutex_unlock(&pool.lock);
 }
 
@@ -158,21 +147,14 @@ void threads_release(void)
     pthread_mutex_unlock(&pool.lock);
 }
 
-/* Threads for a job, as long as those that wait do not suffice. Signals are the host's threads' to
- * receive. With the lock. */
+/* Threads for a job, as long as those that wait do not suffice. With the lock. */
 static void start_threads(uint32_t wanted)
 {
-    sigset_t all, before;
-    if (pool.waiting >= wanted || pool.count >= pool.most || pool.is_ending)
-        return;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    while (pool.waiting < wanted && pool.count < pool.most &&
-           pthread_create(&pool.threads[pool.count], NULL, serve, NULL) == 0) {
+    while (!pool.is_ending && pool.waiting < wanted && pool.count < pool.most &&
+           thread_start(&pool.threads[pool.count], serve, NULL)) {
         pool.count++;
         wanted--;
     }
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
 }
 
 static struct job make_job(uint32_t most, native_function *run,

@@ -1,17 +1,17 @@
 /* Finding and opening OpenCL devices, and what a process has one of. */
-#define _POSIX_C_SOURCE 200809L
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/memory.h"
+#include "base/system/process.h"
+#include "base/text.h"
 #include "device/opencl/opencl.h"
 
 #define DEVICES_MAX 64
 
-static pid_t process_of_driver; /* 0: no call was made yet; atomic */
+static long process_of_driver; /* 0: no call was made yet; atomic */
 static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
 static struct shared_device *devices_in_use;
 
@@ -83,8 +83,8 @@ sonject_status opencl_answer(struct report *report, const struct device *device,
  * its parent held. */
 sonject_status driver_claim(struct report *report)
 {
-    pid_t first = 0;
-    const pid_t process = getpid();
+    long first = 0;
+    const long process = process_number();
     if (__atomic_compare_exchange_n(&process_of_driver, &first, process, false, __ATOMIC_SEQ_CST,
                                     __ATOMIC_SEQ_CST) ||
         first == process)
@@ -116,8 +116,9 @@ void host_context_retain(struct report *report, void *opencl_context)
 
 void host_context_release(void *opencl_context)
 {
-    const pid_t first = __atomic_load_n(&process_of_driver, __ATOMIC_SEQ_CST);
-    const bool is_inherited = first != 0 && first != getpid(); /* then nothing may be released */
+    const long first = __atomic_load_n(&process_of_driver, __ATOMIC_SEQ_CST);
+    const bool is_inherited =
+        first != 0 && first != process_number(); /* then nothing may be released */
     if (opencl_context && !is_inherited)
         clReleaseContext(opencl_context);
 }

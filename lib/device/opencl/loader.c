@@ -1,12 +1,10 @@
 /* OpenCL's functions, handed on to its library, which the first call loads: no process needs it
  * that does not ask for OpenCL's devices. Where there is none, no platform is found. */
-#include <dlfcn.h>
 #include <pthread.h>
 #include <string.h>
 
+#include "base/system/process.h"
 #include "device/opencl/opencl.h"
-
-#define LIBRARY "libOpenCL.so.1"
 
 /* NULL: there is none. It stays loaded; one that could not be loaded, for want of memory say, is
  * tried again. */
@@ -16,8 +14,8 @@ static void *find(const char *name)
     static void *library;
     pthread_mutex_lock(&one_at_a_time);
     if (!library)
-        library = dlopen(LIBRARY, RTLD_NOW | RTLD_LOCAL);
-    void *function = library ? dlsym(library, name) : NULL;
+        library = library_load("OpenCL", 1);
+    void *function = library ? library_function(library, name) : NULL;
     pthread_mutex_unlock(&one_at_a_time);
     return function;
 }

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/report.h"
+#include "base/system/process.h"
 #include "device/opencl/opencl.h"
 
 #define OPTIONS_CAPACITY 256
