@@ -145,12 +145,12 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
         const float chance = echo->chance[lane];
         const int strip = echo->strip[lane] - chains->tally_first_strip;
         const int reverse = echo->reverse_strip[lane] - chains->tally_first_strip;
-        GLOBAL TALLY *lines = tallies + (long)plane * chains->tally_strips * fan->bins;
+        GLOBAL TALLY *lines = tallies + (PLACE)plane * chains->tally_strips * fan->bins;
         if (strip >= 0 && strip < chains->tally_strips)
-            tally_shares(lines + (long)strip * fan->bins, fan->bins, 1, echo->bin[lane],
+            tally_shares(lines + (PLACE)strip * fan->bins, fan->bins, 1, echo->bin[lane],
                          echo->later[lane], energy, chance, &outcome->faults);
         if (reverse >= 0 && reverse < chains->tally_strips)
-            tally_shares(lines + (long)reverse * fan->bins, fan->bins, 1, echo->bin[lane],
+            tally_shares(lines + (PLACE)reverse * fan->bins, fan->bins, 1, echo->bin[lane],
                          echo->later[lane], energy, chance, &outcome->faults);
     }
     outcome->impulses += (RECORD_WORD)count;

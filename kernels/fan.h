@@ -72,7 +72,7 @@ FUNCTION vfloat refraction_gain(const struct fan_record *fan, const struct fan_r
  * the kernel or in several. */
 FUNCTION int strip_of_item(const struct fan_record *fan, int item)
 {
-    const long turn = (long)fan->first_turn + item / fan->segments;
+    const PLACE turn = (PLACE)fan->first_turn + item / fan->segments;
     return (int)(turn * fan->strip_stride % fan->strips);
 }
 

@@ -3,16 +3,18 @@
 #ifndef SONJECT_KERNELS_LAYOUT_H
 #define SONJECT_KERNELS_LAYOUT_H
 
-/* Types of their members. */
+/* Types of their members, of the sums, and of places in these. */
 #ifdef __OPENCL_C_VERSION__
 #define RECORD_INT  int
 #define RECORD_WORD uint
 #define TALLY       long
+#define PLACE       long
 #else
 #include <stdint.h>
 #define RECORD_INT  int32_t
 #define RECORD_WORD uint32_t
 #define TALLY       int64_t
+#define PLACE       int64_t
 #endif
 
 /* Programs are built in two variants. Most scenes are plain: they have neither meshes nor relief

@@ -7,7 +7,7 @@ __kernel void trace_chains(__global const struct fan_record *fan_buffer,
                            __global const struct chain_record *chains,
                            __global const struct object_record *objects,
                            __global const struct sphere_record *spheres, __global const float *map,
-                           __global long *tallies, __global struct outcome_record *outcomes)
+                           __global TALLY *tallies, __global struct outcome_record *outcomes)
 {
     const struct fan_record fan = *fan_buffer;
     const int strip = strip_of_item(&fan, (int)get_global_id(0));

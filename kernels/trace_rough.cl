@@ -4,8 +4,8 @@
 __kernel void trace_rough(__global const struct fan_record *fan_buffer,
                           __global const struct ray_piece_record *pieces,
                           __global const struct object_record *objects, __global const float *map,
-                          __global const float *edges, __global long *seabed, __global long *tiles,
-                          __global struct outcome_record *outcomes)
+                          __global const float *edges, __global TALLY *seabed,
+                          __global TALLY *tiles, __global struct outcome_record *outcomes)
 {
     const struct fan_record fan = *fan_buffer;
     const int strip = strip_of_item(&fan, (int)get_global_id(0));

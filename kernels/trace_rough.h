@@ -73,7 +73,7 @@ FUNCTION GLOBAL TALLY *tile_line(GLOBAL const struct object_record *object, GLOB
     if (row < 0 || row >= object->tile_strips)
         return 0;
     return tiles + object->tile_offset +
-           ((long)plane * object->tile_strips + row) * object->tile_bins;
+           ((PLACE)plane * object->tile_strips + row) * object->tile_bins;
 }
 
 /* Where a ray of a strip tallies. */
@@ -131,7 +131,7 @@ FUNCTION void tally_rough_seabed(const struct fan_record *fan,
         return;
     const float quanta =
         echo->seabed[lane] * map_value(fan, map, echo->row[lane], echo->column[lane]);
-    tally_shares(tallies->seabed + (long)strip * fan->bins, fan->bins, tallies->is_shared, bin,
+    tally_shares(tallies->seabed + (PLACE)strip * fan->bins, fan->bins, tallies->is_shared, bin,
                  echo->seabed_later[lane], quanta, echo->chance[lane], &outcome->faults);
     outcome->impulses += object < 0;
     if (object >= 0)

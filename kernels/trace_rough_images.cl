@@ -4,7 +4,8 @@
 
 __kernel void trace_rough_images(__global const struct fan_record *fan_buffer,
                                  __global const struct ray_piece_record *pieces,
-                                 __global const struct object_record *objects, __global long *tiles,
+                                 __global const struct object_record *objects,
+                                 __global TALLY *tiles,
                                  __global const struct image_pair_record *pair,
                                  __global struct outcome_record *outcomes)
 {

@@ -3,7 +3,7 @@
 
 __kernel void trace_smooth(__global const struct fan_record *fan_buffer,
                            __global const struct ray_piece_record *pieces,
-                           __global const struct object_record *objects, __global long *tally,
+                           __global const struct object_record *objects, __global TALLY *tally,
                            __global struct outcome_record *outcomes)
 {
     const struct fan_record fan = *fan_buffer;

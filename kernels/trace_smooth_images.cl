@@ -5,7 +5,7 @@
 __kernel void trace_smooth_images(__global const struct fan_record *fan_buffer,
                                   __global const struct ray_piece_record *pieces,
                                   __global const struct object_record *objects,
-                                  __global long *tally,
+                                  __global TALLY *tally,
                                   __global const struct image_pair_record *pair,
                                   __global struct outcome_record *outcomes)
 {

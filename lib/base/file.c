@@ -31,8 +31,8 @@ sonject_status file_failure(struct report *report, const char *path, const char 
 
 bool file_error_is_of_system(int error)
 {
-    return error == EIO || error == ENXIO || error == ENODEV || error == ESTALE ||
-           error == ETIMEDOUT || error == EMFILE || error == ENFILE || error == ENOMEM;
+    return error_is_of_disk(error) || error == ENXIO || error == ENODEV || error == EMFILE ||
+           error == ENFILE || error == ENOMEM;
 }
 
 static sonject_status refuse_endless(struct report *report, const char *path)
@@ -51,9 +51,9 @@ sonject_status file_refuse(struct report *report, const char *path, int error)
 
 sonject_status file_check_disk(struct report *report, const char *path, sonject_status status)
 {
-    const bool is_of_disk = errno == EIO || errno == ESTALE || errno == ETIMEDOUT;
-    return status == SONJECT_ERROR_INPUT && is_of_disk ? file_failure(report, path, "read", errno)
-                                                       : status;
+    return status == SONJECT_ERROR_INPUT && error_is_of_disk(errno)
+               ? file_failure(report, path, "read", errno)
+               : status;
 }
 
 /* The last character that divides a path into parts; NULL: there is none. */

@@ -2,13 +2,17 @@
 
 import os
 import pathlib
+import subprocess
 import sys
 
 
 def main() -> None:
-    """Becomes the program beside this module."""
-    program = pathlib.Path(__file__).resolve().with_name("sonject")
+    """Runs the program beside this module in place of this one."""
+    is_windows = sys.platform == "win32"
+    program = pathlib.Path(__file__).resolve().with_name("sonject.exe" if is_windows else "sonject")
     try:
+        if is_windows:  # where a process cannot become another
+            sys.exit(subprocess.call([program, *sys.argv[1:]]))
         os.execv(program, ["sonject", *sys.argv[1:]])
     except OSError as error:
         sys.exit(

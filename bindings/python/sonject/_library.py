@@ -15,7 +15,7 @@ from ._interface import FUNCTIONS, VERSION
 
 def _file_names() -> list[str]:
     if sys.platform == "win32":
-        return ["sonject.dll", "sonject-0.dll", "libsonject-0.dll"]
+        return ["libsonject.dll", "libsonject-0.dll"]
     if sys.platform == "darwin":
         return ["libsonject.0.dylib", "libsonject.dylib"]
     return ["libsonject.so.0", "libsonject.so"]
@@ -25,7 +25,7 @@ def _candidates() -> Iterator[str]:
     """Names to load, in order: SONJECT_LIBRARY alone if it is set, beside the package, system."""
     chosen = os.environ.get("SONJECT_LIBRARY")
     if chosen:
-        # The library looks for its module of image files beside itself, wherever we go meanwhile.
+        # The library looks for its decoder beside itself, wherever we go meanwhile.
         yield os.path.abspath(chosen) if os.path.dirname(chosen) else chosen
         return
     package = pathlib.Path(__file__).resolve().parent

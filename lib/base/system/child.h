@@ -12,6 +12,7 @@
 /* One end of a channel, as the system has it. */
 struct channel {
     intptr_t end;
+    int silence_s; /* after which sending fails */
     void *pending; /* what Windows waits for; NULL: all calls wait */
 };
 

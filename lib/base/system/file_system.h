@@ -38,6 +38,9 @@ FILE *byte_file_open(const char *path, uint64_t *bytes);
 /* False with errno if that fails. */
 bool byte_file_seek(FILE *file, uint64_t place);
 
+/* Where it is read or written next; UINT64_MAX with errno if that is not known. */
+uint64_t byte_file_place(FILE *file);
+
 /* Takes the place of the file `to`, if there is one, once all bytes are on disk. */
 int file_replace(const char *from, const char *to);
 
@@ -60,6 +63,9 @@ char *working_folder(void);
 bool is_divider(char character);
 
 bool path_is_absolute(const char *path);
+
+/* Whether a disk, near or far, could not be read or written. */
+bool error_is_of_disk(int error);
 
 /* The system's words for an errno. */
 void error_text(int error, char *text, size_t capacity);

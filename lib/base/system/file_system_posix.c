@@ -82,6 +82,11 @@ bool byte_file_seek(FILE *file, uint64_t place)
     return place <= INT64_MAX && fseeko(file, (off_t)place, SEEK_SET) == 0;
 }
 
+uint64_t byte_file_place(FILE *file)
+{
+    return (uint64_t)ftello(file);
+}
+
 static int flush_to_disk(const char *path)
 {
     const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
@@ -177,6 +182,11 @@ bool is_divider(char character)
 bool path_is_absolute(const char *path)
 {
     return path[0] == '/';
+}
+
+bool error_is_of_disk(int error)
+{
+    return error == EIO || error == ESTALE || error == ETIMEDOUT;
 }
 
 void error_text(int error, char *text, size_t capacity)
