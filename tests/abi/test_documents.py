@@ -2,6 +2,7 @@
 import os
 import pathlib
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -83,10 +84,18 @@ def test_long_sentences_are_refused(tmp_path):
     pages = {name: tmp_path / name for name in ("good.md", "tail.md", "median.md")}
     pages["good.md"].write_text(9 * short + long + "\n| " + 30 * "cell " + "|\n```\n" + 40 * "code " + "\n```\n")
     pages["tail.md"].write_text(8 * short + 2 * long)
-    pages["median.md"].write_text("One two three four five six seven eight nine ten, and here are six more. " * 6 + 5 * short)
+    pages["median.md"].write_text("One two three four five six seven eight nine ten, and here are just six more. " * 6 + 5 * short)
     assert judge(pages["good.md"]).returncode == 0
     assert "90th percentile: 30, at most 28" in judge(pages["tail.md"]).stdout
     assert "median: 16, at most 15" in judge(pages["median.md"]).stdout and judge(pages["median.md"]).returncode == 1
+
+
+def test_a_long_readme_is_refused():
+    complaints = runpy.run_path(str(READABILITY))["complaints"]
+    assert complaints("README.md", 100 * "Ten words a line are not too many for anyone.\n") == [
+        "README.md: words: 1000, at most 900"]
+    assert complaints("README.md", 101 * "Short.\n") == ["README.md: lines: 101, at most 100"]
+    assert complaints("docs/physics.md", 101 * "Short.\n") == []
 
 
 def test_the_reference_of_the_interface_is_made_without_warnings(tmp_path):
