@@ -334,7 +334,7 @@ FRAGMENTS = {
 # A campaign's, and what ends where a value would begin.
 OTHER_FRAGMENTS = {
     "labels: [yolo]", "target:", "visible: {highlight: 1.2 dB, shadow: -2.3 dB}", "chip.spread: 1",
-    "chip: {rows: all, columns: all}", "draw: {table: bodies.csv}", "{of: length, uniform: [0.5, 1]}",
+    "chip: {rows: all, columns: all}", "draw: {table: bodies.csv}", "{file: bodies.csv, weight: count}", "{of: length, uniform: [0.5, 1]}",
     "format: as_input"}
 
 
