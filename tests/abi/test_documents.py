@@ -1,14 +1,21 @@
-"""What the documents name exists: functions, files, scenes."""
+"""What the documents name exists: functions, files, scenes, what links lead to. And they can be read."""
 import os
 import pathlib
 import re
+import runpy
 import shutil
 import subprocess
+import sys
 
 import pytest
 
 SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
 FOLDERS = ("kernels", "lib", "include", "tools", "tests", "bindings")
+# All that is under the project's own version control, apart from what builds leave.
+DOCUMENTS = sorted({"README.md", "CONTRIBUTING.md", "CHANGELOG.md",
+                    *(str(path.relative_to(SOURCE)) for folder in (*FOLDERS, "docs")
+                      for path in (SOURCE / folder).rglob("*.md"))})
+READABILITY = SOURCE / ".ci" / "readability.py"
 PATH = rf"(?<![\w/.])(?:{'|'.join(FOLDERS)})/[\w./*-]+"
 CODE = {".h", ".hpp", ".c", ".cpp", ".cl", ".py", ".build"}
 
@@ -34,13 +41,61 @@ def test_every_function_of_the_formulas_exists():
 
 def test_every_file_that_documents_name_exists():
     missing = []
-    for document in ("README.md", "CONTRIBUTING.md", "kernels/MATH.md",
-                     "bindings/python/README.md"):
+    for document in set(DOCUMENTS) - {"CHANGELOG.md"}:
         for text in quoted(document):
             for name in re.findall(PATH, text):
                 if not list(SOURCE.glob(name)):
                     missing.append(f"{document}: {name}")
     assert sorted(missing) == []
+
+
+def anchors(document):
+    """Those of a page's headings."""
+    text = re.sub(r"^```.*?^```", "", (SOURCE / document).read_text(encoding="utf-8"), flags=re.S | re.M)
+    headings = re.findall(r"^#+ (.*)$", text, flags=re.M)
+    return {re.sub(r"[^\w -]", "", heading).strip().lower().replace(" ", "-") for heading in headings}
+
+
+def test_every_link_leads_somewhere():
+    broken, followed = [], 0
+    for document in DOCUMENTS:
+        text = (SOURCE / document).read_text(encoding="utf-8")
+        for link in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"^```.*?^```|`[^`\n]*`", "", text, flags=re.S | re.M)):
+            name, _, anchor = link.partition("#")
+            place = (SOURCE / document).parent / name if name else SOURCE / document
+            followed += 1
+            if not place.exists() or anchor and anchor not in anchors(place):
+                broken.append(f"{document}: {link}")
+    assert broken == [] and followed > 20
+
+
+def judge(*pages):
+    return subprocess.run([sys.executable, READABILITY, *pages], check=False, capture_output=True, text=True)
+
+
+def test_pages_can_be_read():
+    answer = judge()
+    assert answer.returncode == 0, answer.stdout
+    assert "README.md: " in answer.stdout and "docs/physics.md: " in answer.stdout
+
+
+def test_long_sentences_are_refused(tmp_path):
+    short, long = "This is short.\n", "Word " * 29 + "end. "
+    pages = {name: tmp_path / name for name in ("good.md", "tail.md", "median.md")}
+    pages["good.md"].write_text(9 * short + long + "\n| " + 30 * "cell " + "|\n```\n" + 40 * "code " + "\n```\n")
+    pages["tail.md"].write_text(8 * short + 2 * long)
+    pages["median.md"].write_text("One two three four five six seven eight nine ten, and here are just six more. " * 6 + 5 * short)
+    assert judge(pages["good.md"]).returncode == 0
+    assert "90th percentile: 30, at most 28" in judge(pages["tail.md"]).stdout
+    assert "median: 16, at most 15" in judge(pages["median.md"]).stdout and judge(pages["median.md"]).returncode == 1
+
+
+def test_a_long_readme_is_refused():
+    complaints = runpy.run_path(str(READABILITY))["complaints"]
+    assert complaints("README.md", 100 * "Ten words a line are not too many for anyone.\n") == [
+        "README.md: words: 1000, at most 900"]
+    assert complaints("README.md", 101 * "Short.\n") == ["README.md: lines: 101, at most 100"]
+    assert complaints("docs/physics.md", 101 * "Short.\n") == []
 
 
 def test_the_reference_of_the_interface_is_made_without_warnings(tmp_path):

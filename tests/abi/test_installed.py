@@ -13,6 +13,7 @@ SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
 BUILD = pathlib.Path(os.environ["SONJECT_LIBRARY"]).resolve().parent.parent
 CXX_COMPILER = os.environ.get("CXX", "c++")
 EXAMPLE = SOURCE / "bindings" / "cxx" / "examples" / "train_on_the_fly.cpp"
+PAGE = (SOURCE / "docs" / "embedding.md").read_text(encoding="utf-8")
 PACKAGE = SOURCE / "bindings" / "python" / "sonject"
 MODULES = {f"sonject/{path.name}" for path in PACKAGE.iterdir() if path.suffix in (".py", ".typed")}
 MODULES |= {f"sonject/{name}.py" for name in ("_interface", "_classes", "enumerations", "keys")}  # made
@@ -55,12 +56,17 @@ def library_folder(prefix):
     return next(prefix.rglob("libsonject.so.0.*")).parent
 
 
-def run_program(program, prefix):
+def start(program, prefix):
+    """Its output."""
     answer = subprocess.run([program, "short"], capture_output=True, text=True, check=False,
                             cwd=program.parent,
                             env={**os.environ, "LD_LIBRARY_PATH": str(library_folder(prefix))})
     assert answer.returncode == 0, answer.stderr
-    assert "right" in answer.stdout
+    return answer.stdout
+
+
+def run_program(program, prefix):
+    assert "right" in start(program, prefix)
 
 
 def test_headers_and_library_are_there(root, prefix):
@@ -109,6 +115,32 @@ def test_the_example_of_the_header_runs(root, prefix, tmp_path):
     subprocess.run([CXX_COMPILER, "-std=c++11", *WARNINGS, tmp_path / "example.cpp",
                     *pkg_config_flags(root), "-o", tmp_path / "program"], check=True)
     run_program(tmp_path / "program", prefix)
+
+
+def block(language):
+    """The one of docs/embedding.md in that language."""
+    (found,) = re.findall(rf"^```{language}\n(.*?)^```", PAGE, flags=re.S | re.M)
+    return found
+
+
+@pytest.mark.parametrize("language, compiler, standard", [
+    ("c", os.environ.get("CC", "cc"), "-std=c99"), ("cpp", CXX_COMPILER, "-std=c++11")])
+def test_programs_of_the_page_build_and_run(root, prefix, tmp_path, language, compiler, standard):
+    program = tmp_path / f"program.{language}"
+    program.write_text(block(language))
+    subprocess.run([compiler, standard, *WARNINGS, program, *pkg_config_flags(root), "-o", tmp_path / "program"], check=True)
+    start(tmp_path / "program", prefix)
+
+
+def test_rules_of_the_page_build_its_program_by_cmake(prefix, tmp_path):
+    if not shutil.which("cmake"):
+        pytest.skip("cmake is not installed")
+    (tmp_path / "program.c").write_text(block("c"))
+    (tmp_path / "CMakeLists.txt").write_text(block("cmake"))
+    subprocess.run(["cmake", "-S", tmp_path, "-B", tmp_path / "build", f"-DCMAKE_PREFIX_PATH={prefix}"],
+                   check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", tmp_path / "build"], check=True, stdout=subprocess.DEVNULL)
+    start(tmp_path / "build" / "program", prefix)
 
 
 def test_programs_build_by_pkg_config(root, prefix, tmp_path):

@@ -1,4 +1,4 @@
-"""The library without HDF5, and the Python package that pip makes of it."""
+"""What is built once more: the library without HDF5, the Python package by pip, the first command, the site."""
 import os
 import pathlib
 import shutil
@@ -96,3 +96,20 @@ print(sonject.version(), scene.object_count, pathlib.Path(_library.load()._name)
     assert answer.stdout.split() == ["0.1.0", "1", str(installed / "sonject")]
     command = subprocess.run([installed / "sonject" / "sonject", "--version"], capture_output=True, text=True, check=True)
     assert "0.1.0" in command.stdout
+
+
+def test_the_first_command_builds_and_ends_with_the_path_of_a_picture(tmp_path):
+    listed = subprocess.run(["git", "ls-files"], cwd=SOURCE, check=True, capture_output=True, text=True).stdout
+    for name in listed.splitlines():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(SOURCE / name, tmp_path / name)
+    answer = subprocess.run(["sh", "tools/first-run.sh"], cwd=tmp_path, check=False, capture_output=True, text=True)
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+    picture = pathlib.Path(answer.stdout.splitlines()[-1])
+    assert picture.parent == tmp_path / "build" / "demo" and picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_site_is_made_without_dead_links():
+    answer = subprocess.run(["sh", SOURCE / "tools" / "site.sh"], check=False, capture_output=True, text=True)
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+    assert pathlib.Path(answer.stdout.splitlines()[-1]).is_file()

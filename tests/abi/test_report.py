@@ -45,3 +45,20 @@ def test_failures_are_told(tmp_path):
     assert answer.returncode == 1
     assert "failed: glints." in answer.stdout and "## glints: failed" in answer.stdout
     assert make_report(tmp_path).returncode != 0
+
+
+def test_a_page_gets_the_figures_that_it_names(tmp_path):
+    make_report(tmp_path, ("seabed", "OK"))
+    page = tmp_path / "page.md"
+
+    def call(option):
+        return subprocess.run([sys.executable, SOURCE / "tests" / "physics" / "report.py", "--log",
+                               tmp_path / "testlog.json", option, page], capture_output=True, text=True, check=False)
+
+    page.write_text("| All is well | `seabed`: level | |\n| `a`: b | c |\n| Little scatter | `seabed`: scatter | 9 | 9 | 9 |\n")
+    assert call("--check").returncode == 1 and "9 | 9 | 9" in page.read_text()
+    assert call("--page").returncode == 0 and call("--check").returncode == 0
+    assert page.read_text() == ("| All is well | `seabed`: level | 3 | 1.015 | 1.000 ± 0.02 |\n| `a`: b | c |\n"
+                                "| Little scatter | `seabed`: scatter | 1 | 0.5 | below 2 |\n")
+    page.write_text("| A claim | `seabed`: nothing | |\n")
+    assert "no test seabed compared 'nothing'" in call("--page").stderr

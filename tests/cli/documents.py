@@ -5,7 +5,10 @@ import pathlib
 import re
 
 SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
-MARKDOWN = ("README.md", "CONTRIBUTING.md", "bindings/python/README.md", "tools/slurm/README.md")
+# What users read, and with it what developers do.
+PAGES = ("README.md", *sorted(f"docs/{path.name}" for path in (SOURCE / "docs").glob("*.md")),
+         "bindings/python/README.md", "tools/slurm/README.md")
+MARKDOWN = (*PAGES, "CONTRIBUTING.md")
 # A paragraph may be wrapped within one.
 SPAN = re.compile(r"(?<!`)`((?:[^`\n]|\n(?!\n))+)`(?!`)")
 # What begins so is typed into a shell.
@@ -25,6 +28,17 @@ def spans(name):
     return list(dict.fromkeys(" ".join(span.split()) for span in SPAN.findall(read(name))))
 
 
+def blocks(name, language):
+    """The fenced blocks of code in that language."""
+    return re.findall(rf"^```{language}\n(.*?)^```", read(name), flags=re.S | re.M)
+
+
+def table_cells(name, heading):
+    """The first cells of the table whose first column has that heading."""
+    (rows,) = re.findall(rf"^\| {heading} \|.*\n\|[-|]+\n((?:\|.*\n)+)", read(name), flags=re.M)
+    return [row.split("|")[1].strip(" `") for row in rows.splitlines()]
+
+
 def is_command(text):
     """A program with arguments; not a folder, a file or a verb's name."""
     if re.fullmatch(r"sonject \w+", text):
@@ -34,13 +48,9 @@ def is_command(text):
 
 def markdown_commands(name):
     """In blocks of code, all lines; in the text what begins with a program."""
-    text = re.sub(r"```python\n.*?```", "", read(name), flags=re.S)
-    fenced = re.findall(r"```sh\n(.*?)```", text, flags=re.S)
-    lines = [line for block in fenced for line in block.splitlines()]
-    lines += re.findall(r"^    (\S.*)$", re.sub(r"```.*?```", "", text, flags=re.S), flags=re.M)
-    drawings = "►"
-    return [line for line in lines if drawings not in line] + [
-        span for span in spans(name) if is_command(span)]
+    lines = [line for block in blocks(name, "sh") for line in block.splitlines()]
+    lines += re.findall(r"^    (\S.*)$", re.sub(r"^```.*?^```", "", read(name), flags=re.S | re.M), flags=re.M)
+    return lines + [span for span in spans(name) if is_command(span)]
 
 
 def comment_commands(name):

@@ -4,11 +4,16 @@
 
 runs the tests of the build folder ("build" by default) and writes a table for each; --log FILE takes
 meson's log of an earlier run, BUILD/meson-logs/testlog.json, instead. Fails where a test failed.
+
+With --page FILE the tables of that page, docs/validation.md, get the figures instead. Its rows name
+program and figure, and what was chosen for it stays. With --check FILE nothing is written; a page
+that says anything else fails.
 """
 
 import argparse
 import collections
 import json
+import math
 import pathlib
 import re
 import subprocess
@@ -94,10 +99,40 @@ def report(tests):
     return lines
 
 
+ROW = re.compile(r"^\| ([^|]+) \| `(\w+)`: ([^|]+?) \|.*$", flags=re.M)
+
+
+def rounded(measured, expected, tolerance):
+    """The cells of a check, to the second digit of the tolerance."""
+    if not tolerance:
+        return f"{float(measured):.2g}", expected
+    room = float(tolerance.split()[-1])
+    places = max(0, 1 - math.floor(math.log10(room))) if room > 0 else 0
+    cells = [f"{round(float(each), places) + 0.0:.{places}f}" for each in (measured, expected)]
+    return cells[0], f"{cells[1]} {tolerance}"
+
+
+def fill_page(text, tests):
+    """The page's text with the figures in its rows."""
+    checks = {name: read_checks(output) for name, _, output in tests}
+
+    def fill(row):
+        claim, name, figure = row.groups()
+        if figure not in checks.get(name, {}):
+            sys.exit(f"no test {name} compared '{figure}'")
+        check = checks[name][figure]
+        measured, expected = rounded(*check.cells)
+        return f"| {claim} | `{name}`: {figure} | {check.count} | {measured} | {expected} |"
+
+    return ROW.sub(fill, text)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("build", nargs="?", default="build", type=pathlib.Path, metavar="BUILD")
     parser.add_argument("--log", type=pathlib.Path, help="meson's log of tests that were run")
+    parser.add_argument("--page", type=pathlib.Path, help="page whose tables get the figures")
+    parser.add_argument("--check", type=pathlib.Path, help="page whose tables should have the figures")
     options = parser.parse_args()
     log = options.log
     if not log:
@@ -109,7 +144,16 @@ def main():
     tests = read_log(log)
     if not tests:
         sys.exit(f"{log}: has no physics tests")
-    print("\n".join(report(tests)))
+    page = options.page or options.check
+    if page:
+        before = page.read_text(encoding="utf-8")
+        after = fill_page(before, tests)
+        if options.page:
+            page.write_text(after, encoding="utf-8")
+        elif before != after:
+            sys.exit(f"{page}: not what the tests measured: report.py --page {page} writes it anew")
+    else:
+        print("\n".join(report(tests)))
     return 0 if all(passed for _, passed, _ in tests) else 1
 
 

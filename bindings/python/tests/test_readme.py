@@ -11,7 +11,7 @@ from conftest import DOCUMENTS, KEYS, PACKAGE
 
 README = (DOCUMENTS / "README.md").read_text(encoding="utf-8")
 SPANS = list(dict.fromkeys(re.findall(r"(?<!`)`([^`\n]+)`(?!`)", README)))
-# Run elsewhere: shells' by tests/cli/test_readme.py, pictures by test_plotting.py.
+# Run elsewhere: shells' by tests/cli/test_pages.py, pictures by test_plotting.py.
 ELSEWHERE = ("SONJECT_LIBRARY", "tools/scenes/KEYS.md", "PYTHONPATH", "sonject.plotting.draw_result(", "examples/", "tools/", "env/bin/")
 
 
