@@ -1,8 +1,8 @@
-"""Counts the results in meson's test logs: count.py [--require SUITE ... --] LOG ...
+"""Counts the results in meson's test logs: count.py [--require SUITE ...] [--other NAME STATUS] -- LOG ...
 
 Prints what pytest skipped within a test, and why, what failed, and at the end "N passed, N failed,
-N skipped". A missing log and a required suite that no log mentions count as failed. Exits with 1 if
-anything failed.
+N skipped". --other: a check of another program, passed where its exit status is 0. A missing log and
+a required suite that no log mentions count as failed. Exits with 1 if anything failed.
 """
 
 import argparse
@@ -39,6 +39,7 @@ def skipped_within(output):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--require", nargs="+", default=[], metavar="SUITE")
+    parser.add_argument("--other", nargs=2, default=[], metavar=("NAME", "STATUS"))
     parser.add_argument("logs", nargs="+", metavar="LOG", type=pathlib.Path)
     options = parser.parse_args()
     passed, skipped, failures, seen = 0, 0, [], set()
@@ -57,6 +58,10 @@ def main():
                 passed += 1
             else:
                 failures.append(f"{log.parent.parent}: {name}: {result}")
+    if options.other:
+        name, status = options.other
+        passed += status == "0"
+        failures += [] if status == "0" else [f"{name}: failed"]
     for suite in options.require:
         if suite not in seen:
             failures.append(f"suite {suite} was not run")
