@@ -6,6 +6,7 @@
 #include "arguments.h"
 
 #define VERBS(ROW)                                                                                 \
+    ROW(init)                                                                                      \
     ROW(run)                                                                                       \
     ROW(trace)                                                                                     \
     ROW(form)                                                                                      \

@@ -70,6 +70,7 @@ ELSEWHERE = {
     r"python3 tests/physics/report\.py": (".ci/run", "tests/physics/report.py"),
     r"PYTHONPATH=\.\.\. ": ("tests/meson.build", "'bindings' / 'python' / 'tests'"),
     r"for i in 1 2 3; do sonject seabed|sonject campaign tools/campaigns/": ("tests/cli/test_campaign.py", "minefield.yaml"),
+    r"sonject init ": ("tests/cli/test_init.py", '"init"'),
     r"sonject fit ": ("tests/cli/test_fit.py", '"fit"'),
     r"sonject run tools/scenes/user_shape\.yaml": ("tests/cli/test_user_shapes.py", "user_shape"),
     r"parallel |sbatch |scontrol |array=.* run |RequeueExit": ("tests/cli/test_job_scripts.py", "documented("),

@@ -1,0 +1,381 @@
+/* sonject init: asks for what an image does not tell of itself, and writes a scene to begin with.
+ */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jansson.h>
+
+#include <sonject/sonject.h>
+
+#include "base/system/file_system.h"
+#include "console.h"
+#include "image_arguments.h"
+#include "verbs.h"
+
+enum {
+    ANSWER = 100,
+    ANSWERS = 8,
+    NAME = 1024
+};
+
+struct init_options {
+    const char *image;
+    const char *output;
+    const char *channel;
+    const char *array;
+};
+
+#define MEMBER(name) offsetof(struct init_options, name)
+
+static const struct argument arguments[] = {
+    {"--output", "-o", "SCENE.yaml", "the scene; else the image's name with .yaml", ARGUMENT_TEXT,
+     false, MEMBER(output)},
+    {"--channel", NULL, "port|starboard|N", "of an XTF or JSF file", ARGUMENT_TEXT, false,
+     MEMBER(channel)},
+    {"--array", NULL, "NAME", "in an HDF5 or MATLAB file of several", ARGUMENT_TEXT, false,
+     MEMBER(array)},
+};
+
+/* What is asked for. Without `usual` there must be an answer. */
+struct question {
+    const char *key, *text, *usual;
+};
+
+static const struct question row_spacing = {
+    "input.geometry.row_spacing", "row spacing, from ping to ping along the track (such as 5 cm)",
+    NULL};
+static const struct question column_spacing = {
+    "input.geometry.column_spacing",
+    "column spacing, from sample to sample in slant range (such as 2.5 cm)", NULL};
+static const struct question first_range = {"input.geometry.first_slant_range",
+                                            "slant range of the first column (such as 30 m)", NULL};
+static const struct question side = {
+    "input.geometry.side", "side of the track to put targets into, port or starboard", "port"};
+static const struct question altitude = {
+    "sonar.altitude", "altitude of the sonar over the seabed (such as 10 m)", NULL};
+static const struct question frequency = {"sonar.frequency", "centre frequency (such as 100 kHz)",
+                                          NULL};
+static const struct question bandwidth = {
+    "sonar.bandwidth", "bandwidth, which sets the range resolution (such as 30 kHz)", NULL};
+static const struct question array_length = {
+    "sonar.array.length",
+    "length of a sidescan's array (such as 0.5 m; nothing for synthetic aperture)", ""};
+
+struct interview {
+    sonject_context *context;
+    const struct init_options *options;
+    char answers[ANSWERS][ANSWER]; /* "key=value" */
+    size_t count;
+    char scene[NAME], calibration[NAME]; /* files */
+    bool has_geometry, has_altitude;     /* the image's file */
+    bool has_nadir;                      /* the image, as its calibration found */
+};
+
+/* The answer about a key; NULL: it was not asked for, or there was none. */
+static const char *answer_about(const struct interview *interview, const char *key)
+{
+    const size_t length = strlen(key);
+    for (size_t i = 0; i < interview->count; i++)
+        if (strncmp(interview->answers[i], key, length) == 0 &&
+            interview->answers[i][length] == '=')
+            return interview->answers[i] + length + 1;
+    return NULL;
+}
+
+/* Whether a scene with what was answered so far can be read; a message is left if not. */
+static bool is_possible(struct interview *interview)
+{
+    static const char text[] = "sonject: 1\n"
+                               "sonar: {altitude: 10 m, frequency: 100 kHz, bandwidth: 10 kHz}\n"
+                               "input: {geometry: {row_spacing: 5 cm, column_spacing: 5 cm, "
+                               "first_slant_range: 30 m}}\n";
+    const char *overrides[ANSWERS + 1] = {"sonar.kind=real"};
+    const size_t is_real = answer_about(interview, array_length.key) != NULL;
+    sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
+    sonject_scene *scene = NULL;
+    for (size_t i = 0; i < interview->count; i++)
+        overrides[is_real + i] = interview->answers[i];
+    params.overrides = overrides;
+    params.override_count = (uint32_t)(is_real + interview->count);
+    const sonject_status status = sonject_scene_read(interview->context, NULL, &params, &scene);
+    sonject_scene_release(&scene);
+    return status == SONJECT_OK;
+}
+
+/* Asks until there is an answer that is possible. False after a message: there is none. */
+static bool ask(struct interview *interview, const struct question *question)
+{
+    char line[ANSWER];
+    for (;;) {
+        const bool has_usual = question->usual && *question->usual;
+        fprintf(stderr, "%s%s%s%s: ", question->text, has_usual ? " [" : "",
+                has_usual ? question->usual : "", has_usual ? "]" : "");
+        fflush(stderr);
+        if (!fgets(line, sizeof line, stdin)) {
+            fputc('\n', stderr);
+            message("init: no answer was given for ", question->key);
+            return false;
+        }
+        line[strcspn(line, "\r\n")] = '\0';
+        const char *value = line + strspn(line, " \t");
+        if (!*value && question->usual)
+            value = question->usual;
+        if (!*value && question->usual)
+            return true;
+        const int length =
+            snprintf(interview->answers[interview->count++], ANSWER, "%s=%s", question->key, value);
+        if (*value && length < ANSWER && is_possible(interview))
+            return true;
+        interview->count--;
+        if (*value)
+            (void)fail_with(interview->context, SONJECT_ERROR_INPUT);
+    }
+}
+
+static bool ask_all(struct interview *interview)
+{
+    struct question range = first_range;
+    range.usual = interview->has_nadir ? "0 m" : NULL;
+    return (interview->has_geometry ||
+            (ask(interview, &row_spacing) && ask(interview, &column_spacing) &&
+             ask(interview, &range))) &&
+           (!interview->has_nadir || ask(interview, &side)) &&
+           (interview->has_altitude || ask(interview, &altitude)) && ask(interview, &frequency) &&
+           ask(interview, &bandwidth) && ask(interview, &array_length);
+}
+
+/* Whether the image's file tells the geometry, and the altitude if that is asked for. */
+static bool file_tells(struct interview *interview, bool with_altitude)
+{
+    const struct init_options *options = interview->options;
+    sonject_scene_read_params params = {.struct_size = sizeof params, .override_count = 1};
+    sonject_scene *scene = NULL;
+    char *text = NULL, path[NAME];
+    const char *overrides[3] = {path};
+    char channel[ANSWER], array[NAME];
+    params.text = with_altitude
+                      ? "sonject: 1\ninput: {geometry: from_file}\n"
+                        "sonar: {altitude: from_file, frequency: 1 kHz, bandwidth: 1 Hz}\n"
+                      : "sonject: 1\ninput: {geometry: from_file}\n"
+                        "sonar: {altitude: 1 mm, frequency: 1 kHz, bandwidth: 1 Hz}\n";
+    snprintf(path, sizeof path, "input.path=%s", options->image);
+    snprintf(channel, sizeof channel, "input.channel=%s", options->channel ? options->channel : "");
+    snprintf(array, sizeof array, "input.array=%s", options->array ? options->array : "");
+    if (options->channel)
+        overrides[params.override_count++] = channel;
+    if (options->array)
+        overrides[params.override_count++] = array;
+    params.overrides = overrides;
+    sonject_status status = sonject_scene_read(interview->context, NULL, &params, &scene);
+    if (status == SONJECT_OK)
+        status = sonject_check(interview->context, scene, &text);
+    sonject_text_release(&text);
+    sonject_scene_release(&scene);
+    return status == SONJECT_OK;
+}
+
+/* A text as YAML, which JSON is; NULL when memory is out. */
+static char *quoted(const char *text)
+{
+    json_t *value = json_string(text);
+    char *found = value ? json_dumps(value, JSON_ENCODE_ANY) : NULL;
+    json_decref(value);
+    return found;
+}
+
+/* Of a path: what follows its folder. */
+static const char *last_part(const char *path)
+{
+    const char *part = path;
+    for (; *path; path++)
+        part = is_divider(*path) ? path + 1 : part;
+    return part;
+}
+
+/* "  key: value # comment" in a scene, where there is a value. */
+static void add_key(FILE *file, const char *indent, const char *key, const char *value,
+                    const char *comment)
+{
+    if (value)
+        fprintf(file, "%s%s: %s%s%s\n", indent, key, value, *comment ? " # " : "", comment);
+}
+
+static void write_scene(const struct interview *interview, const char *image, FILE *file)
+{
+    const struct init_options *options = interview->options;
+    const char *array = answer_about(interview, array_length.key);
+    fprintf(
+        file,
+        "# Check it with sonject check, then run it with sonject run. sonject help KEY explains "
+        "keys.\nsonject: 1\n\ninput:\n  path: %s\n",
+        image);
+    add_key(file, "  ", "channel", options->channel, "");
+    add_key(file, "  ", "array", options->array, "");
+    fprintf(file, "  calibration: %s # grey-level curve, noise floor and more, as measured\n",
+            last_part(interview->calibration));
+    if (interview->has_geometry) {
+        fputs("  geometry: from_file\n", file);
+    } else {
+        fputs("  geometry:\n", file);
+        add_key(file, "    ", "row_spacing", answer_about(interview, row_spacing.key), "of pings");
+        add_key(file, "    ", "column_spacing", answer_about(interview, column_spacing.key),
+                "of samples, in slant range");
+        add_key(file, "    ", "first_slant_range", answer_about(interview, first_range.key),
+                interview->has_nadir ? "at the nadir column, which the calibration has"
+                                     : "of column 0");
+        add_key(file, "    ", "side", answer_about(interview, side.key), "");
+    }
+    fputs("\nsonar:\n", file);
+    if (array)
+        fprintf(file, "  kind: real\n  array: {length: %s}\n", array);
+    add_key(file, "  ", "frequency", answer_about(interview, frequency.key), "centre of the band");
+    add_key(file, "  ", "bandwidth", answer_about(interview, bandwidth.key),
+            "range resolution is c / 2B");
+    add_key(file, "  ", "altitude",
+            interview->has_altitude ? "from_file" : answer_about(interview, altitude.key),
+            "over the seabed");
+    if (!array)
+        fputs("  # resolution: 4 cm # along the track; without it, the row spacing\n", file);
+    fputs("\nseabed:\n"
+          "  lambert: -27 dB # backscatter strength; it decides how far targets stand out\n"
+          "\nobjects: # without a position, in the middle of the image\n"
+          "  - name: target\n"
+          "    shape: cylinder\n"
+          "    length: 1.5 m\n"
+          "    diameter: 0.5 m\n"
+          "    heading: 30 deg # from along-track towards range\n"
+          "    material: steel\n",
+          file);
+}
+
+/* Writes a file whole or not at all: the scene, or a text instead. False after a message. */
+static bool write_file(const struct interview *interview, const char *path, const char *text,
+                       const char *image)
+{
+    char part[NAME + 8], reason[128];
+    snprintf(part, sizeof part, "%s.part", path);
+    FILE *file = file_open(part, "wb");
+    if (file && text)
+        fputs(text, file);
+    else if (file)
+        write_scene(interview, image, file);
+    const bool had_failed = !file || ferror(file);
+    const bool is_written = file && fclose(file) == 0 && !had_failed;
+    const int error = is_written ? file_replace(part, path) : errno;
+    if (error == 0)
+        return true;
+    file_discard(part);
+    error_text(error, reason, sizeof reason);
+    message(path, ": cannot write: ", reason);
+    return false;
+}
+
+/* Names of the files: beside each other, in the working folder unless -o says another. The scene
+ * names the image from its own folder: as it was given, or from the root. */
+static bool name_files(struct interview *interview, char *image, size_t capacity)
+{
+    const struct init_options *options = interview->options;
+    const char *stem = options->output ? options->output : last_part(options->image);
+    const char *dot = strrchr(last_part(stem), '.');
+    const int bytes = (int)(dot ? (size_t)(dot - stem) : strlen(stem));
+    const bool is_elsewhere = last_part(stem) != stem && !path_is_absolute(options->image);
+    char *here = is_elsewhere ? working_folder() : NULL;
+    const int whole =
+        snprintf(image, capacity, "%s%s%s", here ? here : "", here ? "/" : "", options->image);
+    free(here);
+    const int scene = options->output ? snprintf(interview->scene, NAME, "%s", options->output)
+                                      : snprintf(interview->scene, NAME, "%.*s.yaml", bytes, stem);
+    const int calibration =
+        snprintf(interview->calibration, NAME, "%.*s_calibration.yaml", bytes, stem);
+    if (whole < (int)capacity && scene < NAME && calibration < NAME)
+        return true;
+    message("init: the image's name is too long");
+    return false;
+}
+
+/* Calibrates the image, and finds out what else it tells. *text: the calibration, for
+ * sonject_text_release. */
+static sonject_status learn(struct interview *interview, char **text)
+{
+    const struct init_options *options = interview->options;
+    sonject_calibrate_params params = {.struct_size = sizeof params,
+                                       .image = options->image,
+                                       .channel = options->channel,
+                                       .array = options->array};
+    const sonject_status status = sonject_calibrate(interview->context, &params, text);
+    if (status != SONJECT_OK)
+        return status;
+    const char *nadir = strstr(*text, "nadir_column:"), *end = strstr(*text, "\nmeasured:");
+    interview->has_nadir = nadir && end && nadir < end; /* behind it are reasons and errors */
+    interview->has_altitude = file_tells(interview, true);
+    interview->has_geometry = interview->has_altitude || file_tells(interview, false);
+    return SONJECT_OK;
+}
+
+/* Prints the scene's geometry, or what is wrong with it. Gives the exit code. */
+static int show(const struct interview *interview)
+{
+    sonject_scene *scene = NULL;
+    char *text = NULL;
+    sonject_status status = sonject_scene_read(interview->context, interview->scene, NULL, &scene);
+    if (status == SONJECT_OK)
+        status = sonject_check(interview->context, scene, &text);
+    if (text)
+        fputs(text, stdout);
+    const int code = status == SONJECT_OK ? finish_output() : fail_with(interview->context, status);
+    sonject_text_release(&text);
+    sonject_scene_release(&scene);
+    return code;
+}
+
+static int hold(struct interview *interview)
+{
+    char name[2 * NAME], *text = NULL;
+    if (!channel_check("init", interview->options->channel) ||
+        !name_files(interview, name, sizeof name))
+        return EXIT_CODE_USAGE;
+    const char *files[] = {interview->scene, interview->calibration};
+    for (int i = 0; i < 2; i++)
+        if (file_exists(files[i])) {
+            message(files[i], ": is there already: choose another scene (-o), or remove it");
+            return EXIT_CODE_INPUT;
+        }
+    const sonject_status status = learn(interview, &text);
+    int code = status == SONJECT_OK ? EXIT_CODE_USAGE : fail_with(interview->context, status);
+    if (status == SONJECT_OK && ask_all(interview)) {
+        char *image = quoted(name);
+        const bool is_written = image && write_file(interview, files[1], text, NULL) &&
+                                write_file(interview, files[0], NULL, image);
+        if (is_written)
+            message(files[0], " is a scene to begin with; ", files[1], " has what was measured");
+        code = is_written ? show(interview) : EXIT_CODE_STORAGE;
+        free(image);
+    }
+    sonject_text_release(&text);
+    return code;
+}
+
+static int work(const void *verb_options)
+{
+    struct interview interview = {.options = verb_options};
+    const sonject_status status = sonject_context_create(NULL, &interview.context);
+    const int code = status == SONJECT_OK ? hold(&interview) : fail_with(NULL, status);
+    sonject_context_release(&interview.context);
+    return code;
+}
+
+const struct verb init_verb = {
+    .name = "init",
+    .summary = "asks what an image does not tell of itself, and writes a scene for it",
+    .operand = "IMAGE",
+    .operand_offset = MEMBER(image),
+    .arguments = arguments,
+    .argument_count = sizeof(arguments) / sizeof(arguments[0]),
+    .notes = "Calibrates the image, then asks, one line each, for what is left: spacings, ranges,\n"
+             "altitude, frequency, bandwidth, a sidescan's array. Answers may have units, and may\n"
+             "come from a file (init IMAGE <answers). Ends as sonject check does.",
+    .options_size = sizeof(struct init_options),
+    .work = work,
+};
