@@ -1,4 +1,7 @@
 /* The command: finds the verb and hands it its options. */
+#ifdef __linux__
+#include <malloc.h>
+#endif
 #include <stdlib.h>
 #include <string.h>
 
@@ -82,9 +85,20 @@ static int work(const struct verb *verb, int count, char **texts)
     return code;
 }
 
+/* Each image of a campaign takes megabytes and gives them back. glibc would have the system take
+ * them, and clear them for the next image: a fifth of a campaign's time. */
+static void keep_memory(void)
+{
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
+}
+
 int main(int argc, char **argv)
 {
     standard_streams_secure();
+    keep_memory();
     if (argc < 2) {
         print_help(stderr);
         return EXIT_CODE_USAGE;
