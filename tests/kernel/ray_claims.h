@@ -3,12 +3,12 @@
 #define SONJECT_TESTS_RAY_CLAIMS_H
 
 #include "claims.h"
-#include "random_rays.h"
 #include "lanes.h"
+#include "random_rays.h"
 
 /* Lanes of native C give the bits of one. */
 static inline void expect_same_in_all_lanes(const struct object_record *object,
-                                        const struct ray single[LANES], float minimum)
+                                            const struct ray single[LANES], float minimum)
 {
     float rays[6][LANES], distance[LANES], normal[3][LANES];
     for (int lane = 0; lane < LANES; lane++) {
