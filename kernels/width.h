@@ -98,7 +98,7 @@ FUNCTION RECORD_WORD UNION(mask m)
 #include <stdint.h>
 #include <string.h>
 
-#ifdef NATIVE_KERNELS /* tests do without: they are compiled in a fraction of the time */
+#ifdef NATIVE_KERNELS /* else compiled in a fraction of the time, for tests */
 #define FUNCTION static inline __attribute__((always_inline))
 #else
 #define FUNCTION static inline

@@ -7,6 +7,6 @@ cd "$(dirname "$0")/.."
 
 # shellcheck disable=SC2086 # a list of words
 install_packages $build_packages
-build_release
+build_release -Dtests=disabled
 build/tools/sonject run tools/scenes/demo.yaml -o build/demo
 echo "$(pwd)/build/demo/quicklook.png"

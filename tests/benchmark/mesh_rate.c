@@ -1,4 +1,4 @@
-/* Rates of rays on a mesh of 534,360 triangles: the kernels on the OpenCL device, as native C of 16
+/* Rates of rays on a mesh of 534,360 triangles: the kernels on the OpenCL device, as native C of 8
  * lanes, and Embree in packets of 16 where it is installed; same rays, same number of cores, same
  * run; by the processors' time, since other programs may run too (on a GPU: by the clock). Primary
  * rays come from a fan as a sonar's do, strip by strip; bounced ones leave where these hit, by

@@ -36,7 +36,7 @@ targets:
 
 TARGET = """\
   - class: {shape}
-    object: {{shape: {shape}}}
+    object: {{shape: {shape}{more}}}
     draw:
       length: {{log_uniform: [{length[0]} m, {length[1]} m]}} # overall
       width: {{log_uniform: [{width[0]} m, {width[1]} m]}}
@@ -51,7 +51,8 @@ def make_seabeds(sonject, rows=300, columns=500, numbers=(1, 2)):
                      "--ripple-contrast", "0.1", "--row-spacing", "0.05", "--column-spacing", "0.05")
 
 
-def campaign(draws, images, seed, rows=96, columns=160, shapes=("box", "ellipsoid")):
+def campaign(draws, images, seed, rows=96, columns=160, shapes=("box", "ellipsoid"), more=""):
+    """more: other keys of all objects."""
     level = draws.get("level")
     floor = draws.get("floor")
     return CAMPAIGN.format(
@@ -59,7 +60,7 @@ def campaign(draws, images, seed, rows=96, columns=160, shapes=("box", "ellipsoi
         visible="visible: {highlight: 1.2 dB, shadow: -2.3 dB}" if level else "# whether it is seen or not",
         floor=f"injection.noise_floor: {floor} dB" if floor else "",
         targets="".join(
-            TARGET.format(shape=shape, level=f"level.over_seabed: {{uniform: [{level[0]} dB, {level[1]} dB]}}"
+            TARGET.format(shape=shape, more=more, level=f"level.over_seabed: {{uniform: [{level[0]} dB, {level[1]} dB]}}"
                           if level else "", **{key: draws[key] for key in ("length", "width", "height")})
             for shape in shapes))
 

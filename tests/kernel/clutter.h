@@ -20,8 +20,8 @@ enum search_question {
  * left behind. */
 #define SEARCH_INPUTS 8
 
-/* Answers for rays [0, rays), a multiple of 16, as plain C of one lane and as native vectors of
- * 16. distance, object: of each ray; obstacles leave distance 0. */
+/* Answers for rays [0, rays), a multiple of 8, as plain C of one lane and as native vectors of
+ * 8. distance, object: of each ray; obstacles leave distance 0. */
 void clutter_search_one(const struct object_record *objects, int count,
                         enum search_question question, const float *input, float *distance,
                         int32_t *object, uint32_t rays);

@@ -1,3 +1,3 @@
-#define WIDTH          16
+#define WIDTH          8
 #define CLUTTER_SEARCH clutter_search_wide
 #include "clutter_search_one.c"

@@ -1,4 +1,4 @@
-/* The probe of meshes compiled as plain C of one lane and as native vectors of 16. */
+/* The probe of meshes compiled as plain C of one lane and as native vectors of 8. */
 #ifndef SONJECT_TESTS_MESH_NATIVE_H
 #define SONJECT_TESTS_MESH_NATIVE_H
 
@@ -10,7 +10,7 @@ enum mesh_question {
     MESH_SURFACE
 };
 
-/* Over rays [first, last), multiples of 16, of planes of `rays` elements. */
+/* Over rays [first, last), multiples of 8, of planes of `rays` elements. */
 void mesh_native_one(const struct mesh *mesh, enum mesh_question question, const float *input,
                      float *output, uint32_t rays, uint32_t first, uint32_t last);
 void mesh_native_wide(const struct mesh *mesh, enum mesh_question question, const float *input,

@@ -1,3 +1,3 @@
-#define WIDTH       16
+#define WIDTH       8
 #define MESH_NATIVE mesh_native_wide
 #include "mesh_native_one.c"

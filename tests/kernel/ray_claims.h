@@ -3,12 +3,12 @@
 #define SONJECT_TESTS_RAY_CLAIMS_H
 
 #include "claims.h"
+#include "lanes.h"
 #include "random_rays.h"
-#include "sixteen_lanes.h"
 
-/* 16 lanes of native C give the bits of one. */
-static inline void expect_sixteen_lanes(const struct object_record *object,
-                                        const struct ray single[LANES], float minimum)
+/* Lanes of native C give the bits of one. */
+static inline void expect_same_in_all_lanes(const struct object_record *object,
+                                            const struct ray single[LANES], float minimum)
 {
     float rays[6][LANES], distance[LANES], normal[3][LANES];
     for (int lane = 0; lane < LANES; lane++) {
@@ -17,7 +17,7 @@ static inline void expect_sixteen_lanes(const struct object_record *object,
         for (int k = 0; k < 6; k++)
             rays[k][lane] = values[k];
     }
-    sixteen_lanes_hit(object, rays, minimum, distance, normal);
+    lanes_hit(object, rays, minimum, distance, normal);
     for (int lane = 0; lane < LANES; lane++) {
         const float alone = object_distance(object, single[lane].p, single[lane].d, minimum);
         assert_memory_equal(&alone, &distance[lane], sizeof alone);

@@ -391,7 +391,7 @@ static void test_sheets(void **state)
 }
 
 /* Rays being together or apart. */
-static void test_sixteen_lanes(void **state)
+static void test_lanes(void **state)
 {
     struct mesh_sample sample;
     struct cut_solid solid;
@@ -408,7 +408,7 @@ static void test_sixteen_lanes(void **state)
                 single[lane].p.x += 1e-3f * (float)lane;
             }
         }
-        expect_sixteen_lanes(solid.record, single, i % 5 ? -100.0f : 0.1f);
+        expect_same_in_all_lanes(solid.record, single, i % 5 ? -100.0f : 0.1f);
     }
     cut_solid_end(&solid);
     sample_clear(&sample);
@@ -441,7 +441,7 @@ int main(void)
         cmocka_unit_test(test_solids),
         cmocka_unit_test(test_pieces),
         cmocka_unit_test(test_sheets),
-        cmocka_unit_test(test_sixteen_lanes),
+        cmocka_unit_test(test_lanes),
         cmocka_unit_test(test_no_way_outwards_meets_the_face_of_a_cut_again),
     };
     return bench_run_on_devices(tests, COUNT(tests));

@@ -140,10 +140,10 @@ static void compare_searches(const struct searched *searched, enum ray_kind kind
     compare_answers("one lane", &found, &expected);
     clutter_search_wide(searched->with_tree, searched->count, question, input, found.distance,
                         found.object, RAYS);
-    compare_answers("sixteen lanes", &found, &expected);
+    compare_answers("eight lanes", &found, &expected);
     clutter_search_wide(searched->looped, searched->count, question, input, found.distance,
                         found.object, RAYS);
-    compare_answers("sixteen lanes in a loop", &found, &expected);
+    compare_answers("eight lanes in a loop", &found, &expected);
 }
 
 static void test_tree_is_the_loop(void **state)

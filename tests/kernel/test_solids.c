@@ -291,7 +291,7 @@ static void test_beyond_the_first(void **state)
     }
 }
 
-static void test_sixteen_lanes(void **state)
+static void test_lanes(void **state)
 {
     for (const struct solid_row *row = solid_rows; row < solid_rows + solid_row_count; row++)
         for (int i = 0; i < 3000; i++) {
@@ -299,7 +299,7 @@ static void test_sixteen_lanes(void **state)
             struct ray single[LANES];
             for (int lane = 0; lane < LANES; lane++)
                 single[lane] = ray_towards(aim(&solid), 100.0);
-            expect_sixteen_lanes(&solid.record, single, -100.0f);
+            expect_same_in_all_lanes(&solid.record, single, -100.0f);
         }
 }
 
@@ -459,5 +459,5 @@ TEST_PROGRAM(NULL, NULL, TEST(test_every_shape_of_the_table_is_tested),
              TEST(test_against_the_reference),
              TEST(test_ways_outwards_meet_hollow_solids_alone_again),
              TEST(test_surfaces_are_bent_no_more_than_is_said), TEST(test_beyond_the_first),
-             TEST(test_sixteen_lanes), TEST(test_along_the_axes), TEST(test_nearest_of_several),
+             TEST(test_lanes), TEST(test_along_the_axes), TEST(test_nearest_of_several),
              TEST(test_fan), TEST(test_burial))

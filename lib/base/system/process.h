@@ -64,7 +64,7 @@ char *folder_of_code(const void *address);
 
 /* To be called first in main. Opens the missing ones of the standard streams, so that no image file
  * gets their place and messages end up in it; what is written to an output that was closed still
- * fails. Makes the arguments UTF-8. */
+ * fails. Makes the arguments UTF-8, and keeps freed memory for what is allocated next. */
 void program_begin(int *count, char ***arguments);
 
 /* From now on note is called for SIGTERM and SIGINT; a second SIGINT ends the process. */

@@ -4,6 +4,9 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <sched.h>
 #include <signal.h>
 #include <stdio.h>
@@ -114,11 +117,22 @@ char *folder_of_code(const void *address)
     return folder;
 }
 
+/* Each image of a campaign takes megabytes and gives them back. glibc would have the system take
+ * them, and clear them anew for the next image: a fifth of a campaign's time. */
+static void keep_freed_memory(void)
+{
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
+}
+
 void program_begin(int *count, char ***arguments)
 {
     /* Opened the wrong way round: reading the input, writing the output fails as it should. */
     const int flags[] = {O_WRONLY, O_RDONLY, O_RDONLY};
     (void)count, (void)arguments;
+    keep_freed_memory();
     for (int descriptor = 0; descriptor <= 2; descriptor++) {
         if (fcntl(descriptor, F_GETFD) != -1)
             continue;

@@ -1,10 +1,10 @@
-#include "sixteen_lanes.h"
+#include "lanes.h"
 
 #define WIDTH LANES
 #include "intersection.h"
 
-void sixteen_lanes_hit(const struct object_record *object, float rays[6][LANES], float minimum,
-                       float distance[LANES], float normal[3][LANES])
+void lanes_hit(const struct object_record *object, float rays[6][LANES], float minimum,
+               float distance[LANES], float normal[3][LANES])
 {
     struct vector3 point, direction;
     point.x = LOAD_VFLOAT(rays[0]);
