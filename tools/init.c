@@ -304,6 +304,7 @@ static sonject_status learn(struct interview *interview, char **text)
                                        .image = options->image,
                                        .channel = options->channel,
                                        .array = options->array};
+    message("calibrating ", options->image);
     const sonject_status status = sonject_calibrate(interview->context, &params, text);
     if (status != SONJECT_OK)
         return status;
