@@ -14,21 +14,27 @@ import numpy
 from PIL import Image
 
 SCENE = pathlib.Path(__file__).resolve().parents[1] / "tools" / "scenes" / "demo.yaml"
-GREYS, DARKEST_DB, BRIGHTEST_DB, GAP = 64, -32.0, -8.0, 8
+GREYS, GAP = 64, 8
 WHITE = GREYS - 1
 
 
-def halve(pixels):
-    """Means of 2 x 2 pixels."""
-    rows, columns = pixels.shape
-    return pixels.reshape(rows // 2, 2, columns // 2, 2).mean(axis=(1, 3))
-
-
-def grey(path):
-    """Grey levels of an image of amplitudes, in dB."""
-    level = 10 * numpy.log10(halve(numpy.array(Image.open(path), numpy.float64) ** 2) + 1e-12)
-    share = (level - DARKEST_DB) / (BRIGHTEST_DB - DARKEST_DB)
+def grey(amplitudes, darkest_db, brightest_db, step=1):
+    """Grey levels of an image of amplitudes, in dB, of the mean intensity of step x step pixels."""
+    rows, columns = (size // step for size in amplitudes.shape)
+    pixels = amplitudes[: rows * step, : columns * step].astype(numpy.float64) ** 2
+    level = 10 * numpy.log10(pixels.reshape(rows, step, columns, step).mean(axis=(1, 3)) + 1e-12)
+    share = (level - darkest_db) / (brightest_db - darkest_db)
     return numpy.rint(share.clip(0, 1) * WHITE).astype(numpy.uint8)
+
+
+def save(picture, panels, colours=()):
+    """Panels of as many rows, of grey levels and above them numbers of colours, side by side as a PNG."""
+    gap = numpy.full((len(panels[0]), GAP), WHITE, numpy.uint8)
+    row = [each for panel in panels for each in (gap, panel)][1:]
+    made = Image.fromarray(numpy.hstack(row), "P")
+    palette = [round(255 * i / WHITE) for i in range(GREYS) for _ in range(3)]
+    made.putpalette([*palette, *colours][: 3 * 256])
+    made.save(picture, optimize=True)
 
 
 def main():
@@ -37,16 +43,13 @@ def main():
         folder = pathlib.Path(name)
         for each, change in (("before", ["--set", "objects=[]"]), ("after", [])):
             subprocess.run([command, "run", SCENE, "-o", folder / each, "--quiet", *change], check=True)
-        before, after = (grey(folder / each / "image.tif") for each in ("before", "after"))
+        before, after = (grey(numpy.array(Image.open(folder / each / "image.tif")), -32, -8, step=2)
+                         for each in ("before", "after"))
         labels = Image.open(folder / "after" / "labels.png")
-        colours = labels.getpalette()
+        colours = labels.getpalette()[3:]
         numbers = numpy.array(labels)[::2, ::2]
     truth = numpy.where(numbers > 0, GREYS + numbers - 1, 0).astype(numpy.uint8)
-    gap = numpy.full((len(before), GAP), WHITE, numpy.uint8)
-    made = Image.fromarray(numpy.hstack([before, gap, after, gap, truth]), "P")
-    palette = [round(255 * i / WHITE) for i in range(GREYS) for _ in range(3)]
-    made.putpalette(palette + colours[3 : 3 * (256 - GREYS)])
-    made.save(picture, optimize=True)
+    save(picture, [before, after, truth], colours)
 
 
 if __name__ == "__main__":

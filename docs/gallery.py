@@ -1,0 +1,40 @@
+"""Makes the pictures of docs/gallery.md by doing what that page says.
+
+    python3 docs/gallery.py FOLDER
+
+Scenes of the page get the names of their first lines. Its Python runs in one namespace, as a reader
+would type it, in a folder that has the project's tools and bindings. SONJECT_LIBRARY and PYTHONPATH
+say which build does the work.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import sys
+import tempfile
+
+SOURCE = pathlib.Path(__file__).resolve().parents[1]
+BLOCK = re.compile(r"^```(yaml|python)\n(.*?)^```", re.S | re.M)
+
+
+def main():
+    pictures = pathlib.Path(sys.argv[1]).resolve()
+    page = SOURCE / "docs" / "gallery.md"
+    names = {}
+    with tempfile.TemporaryDirectory() as scratch:
+        os.chdir(scratch)
+        for name in ("tools", "bindings"):
+            os.symlink(SOURCE / name, name)
+        for language, block in BLOCK.findall(page.read_text(encoding="utf-8")):
+            if language == "yaml":
+                pathlib.Path(block.split()[1]).write_text(block, encoding="utf-8")
+            else:
+                exec(compile(block, page, "exec"), names)
+        for made in pathlib.Path().glob("*.png"):
+            shutil.copy(made, pictures)
+        os.chdir(SOURCE)
+
+
+if __name__ == "__main__":
+    main()
