@@ -131,7 +131,7 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
                                int order, const struct chain_echo *echo,
                                struct outcome_record *outcome)
 {
-    const int plane = chains->planes > 1 ? order - chains->first_order : 0;
+    const int plane = order - chains->first_order;
     /* few lanes are heard, at random: they are listed first, without a branch to be guessed */
     int heard[WIDTH];
     int count = 0;

@@ -273,8 +273,8 @@ enum chain_estimator {
 
 #define CHAIN_ORDERS_MAX 8
 
-/* How chains of several interactions are walked and where their echoes are tallied: planes of the
- * whole track's strips times bins. */
+/* How chains of several interactions are walked and where their echoes are tallied: for each order a
+ * plane of the whole track's strips times bins. */
 struct chain_record {
     RECORD_INT interactions; /* most surfaces that a path may meet */
     RECORD_INT estimator;
@@ -287,7 +287,6 @@ struct chain_record {
     float seabed_share;     /* of the seabed's rays that are followed, over the sum of the targets'
                                openings as seen from there; 0: all are */
     RECORD_INT first_order; /* lowest that is tallied */
-    RECORD_INT planes;      /* orders kept apart from first_order on, or 1: all in one */
     float finer[CHAIN_ORDERS_MAX]; /* [k - 1]: quanta per m^2 of order k + 1, which brings less,
                                       over those of order k; powers of two */
     RECORD_INT tally_first_strip;

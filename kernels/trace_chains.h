@@ -307,7 +307,7 @@ FUNCTION void trace_chain_block(const struct fan_record *fan,
 }
 
 /* Traces the share `segment` of a strip's fan, or of a target's paths of second order. tallies:
- * planes x tally_strips x bins. */
+ * orders x tally_strips x bins. */
 FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
                                                   GLOBAL const struct ray_piece_record *pieces,
                                                   GLOBAL const struct chain_record *chains,

@@ -22,8 +22,7 @@ enum impulse_kind {
     IMPULSES_BEAM,        /* m^2: what each ping hears of an even seabed; only of a real aperture */
     IMPULSES_HIDDEN,      /* m^2: of that, what an object hides; one set for each after BEAM */
     IMPULSES_LEVEL, /* m^2: as the seabed, without objects and relief; only where there is relief */
-    IMPULSES_CHAINS /* m^2: of paths of several interactions; a set for each order, or one for all
-                     */
+    IMPULSES_CHAINS /* m^2: of paths of several interactions; a set for each order */
 };
 
 #define IMPULSE_KINDS      8

@@ -278,7 +278,7 @@ static sonject_status emit_chains(const struct tracing *tracing, struct chain_tr
     sonject_status status =
         energy ? SONJECT_OK
                : report_out_of_memory(tracing->tracer->report, "multiple interactions");
-    for (uint32_t plane = 0; status == SONJECT_OK && plane < trace->planes; plane++) {
+    for (uint32_t plane = 0; status == SONJECT_OK && plane < trace->orders; plane++) {
         status = chain_trace_read(trace, tracing->tracer, plane, energy);
         THEN(status, emit(tracing, &lines));
         lines.number++;

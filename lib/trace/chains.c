@@ -242,7 +242,6 @@ static void chain_record_init(struct chain_record *record, const struct chain_tr
                                ? ldexpf(1.0f, trace->exponents[i + 1] - trace->exponents[i])
                                : 1.0f;
     record->first_order = (int32_t)trace->first_order;
-    record->planes = (int32_t)trace->planes;
     record->tally_first_strip = trace->grid.strips.first;
     record->tally_strips = trace->grid.strips.count;
     surface_record_init(&record->seabed, &seabed, tracer->view.wavelength_m);
@@ -298,7 +297,9 @@ static struct most_sent most_sent_by_surfaces(const struct chain_trace *trace,
 
 /* The most that one ray can bring is about its wavefront times what surfaces send on and back.
  * Quanta leave four powers of ten over that, since sampled directions rarely count for many, and
- * below it eleven. Orders in one plane have the quanta of the one that brings most. */
+ * below it eleven. Each order has a plane and quanta of its own: mirrors and lobes that send much
+ * on make the bound of a higher one so large that lower ones' echoes would be mostly rounded away.
+ */
 static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tracer,
                                     const float *map)
 {
@@ -310,19 +311,13 @@ static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tr
     if (tracer->scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE && area > 0.0)
         most.returned = fmax(most.returned, most.onward * range * range / area);
     double bound = (double)fan.strip_width * fan.elevation_step * 2.0 * range * most.returned;
-    if (trace->planes == 1)
-        bound *= pow(most.onward, trace->first_order - 1.0) *
-                 fmax(1.0, pow(most.onward, trace->orders - 1.0));
     const double sampled =
         second_order_is_sampled(tracer, &trace->grid)
             ? second_order_most(tracer, &trace->grid) * 2.0 * range * most.returned
             : 0.0;
-    if (trace->planes == 1)
-        bound = fmax(bound, sampled);
     for (int i = 0; i < CHAIN_ORDERS_MAX; i++) {
         trace->exponents[i] = 37 - (int)ceil(log2(i == 1 ? fmax(bound, sampled) : bound));
-        if (trace->planes > 1)
-            bound *= most.onward;
+        bound *= most.onward;
     }
     return SONJECT_OK;
 }
@@ -332,13 +327,13 @@ static sonject_status begin_launch(struct chain_trace *trace, struct tracer *tra
 {
     const size_t map_bytes = map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0;
     const size_t cells = line_grid_cells(&trace->grid);
-    const size_t tally_bytes = trace->planes * cells * sizeof(int64_t);
+    const size_t tally_bytes = trace->orders * cells * sizeof(int64_t);
     const struct part_list parts = all_parts(tracer);
     struct launch *launch = &trace->launch;
     struct target_spheres spheres;
     struct chain_record chains;
     double origin[3];
-    if (cells > TALLY_BYTES_MAX / sizeof(int64_t) / trace->planes ||
+    if (cells > TALLY_BYTES_MAX / sizeof(int64_t) / trace->orders ||
         tally_bytes > tracer->device->allocation_limit)
         return report_failure(tracer->report, SONJECT_ERROR_INPUT,
                               "the patch of %zu x %zu pixels is too large for %u interactions: use "
@@ -367,7 +362,6 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
         return SONJECT_OK;
     trace->first_order = is_brute_force ? 1 : 2;
     trace->orders = injection->interactions - trace->first_order + 1;
-    trace->planes = injection->order_energies ? trace->orders : 1;
     line_grid_for_patch(&trace->grid, &tracer->view, &tracer->response);
     trace->has_map = map != NULL;
     trace->has_sea_surface = sea_surface_is_in_chains(tracer, &trace->grid);

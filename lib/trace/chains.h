@@ -77,8 +77,7 @@ struct chain_trace {
     struct line_grid grid; /* of the patch with its margins */
     uint32_t first_order;  /* interactions of the shortest path that is counted: 2, or 1 by brute
                               force, which counts everything */
-    uint32_t orders;       /* from first_order on */
-    uint32_t planes;       /* orders if they are kept apart, else 1 */
+    uint32_t orders;       /* from first_order on; each has a plane of the tally */
     int exponents[CHAIN_ORDERS_MAX]; /* of two: quanta per m^2 of the device's, by order */
     bool has_map, has_sea_surface;
     struct ray_table_record table; /* of the rays of all fans */
@@ -97,7 +96,7 @@ void chain_trace_end(struct chain_trace *trace);
 sonject_status chain_trace_strips(struct chain_trace *trace, struct tracer *tracer,
                                   const struct chain_fan *fan, struct span strips);
 
-/* Reads a plane: energies in m^2, line_grid_cells(&trace->grid) of them. */
+/* Reads a plane, 0 for first_order: energies in m^2, line_grid_cells(&trace->grid) of them. */
 sonject_status chain_trace_read(struct chain_trace *trace, struct tracer *tracer, uint32_t plane,
                                 float *energy);
 

@@ -81,8 +81,10 @@ def test_energies_of_orders_make_up_the_energy_and_do_not_stay(sonject, scene, t
         assert numpy.allclose(sum(energies), total, rtol=64 * 2.0**-24, atol=0)
         options = json.loads((folder / "run.json").read_text())["options"]
         assert options["interactions"] == interactions and options["estimator"] == "connect"
-    sonject.done("run", scene, "-o", "result", "--overwrite")
+    kept = (folder / "image.tif").read_bytes(), (folder / "energy.tif").read_bytes()
+    sonject.done("run", scene, "-o", "result", "--overwrite", "--set", "injection.interactions=3")
     assert {path.name for path in folder.iterdir()} == RESULTS
+    assert kept == ((folder / "image.tif").read_bytes(), (folder / "energy.tif").read_bytes())
 
 
 OTHER_INPUTS = {

@@ -301,7 +301,7 @@ static struct tallies tallies_of(const struct trace *trace, const struct subject
 {
     struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
     tallies.count = (size_t)trace->strips.count * trace->line;
-    tallies.count *= subject->part == CHAINS ? trace->chains.planes : 1;
+    tallies.count *= subject->part == CHAINS ? trace->chains.orders : 1;
     tallies.tile_count = subject->part == ROUGH ? trace->rough.tile_elements : 0;
     tallies.sums = calloc(tallies.count, sizeof(int64_t));
     tallies.tiles = calloc(tallies.tile_count + 1, sizeof(int64_t));

@@ -33,7 +33,6 @@ static void lay_sphere(struct fan_record *fan, struct chain_record *chains,
     memset(chains, 0, sizeof *chains);
     chains->interactions = ORDERS;
     chains->first_order = 1;
-    chains->planes = ORDERS;
     chains->tally_strips = 1;
     for (int i = 0; i < CHAIN_ORDERS_MAX; i++)
         chains->finer[i] = 1.0f;

@@ -291,7 +291,7 @@ static void compare_chains(struct bench *bench)
     bool is_new;
     struct tracer *tracer = &bench->tracer;
     EXPECT_OK(&bench->report, chain_trace_begin(&trace, tracer, NULL));
-    const size_t cells = trace.planes * line_grid_cells(&trace.grid);
+    const size_t cells = trace.orders * line_grid_cells(&trace.grid);
     struct chain_record *chains = bench_copy_buffer(bench, trace.launch.buffers[CHAIN_RECORD]);
     struct object_record *objects = bench_copy_buffer(bench, trace.launch.buffers[CHAIN_OBJECTS]);
     struct sphere_record *spheres = bench_copy_buffer(bench, trace.launch.buffers[CHAIN_SPHERES]);

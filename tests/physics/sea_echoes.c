@@ -194,7 +194,7 @@ static void add_chains(struct sea *sea, const struct ranges *ranges,
     const size_t cells = line_grid_cells(&trace.grid);
     float *plane = malloc(cells * sizeof *plane);
     assert_non_null(plane);
-    for (uint32_t p = 0; p < trace.planes; p++) {
+    for (uint32_t p = 0; p < trace.orders; p++) {
         const uint32_t order = trace.first_order - 1 + p;
         double values[CHAIN_RANGES] = {0.0};
         EXPECT_OK(&sea->bench->report, chain_trace_read(&trace, tracer, p, plane));
