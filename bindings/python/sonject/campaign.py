@@ -12,7 +12,7 @@ from ._classes import CampaignImage as CampaignImage
 from ._values import (
     Overrides, PathLike, choice, file_name, filled, given, initialised, override_texts, shard_values,
 )
-from .context import Context, Handle, Progress, ProgressBridge, default_context
+from .context import Context, Handle, Progress, ProgressBridge, counted, default_context
 from .enumerations import LabelPart
 from .result import Result
 from .scene import Scene
@@ -61,6 +61,9 @@ class Campaign(Handle):
 
     def __reduce__(self) -> Any:
         return _read_again, self._source
+
+    def _summary(self) -> str:
+        return f"of {counted(len(self), 'image')}"
 
     def __len__(self) -> int:
         count = ctypes.c_uint64()

@@ -58,6 +58,11 @@ class LogBridge:
             self.error = error
 
 
+def counted(number: int, word: str) -> str:
+    """1 object, 2 objects."""
+    return f"{number} {word}" if number == 1 else f"{number} {word}s"
+
+
 Self = TypeVar("Self", bound="Handle")
 
 
@@ -85,6 +90,17 @@ class Handle:
         if not self._finalizer.alive:
             raise ValueError(f"this sonject {self._noun} was closed")
         return self._pointer
+
+    def _summary(self) -> str:
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        """In one line, whatever state it is in."""
+        try:
+            told = " " + self._summary()
+        except (RuntimeError, SonjectError, ValueError) as error:  # in a callback, wrong, closed
+            told = ": " + str(error).partition("\n")[0]
+        return f"<sonject.{type(self).__name__}{told}>"
 
     def close(self) -> None:
         """Releases the library's memory now."""
@@ -121,6 +137,7 @@ class Context:
         threads: int = 0,
     ) -> None:
         self._library = load()
+        self._device = device
         self._lock = threading.Lock()
         self._owner: Optional[int] = None
         self._waiting: collections.deque[Any] = collections.deque()
@@ -153,6 +170,10 @@ class Context:
             with self._exclusive():
                 pass  # waits for a call that still runs and releases what it kept waiting
             self._finalizer()
+
+    def __repr__(self) -> str:
+        told = "on the default device" if self._device is None else f"on {self._device}"
+        return f"<sonject.Context {told if self.is_usable else 'that was closed'}>"
 
     def __enter__(self) -> "Context":
         return self

@@ -7,20 +7,13 @@ from typing import Any, Mapping, Optional
 
 import numpy
 
+from ._picture import decibels as levels_of
+from ._picture import grey_ends
 from .result import Result
-
-# Of the brightest thousandth to what is hardly seen beside it.
-_SPAN_DB = 50.0
 
 
 def _pyplot() -> Any:
     return importlib.import_module("matplotlib.pyplot")
-
-
-def _decibels(image: Any) -> Any:
-    """20 log10 of the magnitudes, -inf where they are 0; float64, of the image's shape."""
-    with numpy.errstate(divide="ignore"):
-        return 20.0 * numpy.log10(numpy.abs(numpy.asarray(image)).astype(numpy.float64))
 
 
 def _extent(shape: tuple[int, int], geometry: Mapping[str, float]) -> tuple[float, float, float, float]:
@@ -46,17 +39,12 @@ def draw(
     """Draws an image's magnitudes in dB; gives matplotlib's AxesImage.
 
     image: rows (track positions) x columns (slant ranges), amplitudes or complex pixels; geometry:
-    as input.geometry of scenes, numbers in m, labels the axes; None: in pixels; decibels: ends of the grey scale, None: 50 dB up to
-    the brightest thousandth; axes: matplotlib's to draw in, None: the current ones.
+    as input.geometry of scenes, numbers in m, labels the axes; None: in pixels; decibels: ends of the grey scale, None: those of
+    sonject quicklook, percentiles 3 and 99.8; axes: matplotlib's to draw in, None: the current ones.
     """
     axes = _pyplot().gca() if axes is None else axes
-    levels = _decibels(image)
-    if levels.ndim != 2 or levels.size == 0:
-        raise ValueError(f"an image has rows and columns, not the shape {levels.shape}")
-    if decibels is None:
-        seen = levels[numpy.isfinite(levels)]
-        top = float(numpy.quantile(seen, 0.999)) if seen.size else 0.0
-        decibels = (top - _SPAN_DB, top)
+    levels = levels_of(image)
+    decibels = grey_ends(levels) if decibels is None else decibels
     extent = None if geometry is None else _extent(levels.shape, geometry)
     axes.set_xlabel("slant range in columns" if geometry is None else "slant range in m")
     axes.set_ylabel("track in rows" if geometry is None else "track in m")

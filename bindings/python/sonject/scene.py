@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import html
 from typing import TYPE_CHECKING, Any, Optional
 
 import numpy
@@ -11,7 +12,8 @@ from . import _interface as s
 from ._values import (
     Overrides, PathLike, file_name, filled, key_text, override_texts, plain_text, real_numbers,
 )
-from .context import Context, Handle, default_context
+from .context import Context, Handle, counted, default_context
+from .errors import SonjectError
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -119,6 +121,16 @@ class Scene(Handle):
     def text(self) -> str:
         """The scene as the text of a scene file, with all that was set but tables in memory."""
         return self._context.text("sonject_scene_text", self)
+
+    def _summary(self) -> str:
+        return f"of {counted(self.object_count, 'object')}"
+
+    def _repr_html_(self) -> Optional[str]:
+        """For notebooks: the scene's text. None where there is none, or it is closed."""
+        try:
+            return f"<pre>{html.escape(self.text())}</pre>"
+        except (SonjectError, ValueError):
+            return None
 
     @property
     def object_count(self) -> int:
