@@ -141,7 +141,7 @@ class Context:
         self._lock = threading.Lock()
         self._owner: Optional[int] = None
         self._waiting: collections.deque[Any] = collections.deque()
-        self._handles: weakref.WeakSet[Handle] = weakref.WeakSet()
+        self._handles: weakref.WeakValueDictionary[int, Handle] = weakref.WeakValueDictionary()
         self._log = None if log is None else LogBridge(log)
         params = filled(
             s.sonject_context_params,
@@ -164,7 +164,7 @@ class Context:
 
     def close(self) -> None:
         """Releases the context, after the scenes and results that were made with it."""
-        for handle in list(self._handles):
+        for handle in list(self._handles.values()):
             handle.close()
         if self._finalizer.alive:
             with self._exclusive():
@@ -270,7 +270,7 @@ class Context:
 
     def adopt(self, handle: Handle) -> None:
         """Has handle closed before the context is."""
-        self._handles.add(handle)
+        self._handles[id(handle)] = handle  # scenes have no hash
 
     def release(self, pointer: Any) -> None:
         """Gives a handle back to the library."""

@@ -40,7 +40,9 @@ def campaign(tmp_path):
 def test_images_are_made_in_memory_in_any_order(campaign):
     whole, swath = campaign
     assert len(whole) == 6 and repr(whole) == "<sonject.Campaign of 6 images>"
-    assert whole.scene(0)._repr_html_() is None  # it has no text of its own
+    assert whole.scene(0)._repr_html_() is None
+    with pytest.raises(sonject.SonjectError, match="a campaign's scene has no text"):
+        whole.scene(0)["sonar"]
     forward = [result.image for result in whole]
     backward = [whole[-1 - number].image for number in range(6)]
     for number in range(6):
