@@ -14,6 +14,7 @@ from ._values import (
 )
 from .context import Context, Handle, Progress, ProgressBridge, counted, default_context
 from .enumerations import LabelPart
+from .keys import Quantity
 from .result import Result
 from .scene import Scene
 
@@ -121,7 +122,7 @@ class Campaign(Handle):
         *,
         shard: Tuple[int, int] = (1, 1),
         only: Optional[int] = None,
-        exit_after_s: float = 0.0,
+        exit_after_s: Quantity = 0.0,
         overwrites: bool = False,
     ) -> bool:
         """Makes the images that the folder lacks, and the data set's documents once all are there.

@@ -9,6 +9,7 @@ import numpy
 
 from ._picture import decibels as levels_of
 from ._picture import grey_ends
+from ._values import real_number
 from .result import Result
 
 
@@ -16,30 +17,29 @@ def _pyplot() -> Any:
     return importlib.import_module("matplotlib.pyplot")
 
 
-def _extent(shape: tuple[int, int], geometry: Mapping[str, float]) -> tuple[float, float, float, float]:
+def _extent(shape: tuple[int, int], geometry: Mapping[str, Any]) -> tuple[float, float, float, float]:
     """Outer edges of the pixels in m: first and last slant range, last and first track position."""
     rows, columns = shape
-    left = geometry["first_slant_range"] - 0.5 * geometry["column_spacing"]
-    top = geometry.get("first_along_track", 0.0) - 0.5 * geometry["row_spacing"]
-    return (
-        left,
-        left + columns * geometry["column_spacing"],
-        top + rows * geometry["row_spacing"],
-        top,
+    given = {"first_along_track": 0.0, **geometry}
+    wide, high, left, top = (
+        real_number(f"{name}_m", given[name])
+        for name in ("column_spacing", "row_spacing", "first_slant_range", "first_along_track")
     )
+    left, top = left - 0.5 * wide, top - 0.5 * high
+    return left, left + columns * wide, top + rows * high, top
 
 
 def draw(
     image: Any,
     *,
-    geometry: Optional[Mapping[str, float]] = None,
+    geometry: Optional[Mapping[str, Any]] = None,
     decibels: Optional[tuple[float, float]] = None,
     axes: Any = None,
 ) -> Any:
     """Draws an image's magnitudes in dB; gives matplotlib's AxesImage.
 
     image: rows (track positions) x columns (slant ranges), amplitudes or complex pixels; geometry:
-    as input.geometry of scenes, numbers in m, labels the axes; None: in pixels; decibels: ends of the grey scale, None: those of
+    as input.geometry of scenes, labels the axes; None: in pixels; decibels: ends of the grey scale, None: those of
     sonject quicklook, percentiles 3 and 99.8; axes: matplotlib's to draw in, None: the current ones.
     """
     axes = _pyplot().gca() if axes is None else axes
@@ -62,7 +62,7 @@ def draw_result(
     patch: Any,
     result: Result,
     *,
-    geometry: Optional[Mapping[str, float]] = None,
+    geometry: Optional[Mapping[str, Any]] = None,
     decibels: Optional[tuple[float, float]] = None,
     figure: Any = None,
 ) -> Any:

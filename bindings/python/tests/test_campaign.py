@@ -123,7 +123,7 @@ def test_a_data_set_stops_by_itself_and_one_image_is_made_alone(campaign, tmp_pa
     whole = sonject.Campaign(tmp_path / "campaign.yaml", {"images": 100})
     folder = tmp_path / "set"
     with pytest.raises(sonject.Cancelled):
-        whole.run(folder, exit_after_s=1e-9)
+        whole.run(folder, exit_after_s="0.001 us")
     made = {path.stem for path in folder.glob("all/records/*")}
     assert "00000000" in made and "00000099" not in made
     assert whole.run(folder, only=99)

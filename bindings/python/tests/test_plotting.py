@@ -13,7 +13,7 @@ matplotlib.use("Agg")
 import numpy, sonject
 from sonject import plotting
 
-geometry = {"row_spacing": 0.025, "column_spacing": 0.025, "first_slant_range": 25.0}
+geometry = {"row_spacing": "2.5 cm", "column_spacing": 0.025, "first_slant_range": "25 m"}
 scene = sonject.Scene(**KEYS)
 patch = numpy.random.default_rng(1).rayleigh(size=(96, 128)).astype(numpy.float32)
 patch[0, 0] = 0.0

@@ -226,8 +226,12 @@ def test_absorption_of_sea_water():
         frequency_hz=100e3, temperature_celsius=10, salinity_permille=35, depth_m=0, ph=8)
     assert sonject.absorption(100e3, 10.0, 35.0, 10.0, 7.9) != sonject.absorption(100e3, 10.0, 34.0)
     assert math.isnan(sonject.absorption(2e6, 10.0))
-    with pytest.raises(TypeError, match="frequency_hz must be a number"):
-        sonject.absorption("100 kHz", 10.0)
+    assert alpha == sonject.absorption("100 kHz", "10 C", depth_m="0 km")
+    assert sonject.absorption(1e5, 10, depth_m="2 km") == sonject.absorption(1e5, 10, depth_m=2000)
+    with pytest.raises(TypeError, match="frequency_hz must be a number or a text such as '100 kHz', not '100 m'"):
+        sonject.absorption("100 m", 10.0)
+    with pytest.raises(TypeError, match="ph must be a number, not '8'"):
+        sonject.absorption(1e5, 10.0, ph="8")
 
 
 def test_what_a_scene_says_is_read_back(make_scene, context):
