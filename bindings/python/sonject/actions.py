@@ -46,7 +46,7 @@ def inject(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Res
     synthetic. The patch is never changed.
 
     progress: called with the finished fraction and the stage's name; a true answer cancels, and
-    what it raises ends the call and is raised here.
+    what it raises ends the call and is raised here. True shows a bar by tqdm if that is installed.
 
     Raises SonjectError, Cancelled, and TypeError or ValueError for arrays that are no patch.
     """

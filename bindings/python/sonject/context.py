@@ -5,9 +5,10 @@ from __future__ import annotations
 import collections
 import contextlib
 import ctypes
+import importlib
 import threading
 import weakref
-from typing import Any, Callable, Iterator, Optional, Sequence, Type, TypeVar
+from typing import Any, Callable, Iterator, Optional, Sequence, Type, TypeVar, Union
 
 from . import _interface as s
 from ._classes import Device as Device
@@ -17,8 +18,33 @@ from .enumerations import Status
 from .errors import Cancelled, SonjectError
 
 
-# Finished fraction 0...1 and the stage's name; a true answer asks to cancel.
-Progress = Callable[[float, str], Any]
+# Called with the finished fraction 0...1 and the stage's name; a true answer asks to cancel. True: a
+# bar by tqdm, or nothing where that is not installed.
+Progress = Union[bool, Callable[[float, str], Any]]
+
+
+class Bar:
+    """A bar by tqdm."""
+
+    def __init__(self, tqdm: Any) -> None:
+        self._bar = tqdm(total=1.0, bar_format="{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining}")
+
+    def __call__(self, fraction: float, stage: str) -> None:
+        self._bar.set_description_str(stage, refresh=False)
+        self._bar.update(fraction - self._bar.n)
+
+    def close(self, is_done: bool) -> None:
+        """Leaves it full, or where the work ended."""
+        if is_done:
+            self._bar.update(1.0 - self._bar.n)
+        self._bar.close()
+
+
+def _new_bar() -> Optional[Bar]:
+    try:
+        return Bar(importlib.import_module("tqdm.auto").tqdm)
+    except ImportError:
+        return None
 
 
 class ProgressBridge:
@@ -30,17 +56,22 @@ class ProgressBridge:
 
     def __init__(self, progress: Optional[Progress]) -> None:
         self.error: Optional[BaseException] = None
-        self._progress = progress
+        self._progress = None if isinstance(progress, bool) else progress
+        self._bar = _new_bar() if progress is True else None
         self.callback = s.sonject_progress_function(self._called)
 
     def _called(self, _user: Optional[int], fraction: float, stage: Optional[bytes]) -> int:
         try:
-            if self._progress is None:
-                return 0
-            return int(bool(self._progress(fraction, text(stage))))
+            function = self._progress if self._bar is None else self._bar
+            return 0 if function is None else int(bool(function(fraction, text(stage))))
         except BaseException as error:  # goes on to the caller of the library
             self.error = error
             return 1
+
+    def close(self, is_done: bool) -> None:
+        """At the end of the work."""
+        if self._bar is not None:
+            self._bar.close(is_done)
 
 
 class LogBridge:
@@ -207,15 +238,21 @@ class Context:
         Handles among the arguments stand for their pointers. Raises what callbacks raised first,
         then SonjectError.
         """
-        with self._exclusive():
-            # Looked up under the lock: another thread may close a handle until then.
-            values = [
-                each.pointer if isinstance(each, (Handle, Context)) else each for each in arguments
-            ]
-            status = getattr(self._library, name)(*values)
-            message = ""
-            if status != Status.OK:
-                message = text(self._library.sonject_context_message(self._pointer))
+        status = None
+        try:
+            with self._exclusive():
+                # Looked up under the lock: another thread may close a handle until then.
+                values = [
+                    each.pointer if isinstance(each, (Handle, Context)) else each
+                    for each in arguments
+                ]
+                status = getattr(self._library, name)(*values)
+                message = ""
+                if status != Status.OK:
+                    message = text(self._library.sonject_context_message(self._pointer))
+        finally:
+            if bridge is not None:
+                bridge.close(status == Status.OK)
         for callback in (bridge, self._log):
             if callback is not None and callback.error is not None:
                 error, callback.error = callback.error, None

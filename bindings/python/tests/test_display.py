@@ -3,6 +3,8 @@
 import base64
 import re
 import struct
+import sys
+import types
 import zlib
 
 import numpy
@@ -99,3 +101,55 @@ def test_a_notebook_shows_the_text_of_a_scene(make_scene):
     assert "&lt;ball&gt;" in shown and "<ball>" not in shown
     scene.close()
     assert scene._repr_html_() is None
+
+
+class Tqdm:
+    """What is used of tqdm."""
+
+    made: list = []
+
+    def __init__(self, total, bar_format):
+        assert total == 1.0 and "{desc}" in bar_format
+        self.n, self.stages, self.is_closed = 0.0, [], False
+        Tqdm.made.append(self)
+
+    def set_description_str(self, text, refresh):
+        self.stages.append(text)
+
+    def update(self, step):
+        assert step >= 0.0
+        self.n += step
+
+    def close(self):
+        self.is_closed = True
+
+
+@pytest.fixture
+def bars(monkeypatch):
+    module = types.ModuleType("tqdm.auto")
+    module.tqdm = Tqdm
+    monkeypatch.setitem(sys.modules, "tqdm.auto", module)
+    monkeypatch.setattr(Tqdm, "made", [])
+    return Tqdm.made
+
+
+def test_a_bar_ends_at_one_or_where_the_work_does(bars, make_scene, amplitude_patch):
+    with_bar = sonject.inject(amplitude_patch, make_scene(), progress=True)
+    (bar,) = bars
+    assert bar.n == pytest.approx(1.0) and bar.is_closed
+    assert "tracing the seabed" in bar.stages
+    without = sonject.inject(amplitude_patch, make_scene(), progress=False)
+    assert numpy.array_equal(with_bar.image, without.image) and len(bars) == 1
+    outside = make_scene(objects=[{**KEYS["objects"][0], "position": {"row": 1e6, "column": 1}}])
+    with pytest.raises(sonject.SonjectError):
+        sonject.inject(amplitude_patch, outside, progress=True)
+    outside.close()
+    with pytest.raises(ValueError, match="closed"):
+        outside.context.work("sonject_trace", outside.context, outside, b"a", None, progress=True)
+    assert len(bars) == 3 and all(bar.n < 1.0 and bar.is_closed for bar in bars[1:])
+
+
+def test_there_is_no_bar_without_tqdm(monkeypatch, capfd, make_scene, amplitude_patch):
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    sonject.inject(amplitude_patch, make_scene(), progress=True)
+    assert capfd.readouterr() == ("", "")
