@@ -250,7 +250,7 @@ sonject_status scene_source_text(struct scene_source *source, struct report *rep
     struct growing_text lines = {NULL, 0, 0, false};
     *text = NULL;
     CHECK(scene_source_keep_tree(source, report));
-    CHECK(name_files_absolutely(source, report));
+    sonject_status status = name_files_absolutely(source, report);
     const struct tree_node *root = &source->tree.root;
     growing_text_add(&lines, "%s", "");
     for (size_t i = 0; i < root->count; i++) {
@@ -258,7 +258,13 @@ sonject_status scene_source_text(struct scene_source *source, struct report *rep
         tree_write_flow(&root->entries[i].value, &lines);
         growing_text_add(&lines, "\n");
     }
-    forget_tree(source); /* the names of its files are what they are now alone */
+    forget_tree(source); /* the next call may be made in another working folder */
     *text = growing_text_end(&lines);
-    return *text ? SONJECT_OK : report_out_of_memory(report, "the scene's text");
+    if (status == SONJECT_OK && !*text)
+        status = report_out_of_memory(report, "the scene's text");
+    if (status != SONJECT_OK) {
+        free(*text);
+        *text = NULL;
+    }
+    return status;
 }

@@ -54,12 +54,16 @@ static const struct number_array *array_of(const struct scene_source *source, co
     return find_array(&reader, name);
 }
 
-/* Whether a text names a file: not a table in memory, nor the word that stands for one. */
+/* Whether a text names a file: not a table in memory, nor `auto`, which is a calibration to be
+ * made.
+ */
 static bool is_file(const struct scene_source *source, const struct spot *spot)
 {
-    return spot->field && field_is_file(spot->field) && spot->node->kind == TREE_TEXT &&
-           !tree_is_null(spot->node) && *spot->node->text && !is_word(spot->node, "auto") &&
-           !array_of(source, spot->node->text);
+    const struct tree_node *node = spot->node;
+    if (!spot->field || !field_is_file(spot->field) || node->kind != TREE_TEXT ||
+        tree_is_null(node) || !*node->text || array_of(source, node->text))
+        return false;
+    return strcmp(spot->field->key, "calibration") != 0 || !is_word(node, "auto");
 }
 
 /* One of the text is meant from the text's folder, any other from where the user is. For free();

@@ -123,6 +123,9 @@ static void names_of_files_are_absolute(void **state)
     snprintf(expected, sizeof expected, "\"%s/away/a.npy\"", folder);
     expect(context, scene, "input.path", expected);
     expect(context, scene, "input.calibration", "\"auto\"");
+    set(context, scene, "input.path", "auto");
+    snprintf(expected, sizeof expected, "\"%s/auto\"", folder);
+    expect(context, scene, "input.path", expected);
     set(context, scene, "input.path", "b.npy");
     set(context, scene, "objects[0]", "{shape: mesh, mesh: c.stl}");
     snprintf(expected, sizeof expected, "\"%s/b.npy\"", folder);
