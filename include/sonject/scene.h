@@ -72,9 +72,21 @@ SONJECT_API sonject_status sonject_scene_set_table(sonject_scene *scene, const c
                                                    const char *columns, const double *values,
                                                    size_t row_count, size_t column_count);
 
+/* What the scene says at a key, as JSON: "sonar.altitude" gives 10.0, "objects[0]" an object,
+ * "objects" an array, "" the whole scene; null where it says nothing. Defaults and what a
+ * calibration adds are not told. A quantity is the number that says the same without a unit:
+ * in SI units and degrees. A text that is none stands as it is, and so do words. Names of
+ * files are absolute. A table in memory is an object: columns, a text, null of heights, and values,
+ * an array of rows. Nothing is checked but the key. *json is the caller's, for
+ * sonject_text_release; on failure NULL. Errors: ARGUMENT (also a campaign's scene), INPUT (no such
+ * key), MEMORY. */
+SONJECT_API sonject_status sonject_scene_get(const sonject_scene *scene, const char *key,
+                                             char **json);
+
 /* The scene as text, with all that was set in its place: one that sonject_scene_read takes. Names
- * of files stand as they were given; a table in memory is not in it. *text is the caller's, for
- * sonject_text_release; on failure NULL. Errors: ARGUMENT (also a campaign's scene), MEMORY. */
+ * of files are absolute, so that it means the same wherever it is read; a table in memory is not in
+ * it. *text is the caller's, for sonject_text_release; on failure NULL. Errors: ARGUMENT (also a
+ * campaign's scene), MEMORY. */
 SONJECT_API sonject_status sonject_scene_text(const sonject_scene *scene, char **text);
 
 /* All keys that scenes have, as a JSON list of objects: path ("objects[].heading"), section (the

@@ -131,15 +131,16 @@ sonject_status scene_use(struct report *report, const sonject_scene *handle,
     return SONJECT_OK;
 }
 
-/* Whether there is a text that can be changed. */
-static sonject_status begin_setting(sonject_scene *scene, bool has_arguments)
+/* Whether there is a text that can be read and changed. */
+static sonject_status begin_text(sonject_scene *scene, bool has_arguments)
 {
     scene->report->message[0] = '\0';
     if (!has_arguments)
-        return null_argument(scene->report, "key and value");
+        return null_argument(scene->report, "key or value");
     if (!scene->source.text)
-        return report_failure(scene->report, SONJECT_ERROR_ARGUMENT,
-                              "a campaign's scene stays as it is: set keys of its scene file");
+        return report_failure(
+            scene->report, SONJECT_ERROR_ARGUMENT,
+            "a campaign's scene has no text: read and set keys of its scene file");
     return SONJECT_OK;
 }
 
@@ -147,7 +148,7 @@ sonject_status sonject_scene_set(sonject_scene *scene, const char *key, const ch
 {
     if (!scene)
         return SONJECT_ERROR_ARGUMENT;
-    CHECK(begin_setting(scene, key && value));
+    CHECK(begin_text(scene, key && value));
     CHECK(scene_source_set(&scene->source, scene->report, key, value));
     scene->is_read = false;
     return SONJECT_OK;
@@ -158,7 +159,7 @@ sonject_status sonject_scene_set_table(sonject_scene *scene, const char *key, co
 {
     if (!scene)
         return SONJECT_ERROR_ARGUMENT;
-    CHECK(begin_setting(scene, key && values));
+    CHECK(begin_text(scene, key && values));
     const struct number_array array = {(char *)key, (char *)columns, (double *)values, row_count,
                                        column_count};
     CHECK(scene_source_set_array(&scene->source, scene->report, &array));
@@ -166,12 +167,21 @@ sonject_status sonject_scene_set_table(sonject_scene *scene, const char *key, co
     return SONJECT_OK;
 }
 
+sonject_status sonject_scene_get(const sonject_scene *scene, const char *key, char **json)
+{
+    if (!scene || !json)
+        return SONJECT_ERROR_ARGUMENT;
+    *json = NULL;
+    CHECK(begin_text((sonject_scene *)scene, key != NULL));
+    return scene_source_get(&((sonject_scene *)scene)->source, scene->report, key, json);
+}
+
 sonject_status sonject_scene_text(const sonject_scene *scene, char **text)
 {
     if (!scene || !text)
         return SONJECT_ERROR_ARGUMENT;
     *text = NULL;
-    CHECK(begin_setting((sonject_scene *)scene, true));
+    CHECK(begin_text((sonject_scene *)scene, true));
     return scene_source_text(&((sonject_scene *)scene)->source, scene->report, text);
 }
 

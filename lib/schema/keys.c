@@ -223,6 +223,30 @@ static const char *unit_of(const struct field *field)
     }
 }
 
+bool field_is_file(const struct field *field)
+{
+    return strncmp(unit_of(field), "file name", 9) == 0;
+}
+
+bool field_is_number(const struct field *field)
+{
+    return is_count(field) ||
+           (field->kind == FIELD_SPECIAL && strstr(unit_of(field), "number") != NULL);
+}
+
+bool field_quantity(const struct field *field, enum quantity *quantity)
+{
+    *quantity = field->quantity;
+    if (field->kind == FIELD_QUANTITY)
+        return true;
+    for (size_t i = 0; field->kind == FIELD_SPECIAL && i < COUNT(quantity_texts); i++)
+        if (strcmp(unit_of(field), quantity_texts[i].units) == 0) {
+            *quantity = (enum quantity)i;
+            return true;
+        }
+    return false;
+}
+
 /* Whether the section's choice names the key, which then has no default. */
 static bool is_of_choice(const struct section *section, const char *key)
 {

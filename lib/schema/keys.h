@@ -169,6 +169,16 @@ const struct section *field_below(const struct field *field, const void *structu
 /* How many structures lie below a row: 1, or a list's entries. */
 uint32_t field_entry_count(const struct field *field, const void *structure);
 
+/* Whether texts of the key name files. */
+bool field_is_file(const struct field *field);
+
+/* Whether texts of the key, or of its list's entries, are or may be numbers without a unit. */
+bool field_is_number(const struct field *field);
+
+/* Whether texts of the key are quantities, or those of its list's entries are, and of which kind.
+ */
+bool field_quantity(const struct field *field, enum quantity *quantity);
+
 /* Finds a key path such as "sonar.frequency" or "seabed.relief[0].height" below a section. False
  * where the section has none, and *near is the word most like the part that is unknown, NULL if
  * none is; *section is the one that lacks it. */

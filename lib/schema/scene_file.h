@@ -68,7 +68,20 @@ sonject_status scene_source_tree(const struct scene_source *source, struct tree 
 sonject_status scene_source_bands(const struct scene_source *source, struct report *report,
                                   char **names);
 
-/* The text with all that was set in its place, a line a section; for free(). Errors: MEMORY. */
+/* Makes source->tree where it is not there. Errors: INPUT, MEMORY. */
+sonject_status scene_source_keep_tree(struct scene_source *source, struct report *report);
+
+/* Makes the names of files in source->tree absolute; arrays in place of files stay. Errors: MEMORY.
+ */
+sonject_status name_files_absolutely(struct scene_source *source, struct report *report);
+
+/* What the scene says at a key, "" for all of it, as JSON, for free(); see sonject_scene_get.
+ * Errors: INPUT (no such key), MEMORY. */
+sonject_status scene_source_get(struct scene_source *source, struct report *report, const char *key,
+                                char **json);
+
+/* The text with all that was set in its place and absolute names of files, a line a section; for
+ * free(). Errors: INPUT, MEMORY. */
 sonject_status scene_source_text(struct scene_source *source, struct report *report, char **text);
 
 /* Whether a band may have this name, which is a folder's. */

@@ -37,8 +37,7 @@ static void forget_tree(struct scene_source *source)
     source->tree.file = NULL;
 }
 
-/* The tree of text and overrides, made where it is not there. */
-static sonject_status make_tree(struct scene_source *source, struct report *report)
+sonject_status scene_source_keep_tree(struct scene_source *source, struct report *report)
 {
     struct tree *tree = &source->tree;
     if (tree->file)
@@ -141,7 +140,7 @@ static sonject_status check_override(struct scene_source *source, struct report 
     const struct section *section;
     const char *near;
     const struct tree_node *node;
-    CHECK(make_tree(source, report));
+    CHECK(scene_source_keep_tree(source, report));
     CHECK(tree_override(tree, override, &node));
     const char *key = tree->override_paths[tree->override_count - 1];
     const struct tree_place place = {key, 1, 1};
@@ -250,7 +249,8 @@ sonject_status scene_source_text(struct scene_source *source, struct report *rep
 {
     struct growing_text lines = {NULL, 0, 0, false};
     *text = NULL;
-    CHECK(make_tree(source, report));
+    CHECK(scene_source_keep_tree(source, report));
+    sonject_status status = name_files_absolutely(source, report);
     const struct tree_node *root = &source->tree.root;
     growing_text_add(&lines, "%s", "");
     for (size_t i = 0; i < root->count; i++) {
@@ -258,6 +258,13 @@ sonject_status scene_source_text(struct scene_source *source, struct report *rep
         tree_write_flow(&root->entries[i].value, &lines);
         growing_text_add(&lines, "\n");
     }
+    forget_tree(source); /* the next call may be made in another working folder */
     *text = growing_text_end(&lines);
-    return *text ? SONJECT_OK : report_out_of_memory(report, "the scene's text");
+    if (status == SONJECT_OK && !*text)
+        status = report_out_of_memory(report, "the scene's text");
+    if (status != SONJECT_OK) {
+        free(*text);
+        *text = NULL;
+    }
+    return status;
 }

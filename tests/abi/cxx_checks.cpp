@@ -43,6 +43,9 @@ static void check_errors(const sonject::context &context)
     }
     scene.set("sonar.altitude", 0.1);
     expect(scene.text().find("0.1000000000000000") != std::string::npos, "numbers keep digits");
+    expect(std::stod(scene.get("sonar.altitude")) == 0.1, "what was set is read back");
+    expect(scene.get("objects[0].material") == "\"steel\"", "texts as JSON");
+    expect(scene.get("objects[1]") == "null", "what is not there is null");
     scene.set("sonar.altitude", -1.0);
     try {
         scene.object_count();

@@ -154,9 +154,18 @@ int work_remove(struct work *work)
 static sonject_status read_scene(struct work *work, sonject_context *context, sonject_scene *scene)
 {
     uint32_t count = 0;
+    char *text = NULL, *json = NULL;
     (void)context;
-    const sonject_status status = sonject_scene_object_count(scene, &count);
+    sonject_status status = sonject_scene_object_count(scene, &count);
+    if (status == SONJECT_OK)
+        status = sonject_scene_text(scene, &text);
+    if (status == SONJECT_OK)
+        status = sonject_scene_get(scene, "objects", &json);
     work->digest = add_to_digest(work->digest, &count, sizeof count);
+    if (json)
+        work->digest = add_to_digest(work->digest, json, strlen(json));
+    sonject_text_release(&text);
+    sonject_text_release(&json);
     return status;
 }
 

@@ -106,6 +106,14 @@ class scene
                                       columns.empty() ? nullptr : columns.c_str(), values.data(),
                                       values.size() / column_count, column_count));
     }
+    /* What the scene says at a key, as JSON, "" for all of it: "10.0", "null" where it says
+     * nothing. See sonject_scene_get. */
+    std::string get(const std::string &key) const
+    {
+        detail::text json;
+        check(sonject_scene_get(handle_, key.c_str(), json.out()));
+        return json.copy();
+    }
     std::uint32_t object_count() const
     {
         std::uint32_t count = 0;

@@ -35,11 +35,36 @@ def whole_number(name: str, value: Any, largest: int) -> int:
     return number
 
 
+# What a name ends in: a key of scenes that is written with the same units, and an example.
+_UNITS = {
+    "_m": ("sonar.altitude", "25 cm"),
+    "_hz": ("sonar.frequency", "100 kHz"),
+    "_s": ("elements.first_time", "20 ms"),
+    "_celsius": ("medium.absorption.temperature", "12 C"),
+    "decibels": ("injection.noise_floor", "-20 dB"),
+}
+
+
 def real_number(name: str, value: Any) -> float:
-    """value as a float; whether it makes sense is the library's to say."""
-    if not isinstance(value, numbers.Real):
-        raise TypeError(f"{name} must be a number, not {value!r}")
-    return float(value)
+    """value as a float, a text by its unit; whether it makes sense is the library's to say."""
+    key, example = next((_UNITS[end] for end in _UNITS if name.endswith(end)), (None, None))
+    number = _read_quantity(key, value) if key and isinstance(value, str) else value
+    if not isinstance(number, numbers.Real):
+        text_too = f" or a text such as {example!r}" if example else ""
+        raise TypeError(f"{name} must be a number{text_too}, not {value!r}")
+    return float(number)
+
+
+def _read_quantity(key: str, value: str) -> Any:
+    """What a scene reads in a text; the text itself where it is no quantity."""
+    from .context import default_context  # which imports this module, as scenes do
+    from .scene import Scene
+
+    context = default_context()
+    pointer = context.make(s.sonject_scene, "sonject_scene_create", context)
+    with Scene._adopt(context, pointer) as scene:
+        scene[key] = value
+        return scene[key]
 
 
 def real_numbers(name: str, values: Any) -> Any:

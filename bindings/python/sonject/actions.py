@@ -31,6 +31,7 @@ from ._values import (
 )
 from .context import Context, Progress, ProgressBridge, default_context
 from .enumerations import ConvertAxis, LabelFormat, RangeAxis, Samples, SeriesForm
+from .keys import Quantity
 from .result import Array, Box, ContactMeasures, Measurement, Result
 from .scene import Scene
 
@@ -45,7 +46,7 @@ def inject(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Res
     synthetic. The patch is never changed.
 
     progress: called with the finished fraction and the stage's name; a true answer cancels, and
-    what it raises ends the call and is raised here.
+    what it raises ends the call and is raised here. True shows a bar by tqdm if that is installed.
 
     Raises SonjectError, Cancelled, and TypeError or ValueError for arrays that are no patch.
     """
@@ -93,8 +94,8 @@ def run(
     progress: Optional[Progress] = None,
     labels: Iterable[Union[str, LabelFormat]] = (),
     shard: Optional[Tuple[int, int]] = None,
-    exit_after_s: float = 0.0,
-    checkpoint_s: float = 0.0,
+    exit_after_s: Quantity = 0.0,
+    checkpoint_s: Quantity = 0.0,
     overwrites: bool = False,
 ) -> bool:
     """Reads the scene's input, injects, and writes the result files into folder.
@@ -209,9 +210,9 @@ def quicklook(
     image: PathLike,
     picture: PathLike,
     *,
-    decibels: Optional[tuple[float, float]] = None,
+    decibels: Optional[tuple[Quantity, Quantity]] = None,
     range_axis: RangeAxis = RangeAxis.SLANT,
-    altitude_m: Optional[float] = None,
+    altitude_m: Optional[Quantity] = None,
     geometry: Optional[Mapping[str, Any]] = None,
     transfer: Optional[Mapping[str, Any]] = None,
     channel: Union[str, int, None] = None,
@@ -254,7 +255,7 @@ def convert(
     scale: float = 1.0,
     range_axis: ConvertAxis = ConvertAxis.KEPT,
     geometry: Optional[Mapping[str, Any]] = None,
-    altitude_m: Optional[float] = None,
+    altitude_m: Optional[Quantity] = None,
     context: Optional[Context] = None,
 ) -> None:
     """Makes a file of one format (.tif, .png, .npy, .h5) from a file of another.
@@ -368,8 +369,8 @@ def measure_contact(
     image: Any,
     box: Optional[Box] = None,
     *,
-    row_spacing_m: float = 0.0,
-    column_spacing_m: float = 0.0,
+    row_spacing_m: Quantity = 0.0,
+    column_spacing_m: Quantity = 0.0,
     context: Optional[Context] = None,
 ) -> ContactMeasures:
     """How long, wide and bright a contact's highlight and shadow are in an image as inject takes it.
@@ -457,10 +458,10 @@ def run_elements(
 
 
 def absorption(
-    frequency_hz: float,
-    temperature_celsius: float,
+    frequency_hz: Quantity,
+    temperature_celsius: Quantity,
     salinity_permille: float = 35.0,
-    depth_m: float = 0.0,
+    depth_m: Quantity = 0.0,
     ph: float = 8.0,
 ) -> float:
     """Absorption of sea water in dB/m after Francois and Garrison (1982).

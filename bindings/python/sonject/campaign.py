@@ -12,8 +12,9 @@ from ._classes import CampaignImage as CampaignImage
 from ._values import (
     Overrides, PathLike, choice, file_name, filled, given, initialised, override_texts, shard_values,
 )
-from .context import Context, Handle, Progress, ProgressBridge, default_context
+from .context import Context, Handle, Progress, ProgressBridge, counted, default_context
 from .enumerations import LabelPart
+from .keys import Quantity
 from .result import Result
 from .scene import Scene
 
@@ -61,6 +62,9 @@ class Campaign(Handle):
 
     def __reduce__(self) -> Any:
         return _read_again, self._source
+
+    def _summary(self) -> str:
+        return f"of {counted(len(self), 'image')}"
 
     def __len__(self) -> int:
         count = ctypes.c_uint64()
@@ -118,7 +122,7 @@ class Campaign(Handle):
         *,
         shard: Tuple[int, int] = (1, 1),
         only: Optional[int] = None,
-        exit_after_s: float = 0.0,
+        exit_after_s: Quantity = 0.0,
         overwrites: bool = False,
     ) -> bool:
         """Makes the images that the folder lacks, and the data set's documents once all are there.

@@ -5,9 +5,10 @@ from __future__ import annotations
 import collections
 import contextlib
 import ctypes
+import importlib
 import threading
 import weakref
-from typing import Any, Callable, Iterator, Optional, Sequence, Type, TypeVar
+from typing import Any, Callable, Iterator, Optional, Sequence, Type, TypeVar, Union
 
 from . import _interface as s
 from ._classes import Device as Device
@@ -17,8 +18,33 @@ from .enumerations import Status
 from .errors import Cancelled, SonjectError
 
 
-# Finished fraction 0...1 and the stage's name; a true answer asks to cancel.
-Progress = Callable[[float, str], Any]
+# Called with the finished fraction 0...1 and the stage's name; a true answer asks to cancel. True: a
+# bar by tqdm, or nothing where that is not installed.
+Progress = Union[bool, Callable[[float, str], Any]]
+
+
+class Bar:
+    """A bar by tqdm."""
+
+    def __init__(self, tqdm: Any) -> None:
+        self._bar = tqdm(total=1.0, bar_format="{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining}")
+
+    def __call__(self, fraction: float, stage: str) -> None:
+        self._bar.set_description_str(stage, refresh=False)
+        self._bar.update(fraction - self._bar.n)
+
+    def close(self, is_done: bool) -> None:
+        """Leaves it full, or where the work ended."""
+        if is_done:
+            self._bar.update(1.0 - self._bar.n)
+        self._bar.close()
+
+
+def _new_bar() -> Optional[Bar]:
+    try:
+        return Bar(importlib.import_module("tqdm.auto").tqdm)
+    except ImportError:
+        return None
 
 
 class ProgressBridge:
@@ -30,17 +56,22 @@ class ProgressBridge:
 
     def __init__(self, progress: Optional[Progress]) -> None:
         self.error: Optional[BaseException] = None
-        self._progress = progress
+        self._progress = None if isinstance(progress, bool) else progress
+        self._bar = _new_bar() if progress is True else None
         self.callback = s.sonject_progress_function(self._called)
 
     def _called(self, _user: Optional[int], fraction: float, stage: Optional[bytes]) -> int:
         try:
-            if self._progress is None:
-                return 0
-            return int(bool(self._progress(fraction, text(stage))))
+            function = self._progress if self._bar is None else self._bar
+            return 0 if function is None else int(bool(function(fraction, text(stage))))
         except BaseException as error:  # goes on to the caller of the library
             self.error = error
             return 1
+
+    def close(self, is_done: bool) -> None:
+        """At the end of the work."""
+        if self._bar is not None:
+            self._bar.close(is_done)
 
 
 class LogBridge:
@@ -56,6 +87,11 @@ class LogBridge:
             self._log(text(line))
         except BaseException as error:  # goes on to the caller of the library
             self.error = error
+
+
+def counted(number: int, word: str) -> str:
+    """1 object, 2 objects."""
+    return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 
 Self = TypeVar("Self", bound="Handle")
@@ -85,6 +121,17 @@ class Handle:
         if not self._finalizer.alive:
             raise ValueError(f"this sonject {self._noun} was closed")
         return self._pointer
+
+    def _summary(self) -> str:
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        """In one line, whatever state it is in."""
+        try:
+            told = " " + self._summary()
+        except (RuntimeError, SonjectError, ValueError) as error:  # in a callback, wrong, closed
+            told = ": " + str(error).partition("\n")[0]
+        return f"<sonject.{type(self).__name__}{told}>"
 
     def close(self) -> None:
         """Releases the library's memory now."""
@@ -121,10 +168,11 @@ class Context:
         threads: int = 0,
     ) -> None:
         self._library = load()
+        self._device = device
         self._lock = threading.Lock()
         self._owner: Optional[int] = None
         self._waiting: collections.deque[Any] = collections.deque()
-        self._handles: weakref.WeakSet[Handle] = weakref.WeakSet()
+        self._handles: weakref.WeakValueDictionary[int, Handle] = weakref.WeakValueDictionary()
         self._log = None if log is None else LogBridge(log)
         params = filled(
             s.sonject_context_params,
@@ -147,12 +195,16 @@ class Context:
 
     def close(self) -> None:
         """Releases the context, after the scenes and results that were made with it."""
-        for handle in list(self._handles):
+        for handle in list(self._handles.values()):
             handle.close()
         if self._finalizer.alive:
             with self._exclusive():
                 pass  # waits for a call that still runs and releases what it kept waiting
             self._finalizer()
+
+    def __repr__(self) -> str:
+        told = "on the default device" if self._device is None else f"on {self._device}"
+        return f"<sonject.Context {told if self.is_usable else 'that was closed'}>"
 
     def __enter__(self) -> "Context":
         return self
@@ -186,15 +238,21 @@ class Context:
         Handles among the arguments stand for their pointers. Raises what callbacks raised first,
         then SonjectError.
         """
-        with self._exclusive():
-            # Looked up under the lock: another thread may close a handle until then.
-            values = [
-                each.pointer if isinstance(each, (Handle, Context)) else each for each in arguments
-            ]
-            status = getattr(self._library, name)(*values)
-            message = ""
-            if status != Status.OK:
-                message = text(self._library.sonject_context_message(self._pointer))
+        status = None
+        try:
+            with self._exclusive():
+                # Looked up under the lock: another thread may close a handle until then.
+                values = [
+                    each.pointer if isinstance(each, (Handle, Context)) else each
+                    for each in arguments
+                ]
+                status = getattr(self._library, name)(*values)
+                message = ""
+                if status != Status.OK:
+                    message = text(self._library.sonject_context_message(self._pointer))
+        finally:
+            if bridge is not None:
+                bridge.close(status == Status.OK)
         for callback in (bridge, self._log):
             if callback is not None and callback.error is not None:
                 error, callback.error = callback.error, None
@@ -249,7 +307,7 @@ class Context:
 
     def adopt(self, handle: Handle) -> None:
         """Has handle closed before the context is."""
-        self._handles.add(handle)
+        self._handles[id(handle)] = handle  # scenes have no hash
 
     def release(self, pointer: Any) -> None:
         """Gives a handle back to the library."""

@@ -7,56 +7,44 @@ from typing import Any, Mapping, Optional
 
 import numpy
 
+from ._picture import decibels as levels_of
+from ._picture import grey_ends
+from ._values import real_number
 from .result import Result
-
-# Of the brightest thousandth to what is hardly seen beside it.
-_SPAN_DB = 50.0
 
 
 def _pyplot() -> Any:
     return importlib.import_module("matplotlib.pyplot")
 
 
-def _decibels(image: Any) -> Any:
-    """20 log10 of the magnitudes, -inf where they are 0; float64, of the image's shape."""
-    with numpy.errstate(divide="ignore"):
-        return 20.0 * numpy.log10(numpy.abs(numpy.asarray(image)).astype(numpy.float64))
-
-
-def _extent(shape: tuple[int, int], geometry: Mapping[str, float]) -> tuple[float, float, float, float]:
+def _extent(shape: tuple[int, int], geometry: Mapping[str, Any]) -> tuple[float, float, float, float]:
     """Outer edges of the pixels in m: first and last slant range, last and first track position."""
     rows, columns = shape
-    left = geometry["first_slant_range"] - 0.5 * geometry["column_spacing"]
-    top = geometry.get("first_along_track", 0.0) - 0.5 * geometry["row_spacing"]
-    return (
-        left,
-        left + columns * geometry["column_spacing"],
-        top + rows * geometry["row_spacing"],
-        top,
+    given = {"first_along_track": 0.0, **geometry}
+    wide, high, left, top = (
+        real_number(f"{name}_m", given[name])
+        for name in ("column_spacing", "row_spacing", "first_slant_range", "first_along_track")
     )
+    left, top = left - 0.5 * wide, top - 0.5 * high
+    return left, left + columns * wide, top + rows * high, top
 
 
 def draw(
     image: Any,
     *,
-    geometry: Optional[Mapping[str, float]] = None,
+    geometry: Optional[Mapping[str, Any]] = None,
     decibels: Optional[tuple[float, float]] = None,
     axes: Any = None,
 ) -> Any:
     """Draws an image's magnitudes in dB; gives matplotlib's AxesImage.
 
     image: rows (track positions) x columns (slant ranges), amplitudes or complex pixels; geometry:
-    as input.geometry of scenes, numbers in m, labels the axes; None: in pixels; decibels: ends of the grey scale, None: 50 dB up to
-    the brightest thousandth; axes: matplotlib's to draw in, None: the current ones.
+    as input.geometry of scenes, labels the axes; None: in pixels; decibels: ends of the grey scale, None: those of
+    sonject quicklook, percentiles 3 and 99.8; axes: matplotlib's to draw in, None: the current ones.
     """
     axes = _pyplot().gca() if axes is None else axes
-    levels = _decibels(image)
-    if levels.ndim != 2 or levels.size == 0:
-        raise ValueError(f"an image has rows and columns, not the shape {levels.shape}")
-    if decibels is None:
-        seen = levels[numpy.isfinite(levels)]
-        top = float(numpy.quantile(seen, 0.999)) if seen.size else 0.0
-        decibels = (top - _SPAN_DB, top)
+    levels = levels_of(image)
+    decibels = grey_ends(levels) if decibels is None else decibels
     extent = None if geometry is None else _extent(levels.shape, geometry)
     axes.set_xlabel("slant range in columns" if geometry is None else "slant range in m")
     axes.set_ylabel("track in rows" if geometry is None else "track in m")
@@ -74,7 +62,7 @@ def draw_result(
     patch: Any,
     result: Result,
     *,
-    geometry: Optional[Mapping[str, float]] = None,
+    geometry: Optional[Mapping[str, Any]] = None,
     decibels: Optional[tuple[float, float]] = None,
     figure: Any = None,
 ) -> Any:

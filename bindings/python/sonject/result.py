@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from functools import cached_property
-from typing import Any
+from typing import Any, Optional
 
 import numpy
 
@@ -15,8 +15,9 @@ from ._classes import Measurement as Measurement
 from ._classes import ObjectTruth as ObjectTruth
 from ._classes import Statistics as Statistics
 from ._parameters import Array as Array
+from ._picture import picture
 from ._values import initialised
-from .context import Context, Handle
+from .context import Context, Handle, counted
 from .enumerations import Layer, PixelKind, Status
 from .errors import SonjectError
 
@@ -29,6 +30,17 @@ _LAYER_TYPES = {
     Layer.LABELS: numpy.uint8,
     Layer.INFLUENCE: numpy.uint8,
 }
+
+# Of the truth, what notebooks show: heading, member of ObjectTruth, how it is written.
+_SHOWN = (
+    ("row", "row", ".1f"),
+    ("column", "column", ".1f"),
+    ("slant range, m", "slant_range_m", ".2f"),
+    ("target strength, dB", "target_strength_db", ".1f"),
+    ("over seabed, dB", "over_seabed_db", ".1f"),
+    ("highlight, pixels", "highlight_pixels", "d"),
+    ("shadow, pixels", "shadow_pixels", "d"),
+)
 
 
 class Result(Handle):
@@ -148,3 +160,27 @@ class Result(Handle):
         structure = initialised(s.sonject_statistics)
         self._context.call("sonject_result_statistics", self, ctypes.byref(structure))
         return Statistics.from_structure(structure)
+
+    def _summary(self) -> str:
+        rows, columns = self.shape
+        return f"{rows} x {columns} pixels, {counted(self._object_count, 'object')}"
+
+    def _repr_html_(self) -> Optional[str]:
+        """For notebooks: the image in dB and the truth. None once it is closed."""
+        try:
+            image, truths = self.image, self.objects
+        except ValueError:
+            return None
+        address, (low, high) = picture(image)
+        heads = "".join(f"<th>{head}</th>" for head in ("object", *(each[0] for each in _SHOWN)))
+        rows = "".join(
+            f"<tr><td>{index}</td>"
+            + "".join(f"<td>{getattr(truth, name):{form}}</td>" for _, name, form in _SHOWN)
+            + "</tr>"
+            for index, truth in enumerate(truths)
+        )
+        return (
+            f'<img src="{address}" alt="{self._summary()}">'
+            f"<div>{self._summary()}; black {low:.1f} dB, white {high:.1f} dB</div>"
+            + (f"<table><tr>{heads}</tr>{rows}</table>" if truths else "")
+        )

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
-from typing import TYPE_CHECKING, Any, Optional
+import html
+import json
+import os
+import threading
+from typing import TYPE_CHECKING, Any, Iterator, Optional
 
 import numpy
 
@@ -11,7 +16,8 @@ from . import _interface as s
 from ._values import (
     Overrides, PathLike, file_name, filled, key_text, override_texts, plain_text, real_numbers,
 )
-from .context import Context, Handle, default_context
+from .context import Context, Handle, counted, default_context
+from .errors import SonjectError
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -47,6 +53,7 @@ class Scene(Handle):
         context = default_context() if context is None else context
         text = plain_text("scene", key_text("scene", {"sonject": 1, **keys}))
         super().__init__(context, _read(context, None, allows_user_shapes, text=text))
+        self._allows_user_shapes = allows_user_shapes
 
     @classmethod
     def read(
@@ -64,14 +71,16 @@ class Scene(Handle):
         """
         context = default_context() if context is None else context
         texts = override_texts(overrides)
-        return cls._adopt(context, _read(context, file_name("path", path), allows_user_shapes,
-                                         overrides=texts, override_count=len(texts)))
+        pointer = _read(context, file_name("path", path), allows_user_shapes,
+                        overrides=texts, override_count=len(texts))
+        return cls._adopt(context, pointer, allows_user_shapes)
 
     @classmethod
-    def _adopt(cls, context: Context, pointer: Any) -> "Scene":
+    def _adopt(cls, context: Context, pointer: Any, allows_user_shapes: bool = False) -> "Scene":
         """The scene behind a handle that the library made."""
         scene = cls.__new__(cls)
         Handle.__init__(scene, context, pointer)
+        scene._allows_user_shapes = allows_user_shapes
         return scene
 
     @staticmethod
@@ -93,6 +102,25 @@ class Scene(Handle):
         """
         self._context.call("sonject_scene_set", self, plain_text("key", key),
                            plain_text(key, key_text(key, value)))
+
+    def __getitem__(self, key: str) -> Any:
+        """What the scene says at a key: a number, a text, a dictionary or a list; "" for all of it.
+
+        Quantities are the numbers that say the same without a unit: in SI units and degrees. Names of
+        files are absolute. A table in memory has "columns" and "values". Raises KeyError where the
+        scene says nothing: defaults, and what a calibration adds, are not told.
+        """
+        value = self._get(key)
+        if value is None:
+            raise KeyError(key)
+        return value
+
+    def __contains__(self, key: object) -> bool:
+        """Whether the scene says something at a key."""
+        return self._get(key) is not None
+
+    def _get(self, key: Any) -> Any:
+        return json.loads(self._context.text("sonject_scene_get", self, plain_text("key", key)))
 
     def set_table(self, key: str, values: Any = None, /, **columns: Any) -> None:
         """Sets a key that names a file of numbers to numbers in memory.
@@ -117,8 +145,60 @@ class Scene(Handle):
                            table.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), *table.shape)
 
     def text(self) -> str:
-        """The scene as the text of a scene file, with all that was set but tables in memory."""
+        """The scene as the text of a scene file, with all that was set but tables in memory.
+
+        Names of files in it are absolute.
+        """
         return self._context.text("sonject_scene_text", self)
+
+    def write(self, path: PathLike) -> None:
+        """Writes a scene file, whole or not at all. Raises ValueError where a table is in memory."""
+        content = self._whole_text()
+        name = os.fsdecode(file_name("path", path))
+        part = f"{name}.{os.getpid()}-{threading.get_ident()}.part"
+        try:
+            with open(part, "w", encoding="utf-8", newline="\n") as file:
+                file.write(content)
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(part, name)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                os.unlink(part)
+            raise
+
+    def _whole_text(self) -> str:
+        for key in _tables("", self[""]):
+            raise ValueError(f"{key} is a table in memory, which the text of a scene cannot hold: "
+                             "write it to a file and set the file's name")
+        return self.text()
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both say the same: 10, "10 m" and "1000 cm" are equal."""
+        if not isinstance(other, Scene):
+            return NotImplemented
+        return self is other or bool(self[""] == other[""])
+
+    __hash__ = None  # type: ignore[assignment]  # what it says may change
+
+    def __copy__(self) -> "Scene":
+        return _of_text(self._whole_text(), self._allows_user_shapes, self._context)
+
+    def __deepcopy__(self, _memo: Any) -> "Scene":
+        return self.__copy__()
+
+    def __reduce__(self) -> Any:
+        return _of_text, (self._whole_text(), self._allows_user_shapes)
+
+    def _summary(self) -> str:
+        return f"of {counted(self.object_count, 'object')}"
+
+    def _repr_html_(self) -> Optional[str]:
+        """For notebooks: the scene's text. None where there is none, or it is closed."""
+        try:
+            return f"<pre>{html.escape(self.text())}</pre>"
+        except (SonjectError, ValueError):
+            return None
 
     @property
     def object_count(self) -> int:
@@ -133,3 +213,21 @@ def _read(context: Context, path: Optional[bytes], allows_user_shapes: bool, **g
         given["overrides"] = ctypes.cast(given["overrides"], ctypes.POINTER(ctypes.c_char_p))
     params = filled(s.sonject_scene_read_params, allows_user_shapes=bool(allows_user_shapes), **given)
     return context.make(s.sonject_scene, "sonject_scene_read", context, path, ctypes.byref(params))
+
+
+def _of_text(content: str, allows_user_shapes: bool, context: Optional[Context] = None) -> Scene:
+    context = default_context() if context is None else context
+    pointer = _read(context, None, allows_user_shapes, text=plain_text("scene", content))
+    return Scene._adopt(context, pointer, allows_user_shapes)
+
+
+def _tables(key: str, value: Any) -> Iterator[str]:
+    """Keys of the tables in memory, in what the scene says at a key."""
+    if isinstance(value, dict) and set(value) == {"columns", "values"}:
+        yield key
+    elif isinstance(value, dict):
+        for name, each in value.items():
+            yield from _tables(f"{key}.{name}".lstrip("."), each)
+    elif isinstance(value, list):
+        for index, each in enumerate(value):
+            yield from _tables(f"{key}[{index}]", each)

@@ -39,7 +39,10 @@ def campaign(tmp_path):
 
 def test_images_are_made_in_memory_in_any_order(campaign):
     whole, swath = campaign
-    assert len(whole) == 6
+    assert len(whole) == 6 and repr(whole) == "<sonject.Campaign of 6 images>"
+    assert whole.scene(0)._repr_html_() is None
+    with pytest.raises(sonject.SonjectError, match="a campaign's scene has no text"):
+        whole.scene(0)["sonar"]
     forward = [result.image for result in whole]
     backward = [whole[-1 - number].image for number in range(6)]
     for number in range(6):
@@ -120,7 +123,7 @@ def test_a_data_set_stops_by_itself_and_one_image_is_made_alone(campaign, tmp_pa
     whole = sonject.Campaign(tmp_path / "campaign.yaml", {"images": 100})
     folder = tmp_path / "set"
     with pytest.raises(sonject.Cancelled):
-        whole.run(folder, exit_after_s=1e-9)
+        whole.run(folder, exit_after_s="0.001 us")
     made = {path.stem for path in folder.glob("all/records/*")}
     assert "00000000" in made and "00000099" not in made
     assert whole.run(folder, only=99)

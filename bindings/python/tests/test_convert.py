@@ -10,8 +10,9 @@ def test_an_array_becomes_an_image_and_comes_back(tmp_path):
     pixels = numpy.arange(12, dtype=numpy.uint16).reshape(3, 4)
     numpy.save(tmp_path / "a.npy", pixels)
     geometry = {"row_spacing": 0.1, "column_spacing": "25 cm", "first_slant_range": 5.0}
-    sonject.convert(tmp_path / "a.npy", tmp_path / "b.tif", geometry=geometry, altitude_m=3.0)
-    assert b"sonject:first_slant_range_m=5\n" in (tmp_path / "b.tif").read_bytes()
+    sonject.convert(tmp_path / "a.npy", tmp_path / "b.tif", geometry=geometry, altitude_m="300 cm")
+    told = (tmp_path / "b.tif").read_bytes()
+    assert b"sonject:first_slant_range_m=5\n" in told and b"sonject:altitude_m=3\n" in told
     sonject.convert(tmp_path / "b.tif", tmp_path / "c.npy", samples=sonject.Samples.FLOAT32,
                     scale=0.5)
     sonject.convert(tmp_path / "b.tif", tmp_path / "d.tif",
@@ -29,3 +30,14 @@ def test_what_does_not_fit_is_refused(tmp_path):
     with pytest.raises(ValueError, match="array contains a NUL"):
         sonject.convert(tmp_path / "a.npy", tmp_path / "b.npy", array="swath\0of another day")
     assert [path.name for path in tmp_path.iterdir()] == ["a.npy"]
+
+
+def test_the_ends_of_a_picture_may_have_a_unit(tmp_path):
+    numpy.save(tmp_path / "a.npy", numpy.linspace(0.1, 1.0, 48, dtype=numpy.float32).reshape(6, 8))
+    pictures = []
+    for decibels in ((-20, 0), ("-20 dB", "0 dB"), ("-10 dB", 0)):
+        sonject.quicklook(tmp_path / "a.npy", tmp_path / "a.png", decibels=decibels)
+        pictures.append((tmp_path / "a.png").read_bytes())
+    assert pictures[0] == pictures[1] != pictures[2]
+    with pytest.raises(TypeError, match="decibels must be a number or a text such as '-20 dB', not 'loud'"):
+        sonject.quicklook(tmp_path / "a.npy", tmp_path / "a.png", decibels=("loud", 0))

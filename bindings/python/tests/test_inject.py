@@ -330,7 +330,7 @@ def test_a_contact_is_measured():
     image[50:71, 60:72] *= 6
     image[50:71, 72:112] *= 0.05
     box = sonject.Box(40, 50, 41, 80)
-    by_box = sonject.measure_contact(image, box, row_spacing_m=0.1, column_spacing_m=0.05)
+    by_box = sonject.measure_contact(image, box, row_spacing_m="10 cm", column_spacing_m=0.05)
     found = sonject.measure_contact(image)
     # a pixel at each edge: edges between pixels, in speckle, and without any point response
     assert by_box.shadow_range_pixels == pytest.approx(40, abs=2)

@@ -62,6 +62,7 @@ def test_what_the_text_calls_can_be_called(names, span, tmp_path, monkeypatch):
         "along": [-10.0, 10.0],
         "sway": [0.0, 1e-3],
         "folder": tmp_path / "results",
+        "path": tmp_path / "scene.yaml",
     }
     if span.startswith("result.order"):
         scene["injection"] = {"interactions": 2, "order_energies": True}

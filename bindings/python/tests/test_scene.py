@@ -1,7 +1,10 @@
 """Scenes of dictionaries, arrays and numbers."""
 
+import copy
 import math
+import os
 import pathlib
+import pickle
 
 import numpy
 import pytest
@@ -223,5 +226,112 @@ def test_absorption_of_sea_water():
         frequency_hz=100e3, temperature_celsius=10, salinity_permille=35, depth_m=0, ph=8)
     assert sonject.absorption(100e3, 10.0, 35.0, 10.0, 7.9) != sonject.absorption(100e3, 10.0, 34.0)
     assert math.isnan(sonject.absorption(2e6, 10.0))
-    with pytest.raises(TypeError, match="frequency_hz must be a number"):
-        sonject.absorption("100 kHz", 10.0)
+    assert alpha == sonject.absorption("100 kHz", "10 C", depth_m="0 km")
+    assert sonject.absorption(1e5, 10, depth_m="2 km") == sonject.absorption(1e5, 10, depth_m=2000)
+    with pytest.raises(TypeError, match="frequency_hz must be a number or a text such as '100 kHz', not '100 m'"):
+        sonject.absorption("100 m", 10.0)
+    with pytest.raises(TypeError, match="ph must be a number, not '8'"):
+        sonject.absorption(1e5, 10.0, ph="8")
+
+
+def test_what_a_scene_says_is_read_back(make_scene, context):
+    scene = make_scene(objects=[{**KEYS["objects"][0], "heading": "0.5 rad", "burial": "5 cm"}])
+    assert scene["sonar.altitude"] == 10.0 and isinstance(scene["sonar.altitude"], float)
+    assert scene["objects[0].heading"] == pytest.approx(math.degrees(0.5), rel=1e-15)
+    assert scene["objects[0]"]["burial"] == 0.05 and scene["objects"][0]["name"] == "ball"
+    assert list(scene[""]) == ["sonject", "sonar", "input", "objects"]
+    scene["sonar.altitude"] = 10 + 2**-40
+    assert scene["sonar.altitude"] == 10 + 2**-40
+    assert "objects[0].burial" in scene and "objects[1]" not in scene and "medium" not in scene
+    with pytest.raises(KeyError, match="medium.sound_speed"):
+        scene["medium.sound_speed"]
+    with pytest.raises(sonject.SonjectError, match="did you mean 'altitude'"):
+        scene["sonar.altitud"]
+    with pytest.raises(TypeError, match="key must be a text, not 0"):
+        list(scene)
+    scene.set_table("sonar.motion.file", along_track_m=[0, 10], sway_m=[0, 2e-3])
+    assert scene["sonar.motion.file"] == {"columns": "along_track_m, sway_m",
+                                          "values": [[0, 0], [10, 2e-3]]}
+
+
+def test_scenes_that_say_the_same_are_equal(make_scene):
+    def with_table(sway_m):
+        scene = make_scene()
+        scene.set_table("sonar.motion.file", along_track_m=[0, 10], sway_m=sway_m)
+        return scene
+
+    assert make_scene() == make_scene(sonar={"altitude": "1000 cm", "bandwidth": "30 kHz", "frequency": 1e5})
+    changed = make_scene()
+    changed["objects[0].diameter"] = 0.6
+    assert changed != make_scene() and make_scene() != KEYS
+    assert with_table([0, 1]) == with_table([0, 1]) != with_table([0, 2]) != make_scene()
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(changed)
+
+
+def test_contexts_close_scenes_that_are_equal():
+    context = sonject.Context()
+    scenes = [sonject.Scene(context=context, **KEYS) for _ in range(2)]
+    context.close()
+    for scene in scenes:
+        with pytest.raises(ValueError, match="scene was closed"):
+            scene.text()
+
+
+@pytest.mark.parametrize("duplicate", [copy.copy, copy.deepcopy, lambda each: pickle.loads(pickle.dumps(each))])
+def test_a_copy_is_a_scene_of_its_own(make_scene, amplitude_patch, duplicate):
+    shape = {"shape": "user", "user": {"code": SPHERE, "bounding_radius": 0.25, "parameters": [0.25]},
+             "heading": "0.35 rad"}
+    scene = make_scene(objects=[shape], allows_user_shapes=True)
+    before = image(amplitude_patch, scene)
+    other = duplicate(scene)
+    assert other == scene and image(amplitude_patch, other) == before
+    assert (other.context is scene.context) == (duplicate in (copy.copy, copy.deepcopy))
+    other["objects[0].user.parameters"] = [0.2]
+    assert other != scene and image(amplitude_patch, other) != before
+    assert image(amplitude_patch, scene) == before
+
+
+def test_a_scene_is_written_for_other_folders(tmp_path, context, amplitude_patch, monkeypatch):
+    (tmp_path / "here").mkdir()
+    (tmp_path / "there").mkdir()
+    (tmp_path / "here" / "a.obj").write_text(TETRAHEDRON)
+    (tmp_path / "here" / "scene.yaml").write_text(
+        f"sonject: 1\ninput: {{geometry: {GEOMETRY}, uniform: {{rows: {ROWS}, columns: {COLUMNS}}}}}\n"
+        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
+        "objects: [{shape: mesh, mesh: {file: a.obj, unit: mm}}]\n")
+    monkeypatch.chdir(tmp_path / "here")
+    scene = sonject.Scene.read("scene.yaml", context=context)
+    scene["objects[1]"] = {"shape": "mesh", "mesh": {"file": "a.obj", "unit": "mm"}, "heading": 90}
+    before = image(amplitude_patch, scene)
+    pickled, written = pickle.dumps(scene), tmp_path / "there" / "scene.yaml"
+    scene.write(written)
+    monkeypatch.chdir("/")
+    for other in (sonject.Scene.read(written, context=context), pickle.loads(pickled)):
+        assert image(amplitude_patch, other) == before
+        assert other["objects[1].mesh.file"] == str(tmp_path / "here" / "a.obj")
+    assert [path.name for path in written.parent.iterdir()] == ["scene.yaml"]
+
+
+def test_a_scene_is_written_whole_or_not_at_all(make_scene, tmp_path, monkeypatch):
+    path = tmp_path / "scene.yaml"
+    path.write_text("before")
+    scene = make_scene()
+    with pytest.raises(OSError):
+        scene.write(tmp_path / "none" / "scene.yaml")
+
+    def fail(_descriptor):
+        raise OSError("the disk is full")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "fsync", fail)
+        with pytest.raises(OSError, match="full"):
+            scene.write(path)
+    scene.set_table("sonar.motion.file", along_track_m=[0, 10], sway_m=[0, 2e-3])
+    for refuse in (lambda: scene.write(path), lambda: pickle.dumps(scene), lambda: copy.copy(scene)):
+        with pytest.raises(ValueError, match="^sonar.motion.file is a table in memory, which .* cannot"):
+            refuse()
+    assert path.read_text() == "before" and list(tmp_path.iterdir()) == [path]
+    scene["sonar.motion"] = {}
+    scene.write(path)
+    assert path.read_text() == scene.text()
