@@ -57,7 +57,8 @@ def test_what_is_wrong_leaves_nothing(sonject, scene, tmp_path):
     for setting, words in (
             ("elements.sampling_rate=20 kHz", "elements.sampling_rate: must be at least 30000 Hz"),
             ("sonar.resolution=3.7 mm", "no aperture on a straight track resolves 0.0037 m"),
-            ("sonar.motion={random: {rms: 1 mm, correlation: 1 m}}", "sonar.motion moves images alone")):
+            ("sonar.motion={random: {rms: 1 mm, correlation: 1 m}}", "sonar.motion moves images alone"),
+            ("objects[0].level={over_seabed: 14 dB}", "objects[0].level sets an image's levels alone")):
         assert_refused(sonject("elements", scene, "-o", "out", "--set", setting), 3, words)
     assert not files_below(tmp_path / "out")
     assert_refused(sonject("elements", scene, "-o", "scene.yaml/out", "--quiet"), 5, "scene.yaml")
