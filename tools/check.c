@@ -1,5 +1,5 @@
 /* sonject check: a scene against its image, without tracing. */
-#include <stdio.h>
+#include <stddef.h>
 
 #include <sonject/sonject.h>
 
@@ -22,20 +22,10 @@ static int work(const void *verb_options)
     const struct check_options *options = verb_options;
     sonject_context *context = NULL;
     sonject_scene *scene = NULL;
-    char *text = NULL;
     sonject_status status = sonject_context_create(NULL, &context);
     if (status == SONJECT_OK)
         status = scene_arguments_read(context, &options->scene, &scene);
-    if (status == SONJECT_OK)
-        status = sonject_check(context, scene, &text);
-    int code = EXIT_CODE_DONE;
-    if (status == SONJECT_OK) {
-        fputs(text, stdout);
-        code = finish_output();
-    } else {
-        code = fail_with(context, status);
-    }
-    sonject_text_release(&text);
+    const int code = scene_show(context, status, scene);
     sonject_scene_release(&scene);
     sonject_context_release(&context);
     return code;

@@ -12,6 +12,7 @@
 #include "base/system/file_system.h"
 #include "console.h"
 #include "image_arguments.h"
+#include "stage.h"
 #include "verbs.h"
 
 enum {
@@ -120,10 +121,11 @@ static bool ask(struct interview *interview, const struct question *question)
         }
         line[strcspn(line, "\r\n")] = '\0';
         const char *value = line + strspn(line, " \t");
-        if (!*value && question->usual)
+        if (!*value && question->usual) {
+            if (!has_usual)
+                return true; /* nothing is an answer, too */
             value = question->usual;
-        if (!*value && question->usual)
-            return true;
+        }
         const int length =
             snprintf(interview->answers[interview->count++], ANSWER, "%s=%s", question->key, value);
         if (*value && length < ANSWER && is_possible(interview))
@@ -315,18 +317,13 @@ static sonject_status learn(struct interview *interview, char **text)
     return SONJECT_OK;
 }
 
-/* Prints the scene's geometry, or what is wrong with it. Gives the exit code. */
-static int show(const struct interview *interview)
+/* Gives the exit code. */
+static int check(const struct interview *interview)
 {
     sonject_scene *scene = NULL;
-    char *text = NULL;
-    sonject_status status = sonject_scene_read(interview->context, interview->scene, NULL, &scene);
-    if (status == SONJECT_OK)
-        status = sonject_check(interview->context, scene, &text);
-    if (text)
-        fputs(text, stdout);
-    const int code = status == SONJECT_OK ? finish_output() : fail_with(interview->context, status);
-    sonject_text_release(&text);
+    const sonject_status status =
+        sonject_scene_read(interview->context, interview->scene, NULL, &scene);
+    const int code = scene_show(interview->context, status, scene);
     sonject_scene_release(&scene);
     return code;
 }
@@ -351,7 +348,7 @@ static int hold(struct interview *interview)
                                 write_file(interview, files[0], NULL, image);
         if (is_written)
             message(files[0], " is a scene to begin with; ", files[1], " has what was measured");
-        code = is_written ? show(interview) : EXIT_CODE_STORAGE;
+        code = is_written ? check(interview) : EXIT_CODE_STORAGE;
         free(image);
     }
     sonject_text_release(&text);

@@ -79,6 +79,17 @@ sonject_status scene_arguments_read(sonject_context *context,
     return status;
 }
 
+int scene_show(sonject_context *context, sonject_status status, const sonject_scene *scene)
+{
+    char *text = NULL;
+    if (status == SONJECT_OK)
+        status = sonject_check(context, scene, &text);
+    if (text)
+        fputs(text, stdout);
+    sonject_text_release(&text);
+    return status == SONJECT_OK ? finish_output() : fail_with(context, status);
+}
+
 static bool parse_shard(const char *text, uint64_t *part, uint64_t *whole)
 {
     char first[16];

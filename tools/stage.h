@@ -90,6 +90,10 @@ sonject_status scene_arguments_bands(sonject_context *context,
 sonject_status scene_arguments_read(sonject_context *context,
                                     const struct scene_arguments *arguments, sonject_scene **scene);
 
+/* Prints the scene's geometry as sonject_check tells it, or what is wrong: then, or where status
+ * says that the scene could not be read, the context's message. Gives the exit code. */
+int scene_show(sonject_context *context, sonject_status status, const sonject_scene *scene);
+
 /* ---- --shard I/K. */
 
 /* "2/4": whole numbers, I from 1 to K; NULL leaves both as they are. A message where it is none of

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Makes wheels of the Python package that need nothing but NumPy: library, decoder and command, with
 # the C libraries under them linked into these. wheels.sh [MACHINE...]: x86_64 and aarch64 (Linux with
-# glibc 2.28 or newer) and win_amd64 (Windows 10 or newer) unless they are named. They lie in
+# glibc 2.28 or newer) and win_amd64 (64 bit Windows) unless they are named. They lie in
 # build-wheels/wheels.
 #
 # The libraries are Debian's source packages, whose maintainers patch them; ziglang (from PyPI) is the

@@ -15,20 +15,21 @@ void decoder_stop(struct decoder *decoder)
 
 static sonject_status start(struct report *report, struct decoder *decoder, const char *path)
 {
-    char stamp[64];
+    char stamp[64], reason[128];
     char *program = decoder_path();
     CHECK_MEMORY(report, program, "a path");
     decoder_stamp(stamp);
     const int error =
         child_start(&decoder->child, program, stamp, DECODER_MEMORY_BYTES, DECODER_SILENCE_S);
     sonject_status status = SONJECT_OK;
+    error_text(error, reason, sizeof reason);
     if (error == 0)
         decoder->starts++;
     else if (error == ENOENT || error == EACCES || error == ENOEXEC)
         status = report_failure(report, SONJECT_ERROR_UNSUPPORTED,
                                 "%s: sonject reads it by %s, which cannot be used: %s: install "
                                 "sonject anew",
-                                path, program, strerror(error));
+                                path, program, reason);
     else
         status = file_failure(report, program, "start", error);
     free(program);

@@ -2,17 +2,14 @@
 #include "swath/image_library.h"
 
 #include <errno.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <tiffio.h>
-
 #include "base/file.h"
+#include "swath/tiff_stream.h"
 
 #define BLOCKS_MAX      ((uint32_t)1 << 25)
-#define BLOCK_BYTES_MAX ((uint64_t)256 << 20)               /* of a tile or strip, decoded */
 #define NEW_STRIP_BYTES ((uint64_t)1 << 18)                 /* of a new image */
 #define CLASSIC_MAX     (UINT32_MAX - ((uint64_t)64 << 20)) /* with some for its directory */
 
@@ -36,84 +33,6 @@ struct tiff_image {
     uint32_t count;
     struct kept_block kept[2]; /* of each plane */
 };
-
-static int hear(TIFF *file, void *user, const char *module, const char *format, va_list values)
-{
-    struct library_fault *fault = user;
-    (void)file;
-    (void)module;
-    if (!*fault->message) {
-        fault->error = errno;
-        vsnprintf(fault->message, sizeof fault->message, format, values);
-    }
-    return 1;
-}
-
-/* What libtiff goes on without: of that, only what lies behind the end of a file that is cut. */
-static int hear_warning(TIFF *file, void *user, const char *module, const char *format,
-                        va_list values)
-{
-    return strstr(format, "IO error") ? hear(file, user, module, format, values) : 1;
-}
-
-/* libtiff reads and writes by C's streams, for it knows no UTF-8 paths on Windows. A stream wants a
- * seek between reading and writing. */
-static tmsize_t read_bytes(thandle_t stream, void *bytes, tmsize_t count)
-{
-    return fseek(stream, 0, SEEK_CUR) == 0 ? (tmsize_t)fread(bytes, 1, (size_t)count, stream) : -1;
-}
-
-static tmsize_t write_bytes(thandle_t stream, void *bytes, tmsize_t count)
-{
-    return fseek(stream, 0, SEEK_CUR) == 0 ? (tmsize_t)fwrite(bytes, 1, (size_t)count, stream) : -1;
-}
-
-/* libtiff seeks from the beginning and to the end. */
-static toff_t seek_place(thandle_t stream, toff_t place, int from)
-{
-    const bool is_there =
-        from == SEEK_SET ? byte_file_seek(stream, place) : fseek(stream, 0, from) == 0;
-    return is_there ? byte_file_place(stream) : (toff_t)-1;
-}
-
-static toff_t file_size(thandle_t stream)
-{
-    const toff_t place = byte_file_place(stream);
-    const toff_t size = seek_place(stream, 0, SEEK_END);
-    return byte_file_seek(stream, place) ? size : 0;
-}
-
-static int close_stream(thandle_t stream)
-{
-    return fclose(stream);
-}
-
-/* Prints nothing. fault stays where it is while the file is open. */
-static TIFF *open_tiff(const char *path, const char *mode, struct library_fault *fault)
-{
-    memset(fault, 0, sizeof *fault);
-    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
-    if (!options)
-        return NULL;
-    TIFFOpenOptionsSetMaxSingleMemAlloc(options, (tmsize_t)(2 * BLOCK_BYTES_MAX));
-    TIFFOpenOptionsSetErrorHandlerExtR(options, hear, fault);
-    TIFFOpenOptionsSetWarningHandlerExtR(options, hear_warning, fault);
-    errno = 0;
-    TIFF *file = NULL;
-    FILE *stream = file_open(path, *mode == 'w' ? "w+b" : strchr(mode, '+') ? "r+b" : "rb");
-    if (stream) { /* without a buffer, so that a full disk is told as bytes are written */
-        setvbuf(stream, NULL, _IONBF, 0);
-        file = TIFFClientOpenExt(path, mode, stream, read_bytes, write_bytes, seek_place,
-                                 close_stream, file_size, NULL, NULL, options);
-    } else {
-        fault->error = errno;
-        strcpy(fault->message, "cannot be opened");
-    }
-    if (stream && !file)
-        fclose(stream);
-    TIFFOpenOptionsFree(options);
-    return file;
-}
 
 static sonject_status damaged(struct report *report, const struct tiff_image *image,
                               const char *how)
@@ -199,7 +118,7 @@ static sonject_status check_coding(struct report *report, const struct tiff_imag
         return input_failure(report, image->name,
                              "has more than 2^25 tiles or strips: write it with larger ones");
     if ((image->is_tiled ? TIFFTileSize64(image->file) : TIFFStripSize64(image->file)) >
-        BLOCK_BYTES_MAX)
+        TIFF_BLOCK_BYTES_MAX)
         return input_failure(
             report, image->name,
             "its tiles or strips hold more than 256 MB each: write it with smaller ones");
@@ -342,7 +261,7 @@ static sonject_status open_file(struct report *report, struct tiff_image *image,
     image->path = copy_text(path);
     CHECK_MEMORY(report, image->name && image->path, name);
     CHECK(file_identify(report, path, &identity));
-    image->file = open_tiff(path, "rm", &image->fault);
+    image->file = tiff_open(path, "rm", &image->fault);
     if (!image->file)
         return tell_fault(report, image);
     CHECK(check(report, image, identity.bytes));
@@ -484,8 +403,8 @@ static sonject_status change_pixels(struct report *report, void *opened,
     struct library_fault fault = {"", 0};
     bool is_done = false;
     TIFFClose(image->file);
-    image->file = open_tiff(image->path, "rm", &image->fault);
-    TIFF *writer = image->file ? open_tiff(image->path, "r+m", &fault) : NULL;
+    image->file = tiff_open(image->path, "rm", &image->fault);
+    TIFF *writer = image->file ? tiff_open(image->path, "r+m", &fault) : NULL;
     if (writer) {
         is_done =
             exchange_blocks(image, writer, region, (unsigned char *)pixels) && flush_lists(writer);
@@ -553,7 +472,7 @@ sonject_status tiff_encode(struct report *report, const struct image_encoding *e
     const struct raster_layout *layout = &encoding->layout;
     const bool is_large = layout->rows > CLASSIC_MAX / row_bytes(layout);
     struct library_fault fault;
-    struct tiff_output output = {open_tiff(encoding->path, is_large ? "w8" : "w", &fault),
+    struct tiff_output output = {tiff_open(encoding->path, is_large ? "w8" : "w", &fault),
                                  (size_t)row_bytes(layout), 0};
     bool is_written = false;
     sonject_status status = SONJECT_OK;

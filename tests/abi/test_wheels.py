@@ -76,7 +76,7 @@ def test_a_wheel_holds_package_programs_examples_and_licences(wheel, unpacked):
 
 
 def test_its_programs_need_the_system_alone(wheel, programs):
-    """An old glibc, or what Windows 10 has."""
+    """An old glibc, or what Windows has."""
     for program in programs:
         if is_of_windows(wheel):
             listing = subprocess.run(["objdump", "-p", program], check=True, capture_output=True, text=True).stdout

@@ -62,6 +62,16 @@ def test_an_array_makes_a_sidescan_and_the_scene_may_lie_elsewhere(sonject, imag
     sonject.done("check", "scenes/mine.yaml")
 
 
+def test_what_the_file_tells_is_not_asked_for(sonject, image):
+    """A geometry without an altitude."""
+    sonject.done("convert", "swath.npy", "swath.tif", "--row-spacing", "0.025", "--column-spacing", "0.025",
+                 "--first-range", "44")
+    answer = init(sonject, "swath.tif", answers=ANSWERS[3:])
+    assert answer.returncode == 0, answer.stderr
+    scene = image.with_suffix(".yaml").read_text()
+    assert "geometry: from_file" in scene and "altitude: 10 m" in scene
+
+
 def test_a_recording_tells_the_geometry(sonject, tmp_path):
     sides = [numpy.random.default_rng(7).rayleigh(2000.0, (120, 400)).astype(numpy.uint16) for _ in range(2)]
     (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides))

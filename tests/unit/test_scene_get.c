@@ -6,29 +6,13 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "api/handles.h"
-#include "claims.h"
+#include "scene_context.h"
 
 #define HEAD                                                                                       \
     "sonject: 1\n"                                                                                 \
     "input: {geometry: {row_spacing: 2.5 cm, column_spacing: 0.1, first_slant_range: 40},\n"       \
     "  channel: 1, calibration: auto, path: a.npy}\n"                                              \
     "sonar: {frequency: 100 kHz, bandwidth: 30e3, altitude: \"10 m\"}\n"
-
-static int make_context(void **state)
-{
-    sonject_context *context = NULL;
-    const sonject_status status = sonject_context_create(NULL, &context);
-    *state = context;
-    return status != SONJECT_OK;
-}
-
-static int release_context(void **state)
-{
-    sonject_context *context = *state;
-    sonject_context_release(&context);
-    return 0;
-}
 
 /* A scene of the text's file, named after a folder that is not there. */
 static sonject_scene *read_text(sonject_context *context, const char *text)
@@ -47,11 +31,6 @@ static void expect(sonject_context *context, const sonject_scene *scene, const c
     if (strcmp(json, expected) != 0)
         fail_msg("%s is %s, not %s", key, json, expected);
     sonject_text_release(&json);
-}
-
-static void set(sonject_context *context, sonject_scene *scene, const char *key, const char *value)
-{
-    EXPECT_OK(&context->report, sonject_scene_set(scene, key, value));
 }
 
 static void values_are_numbers_texts_sections_and_lists(void **state)

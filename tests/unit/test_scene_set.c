@@ -4,9 +4,8 @@
 
 #include <sonject/sonject.h>
 
-#include "api/handles.h"
-#include "claims.h"
 #include "inject/scene_hash.h"
+#include "scene_context.h"
 
 #define CODE                                                                                       \
     "float shape_distance(float3 p, float3 d, float n, const float *k) {return INFINITY;}\\n"      \
@@ -16,21 +15,6 @@
     "input: {geometry: {row_spacing: 0.1, column_spacing: 0.1, first_slant_range: 40}}\n"          \
     "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
 
-static int make_context(void **state)
-{
-    sonject_context *context = NULL;
-    const sonject_status status = sonject_context_create(NULL, &context);
-    *state = context;
-    return status != SONJECT_OK;
-}
-
-static int release_context(void **state)
-{
-    sonject_context *context = *state;
-    sonject_context_release(&context);
-    return 0;
-}
-
 static sonject_scene *read_text(sonject_context *context, const char *text)
 {
     sonject_scene *scene = NULL;
@@ -38,11 +22,6 @@ static sonject_scene *read_text(sonject_context *context, const char *text)
     params.allows_user_shapes = 1;
     EXPECT_OK(&context->report, sonject_scene_read(context, NULL, &params, &scene));
     return scene;
-}
-
-static void set(sonject_context *context, sonject_scene *scene, const char *key, const char *value)
-{
-    EXPECT_OK(&context->report, sonject_scene_set(scene, key, value));
 }
 
 static const struct scene *use(sonject_context *context, const sonject_scene *scene)

@@ -118,7 +118,7 @@ char *folder_of_code(const void *address)
 }
 
 /* Each image of a campaign takes megabytes and gives them back. glibc would have the system take
- * them, and clear them anew for the next image: a fifth of a campaign's time. */
+ * them, and clear them anew for the next image: a tenth of a campaign's time. */
 static void keep_freed_memory(void)
 {
 #ifdef __GLIBC__

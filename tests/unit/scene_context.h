@@ -1,0 +1,30 @@
+/* A context that all tests of a program use, and scenes that they set keys of. */
+#ifndef SONJECT_TESTS_UNIT_SCENE_CONTEXT_H
+#define SONJECT_TESTS_UNIT_SCENE_CONTEXT_H
+
+#include <sonject/sonject.h>
+
+#include "api/handles.h"
+#include "claims.h"
+
+static int make_context(void **state)
+{
+    sonject_context *context = NULL;
+    const sonject_status status = sonject_context_create(NULL, &context);
+    *state = context;
+    return status != SONJECT_OK;
+}
+
+static int release_context(void **state)
+{
+    sonject_context *context = *state;
+    sonject_context_release(&context);
+    return 0;
+}
+
+static void set(sonject_context *context, sonject_scene *scene, const char *key, const char *value)
+{
+    EXPECT_OK(&context->report, sonject_scene_set(scene, key, value));
+}
+
+#endif
