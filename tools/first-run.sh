@@ -8,5 +8,5 @@ cd "$(dirname "$0")/.."
 # shellcheck disable=SC2086 # a list of words
 install_packages $build_packages
 build_release -Dtests=disabled
-build/tools/sonject run tools/scenes/demo.yaml -o build/demo
+build/tools/sonject run tools/scenes/demo.yaml -o build/demo --overwrite
 echo "$(pwd)/build/demo/quicklook.png"
