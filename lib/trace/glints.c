@@ -9,8 +9,14 @@
 #include "trace/fan.h"
 #include "trace/object_buffer.h"
 
-#define STRIP_WAVELENGTHS 0.25 /* widest sub-strip: wider ones alias glints */
-#define SMALL_WAVELENGTHS 2.0  /* parts of smaller radius have few rays, and may have more */
+#define STRIP_WAVELENGTHS      0.25 /* widest sub-strip: wider ones alias glints */
+#define SMALL_WAVELENGTHS      2.0  /* parts of smaller radius have few rays, and may have more */
+#define SMALL_CELL_WAVELENGTHS (0.25 * GLINT_CELL_WAVELENGTHS)
+/* Cells of a round part, of the square root of wavelength times radius of curvature: an eleventh of
+ * its first Fresnel zone across the ray, and half of that along the track. */
+#define CELL_OF_CURVATURE (1.0 / 16.0)
+/* Columns of so many wavelengths hold so much of the seabed that the noise of edges hides in it. */
+#define EDGE_COLUMN_WAVELENGTHS (5.0 / 3.0)
 /* How much the whole path may change across a cell of a flat face, but for faces that are seen so
  * flat that it would take more than so many times the usual rays: they return little. And by how
  * much half the path may change where what edges lose is made up; beyond, that would be noise. */
@@ -39,18 +45,49 @@ void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint
         strips_between(tracer, grid, placement->centre[0] - extent, placement->centre[0] + extent);
 }
 
-void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
-                    const struct ray_path *path, double finer, double steepest)
+struct glint_cell glint_cell_of(const struct tracer *tracer, double wavelengths)
 {
-    const double cell = GLINT_CELL_WAVELENGTHS * tracer->view.wavelength_m /
-                        sqrt(tracer->scene->injection.ray_scale) / finer;
-    const double for_edges = cell * steepest / (EDGE_WAVELENGTHS * tracer->view.wavelength_m);
-    fan_aim_at_part(fan, tracer, part, path, cell / fmin(fmax(for_edges, 1.0), EDGE_FINER_MOST));
+    const double side =
+        wavelengths * tracer->view.wavelength_m / sqrt(tracer->scene->injection.ray_scale);
+    return (struct glint_cell){side, side};
+}
+
+/* Over a cell the phase is that of the tangent plane, and at an edge it counts all or nothing. The
+ * energy of the noise that this leaves in a pixel is as the cube of the cell's side over the square
+ * of the wavelength and over the seabed's as that over the column too, so that cells may widen
+ * where columns are many wavelengths. What the tangent plane neglects grows with the square of the
+ * cell over wavelength and radius of curvature: where nothing is flat, that alone counts. */
+static struct glint_cell cell_of_part(const struct tracer *tracer, uint32_t part)
+{
+    const struct placement *placement = &tracer->placements[part];
+    const double wavelength = tracer->view.wavelength_m;
+    const double curvature_radius = placement->size.least_radius_of_curvature_m;
+    if (placement->bounding_radius_m < SMALL_WAVELENGTHS * wavelength)
+        return glint_cell_of(tracer, SMALL_CELL_WAVELENGTHS);
+    const double columns = tracer->view.column_spacing_m / (EDGE_COLUMN_WAVELENGTHS * wavelength);
+    struct glint_cell cell =
+        glint_cell_of(tracer, GLINT_CELL_WAVELENGTHS * cbrt(fmax(columns, 1.0)));
+    if (placement->size.flat || placement->size.cut_count > 0 || isinf(curvature_radius))
+        return cell;
+    const double round =
+        glint_cell_of(tracer, CELL_OF_CURVATURE * sqrt(curvature_radius / wavelength)).across;
+    cell.across = fmax(cell.across, round);
+    cell.along = fmax(cell.along, 0.5 * round);
+    return cell;
+}
+
+void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
+                    const struct ray_path *path, struct glint_cell cell, double steepest)
+{
+    const double for_edges =
+        steepest > 0.0 ? EDGE_WAVELENGTHS * tracer->view.wavelength_m / steepest : INFINITY;
+    const double finest = glint_cell_of(tracer, GLINT_CELL_WAVELENGTHS / EDGE_FINER_MOST).across;
+    fan_aim_at_part(fan, tracer, part, path, fmax(fmin(cell.across, for_edges), finest));
     /* what is round and needs no finer cells has none made up, either */
-    const bool has_corners =
-        shape_of(tracer->placements[part].shape)->flat & (uint32_t)FLAT_WITH_CORNERS;
-    fan->edge_across = for_edges > 1.0 || (steepest > 0.0 && has_corners) ? EDGE_MADE_UP : 0.0f;
-    fan->strata = (uint32_t)ceil(fan->strip_width / cell - 1e-6);
+    const bool has_corners = tracer->placements[part].size.flat & (uint32_t)FLAT_WITH_CORNERS;
+    fan->edge_across =
+        for_edges < cell.across || (steepest > 0.0 && has_corners) ? EDGE_MADE_UP : 0.0f;
+    fan->strata = (uint32_t)ceil(fan->strip_width / cell.along - 1e-6);
     fan->only_object = (int32_t)part;
 }
 
@@ -108,12 +145,11 @@ static double steepest_face(const struct tracer *tracer, uint32_t part, const st
     const double half[3] = {size->half_length_m, size->half_width_m, size->half_height_m};
     const double wavelength = tracer->view.wavelength_m;
     const struct sight sight = sight_of_part(tracer, part, path);
-    const uint32_t flat = shape_of(placement->shape)->flat;
     double steepest = 0.0;
     for (uint32_t axis = 0; axis < 3; axis++) {
         const uint32_t next = (axis + 1) % 3, last = (axis + 2) % 3;
-        if ((flat & ((uint32_t)FLAT_ALONG_X << axis)) &&
-            (!(flat & (uint32_t)FLAT_WITH_CORNERS) ||
+        if ((size->flat & ((uint32_t)FLAT_ALONG_X << axis)) &&
+            (!(size->flat & (uint32_t)FLAT_WITH_CORNERS) ||
              is_edge_heard(&sight, next, half[next], wavelength) ||
              is_edge_heard(&sight, last, half[last], wavelength)))
             steepest = fmax(steepest, face_gradient(&sight, own[axis]));
@@ -183,10 +219,8 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
         fan->stream = STREAM_SMOOTH_RAYS + part;
         status = object_rays_add(&trace->launch.rays, tracer, part, &sonar.path, &fan->table);
     }
-    const bool is_small =
-        tracer->placements[part].bounding_radius_m < SMALL_WAVELENGTHS * tracer->view.wavelength_m;
     const struct ray_path *path = pair ? &pair->outgoing->path : &sonar.path;
-    glint_fan_init(fan, tracer, part, path, is_small ? 4.0 : 1.0,
+    glint_fan_init(fan, tracer, part, path, cell_of_part(tracer, part),
                    steepest_face(tracer, part, path));
     /* cells begin up to half of one off (cell_shift_of) */
     fan->first_elevation -= 0.5f * fan->elevation_step;

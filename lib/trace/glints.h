@@ -7,7 +7,8 @@
 #include "trace/image_sources.h"
 #include "trace/tracer.h"
 
-#define GLINT_CELL_WAVELENGTHS 0.125 /* spacing of rays on the wavefront */
+#define GLINT_CELL_WAVELENGTHS                                                                     \
+    0.125 /* spacing of rays on the wavefront, where nothing allows more */
 
 /* The launch's buffers. */
 enum smooth_buffer {
@@ -29,11 +30,18 @@ double glint_shortest_deviation(const struct line_grid *grid, double column_spac
 /* Sizes of sub-strips and bins, and the sub-strips that a part covers. */
 void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint32_t part);
 
-/* Rays of a fan, whose strips are known, from a source to a part; `finer` than glints need them by
- * that factor each way, >= 1, and across it as the edges of faces need it on which the path has
- * this gradient there; 0: none have to be heard. */
+/* What a ray stands for: a cell of the wavefront, in m along the track and across the ray. */
+struct glint_cell {
+    double along, across;
+};
+
+/* Cells of so many wavelengths both ways, with as many more rays as the scene asks for. */
+struct glint_cell glint_cell_of(const struct tracer *tracer, double wavelengths);
+
+/* Rays of a fan, whose strips are known, from a source to a part; finer across it as the edges of
+ * faces need it on which the path has this gradient there; 0: none have to be heard. */
 void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
-                    const struct ray_path *path, double finer, double steepest);
+                    const struct ray_path *path, struct glint_cell cell, double steepest);
 
 /* Prepares a trace of one part's glints, straight there and back (pair NULL) or by way of
  * boundaries; as rough_trace_begin. A part without a smooth part has grid.strips.count 0 and

@@ -244,8 +244,9 @@ sonject_status multibounce_launch_begin(struct multibounce_launch *of_pair, stru
     sonject_status status =
         image_pair_aim(fan, &of_pair->sources, &of_pair->launch.rays, tracer, part, pair, grid);
     fan->stream = STREAM_MULTIBOUNCE_RAYS + STREAMS_OF_PAIR * pair->number + part;
-    glint_fan_init(fan, tracer, part, &pair->outgoing->path, multibounce_rays_finer(tracer, part),
-                   0.0);
+    glint_fan_init(
+        fan, tracer, part, &pair->outgoing->path,
+        glint_cell_of(tracer, GLINT_CELL_WAVELENGTHS / multibounce_rays_finer(tracer, part)), 0.0);
     choose_quanta(fan);
     choose_chunk(of_pair, of_part);
     THEN(status, begin_launch(of_pair, tracer, part));

@@ -8,11 +8,20 @@ input:
 sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m, resolution: 4 cm}
 """
 
+# A sidescan at high frequency, whose glints take most rays; chips of it are 96 x 160 pixels.
+SIDESCAN = """\
+sonject: 1
+input:
+  geometry: {row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 15 m}
+  transfer: {kind: schlick, parameter: 3}
+sonar: {kind: real, array: {length: 0.8 m}, frequency: 455 kHz, bandwidth: 15 kHz, altitude: 6 m}
+"""
+
 CAMPAIGN = """\
 sonject_campaign: 1
-scene: scene.yaml
+scene: %s
 images: %d
-chip: {rows: 256, columns: 256}
+chip: {rows: %d, columns: %d}
 empty: 0.1
 swaths: %s
 draw:

@@ -72,9 +72,11 @@ def test_a_sphere_by_code_is_the_sphere(sonject, scene, user_scene, tmp_path):
         for folder in ("sphere", "user")
     ]
     assert truths[1]["shape"] == "user"
-    # the same rays; single precision's roundings decide those along the outline
-    energies = [images.read_tiff(tmp_path / folder / "energy.tif") for folder in ("sphere", "user")]
-    assert numpy.allclose(energies[0], energies[1], rtol=1e-3, atol=1e-6 * energies[0].max())
+    # the same rays for the rough part, and other cells for glints: noise at -46 dB of the peak
+    sphere, user = (numpy.sqrt(images.read_tiff(tmp_path / folder / "energy.tif"))
+                    for folder in ("sphere", "user"))
+    assert abs(sphere - user).max() < 1e-2 * sphere.max()
+    assert (sphere**2).sum() == pytest.approx((user**2).sum(), rel=1e-3)
     again = sonject("run", user_scene, ALLOW, "-o", "user")
     assert "already holds" in again.stderr
     path = tmp_path / "user" / "run.json"

@@ -195,6 +195,7 @@ struct line sea_line(struct sea *sea, uint32_t object);
 double complex line_at(const struct sea *sea, const struct line *line, double range_m);
 double line_peak(const struct sea *sea, const struct line *line, double *range_m);
 double line_energy(const struct line *line);
+double line_energy_in_band(const struct sea *sea, const struct line *line); /* the pulse's */
 
 /* Adds another line, times a factor, where both have bins. */
 void line_add(struct line *sum, const struct line *line, double factor);

@@ -97,6 +97,15 @@ double line_energy(const struct line *line)
     return energy;
 }
 
+double line_energy_in_band(const struct sea *sea, const struct line *line)
+{
+    double energy = 0.0;
+    for (size_t bin = 0; bin < line->bins; bin += 4)
+        energy +=
+            pow(cabs(line_at(sea, line, line->first_range_m + line->spacing_m * (double)bin)), 2.0);
+    return energy;
+}
+
 void line_add(struct line *sum, const struct line *line, double factor)
 {
     const long shift = lround((sum->first_range_m - line->first_range_m) / line->spacing_m);

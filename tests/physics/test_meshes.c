@@ -76,11 +76,12 @@ static struct sea *open_ball(enum ball kind, int subdivisions, const sonject_cut
     return sea;
 }
 
-static double difference_db(struct line one, const struct line *other)
+/* In the pulse's band: out of it, cells of other sizes leave other echoes. */
+static double difference_db(const struct sea *sea, struct line one, const struct line *other)
 {
-    const double energy = line_energy(other);
+    const double energy = line_energy_in_band(sea, other);
     line_add(&one, other, -1.0);
-    return decibels_of_energy(line_energy(&one) / energy);
+    return decibels_of_energy(line_energy_in_band(sea, &one) / energy);
 }
 
 /* Facets as fine as a sphere's glint wants have its level and phase; coarse ones, some wavelengths
@@ -91,17 +92,17 @@ CLAIM(facets_converge_to_the_sphere)
     struct sea *sea = open_ball(SPHERE, 0, NULL);
     const struct line sphere = sea_line(sea, 0);
     const double peak = line_peak(sea, &sphere, &range);
-    for (int subdivisions = 5; subdivisions <= 8; subdivisions++) {
+    for (int subdivisions = 5; subdivisions <= 7; subdivisions++) {
         sea = open_ball(MESH, subdivisions, NULL);
         const struct line line = sea_line(sea, 0);
         const double level = decibels_of_amplitude(line_peak(sea, &line, &at) / peak);
-        const double difference = difference_db(line, &sphere);
+        const double difference = difference_db(sea, line, &sphere);
         print_message("%d subdivisions: difference %.1f dB\n", subdivisions, difference);
         assert_true(difference < last - 3.0);
         last = difference;
-        if (subdivisions < 8)
+        if (subdivisions < 7)
             continue;
-        /* depth of 6 um x 2 ways: 0.3 degrees of phase */
+        /* depth of 24 um x 2 ways: 1.2 degrees of phase; both have cells that leave -39 dB */
         expect_close("level, dB", level, 0.0, 0.05);
         expect_close("range, mm", 1e3 * (at - range), 0.0, 0.5);
         expect_below("facets less the sphere, dB", difference, -30.0);
@@ -128,22 +129,11 @@ CLAIM(cut_balls_glint_like_the_cut_sphere)
         const struct line sphere = sea_line(open_ball(SPHERE, 0, &cuts[i]), 0);
         for (enum ball kind = MESH; kind <= (i == 1 ? MESH : USER); kind++) {
             print_message("cut %s, %s: ", names[i], kind == MESH ? "mesh" : "user's shape");
-            expect_below(
-                "difference, dB",
-                difference_db(sea_line(open_ball(kind, SUBDIVISIONS, &cuts[i]), 0), &sphere),
-                kind == MESH ? -33.0 : -60.0);
+            struct sea *sea = open_ball(kind, SUBDIVISIONS, &cuts[i]);
+            expect_below("difference, dB", difference_db(sea, sea_line(sea, 0), &sphere),
+                         kind == MESH ? -33.0 : -60.0);
         }
     }
-}
-
-/* Of what passes the pulse's band. */
-static double energy_in_band(const struct sea *sea, const struct line *line)
-{
-    double energy = 0.0;
-    for (size_t bin = 0; bin < line->bins; bin += 4)
-        energy +=
-            pow(cabs(line_at(sea, line, line->first_range_m + line->spacing_m * (double)bin)), 2.0);
-    return energy;
 }
 
 /* Two halves of a mesh, each with its face against the other's, are the whole: facets that the
@@ -158,14 +148,14 @@ CLAIM(two_halves_are_the_whole)
     for (uint32_t i = 0; i < 2; i++)
         add_ball(sea, MESH, SUBDIVISIONS, &halves[i], 1.0)->mesh = i;
     ready_at(sea, 2, 1.0 + BALL);
-    const double energy = energy_in_band(sea, &rest);
+    const double energy = line_energy_in_band(sea, &rest);
     for (uint32_t i = 0; i < 2; i++) {
         const struct line half = sea_line(sea, i);
-        assert_true(energy_in_band(sea, &half) > 0.05 * energy);
+        assert_true(line_energy_in_band(sea, &half) > 0.05 * energy);
         line_add(&rest, &half, -1.0);
     }
     expect_below("halves less the whole, dB",
-                 decibels_of_energy(energy_in_band(sea, &rest) / energy), -27.0);
+                 decibels_of_energy(line_energy_in_band(sea, &rest) / energy), -27.0);
 }
 
 /* The same rays meet the ball and what stands for it, whole and cut; energies differ by less than

@@ -82,20 +82,22 @@ CLAIM(rough_shapes_are_lit_like_the_librarys)
     }
 }
 
-/* Phases differ by roundings of ranges, 4 eps of 0.25 m at 0.84 rad/mm: 1e-4 rad, -80 dB. */
+/* In the pulse's band. Code has the usual cells, a sphere those that its radius allows; where both
+ * have the usual ones, cut balls in test_meshes.c are the same but for roundings. */
 CLAIM(a_sphere_by_code_glints_like_the_sphere)
 {
     struct line lines[2];
+    struct sea *sea = NULL;
     for (int is_user = 0; is_user < 2; is_user++) {
-        struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+        sea = sea_open(ROWS, COLUMNS, RANGE);
         add_shape(sea, SPHERE_SHAPE, is_user)->burial_m = -1.0;
         lines[is_user] = sea_line(sea, 0);
     }
-    const double energy = line_energy(&lines[0]);
+    const double energy = line_energy_in_band(sea, &lines[0]);
     assert_true(energy > 0.0);
     line_add(&lines[1], &lines[0], -1.0);
     expect_below("difference of glints, dB",
-                 decibels_of_energy(line_energy(&lines[1]) / energy + 1e-30), -80.0);
+                 decibels_of_energy(line_energy_in_band(sea, &lines[1]) / energy), -35.0);
 }
 
 static const struct ranges all_ranges = {0, 0.0, 0.0};

@@ -83,7 +83,7 @@ def main():
     folder.mkdir(parents=True)
     (folder / "scene.yaml").write_text(SCENE)
     swaths = [{"path": path} for path in swaths or make_swaths(folder)]
-    (folder / "campaign.yaml").write_text(CAMPAIGN % (IMAGES, json.dumps(swaths)) + MORE)
+    (folder / "campaign.yaml").write_text(CAMPAIGN % ("scene.yaml", IMAGES, 256, 256, json.dumps(swaths)) + MORE)
     run(folder, "campaign", "campaign.yaml", "-o", "warm", "--set", "images=10")
     duration = run(folder, "campaign", "campaign.yaml", "-o", "whole")
     told = json.loads((folder / "whole" / "times.json").read_text())

@@ -43,6 +43,8 @@ static void init(struct shape_size *size, const sonject_object_params *object)
         fmax(size->half_length_m, /* tips and rims */
              hypot(fmax(size->nose.joint_m, size->tail.joint_m), size->radius_m));
     size->least_radius_of_curvature_m = size->radius_m;
+    if (size->nose.depth_m > 0.0 && size->tail.depth_m > 0.0)
+        size->flat = 0;
 }
 
 static double end_extent(const struct end_size *end, double radius, double outward, double along,

@@ -68,6 +68,7 @@ void shape_size_init(struct shape_size *size, const sonject_object_params *objec
     size->radius_m = 0.5 * object->diameter_m;
     size->bounding_radius_m = size->radius_about_nose_m = size->radius_m;
     size->least_radius_of_curvature_m = INFINITY;
+    size->flat = shape->flat;
     if (shape->init)
         shape->init(size, object);
     size->bounding_radius_m *= 1.0 + 1e-6; /* rounding to single precision must not cut */

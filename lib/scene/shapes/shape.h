@@ -45,6 +45,7 @@ struct shape_size {
     /* m; INFINITY where nothing is bent. Edges and tips do not count, nor what of a cone is nearer
      * to its axis than this. It decides how dense the rays on it are. */
     double least_radius_of_curvature_m;
+    uint32_t flat; /* bits of enum flat_axis: faces that it has; of a mesh or code not known: 0 */
 };
 
 /* Keys that say what a shape is. */
@@ -78,7 +79,7 @@ enum flat_axis {
 struct shape {
     uint32_t needs;    /* bits of enum shape_key */
     uint32_t may_have; /* besides those */
-    uint32_t flat;     /* bits of enum flat_axis; of a mesh or code they are not known */
+    uint32_t flat;     /* bits of enum flat_axis: faces that it may have */
     /* Relations between its sizes; NULL: none. */
     void (*check)(struct check *check, const sonject_object_params *object);
     /* Sizes and radii. Sizes come in halved; both bounding radii start at radius_m, the least
