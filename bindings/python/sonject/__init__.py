@@ -32,6 +32,7 @@ from .enumerations import (
 from .errors import Cancelled, SonjectError
 from .result import Result
 from .scene import Scene
+from .transfer import Transfer
 
 __version__ = ".".join(str(part) for part in _VERSION)
 
@@ -45,7 +46,7 @@ __all__ = [
     "Box", "Campaign", "CampaignImage", "Cancelled", "ContactMeasures", "Context", "ConvertAxis",
     "Device", "ElementLayout", "LabelFormat", "LabelPart", "Measurement", "ObjectTruth",
     "Progress", "RangeAxis", "Result", "Samples", "Scene", "SeriesForm", "SonjectError",
-    "Statistics", "Status", "absorption", "calibrate", "check", "convert",
+    "Statistics", "Status", "Transfer", "absorption", "calibrate", "check", "convert",
     "default_context", "devices", "element_layout", "element_series", "form", "inject", "keys",
     "fit_campaign", "measure", "measure_contact", "merge", "merge_campaign", "quicklook", "run", "run_elements", "trace",
     "version",

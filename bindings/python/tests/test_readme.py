@@ -57,6 +57,8 @@ def test_what_the_text_calls_can_be_called(names, span, tmp_path, monkeypatch):
     meant = {
         "scene": scene,
         "patch": patch,
+        "grey": numpy.full((32, 40), 90, numpy.uint8),
+        "curve": sonject.Transfer("{kind: gamma, parameter: 2.2}"),
         "heights": [0.0, 10.0],
         "speeds": [1490.0, 1500.0],
         "along": [-10.0, 10.0],
