@@ -77,5 +77,5 @@ sonject_status sonject_element_series(sonject_context *context, const sonject_sc
     THEN(status,
          element_echoes_compute(report, device, scene, &input, progress, user, &layout, series));
     swath_close(&swath);
-    return status;
+    return context_finish(context, status);
 }

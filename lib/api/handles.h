@@ -47,6 +47,9 @@ sonject_status context_begin_call(struct sonject_context *context);
 void context_watch(struct sonject_context *context, sonject_progress_function *progress,
                    void **user);
 
+/* At the end of such a call: tells that all is done, where it is. Returns status. */
+sonject_status context_finish(struct sonject_context *context, sonject_status status);
+
 /* What a scene's text says, read if something was set since. NULL is refused. Errors: as
  * sonject_scene_read. */
 sonject_status scene_use(struct report *report, const sonject_scene *handle,

@@ -59,7 +59,7 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *han
     tell_noise_floor(report, scene, &made->result.statistics);
     tell_accuracy(report, &made->result.statistics);
     *result = made;
-    return SONJECT_OK;
+    return context_finish(context, SONJECT_OK);
 }
 
 void sonject_result_release(sonject_result **result)

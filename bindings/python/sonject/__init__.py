@@ -30,6 +30,7 @@ from .enumerations import (
     ConvertAxis, LabelFormat, LabelPart, RangeAxis, Samples, SeriesForm, Status,
 )
 from .errors import Cancelled, SonjectError
+from .mesh import write_mesh
 from .result import Result
 from .scene import Scene
 from .transfer import Transfer
@@ -49,5 +50,5 @@ __all__ = [
     "Statistics", "Status", "Transfer", "absorption", "calibrate", "check", "convert",
     "default_context", "devices", "element_layout", "element_series", "form", "inject", "keys",
     "fit_campaign", "measure", "measure_contact", "merge", "merge_campaign", "quicklook", "run", "run_elements", "trace",
-    "version",
+    "version", "write_mesh",
 ]
