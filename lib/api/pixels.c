@@ -58,6 +58,9 @@ static sonject_status read_transfer(struct report *report, uint32_t kind, const 
     if (text && kind == SONJECT_PIXELS_COMPLEX)
         return report_failure(report, SONJECT_ERROR_ARGUMENT,
                               "complex pixels have no transfer function: take transfer out");
+    memset(transfer, 0, sizeof *transfer);
+    if (!text)
+        return SONJECT_OK;
     CHECK(image_options_take(report, NULL, NULL, text, NULL, &options));
     *transfer = options.transfer;
     return SONJECT_OK;
