@@ -75,10 +75,10 @@ def draw_result(
     """
     figure = _pyplot().figure(figsize=(12, 4), layout="constrained") if figure is None else figure
     panels = figure.subplots(1, 3, sharex=True, sharey=True)
-    before = draw(result.linear(patch), geometry=geometry, decibels=decibels, axes=panels[0])
+    before = draw(result._linear(patch), geometry=geometry, decibels=decibels, axes=panels[0])
     scale = before.get_clim()
     for panel in panels[1:]:
-        draw(result.linear(result.image), geometry=geometry, decibels=scale, axes=panel)
+        draw(result._linear(result.image), geometry=geometry, decibels=scale, axes=panel)
     labels = numpy.ma.masked_equal(result.labels, 0)
     panels[2].imshow(
         labels, cmap="tab10", vmin=0, vmax=9, alpha=0.6, extent=before.get_extent(),

@@ -109,7 +109,7 @@ class Result(Handle):
         """How the image's grey levels came from amplitudes; None: it is linear."""
         return self._transfer
 
-    def linear(self, image: Any) -> Any:
+    def _linear(self, image: Any) -> Any:
         """Amplitudes or complex pixels of an image of this transfer."""
         return image if self._transfer is None else self._transfer.to_amplitude(image)
 
@@ -192,7 +192,7 @@ class Result(Handle):
     def _repr_html_(self) -> Optional[str]:
         """For notebooks: the image in dB and the truth. None once it is closed."""
         try:
-            image, truths = self.linear(self.image), self.objects
+            image, truths = self._linear(self.image), self.objects
         except ValueError:
             return None
         address, (low, high) = picture(image)
