@@ -8,7 +8,7 @@ install_packages doxygen python3-venv
 rm -rf build/site-pages build/site
 mkdir -p build/site-pages build/reference
 find README.md CONTRIBUTING.md CHANGELOG.md docs kernels tools bindings -type f \
-    \( -name '*.md' -o -name '*.png' -o -name '*.yaml' -o -name '*.sh' -o -name '*.py' \) -print0 |
+    \( -name '*.md' -o -name '*.png' -o -name '*.yaml' -o -name '*.sh' -o -name '*.py' -o -name '*.ipynb' \) -print0 |
     tar -c --null -T - | tar -x -C build/site-pages
 doxygen include/Doxyfile
 cp -r build/reference/html build/site-pages/reference

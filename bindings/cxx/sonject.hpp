@@ -25,6 +25,7 @@
 #include <sonject/injection.hpp>
 #include <sonject/measure.hpp>
 #include <sonject/parameters.hpp>
+#include <sonject/pixels.hpp>
 #include <sonject/progress.hpp>
 #include <sonject/scene.hpp>
 #include <sonject/sonject.h>

@@ -17,8 +17,8 @@ typedef struct sonject_calibrate_params {
     uint32_t as_json;  /* 1: the text is JSON, which scenes take, too; 0: YAML */
     const char *image; /* file; or NULL */
     const sonject_pixels
-        *pixels;         /* instead of a file: numbers as they are stored, of any transfer
-                            function; if all are whole they count as 8 or 16 bit integers */
+        *pixels; /* instead of a file: numbers as they are stored, of any kind, whose transfer
+                    is NULL; floats that are all whole count as 8 or 16 bit integers */
     const char *channel; /* of the file, as of sonject_quicklook_params, like the next two */
     const char *array;
     const char *geometry; /* NULL: what the file's metadata says, if anything */

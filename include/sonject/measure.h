@@ -17,7 +17,7 @@ typedef struct sonject_measure_params {
     uint32_t struct_size;
     uint32_t box_count;
     const char *image;            /* one channel, or two: real and imaginary part */
-    const sonject_pixels *pixels; /* instead of a file; linear */
+    const sonject_pixels *pixels; /* instead of a file */
     const char *channel; /* of the file, as of sonject_quicklook_params, like the next two */
     const char *array;
     const char *transfer;
@@ -165,7 +165,7 @@ typedef struct sonject_contact_measures {
     double shadow_visibility_db;
 } sonject_contact_measures;
 
-/* Measures a contact in pixels in memory, linear. box: pixels of the image, around highlight and
+/* Measures a contact in pixels in memory. box: pixels of the image, around highlight and
  * shadow with some seabed; NULL: the whole image, of which the highlight of most energy is taken.
  * Spacings, m: 0 where they are unknown, and lengths are known in pixels alone.
  * measures->struct_size must be set. Errors: ARGUMENT, INPUT (box outside the image, a dark image),

@@ -6,36 +6,22 @@
 #include <stdint.h>
 
 #include <sonject/export.h>
+#include <sonject/pixels.h>
 #include <sonject/scene.h>
 #include <sonject/status.h>
 
 SONJECT_BEGIN_DECLARATIONS
 
-/* What a pixel is. */
-typedef enum sonject_pixel_kind {
-    SONJECT_PIXELS_AMPLITUDE = 0, /* float, >= 0 */
-    SONJECT_PIXELS_COMPLEX = 1 /* pairs of float, real and imaginary part; a path of travel time t
-                                  has phase +2 pi f t */
-} sonject_pixel_kind;
-
-/* Pixels in the caller's memory; never kept, never written. */
-typedef struct sonject_pixels {
-    uint32_t struct_size;
-    uint32_t kind; /* sonject_pixel_kind */
-    uint64_t rows;
-    uint64_t columns;
-    uint64_t row_stride; /* bytes from a row to the next, a multiple of 4; 0: rows are packed */
-    const void *data;
-} sonject_pixels;
-
 typedef struct sonject_result sonject_result;
 
-/* Puts the scene's objects into a patch in memory. pixels: the patch, linear (no transfer
- * function); its pixel (0, 0) is the geometry's first track position and range; the scene's input
- * and patch are not used. pixels may be NULL where the scene's input is uniform or synthetic.
- * progress may be NULL. On success *result is the caller's, for sonject_result_release; on failure
- * NULL. Errors: ARGUMENT, INPUT (NaN pixels, object outside the patch, ...), DEVICE, MEMORY,
- * CANCELLED. */
+/* Puts the scene's objects into a patch in memory. pixels: the patch; its pixel (0, 0) is the
+ * geometry's first track position and range; the scene's input and patch are not used. Pixels with
+ * a transfer function are treated as those of a file: untouched ones keep their numbers, the bits
+ * are those of a run on such a file, and a row of nothing but 0 is one where nothing was heard,
+ * which stays empty. pixels may be NULL where the scene's input is uniform or synthetic. progress
+ * may be NULL. On success *result is the caller's, for sonject_result_release; on failure NULL.
+ * Errors: ARGUMENT, INPUT (NaN pixels, object outside the patch, ...), DEVICE, MEMORY, CANCELLED.
+ */
 SONJECT_API sonject_status sonject_inject(sonject_context *context, const sonject_scene *scene,
                                           const sonject_pixels *pixels,
                                           sonject_progress_function progress, void *user,
@@ -46,9 +32,10 @@ SONJECT_API void sonject_result_release(sonject_result **result);
 
 /* The arrays of a result. */
 typedef enum sonject_layer {
-    SONJECT_LAYER_IMAGE = 0,  /* the patch with the objects, kind and units of the input */
-    SONJECT_LAYER_FIELD = 1,  /* complex; |pixel|^2 is a backscattering cross-section in m^2; 0 where
-                                 the image was not changed */
+    SONJECT_LAYER_IMAGE = 0, /* the patch with the objects, kind, units and transfer function of the
+                                input */
+    SONJECT_LAYER_FIELD = 1, /* complex; |pixel|^2 is a backscattering cross-section in m^2; 0 where
+                                the image was not changed */
     SONJECT_LAYER_ENERGY = 2, /* float; expected cross-section in m^2 of objects and the seabed that
                                  still is in view, no speckle, no noise; where the image was not
                                  changed that of plain seabed */
@@ -62,7 +49,7 @@ typedef enum sonject_layer {
     SONJECT_LAYER_INFLUENCE = 7 /* uint8, 255 where the image was changed */
 } sonject_layer;
 
-/* Size of the layers. Errors: ARGUMENT. */
+/* Size of the layers, and the sonject_pixel_kind of the image. Errors: ARGUMENT. */
 SONJECT_API sonject_status sonject_result_size(const sonject_result *result, uint64_t *rows,
                                                uint64_t *columns, uint32_t *image_kind);
 
@@ -183,8 +170,8 @@ typedef struct sonject_statistics {
     double form_s;
     double inject_s;
     double noise_floor_db;   /* that was used, over the local mean seabed energy */
-    uint64_t input_clipped;  /* pixels of the patch at full scale (files only) */
-    uint64_t output_clipped; /* changed pixels that full scale cut (files only) */
+    uint64_t input_clipped;  /* stored pixels of the patch at full scale */
+    uint64_t output_clipped; /* changed pixels that full scale cut as they were stored */
     uint64_t changed_pixels;
     /* Output against input where nothing of the objects is in view, as in the paper's Figure 5
      * (resynthesise; otherwise NaN). */

@@ -8,6 +8,7 @@
 #include <sonject/convert.h>
 #include <sonject/elements.h>
 #include <sonject/measure.h>
+#include <sonject/pixels.h>
 #include <sonject/result.h>
 #include <sonject/run.h>
 #include <sonject/scene.h>

@@ -141,7 +141,7 @@ sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaig
         free(made);
     }
     campaign_image_clear(&image);
-    return status;
+    return context_finish(context, status);
 }
 
 static sonject_status check_run_params(const struct sonject_campaign *campaign,
@@ -179,7 +179,8 @@ sonject_status sonject_campaign_run(sonject_context *context, sonject_campaign *
                       offsetof(sonject_campaign_run_params, exit_after_s),
                       "campaign run parameters"));
     CHECK(check_run_params(campaign, &taken));
-    return campaign_run(campaign, &context->device, &taken, progress, user, was_finished);
+    return context_finish(
+        context, campaign_run(campaign, &context->device, &taken, progress, user, was_finished));
 }
 
 sonject_status sonject_campaign_merge(sonject_context *context, const char *folder,
@@ -189,7 +190,7 @@ sonject_status sonject_campaign_merge(sonject_context *context, const char *fold
     context_watch(context, &progress, &user);
     if (!folder || !folder[0])
         return null_argument(&context->report, "folder");
-    return campaign_merge(&context->report, folder, progress, user);
+    return context_finish(context, campaign_merge(&context->report, folder, progress, user));
 }
 
 sonject_status sonject_campaign_fit(sonject_context *context, const char *path,
@@ -217,5 +218,6 @@ sonject_status sonject_campaign_fit(sonject_context *context, const char *path,
                                            .overrides = taken.overrides,
                                            .override_count = taken.override_count,
                                            .allows_user_shapes = taken.allows_user_shapes != 0};
-    return campaign_fit(report, &context->device, &source, &fit, progress, user);
+    return context_finish(context,
+                          campaign_fit(report, &context->device, &source, &fit, progress, user));
 }

@@ -62,6 +62,14 @@ void context_watch(struct sonject_context *context, sonject_progress_function *p
     *user = host;
 }
 
+sonject_status context_finish(struct sonject_context *context, sonject_status status)
+{
+    const struct report_host *host = &context->host;
+    if (status == SONJECT_OK && host->progress && host->fraction < 1.0)
+        host->progress(host->progress_user, 1.0, host->stage);
+    return status;
+}
+
 sonject_status null_argument(struct report *report, const char *name)
 {
     return report_failure(report, SONJECT_ERROR_ARGUMENT, "%s must not be NULL", name);

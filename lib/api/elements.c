@@ -66,16 +66,16 @@ sonject_status sonject_element_series(sonject_context *context, const sonject_sc
     CHECK(scene_use(report, handle, &scene));
     if (!series)
         return null_argument(report, "series");
-    struct injection_input input;
-    float *owned = NULL;
+    struct swath swath;
     struct device *device = NULL;
     sonject_element_layout layout;
-    sonject_status status = find_input(report, scene, pixels, &input, &owned);
+    sonject_status status = find_input(report, scene, pixels, &swath);
+    const struct injection_input input = swath_input(&swath);
     THEN(status, element_echoes_describe(report, scene, &input, &layout));
     THEN(status, check_bytes(report, &layout, bytes));
     THEN(status, device_slot_open(report, &context->device, scene->user_shapes.count > 0, &device));
     THEN(status,
          element_echoes_compute(report, device, scene, &input, progress, user, &layout, series));
-    free(owned);
-    return status;
+    swath_close(&swath);
+    return context_finish(context, status);
 }

@@ -11,6 +11,7 @@
 #include "base/report.h"
 #include "device/device.h"
 #include "inject/injection.h"
+#include "inject/swath.h"
 #include "scene/scene.h"
 #include "schema/scene_file.h"
 #include "swath/decoder.h"
@@ -32,6 +33,8 @@ struct sonject_scene {
 struct sonject_result {
     struct report *report;
     struct injection_result result;
+    void *stored; /* the image as a file would store it; owned; NULL: it is the result's, linear */
+    enum pixel_type stored_type;
 };
 
 /* Forgets the last message: every public call that can fail begins with it. Errors: ARGUMENT
@@ -43,6 +46,9 @@ sonject_status context_begin_call(struct sonject_context *context);
  * its user become ones that pass on what they are told. */
 void context_watch(struct sonject_context *context, sonject_progress_function *progress,
                    void **user);
+
+/* At the end of such a call: tells that all is done, where it is. Returns status. */
+sonject_status context_finish(struct sonject_context *context, sonject_status status);
 
 /* What a scene's text says, read if something was set since. NULL is refused. Errors: as
  * sonject_scene_read. */
@@ -76,16 +82,20 @@ sonject_status params_take(struct report *report, void *to, size_t to_size, cons
 sonject_status params_give(struct report *report, void *to, const void *from, size_t from_size,
                            size_t smallest, const char *name);
 
-/* A caller's patch, its rows packed; pixels NULL: the uniform or synthetic patch that the scene
- * makes. *owned, which input->pixels points to, is to be given to free(), also on failure if it is
- * not NULL. Errors: ARGUMENT, INPUT, MEMORY. */
+/* A caller's patch; pixels NULL: the uniform or synthetic patch that the scene makes. To be given
+ * to swath_close, also on failure. Errors: ARGUMENT, INPUT, MEMORY. */
 sonject_status find_input(struct report *report, const struct scene *scene,
-                          const sonject_pixels *pixels, struct injection_input *input,
-                          float **owned);
+                          const sonject_pixels *pixels, struct swath *swath);
 
-/* Packs a caller's rows; *packed is for free(), after failure as well. */
+/* A caller's pixels, linear; those of a transfer function as they are stored, too. To be given to
+ * swath_close, also on failure. Errors: ARGUMENT, INPUT, MEMORY. */
 sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
-                           struct injection_input *input, float **packed);
+                           struct swath *swath);
+
+/* A caller's pixels as they are stored, of no transfer function; for swath_close, also on failure.
+ * Errors: ARGUMENT, INPUT, MEMORY. */
+sonject_status take_stored(struct report *report, const sonject_pixels *pixels,
+                           struct swath *swath);
 
 /* report_failure(ARGUMENT, "... must not be NULL") */
 sonject_status null_argument(struct report *report, const char *name);

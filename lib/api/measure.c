@@ -13,25 +13,41 @@
 #define FIND_MOST     100
 #define FIND_CONTRAST 12.0 /* dB */
 
+/* A float for each of a swath's pixels: its number, of complex ones the magnitude. numbers: the
+ * swath's stored ones, or its linear ones. */
+static sonject_status find_magnitudes(struct report *report, const struct swath *swath,
+                                      enum pixel_type type, const void *numbers, float **made)
+{
+    const size_t columns = (size_t)swath->patch.columns;
+    const size_t count = (size_t)swath->patch.rows * columns;
+    float *values = *made = allocate_array(count, sizeof *values);
+    CHECK_MEMORY(report, values, "the patch");
+    for (size_t i = 0; i < count; i++) {
+        values[i] = swath->is_complex ? hypotf((float)pixel_number(type, numbers, 2 * i),
+                                               (float)pixel_number(type, numbers, 2 * i + 1))
+                                      : (float)pixel_number(type, numbers, i);
+        if (!isfinite(values[i]))
+            return report_failure(report, SONJECT_ERROR_INPUT,
+                                  "the pixel at row %zu, column %zu is not a finite number",
+                                  i / columns, i % columns);
+    }
+    return SONJECT_OK;
+}
+
 /* Amplitudes of a caller's pixels. */
 static sonject_status take_amplitudes(struct report *report, const sonject_pixels *pixels,
                                       struct measured *measured)
 {
-    struct injection_input input;
-    float *packed = NULL;
-    CHECK(take_pixels(report, pixels, &input, &packed));
-    measured->rows = input.rows;
-    measured->columns = input.columns;
-    measured->amplitudes = packed;
-    for (size_t i = 0; i < input.rows * input.columns; i++) {
-        const float a = input.is_complex ? packed[2 * i] : packed[i];
-        packed[i] = input.is_complex ? hypotf(a, packed[2 * i + 1]) : fabsf(a);
-        if (!isfinite(packed[i]))
-            return report_failure(report, SONJECT_ERROR_INPUT,
-                                  "the pixel at row %zu, column %zu is not a finite number",
-                                  i / input.columns, i % input.columns);
-    }
-    return SONJECT_OK;
+    struct swath swath;
+    sonject_status status = take_pixels(report, pixels, &swath);
+    measured->rows = (size_t)swath.patch.rows;
+    measured->columns = (size_t)swath.patch.columns;
+    THEN(status,
+         find_magnitudes(report, &swath, PIXEL_FLOAT32, swath.pixels, &measured->amplitudes));
+    for (size_t i = 0; status == SONJECT_OK && i < measured->rows * measured->columns; i++)
+        measured->amplitudes[i] = fabsf(measured->amplitudes[i]);
+    swath_close(&swath);
+    return status;
 }
 
 static sonject_status copy_mask(struct report *report, const uint8_t *mask, size_t count,
@@ -146,31 +162,19 @@ sonject_status sonject_measure_contacts(sonject_context *context,
     return status;
 }
 
-/* Magnitudes of complex pixels; others as they are. */
 static sonject_status calibrate_pixels(struct report *report,
                                        const sonject_calibrate_params *params,
                                        const struct image_options *options, char **text)
 {
-    struct injection_input input;
-    struct stored_swath swath = {NULL, 0, 0, 0.0, 0.0, false};
-    float *packed = NULL;
-    sonject_status status = take_pixels(report, params->pixels, &input, &packed);
-    const size_t count = status == SONJECT_OK ? input.rows * input.columns : 0;
-    for (size_t i = 0; status == SONJECT_OK && i < count; i++) {
-        packed[i] = input.is_complex ? hypotf(packed[2 * i], packed[2 * i + 1]) : packed[i];
-        if (!isfinite(packed[i]))
-            status = report_failure(report, SONJECT_ERROR_INPUT,
-                                    "the pixel at row %zu, column %zu is not a finite number",
-                                    i / input.columns, i % input.columns);
-    }
-    if (status == SONJECT_OK) {
-        swath.values = packed;
-        swath.rows = input.rows;
-        swath.columns = input.columns;
-        swath.is_complex = input.is_complex;
-    }
-    THEN(status, calibrate_image(report, params, options, &swath, text));
-    free(packed);
+    struct swath swath;
+    float *values = NULL;
+    sonject_status status = take_stored(report, params->pixels, &swath);
+    THEN(status, find_magnitudes(report, &swath, swath.layout.type, swath.stored, &values));
+    struct stored_swath stored = {
+        values, (size_t)swath.patch.rows, (size_t)swath.patch.columns, 0.0, 0.0, swath.is_complex};
+    THEN(status, calibrate_image(report, params, options, &stored, text));
+    free(values);
+    swath_close(&swath);
     return status;
 }
 

@@ -8,55 +8,19 @@
 #include "dataset/run.h"
 #include "inject/injection.h"
 
-sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
-                           struct injection_input *input, float **packed)
+/* The image as the caller stores it. */
+static sonject_status store_image(struct report *report, const struct swath *swath,
+                                  sonject_result *made)
 {
-    const size_t parts = pixels->kind == SONJECT_PIXELS_COMPLEX ? 2 : 1;
-    if (pixels->struct_size < sizeof *pixels || !pixels->data ||
-        pixels->kind > SONJECT_PIXELS_COMPLEX || pixels->row_stride % 4 != 0)
-        return report_failure(report, SONJECT_ERROR_ARGUMENT,
-                              "pixels need struct_size, data, a known kind and a row stride that "
-                              "is a multiple of 4");
-    if (pixels->rows == 0 || pixels->columns == 0 || pixels->rows > SWATH_PIXELS_MAX ||
-        pixels->columns > SWATH_PIXELS_MAX || pixels->rows * pixels->columns > SWATH_PIXELS_MAX)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the patch of %llu x %llu pixels is empty or has more than 2^31",
-                              (unsigned long long)pixels->rows,
-                              (unsigned long long)pixels->columns);
-    const size_t row_bytes = (size_t)pixels->columns * parts * sizeof(float);
-    const size_t stride = pixels->row_stride ? (size_t)pixels->row_stride : row_bytes;
-    if (stride < row_bytes)
-        return report_failure(report, SONJECT_ERROR_ARGUMENT,
-                              "the row stride of %zu bytes is shorter than a row of %zu", stride,
-                              row_bytes);
-    *packed = allocate_array((size_t)pixels->rows, row_bytes);
-    CHECK_MEMORY(report, *packed, "the patch");
-    for (size_t row = 0; row < pixels->rows; row++)
-        memcpy((char *)*packed + row * row_bytes, (const char *)pixels->data + row * stride,
-               row_bytes);
-    memset(input, 0, sizeof *input);
-    input->rows = (size_t)pixels->rows;
-    input->columns = (size_t)pixels->columns;
-    input->is_complex = pixels->kind == SONJECT_PIXELS_COMPLEX;
-    input->pixels = *packed;
+    sonject_statistics *statistics = &made->result.statistics;
+    swath_leave_empty(swath, &made->result);
+    statistics->input_clipped = swath->clipped;
+    made->stored_type = swath->layout.type;
+    made->stored = swath_stored_result(swath, &made->result, &statistics->output_clipped);
+    CHECK_MEMORY(report, made->stored, "the result");
+    tell_empty(report, swath);
+    tell_clipped(report, statistics);
     return SONJECT_OK;
-}
-
-sonject_status find_input(struct report *report, const struct scene *scene,
-                          const sonject_pixels *pixels, struct injection_input *input,
-                          float **owned)
-{
-    if (scene->calibrates_itself)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "input.calibration: auto is for runs on files: make a file with "
-                              "sonject_calibrate and name it");
-    if (pixels)
-        return take_pixels(report, pixels, input, owned);
-    if (scene->input_kind != SONJECT_INPUT_UNIFORM && scene->input_kind != SONJECT_INPUT_SYNTHETIC)
-        return null_argument(report, "pixels");
-    const sonject_status status = make_input(report, scene, input);
-    *owned = (float *)input->pixels;
-    return status;
 }
 
 sonject_status sonject_inject(sonject_context *context, const sonject_scene *handle,
@@ -68,33 +32,34 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *han
     *result = NULL;
     context_begin_call(context);
     context_watch(context, &progress, &user);
+    struct report *report = &context->report;
     const struct scene *scene;
-    CHECK(scene_use(&context->report, handle, &scene));
-    struct injection_input input;
-    float *owned = NULL;
-    sonject_status status = find_input(&context->report, scene, pixels, &input, &owned);
+    CHECK(scene_use(report, handle, &scene));
+    struct swath swath;
+    sonject_status status = find_input(report, scene, pixels, &swath);
     struct device *device = NULL;
-    THEN(status, device_slot_open(&context->report, &context->device, scene->user_shapes.count > 0,
-                                  &device));
+    THEN(status, device_slot_open(report, &context->device, scene->user_shapes.count > 0, &device));
     sonject_result *made = NULL;
     if (status == SONJECT_OK) {
         made = allocate_array(1, sizeof *made);
-        status = made ? SONJECT_OK : report_out_of_memory(&context->report, "the result");
+        status = made ? SONJECT_OK : report_out_of_memory(report, "the result");
     }
     if (status == SONJECT_OK) {
-        made->report = &context->report;
-        status =
-            injection_run(&context->report, device, scene, &input, progress, user, &made->result);
+        const struct injection_input input = swath_input(&swath);
+        made->report = report;
+        status = injection_run(report, device, scene, &input, progress, user, &made->result);
+        if (swath.stored)
+            THEN(status, store_image(report, &swath, made));
     }
-    free(owned);
+    swath_close(&swath);
     if (status != SONJECT_OK) {
-        free(made);
+        sonject_result_release(&made);
         return status;
     }
-    tell_noise_floor(&context->report, scene, &made->result.statistics);
-    tell_accuracy(&context->report, &made->result.statistics);
+    tell_noise_floor(report, scene, &made->result.statistics);
+    tell_accuracy(report, &made->result.statistics);
     *result = made;
-    return SONJECT_OK;
+    return context_finish(context, SONJECT_OK);
 }
 
 void sonject_result_release(sonject_result **result)
@@ -102,6 +67,7 @@ void sonject_result_release(sonject_result **result)
     if (!result || !*result)
         return;
     injection_result_clear(&(*result)->result);
+    free((*result)->stored);
     free(*result);
     *result = NULL;
 }
@@ -109,11 +75,16 @@ void sonject_result_release(sonject_result **result)
 sonject_status sonject_result_size(const sonject_result *result, uint64_t *rows, uint64_t *columns,
                                    uint32_t *image_kind)
 {
+    static const sonject_pixel_kind kinds[] = {[PIXEL_UINT8] = SONJECT_PIXELS_UINT8,
+                                               [PIXEL_UINT16] = SONJECT_PIXELS_UINT16,
+                                               [PIXEL_FLOAT32] = SONJECT_PIXELS_AMPLITUDE};
     if (!result || !rows || !columns || !image_kind)
         return SONJECT_ERROR_ARGUMENT;
     *rows = result->result.rows;
     *columns = result->result.columns;
-    *image_kind = result->result.is_complex ? SONJECT_PIXELS_COMPLEX : SONJECT_PIXELS_AMPLITUDE;
+    *image_kind = result->stored              ? kinds[result->stored_type]
+                  : result->result.is_complex ? SONJECT_PIXELS_COMPLEX
+                                              : SONJECT_PIXELS_AMPLITUDE;
     return SONJECT_OK;
 }
 
@@ -141,8 +112,9 @@ sonject_status sonject_result_layer(const sonject_result *result, sonject_layer 
         const void *data; /* NULL: a plane */
         enum injected_plane plane;
     } layers[] = {
-        [SONJECT_LAYER_IMAGE] = {(made->is_complex ? 2 : 1) * sizeof(float), made->image,
-                                 INJECTED_FIELD},
+        [SONJECT_LAYER_IMAGE] = {result->stored ? pixel_bytes(result->stored_type)
+                                                : (made->is_complex ? 2 : 1) * sizeof(float),
+                                 result->stored ? result->stored : made->image, INJECTED_FIELD},
         [SONJECT_LAYER_FIELD] = {2 * sizeof(float), NULL, INJECTED_FIELD},
         [SONJECT_LAYER_ENERGY] = {sizeof(float), NULL, INJECTED_ENERGY},
         [SONJECT_LAYER_VISIBILITY] = {sizeof(float), NULL, INJECTED_VISIBILITY},

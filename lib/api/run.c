@@ -97,7 +97,7 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
     request.exit_after_s = taken.exit_after_s;
     request.checkpoint_s = taken.checkpoint_s;
     request.overwrites = taken.overwrites != 0;
-    return run_calibrated(context, scene, &request, was_finished);
+    return context_finish(context, run_calibrated(context, scene, &request, was_finished));
 }
 
 sonject_status sonject_merge(sonject_context *context, const sonject_scene *scene,
@@ -113,10 +113,10 @@ sonject_status sonject_merge(sonject_context *context, const sonject_scene *scen
     request.merges = true;
     request.overwrites = true; /* the shards were asked whether they may */
     if (!scene)
-        return merge_folder(report, &context->device, &request, taken.allows_user_shapes != 0,
-                            was_finished);
+        return context_finish(context, merge_folder(report, &context->device, &request,
+                                                    taken.allows_user_shapes != 0, was_finished));
     CHECK(scene_use(report, scene, &request.scene));
-    return run_calibrated(context, scene, &request, was_finished);
+    return context_finish(context, run_calibrated(context, scene, &request, was_finished));
 }
 
 sonject_status sonject_trace(sonject_context *context, const sonject_scene *scene, const char *file,
@@ -130,7 +130,8 @@ sonject_status sonject_trace(sonject_context *context, const sonject_scene *scen
         return null_argument(report, "file");
     CHECK(scene_use(report, scene, &request.scene));
     request.source = &scene->source;
-    return trace_scene(report, &context->device, &request, file, export_file);
+    return context_finish(context,
+                          trace_scene(report, &context->device, &request, file, export_file));
 }
 
 sonject_status sonject_form(sonject_context *context, const sonject_scene *scene,
@@ -151,7 +152,8 @@ sonject_status sonject_form(sonject_context *context, const sonject_scene *scene
     request.overwrites = taken.overwrites != 0;
     if (scene)
         CHECK(scene_use(report, scene, &used));
-    return form_scene(report, &context->device, used, &taken, &request, was_finished);
+    return context_finish(
+        context, form_scene(report, &context->device, used, &taken, &request, was_finished));
 }
 
 sonject_status sonject_elements_run(sonject_context *context, const sonject_scene *scene,
@@ -172,8 +174,8 @@ sonject_status sonject_elements_run(sonject_context *context, const sonject_scen
         return report_failure(report, SONJECT_ERROR_ARGUMENT,
                               "element data have no shards or checkpoints");
     CHECK(scene_use(report, scene, &request.scene));
-    return run_elements(report, &context->device, request.scene, &taken, request.progress,
-                        request.user);
+    return context_finish(context, run_elements(report, &context->device, request.scene, &taken,
+                                                request.progress, request.user));
 }
 
 sonject_status sonject_check(sonject_context *context, const sonject_scene *scene, char **text)

@@ -42,7 +42,7 @@ void tell_noise_floor(struct report *report, const struct scene *scene,
                    statistics->noise_floor_db);
 }
 
-static void tell_clipped(struct report *report, const sonject_statistics *statistics)
+void tell_clipped(struct report *report, const sonject_statistics *statistics)
 {
     if (statistics->input_clipped > 0)
         report_log(report,
@@ -54,7 +54,7 @@ static void tell_clipped(struct report *report, const sonject_statistics *statis
                    (unsigned long long)statistics->output_clipped);
 }
 
-static void tell_empty(struct report *report, const struct swath *swath)
+void tell_empty(struct report *report, const struct swath *swath)
 {
     char text[PING_LIST_CAPACITY];
     if (swath->skipped.count > 0)

@@ -25,6 +25,12 @@ sonject_status run_scene(struct report *report, struct device_slot *slot,
 void tell_noise_floor(struct report *report, const struct scene *scene,
                       const sonject_statistics *statistics);
 
+/* Stored pixels that full scale cuts, before or after. */
+void tell_clipped(struct report *report, const sonject_statistics *statistics);
+
+/* Rows and pings where nothing was heard. */
+void tell_empty(struct report *report, const struct swath *swath);
+
 /* How many rays the scene's accuracy took, if it asked for one. */
 void tell_accuracy(struct report *report, const sonject_statistics *statistics);
 

@@ -173,16 +173,23 @@ static sonject_status identify(struct report *report, struct swath *swath, const
     return SONJECT_OK;
 }
 
-static sonject_status bad_pixel(struct report *report, const struct scene *scene,
-                                const struct swath *swath, size_t index, const char *what)
+/* path: NULL where there is no file. */
+static sonject_status bad_pixel(struct report *report, const char *path, const struct swath *swath,
+                                size_t index)
 {
     const size_t pixel = swath->is_complex ? index / 2 : index;
     const size_t columns = (size_t)swath->patch.columns;
-    return input_failure(report, scene->input_path,
-                         "the pixel at row %llu, column %llu is %s: mend the image or choose "
-                         "another patch",
-                         (unsigned long long)(swath->patch.first_row + pixel / columns),
-                         (unsigned long long)(swath->patch.first_column + pixel % columns), what);
+    const double value = pixel_number(swath->layout.type, swath->stored, index);
+    const char *what = !isfinite(value) ? "not a finite number"
+                       : value < 0.0    ? "a negative amplitude"
+                                        : "beyond what its transfer function tells amplitudes of";
+    char text[160];
+    snprintf(text, sizeof text,
+             "the pixel at row %llu, column %llu is %s: mend the image or choose another patch",
+             (unsigned long long)(swath->patch.first_row + pixel / columns),
+             (unsigned long long)(swath->patch.first_column + pixel % columns), what);
+    return path ? input_failure(report, path, "%s", text)
+                : report_failure(report, SONJECT_ERROR_INPUT, "%s", text);
 }
 
 /* Bytes of a pixel as it is stored. */
@@ -308,29 +315,43 @@ const char *ping_list_text(const struct ping_list *list, char text[PING_LIST_CAP
     return text;
 }
 
+sonject_status swath_linearise(struct report *report, const char *path, struct swath *swath)
+{
+    size_t bad = 0;
+    const size_t count =
+        (size_t)swath->patch.rows * (size_t)swath->patch.columns * (swath->is_complex ? 2 : 1);
+    swath->pixels = allocate_array(count, sizeof(float));
+    CHECK_MEMORY(report, swath->pixels, "the patch");
+    if (transfer_to_amplitude(&swath->transfer, swath->layout.type, swath->stored, count,
+                              swath->pixels, &bad, &swath->clipped) != SONJECT_OK)
+        return bad_pixel(report, path, swath, bad);
+    for (size_t i = 0; !swath->is_complex && i < count; i++)
+        if (swath->pixels[i] < 0.0f)
+            return bad_pixel(report, path, swath, i);
+    return SONJECT_OK;
+}
+
+sonject_status swath_find_empty(struct report *report, const struct scene *scene,
+                                struct swath *swath)
+{
+    CHECK(find_empty_rows(report, NULL, swath->stored, swath));
+    return fill_empty_rows(report, scene, swath);
+}
+
 /* whole: the file's pixels, if they are in memory. */
 static sonject_status read_patch(struct report *report, const struct scene *scene,
                                  struct swath_file *file, const void *whole, struct swath *swath)
 {
     size_t bytes;
-    size_t bad = 0;
-    const size_t count =
-        (size_t)swath->patch.rows * (size_t)swath->patch.columns * (swath->is_complex ? 2 : 1);
     if (!region_bytes(&swath->layout, &swath->patch, &bytes))
         return report_out_of_memory(report, "the patch");
     swath->stored = allocate_array(bytes, 1);
-    swath->pixels = allocate_array(count, sizeof(float));
-    CHECK_MEMORY(report, swath->stored && swath->pixels, "the patch");
+    CHECK_MEMORY(report, swath->stored, "the patch");
     if (whole)
         cut_patch(swath, whole, swath->stored);
     else
         CHECK(swath_file_read(report, file, &swath->patch, swath->stored));
-    if (transfer_to_amplitude(&swath->transfer, swath->layout.type, swath->stored, count,
-                              swath->pixels, &bad, &swath->clipped) != SONJECT_OK)
-        return bad_pixel(report, scene, swath, bad, "not a finite number");
-    for (size_t i = 0; !swath->is_complex && i < count; i++)
-        if (swath->pixels[i] < 0.0f)
-            return bad_pixel(report, scene, swath, i, "a negative amplitude");
+    CHECK(swath_linearise(report, scene->input_path, swath));
     CHECK(identify(report, swath, swath->stored, bytes));
     CHECK(find_empty_rows(report, file, whole, swath));
     return fill_empty_rows(report, scene, swath);

@@ -18,7 +18,8 @@ struct swath {
     struct region patch;
     sonject_transfer_params
         transfer;  /* the scene's, with the file's largest number as full scale */
-    void *stored;  /* the patch's pixels as the file stores them; if made, the whole swath's */
+    void *stored;  /* the patch's pixels as the file stores them; if made, the whole swath's; NULL:
+                      they are linear, in memory */
     float *pixels; /* the patch, linear: amplitudes or pairs */
     bool is_complex;
     bool is_made;  /* by sonject */
@@ -57,6 +58,13 @@ struct swath_store {
 sonject_status swath_open_stored(struct report *report, const struct scene *scene,
                                  struct swath_store *store, struct swath *swath);
 void swath_store_close(struct swath_store *store);
+
+/* For pixels in memory, of which rows, columns, transfer, stored and is_whole are set: makes the
+ * linear ones, and finds the empty rows, as for a file. path: for messages; NULL: no file. Errors:
+ * INPUT, MEMORY. */
+sonject_status swath_linearise(struct report *report, const char *path, struct swath *swath);
+sonject_status swath_find_empty(struct report *report, const struct scene *scene,
+                                struct swath *swath);
 
 /* The patch as the file would store it, pixels touched by the result replaced; for free(), NULL
  * when memory is out. clipped: as of swath_write. */

@@ -1,6 +1,7 @@
 /* What sonject.hpp promises beyond the C interface. Prints "all right", or what is not. */
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
@@ -59,6 +60,39 @@ static void check_errors(const sonject::context &context)
     } catch (const sonject::error &) {
     }
     expect(sonject::keys(context).find("sonar.altitude") != std::string::npos, "keys are listed");
+}
+
+static void check_transfers(const sonject::context &context)
+{
+    const char *curve = "{kind: gamma, parameter: 2}";
+    const std::vector<std::uint8_t> grey(64 * 80, 90);
+    const std::vector<float> linear =
+        sonject::convert_pixels<float>(context, {grey.data(), 64, 80, curve});
+    expect(std::abs(linear[0] - 90.0f * 90.0f / 255.0f / 255.0f) < 1e-6f,
+           "amplitudes of grey levels");
+    expect(sonject::convert_pixels<std::uint8_t>(context, {linear.data(), 64, 80}, curve) == grey,
+           "and grey levels of amplitudes");
+    const sonject::scene scene = scene_with_ball(context);
+    const sonject::result result = sonject::inject(scene, {grey.data(), 64, 80, curve});
+    const std::vector<std::uint8_t> image = result.image<std::uint8_t>();
+    const std::vector<std::uint8_t> changed = result.mask(SONJECT_LAYER_INFLUENCE);
+    bool is_kept = image != grey;
+    for (std::size_t i = 0; i < grey.size(); i++)
+        is_kept = is_kept && (changed[i] != 0 || image[i] == grey[i]);
+    expect(is_kept, "an image of grey levels has changed, but where the mask says so alone");
+    try {
+        result.image();
+        expect(false, "an image of grey levels is none of floats");
+    } catch (const sonject::error &error) {
+        expect(error.status() == SONJECT_ERROR_ARGUMENT, "and says so");
+    }
+    try {
+        sonject::inject(scene, {grey.data(), 64, 80, static_cast<const char *>(nullptr)});
+        expect(false, "grey levels without a transfer function throw");
+    } catch (const sonject::error &error) {
+        expect(std::string(error.what()).find("need their transfer function") != std::string::npos,
+               "and the message tells");
+    }
 }
 
 static void check_results(const sonject::context &context)
@@ -286,6 +320,7 @@ int main()
     expect(sonject::version().find('.') != std::string::npos, "the version");
     check_errors(context);
     check_results(context);
+    check_transfers(context);
     check_threads(context);
     check_tables(context);
     check_elements(context);

@@ -81,7 +81,7 @@ SIZES = {
     "sonject_measurement": 112,
     "sonject_merge_params": 24,
     "sonject_object_truth": 368,
-    "sonject_pixels": 40,
+    "sonject_pixels": 48,
     "sonject_quicklook_params": 80,
     "sonject_run_params": 48,
     "sonject_scene_read_params": 32,

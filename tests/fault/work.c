@@ -169,17 +169,28 @@ static sonject_status read_scene(struct work *work, sonject_context *context, so
     return status;
 }
 
+/* Into grey levels, which amplitudes become first. */
 static sonject_status inject(struct work *work, sonject_context *context, sonject_scene *scene)
 {
+    static const char transfer[] = "{kind: gamma, parameter: 2}";
     sonject_result *result = NULL;
-    float pixels[ROWS * COLUMNS];
-    const sonject_pixels patch = {sizeof patch, SONJECT_PIXELS_AMPLITUDE, ROWS, COLUMNS, 0, pixels};
-    fill_pixels(pixels);
-    sonject_status status = sonject_inject(context, scene, &patch, NULL, NULL, &result);
-    assert_true((status == SONJECT_OK) == (result != NULL));
+    float amplitudes[ROWS * COLUMNS];
+    uint16_t pixels[ROWS * COLUMNS];
+    sonject_pixels patch = {
+        .struct_size = sizeof patch, .rows = ROWS, .columns = COLUMNS, .data = amplitudes};
+    fill_pixels(amplitudes);
+    sonject_status status = sonject_pixels_convert(context, &patch, SONJECT_PIXELS_UINT16, transfer,
+                                                   pixels, sizeof pixels);
+    patch.kind = SONJECT_PIXELS_UINT16;
+    patch.data = pixels;
+    patch.transfer = transfer;
     if (status == SONJECT_OK)
+        status = sonject_inject(context, scene, &patch, NULL, NULL, &result);
+    assert_true((status == SONJECT_OK) == (result != NULL));
+    if (status == SONJECT_OK) {
         status = sonject_result_layer(result, SONJECT_LAYER_IMAGE, pixels, sizeof pixels);
-    work->digest = add_to_digest(work->digest, pixels, sizeof pixels);
+        work->digest = add_to_digest(work->digest, pixels, sizeof pixels);
+    }
     sonject_result_release(&result);
     return status;
 }

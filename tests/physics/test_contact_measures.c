@@ -371,8 +371,8 @@ static void measure(sonject_context *context, const struct pose *pose, uint64_t 
     truth.struct_size = sizeof truth;
     expect_ok(context, sonject_result_object(result, 0, &truth));
     expect_ok(context, sonject_result_layer(result, SONJECT_LAYER_IMAGE, image, sizeof image));
-    const sonject_pixels pixels = {sizeof pixels, SONJECT_PIXELS_AMPLITUDE, ROWS, COLUMNS, 0,
-                                   image};
+    const sonject_pixels pixels = {
+        .struct_size = sizeof pixels, .rows = ROWS, .columns = COLUMNS, .data = image};
     sonject_box box = truth.both;
     assert_true(truth.both.first_row >= 6 && truth.both.first_column >= 6);
     box.first_row -= 6;

@@ -9,6 +9,7 @@
 
 #include <sonject/error.hpp>
 #include <sonject/parameters.hpp>
+#include <sonject/pixels.hpp>
 #include <sonject/progress.hpp>
 #include <sonject/result.h>
 #include <sonject/scene.hpp>
@@ -16,21 +17,6 @@
 
 namespace sonject
 {
-
-/* A patch in the caller's memory: linear amplitudes, or pairs of real and imaginary part. */
-struct pixels {
-    pixels(const float *data, std::uint64_t rows, std::uint64_t columns,
-           sonject_pixel_kind kind = SONJECT_PIXELS_AMPLITUDE, std::uint64_t row_stride = 0)
-        : value(defaults<sonject_pixels>())
-    {
-        value.kind = kind;
-        value.rows = rows;
-        value.columns = columns;
-        value.row_stride = row_stride;
-        value.data = data;
-    }
-    sonject_pixels value;
-};
 
 /* What an injection gave. */
 class result
@@ -76,8 +62,8 @@ class result
         return size().kind == SONJECT_PIXELS_COMPLEX;
     }
 
-    /* Copies a layer into memory of exactly its size: float for IMAGE (pairs where is_complex),
-     * FIELD (pairs), ENERGY and VISIBILITY, std::uint8_t for the masks. */
+    /* Copies a layer into memory of exactly its size: the patch's numbers for IMAGE (pairs where
+     * is_complex), float for FIELD (pairs), ENERGY and VISIBILITY, std::uint8_t for the masks. */
     template <typename Element> void layer(sonject_layer layer, span<Element> buffer) const
     {
         check(sonject_result_layer(handle_, layer, buffer.data(), buffer.size() * sizeof(Element)));
@@ -86,9 +72,10 @@ class result
     {
         return copy<float>(SONJECT_LAYER_ENERGY, 1);
     }
-    std::vector<float> image() const
+    /* Number: float, std::uint8_t or std::uint16_t, as the patch's. */
+    template <typename Number = float> std::vector<Number> image() const
     {
-        return copy<float>(SONJECT_LAYER_IMAGE, is_complex() ? 2 : 1);
+        return copy<Number>(SONJECT_LAYER_IMAGE, is_complex() ? 2 : 1);
     }
     /* A mask: HIGHLIGHT, SHADOW, LABELS or INFLUENCE. */
     std::vector<std::uint8_t> mask(sonject_layer layer) const

@@ -8,9 +8,9 @@
 #include <sonject/calibrate.h>
 #include <sonject/context.hpp>
 #include <sonject/error.hpp>
-#include <sonject/injection.hpp>
 #include <sonject/measure.h>
 #include <sonject/parameters.hpp>
+#include <sonject/pixels.hpp>
 #include <sonject/span.hpp>
 #include <sonject/text.hpp>
 

@@ -30,8 +30,10 @@ from .enumerations import (
     ConvertAxis, LabelFormat, LabelPart, RangeAxis, Samples, SeriesForm, Status,
 )
 from .errors import Cancelled, SonjectError
+from .mesh import write_mesh
 from .result import Result
 from .scene import Scene
+from .transfer import Transfer
 
 __version__ = ".".join(str(part) for part in _VERSION)
 
@@ -45,8 +47,8 @@ __all__ = [
     "Box", "Campaign", "CampaignImage", "Cancelled", "ContactMeasures", "Context", "ConvertAxis",
     "Device", "ElementLayout", "LabelFormat", "LabelPart", "Measurement", "ObjectTruth",
     "Progress", "RangeAxis", "Result", "Samples", "Scene", "SeriesForm", "SonjectError",
-    "Statistics", "Status", "absorption", "calibrate", "check", "convert",
+    "Statistics", "Status", "Transfer", "absorption", "calibrate", "check", "convert",
     "default_context", "devices", "element_layout", "element_series", "form", "inject", "keys",
     "fit_campaign", "measure", "measure_contact", "merge", "merge_campaign", "quicklook", "run", "run_elements", "trace",
-    "version",
+    "version", "write_mesh",
 ]

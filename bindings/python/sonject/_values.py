@@ -48,22 +48,22 @@ _UNITS = {
 def real_number(name: str, value: Any) -> float:
     """value as a float, a text by its unit; whether it makes sense is the library's to say."""
     key, example = next((_UNITS[end] for end in _UNITS if name.endswith(end)), (None, None))
-    number = _read_quantity(key, value) if key and isinstance(value, str) else value
+    number = scene_value(key, key_text(name, value)) if key and isinstance(value, str) else value
     if not isinstance(number, numbers.Real):
         text_too = f" or a text such as {example!r}" if example else ""
         raise TypeError(f"{name} must be a number{text_too}, not {value!r}")
     return float(number)
 
 
-def _read_quantity(key: str, value: str) -> Any:
-    """What a scene reads in a text; the text itself where it is no quantity."""
+def scene_value(key: str, content: str) -> Any:
+    """What a scene reads in the text of a key's value; a text where that is no quantity."""
     from .context import default_context  # which imports this module, as scenes do
     from .scene import Scene
 
     context = default_context()
     pointer = context.make(s.sonject_scene, "sonject_scene_create", context)
     with Scene._adopt(context, pointer) as scene:
-        scene[key] = value
+        context.call("sonject_scene_set", scene, plain_text("key", key), plain_text(key, content))
         return scene[key]
 
 
@@ -124,6 +124,13 @@ def optional_file_name(name: str, value: Any) -> Optional[bytes]:
 def key_text(name: str, value: Any) -> str:
     """The value of a scene's key as JSON, which is YAML, too."""
     return json.dumps(_plain(name, value), ensure_ascii=False, allow_nan=False)
+
+
+def keys_text(name: str, value: Any) -> Optional[bytes]:
+    """Keys of a scene for a call, a mapping or their text; None where nothing is said."""
+    if value is None:
+        return None
+    return plain_text(name, value if isinstance(value, str) else key_text(name, value))
 
 
 def _plain(name: str, value: Any) -> Any:
@@ -191,9 +198,15 @@ def override_texts(overrides: Overrides) -> Any:
     return (ctypes.c_char_p * len(texts))(*texts)
 
 
+# Types of pixels: linear ones, and those that may have a transfer function.
 _KINDS = {
     numpy.dtype(numpy.float32): PixelKind.AMPLITUDE,
     numpy.dtype(numpy.complex64): PixelKind.COMPLEX,
+}
+STORED_KINDS = {
+    numpy.dtype(numpy.uint8): PixelKind.UINT8,
+    numpy.dtype(numpy.uint16): PixelKind.UINT16,
+    numpy.dtype(numpy.float32): PixelKind.AMPLITUDE,
 }
 
 
@@ -203,9 +216,8 @@ def _single_precision(array: Any) -> Any:
         return array
     if array.dtype.kind not in "fc":
         raise TypeError(
-            f"a patch of {array.dtype} is refused: it must hold linear amplitudes or complex "
-            "pixels; undo the image's transfer function and convert it, "
-            "for instance patch.astype(numpy.float32) / 255"
+            f"a patch of {array.dtype} is refused without its transfer function: say how grey levels "
+            'came from amplitudes, for instance transfer="{kind: decibel, parameter: 0.5}"'
         )
     target = numpy.float32 if array.dtype.kind == "f" else numpy.complex64
     with numpy.errstate(over="ignore"):
@@ -215,6 +227,15 @@ def _single_precision(array: Any) -> Any:
     return converted
 
 
+def _stored(array: Any) -> Any:
+    """The same numbers in a type that has a transfer function."""
+    if array.dtype.kind == "f":
+        return _single_precision(array)
+    if array.dtype.newbyteorder("=") in STORED_KINDS:
+        return array.astype(array.dtype.newbyteorder("="), copy=False)
+    raise TypeError(f"grey levels are uint8, uint16 or float32, not {array.dtype}")
+
+
 def _is_direct(array: Any) -> bool:
     """Whether the library can read the array where it lies."""
     rows, columns = array.shape
@@ -222,24 +243,25 @@ def _is_direct(array: Any) -> bool:
     size = array.dtype.itemsize
     if not array.flags.aligned or (columns > 1 and column_step != size):
         return False
-    return bool(rows == 1 or (row_step >= columns * size and row_step % 4 == 0))
+    return bool(rows == 1 or (row_step >= columns * size and row_step % min(size, 4) == 0))
 
 
-def library_pixels(patch: Any) -> tuple[s.sonject_pixels, Any]:
+def library_pixels(patch: Any, transfer: Any = None) -> tuple[s.sonject_pixels, Any]:
     """The structure for patch and the array that its pointer points into, to be kept meanwhile.
 
-    float32 and complex64 arrays with contiguous columns are not copied, whatever their row stride.
+    Arrays of the library's types with contiguous columns are not copied, whatever their row stride.
     """
     if isinstance(patch, numpy.ma.MaskedArray):
         raise TypeError("a masked patch is refused: its mask would be lost")
     array = numpy.asarray(patch)
     if array.ndim != 2 or 0 in array.shape:
         raise ValueError(f"a patch has rows and columns, not the shape {array.shape}")
-    array = _single_precision(array)
+    array = _single_precision(array) if transfer is None else _stored(array)
     if not _is_direct(array):
         array = numpy.array(array, order="C", copy=True)
     pixels = initialised(s.sonject_pixels)
-    pixels.kind = _KINDS[array.dtype]
+    pixels.kind = _KINDS[array.dtype] if transfer is None else STORED_KINDS[array.dtype]
+    pixels.transfer = keys_text("transfer", transfer)
     pixels.rows, pixels.columns = array.shape
     pixels.row_stride = array.strides[0] if array.shape[0] > 1 else 0
     pixels.data = array.ctypes.data

@@ -20,11 +20,10 @@ from ._values import (
     filled,
     given,
     initialised,
-    key_text,
+    keys_text,
     library_pixels,
     optional_file_name,
     override_texts,
-    plain_text,
     real_number,
     shard_values,
     whole_number,
@@ -34,9 +33,18 @@ from .enumerations import ConvertAxis, LabelFormat, RangeAxis, Samples, SeriesFo
 from .keys import Quantity
 from .result import Array, Box, ContactMeasures, Measurement, Result
 from .scene import Scene
+from .transfer import Transfer
+
+AnyTransfer = Union[str, Mapping[str, Any]]
 
 
-def inject(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Result:
+def inject(
+    patch: Any,
+    scene: Scene,
+    progress: Optional[Progress] = None,
+    *,
+    transfer: Optional[AnyTransfer] = None,
+) -> Result:
     """Puts the scene's objects into a patch.
 
     patch: array of rows (track positions) x columns (slant ranges), linear amplitudes or complex
@@ -45,12 +53,18 @@ def inject(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Res
     these, anything else is refused. None where the scene's input makes the patch, uniform or
     synthetic. The patch is never changed.
 
+    transfer: the patch's, where it holds grey levels (uint8, uint16, float32), not amplitudes; as
+    input.transfer of scenes: "{kind: decibel, parameter: 0.378}", or a dictionary. The image then
+    has the patch's type, untouched pixels their grey levels, and each bit is that of a run on a file
+    of these pixels; a row of nothing but 0 is one where nothing was heard and stays empty.
+
     progress: called with the finished fraction and the stage's name; a true answer cancels, and
     what it raises ends the call and is raised here. True shows a bar by tqdm if that is installed.
 
     Raises SonjectError, Cancelled, and TypeError or ValueError for arrays that are no patch.
     """
-    pixels, array = _optional_pixels(patch)
+    curve = None if transfer is None else Transfer(transfer)
+    pixels, array = _optional_pixels(patch, curve)
     context = scene.context
     count = scene.object_count
     bridge = ProgressBridge(progress)
@@ -65,14 +79,14 @@ def inject(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Res
         bridge=bridge,
     )
     del array
-    return Result(context, pointer, count)
+    return Result(context, pointer, count, curve)
 
 
-def _optional_pixels(patch: Any) -> tuple[Any, Any]:
+def _optional_pixels(patch: Any, transfer: Optional[AnyTransfer]) -> tuple[Any, Any]:
     """The argument for a patch or None, and the array that it points into, to be kept meanwhile."""
     if patch is None:
         return None, None
-    pixels, array = library_pixels(patch)
+    pixels, array = library_pixels(patch, transfer)
     return ctypes.byref(pixels), array
 
 
@@ -214,7 +228,7 @@ def quicklook(
     range_axis: RangeAxis = RangeAxis.SLANT,
     altitude_m: Optional[Quantity] = None,
     geometry: Optional[Mapping[str, Any]] = None,
-    transfer: Optional[Mapping[str, Any]] = None,
+    transfer: Optional[AnyTransfer] = None,
     channel: Union[str, int, None] = None,
     array: Optional[str] = None,
     context: Optional[Context] = None,
@@ -281,12 +295,8 @@ def convert(
 
 
 def _image_keys(**values: Any) -> dict[str, Optional[bytes]]:
-    """What is said of an image file, as texts; None where nothing is."""
-    return {
-        name: None if value is None else plain_text(
-            name, value if isinstance(value, str) else key_text(name, value))
-        for name, value in values.items()
-    }
+    """What is said of an image file."""
+    return {name: keys_text(name, value) for name, value in values.items()}
 
 
 def _mask(name: str, mask: Any, shape: tuple[int, ...]) -> Any:
@@ -301,14 +311,17 @@ def measure(
     influence: Optional[Any] = None,
     labels: Optional[Any] = None,
     context: Optional[Context] = None,
+    *,
+    transfer: Optional[AnyTransfer] = None,
 ) -> Measurement:
-    """What an image, as inject takes it, says about its seabed, and the seam of an injection.
+    """What an image and its transfer, as inject takes them, say about its seabed, and the seam of an
+    injection.
 
     influence: where the image was changed; labels: where highlights and shadows are (Result.influence
     and Result.labels); both of the image's shape, None: not told.
     """
     context = default_context() if context is None else context
-    pixels, array = library_pixels(image)
+    pixels, array = library_pixels(image, transfer)
     masks = [
         None if mask is None else _mask(name, mask, array.shape)
         for name, mask in (("influence", influence), ("labels", labels))
@@ -371,15 +384,17 @@ def measure_contact(
     *,
     row_spacing_m: Quantity = 0.0,
     column_spacing_m: Quantity = 0.0,
+    transfer: Optional[AnyTransfer] = None,
     context: Optional[Context] = None,
 ) -> ContactMeasures:
-    """How long, wide and bright a contact's highlight and shadow are in an image as inject takes it.
+    """How long, wide and bright a contact's highlight and shadow are in an image with its transfer, as
+    inject takes them.
 
     box: around both, with some seabed; None: the brightest highlight of the image. Spacings: 0 where
     they are unknown, and lengths are known in pixels alone.
     """
     context = default_context() if context is None else context
-    pixels, array = library_pixels(image)
+    pixels, array = library_pixels(image, transfer)
     place = None if box is None else s.sonject_box(*(
         whole_number(name, getattr(box, name), 2**31)
         for name in ("first_row", "first_column", "rows", "columns")))
@@ -415,15 +430,21 @@ def element_layout(scene: Scene, shape: tuple[int, int] = (0, 0)) -> ElementLayo
     return _find_layout(scene, rows, columns)
 
 
-def element_series(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Array:
+def element_series(
+    patch: Any,
+    scene: Scene,
+    progress: Optional[Progress] = None,
+    *,
+    transfer: Optional[AnyTransfer] = None,
+) -> Array:
     """What each hydrophone of the scene's array hears: pings x hydrophones x samples.
 
     complex64, or float32 in pass band; over the source's pressure at 1 m, or in Pa where the array
     has a source_level_db. Heard is what inject draws: targets and, where it resynthesises, the
     seabed; in composite mode the seabed is the measured patch, which has no element data. patch,
-    progress, and what is raised: as for inject.
+    progress, transfer, and what is raised: as for inject.
     """
-    pixels, array = _optional_pixels(patch)
+    pixels, array = _optional_pixels(patch, transfer)
     layout = _find_layout(scene, *((0, 0) if array is None else array.shape))
     is_complex = layout.elements.form == SeriesForm.BASEBAND
     series = numpy.empty(layout.shape, numpy.complex64 if is_complex else numpy.float32)

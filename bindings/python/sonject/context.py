@@ -18,8 +18,8 @@ from .enumerations import Status
 from .errors import Cancelled, SonjectError
 
 
-# Called with the finished fraction 0...1 and the stage's name; a true answer asks to cancel. True: a
-# bar by tqdm, or nothing where that is not installed.
+# Called with the finished fraction 0...1, 1 at the end, and the stage's name; a true answer asks to
+# cancel. True: a bar by tqdm, or nothing where that is not installed.
 Progress = Union[bool, Callable[[float, str], Any]]
 
 
@@ -33,10 +33,8 @@ class Bar:
         self._bar.set_description_str(stage, refresh=False)
         self._bar.update(fraction - self._bar.n)
 
-    def close(self, is_done: bool) -> None:
-        """Leaves it full, or where the work ended."""
-        if is_done:
-            self._bar.update(1.0 - self._bar.n)
+    def close(self) -> None:
+        """Leaves it where the work ended."""
         self._bar.close()
 
 
@@ -68,10 +66,10 @@ class ProgressBridge:
             self.error = error
             return 1
 
-    def close(self, is_done: bool) -> None:
+    def close(self) -> None:
         """At the end of the work."""
         if self._bar is not None:
-            self._bar.close(is_done)
+            self._bar.close()
 
 
 class LogBridge:
@@ -238,7 +236,6 @@ class Context:
         Handles among the arguments stand for their pointers. Raises what callbacks raised first,
         then SonjectError.
         """
-        status = None
         try:
             with self._exclusive():
                 # Looked up under the lock: another thread may close a handle until then.
@@ -252,7 +249,7 @@ class Context:
                     message = text(self._library.sonject_context_message(self._pointer))
         finally:
             if bridge is not None:
-                bridge.close(status == Status.OK)
+                bridge.close()
         for callback in (bridge, self._log):
             if callback is not None and callback.error is not None:
                 error, callback.error = callback.error, None

@@ -10,6 +10,7 @@ import numpy
 from ._picture import decibels as levels_of
 from ._picture import grey_ends
 from ._values import real_number
+from .keys import Quantity
 from .result import Result
 
 
@@ -33,7 +34,7 @@ def draw(
     image: Any,
     *,
     geometry: Optional[Mapping[str, Any]] = None,
-    decibels: Optional[tuple[float, float]] = None,
+    decibels: Optional[tuple[Quantity, Quantity]] = None,
     axes: Any = None,
 ) -> Any:
     """Draws an image's magnitudes in dB; gives matplotlib's AxesImage.
@@ -44,15 +45,16 @@ def draw(
     """
     axes = _pyplot().gca() if axes is None else axes
     levels = levels_of(image)
-    decibels = grey_ends(levels) if decibels is None else decibels
+    ends = grey_ends(levels) if decibels is None else decibels
+    low, high = (real_number("decibels", end) for end in ends)
     extent = None if geometry is None else _extent(levels.shape, geometry)
     axes.set_xlabel("slant range in columns" if geometry is None else "slant range in m")
     axes.set_ylabel("track in rows" if geometry is None else "track in m")
     return axes.imshow(
-        numpy.maximum(levels, decibels[0]),
+        numpy.maximum(levels, low),
         cmap="gray",
-        vmin=decibels[0],
-        vmax=decibels[1],
+        vmin=low,
+        vmax=high,
         extent=extent,
         interpolation="nearest",
     )
@@ -63,7 +65,7 @@ def draw_result(
     result: Result,
     *,
     geometry: Optional[Mapping[str, Any]] = None,
-    decibels: Optional[tuple[float, float]] = None,
+    decibels: Optional[tuple[Quantity, Quantity]] = None,
     figure: Any = None,
 ) -> Any:
     """Draws the patch as it was, with the objects in it, and with their labels; gives the figure.
@@ -73,10 +75,10 @@ def draw_result(
     """
     figure = _pyplot().figure(figsize=(12, 4), layout="constrained") if figure is None else figure
     panels = figure.subplots(1, 3, sharex=True, sharey=True)
-    before = draw(patch, geometry=geometry, decibels=decibels, axes=panels[0])
+    before = draw(result._linear(patch), geometry=geometry, decibels=decibels, axes=panels[0])
     scale = before.get_clim()
     for panel in panels[1:]:
-        draw(result.image, geometry=geometry, decibels=scale, axes=panel)
+        draw(result._linear(result.image), geometry=geometry, decibels=scale, axes=panel)
     labels = numpy.ma.masked_equal(result.labels, 0)
     panels[2].imshow(
         labels, cmap="tab10", vmin=0, vmax=9, alpha=0.6, extent=before.get_extent(),

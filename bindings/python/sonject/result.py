@@ -20,6 +20,7 @@ from ._values import initialised
 from .context import Context, Handle, counted
 from .enumerations import Layer, PixelKind, Status
 from .errors import SonjectError
+from .transfer import Transfer
 
 _LAYER_TYPES = {
     Layer.FIELD: numpy.complex64,
@@ -29,6 +30,13 @@ _LAYER_TYPES = {
     Layer.SHADOW: numpy.uint8,
     Layer.LABELS: numpy.uint8,
     Layer.INFLUENCE: numpy.uint8,
+}
+
+_PIXEL_TYPES = {
+    PixelKind.AMPLITUDE: numpy.float32,
+    PixelKind.COMPLEX: numpy.complex64,
+    PixelKind.UINT8: numpy.uint8,
+    PixelKind.UINT16: numpy.uint16,
 }
 
 # Of the truth, what notebooks show: heading, member of ObjectTruth, how it is written.
@@ -51,9 +59,16 @@ class Result(Handle):
 
     _noun = "result"
 
-    def __init__(self, context: Context, pointer: Any, object_count: int) -> None:
+    def __init__(
+        self,
+        context: Context,
+        pointer: Any,
+        object_count: int,
+        transfer: Optional[Transfer] = None,
+    ) -> None:
         super().__init__(context, pointer)
         self._object_count = object_count
+        self._transfer = transfer
 
     @cached_property
     def _size(self) -> tuple[int, int, PixelKind]:
@@ -75,7 +90,7 @@ class Result(Handle):
     def _layer(self, layer: Layer) -> Array:
         rows, columns, kind = self._size
         if layer is Layer.IMAGE:
-            pixel: Any = numpy.complex64 if kind is PixelKind.COMPLEX else numpy.float32
+            pixel: Any = _PIXEL_TYPES[kind]
         else:
             pixel = _LAYER_TYPES[layer]
         array = numpy.empty((rows, columns), pixel)
@@ -86,8 +101,17 @@ class Result(Handle):
 
     @cached_property
     def image(self) -> Array:
-        """The patch with the objects: float32 or complex64, kind and units of the input."""
+        """The patch with the objects, in its type and units; grey levels if it has a transfer."""
         return self._layer(Layer.IMAGE)
+
+    @property
+    def transfer(self) -> Optional[Transfer]:
+        """How the image's grey levels came from amplitudes; None: it is linear."""
+        return self._transfer
+
+    def _linear(self, image: Any) -> Any:
+        """Amplitudes or complex pixels of an image of this transfer."""
+        return image if self._transfer is None else self._transfer.to_amplitude(image)
 
     @cached_property
     def field(self) -> Array:
@@ -168,7 +192,7 @@ class Result(Handle):
     def _repr_html_(self) -> Optional[str]:
         """For notebooks: the image in dB and the truth. None once it is closed."""
         try:
-            image, truths = self.image, self.objects
+            image, truths = self._linear(self.image), self.objects
         except ValueError:
             return None
         address, (low, high) = picture(image)

@@ -21,6 +21,25 @@ KEYS = {
     "objects": [{"shape": "sphere", "diameter": 0.5, "name": "ball"}],
 }
 
+CAMPAIGN = """\
+sonject_campaign: 1
+scene: scene.yaml
+images: 6
+chip: {rows: 64, columns: 64, spread: 0.3}
+empty: 0.34
+swaths: [{path: swath.npy}]
+draw:
+  objects[].diameter: {uniform: [20 cm, 30 cm]}
+targets:
+  - {class: ball, object: {shape: sphere}}
+"""
+CAMPAIGN_SCENE = """\
+sonject: 1
+input:
+  geometry: {row_spacing: 2.5 cm, column_spacing: 2.5 cm, first_slant_range: 25 m}
+sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}
+"""
+
 
 def pytest_sessionstart(session):
     if not os.environ.get("SONJECT_LIBRARY"):
@@ -54,3 +73,13 @@ def make_scene(context):
         return sonject.Scene(**{"context": context, **KEYS, **changes})
 
     return make
+
+
+@pytest.fixture
+def campaign_folder(tmp_path):
+    """With CAMPAIGN as campaign.yaml, its scene, and a swath of speckle."""
+    (tmp_path / "campaign.yaml").write_text(CAMPAIGN)
+    (tmp_path / "scene.yaml").write_text(CAMPAIGN_SCENE)
+    numbers = numpy.random.default_rng(7)
+    numpy.save(tmp_path / "swath.npy", numbers.rayleigh(0.1, (90, 120)).astype(numpy.float32))
+    return tmp_path

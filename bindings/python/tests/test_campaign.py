@@ -6,35 +6,11 @@ import numpy
 import pytest
 
 import sonject
-
-CAMPAIGN = """\
-sonject_campaign: 1
-scene: scene.yaml
-images: 6
-chip: {rows: 64, columns: 64, spread: 0.3}
-empty: 0.34
-swaths: [{path: swath.npy}]
-draw:
-  objects[].diameter: {uniform: [20 cm, 30 cm]}
-targets:
-  - {class: ball, object: {shape: sphere}}
-"""
-SCENE = """\
-sonject: 1
-input:
-  geometry: {row_spacing: 2.5 cm, column_spacing: 2.5 cm, first_slant_range: 25 m}
-sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}
-"""
-
+from conftest import CAMPAIGN_SCENE
 
 @pytest.fixture
-def campaign(tmp_path):
-    (tmp_path / "campaign.yaml").write_text(CAMPAIGN)
-    (tmp_path / "scene.yaml").write_text(SCENE)
-    numbers = numpy.random.default_rng(7)
-    swath = numbers.rayleigh(0.1, (90, 120)).astype(numpy.float32)
-    numpy.save(tmp_path / "swath.npy", swath)
-    return sonject.Campaign(tmp_path / "campaign.yaml"), swath
+def campaign(campaign_folder):
+    return sonject.Campaign(campaign_folder / "campaign.yaml"), numpy.load(campaign_folder / "swath.npy")
 
 
 def test_images_are_made_in_memory_in_any_order(campaign):
@@ -163,7 +139,7 @@ def test_a_fit_makes_the_calibrations_that_its_scene_asks_for(tmp_path, campaign
     numbers = numpy.random.default_rng(8)
     for name in ("swath.npy", "other.npy"):
         numpy.save(tmp_path / name, numbers.rayleigh(20, (300, 300)).astype(numpy.uint8))
-    (tmp_path / "scene.yaml").write_text(SCENE.replace("input:\n", "input:\n  calibration: auto\n"))
+    (tmp_path / "scene.yaml").write_text(CAMPAIGN_SCENE.replace("input:\n", "input:\n  calibration: auto\n"))
     (tmp_path / "contacts.csv").write_text("image,row,column,rows,columns\n" + "swath.npy,50,50,9,20\n" * 9
                                            + "other.npy,50,50,9,20\n")
     with pytest.raises(sonject.SonjectError) as told:

@@ -10,6 +10,7 @@ import sonject
 from conftest import DOCUMENTS, KEYS, PACKAGE
 
 README = (DOCUMENTS / "README.md").read_text(encoding="utf-8")
+EXAMPLES = re.findall(r"```python\n(.*?)```", README, flags=re.S)
 SPANS = list(dict.fromkeys(re.findall(r"(?<!`)`([^`\n]+)`(?!`)", README)))
 # Run elsewhere: shells' by tests/cli/test_pages.py, pictures by test_plotting.py.
 ELSEWHERE = ("SONJECT_LIBRARY", "tools/scenes/KEYS.md", "PYTHONPATH", "sonject.plotting.draw_result(", "examples/", "tools/", "env/bin/")
@@ -18,19 +19,26 @@ ELSEWHERE = ("SONJECT_LIBRARY", "tools/scenes/KEYS.md", "PYTHONPATH", "sonject.p
 @pytest.fixture(scope="module")
 def names():
     """What the README's program leaves, and what the text under it means by its words."""
-    (example,) = re.findall(r"```python\n(.*?)```", README, flags=re.S)
+    example = EXAMPLES[0]
     names = dict(vars(sonject))
     exec(compile(example, "README.md", "exec"), names)
     return {**names, "sonject": sonject}
 
 
 def test_the_example_runs(names, capsys):
-    (example,) = re.findall(r"```python\n(.*?)```", README, flags=re.S)
-    exec(compile(example, "README.md", "exec"), {})
+    exec(compile(EXAMPLES[0], "README.md", "exec"), {})
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "(128, 160) float32"
     assert len(lines) == 3
     assert names["result"].objects[0].is_visible
+
+
+def test_the_example_of_a_campaign_runs(campaign_folder, capsys, monkeypatch):
+    monkeypatch.chdir(campaign_folder)
+    exec(compile(EXAMPLES[1], "README.md", "exec"), {})
+    lines = capsys.readouterr().out.splitlines()
+    assert len(EXAMPLES) == 2 and len(lines) == 6
+    assert {line.rsplit("(64, 64)")[-1] for line in lines} == {" True", " False"}
 
 
 def calls():
@@ -50,13 +58,18 @@ def is_python(span):
 @pytest.mark.parametrize("span", calls())
 def test_what_the_text_calls_can_be_called(names, span, tmp_path, monkeypatch):
     assert is_python(span)
-    monkeypatch.chdir(DOCUMENTS.parents[1])
+    (tmp_path / "tools").symlink_to(DOCUMENTS.parents[1] / "tools")
+    monkeypatch.chdir(tmp_path)
     scene = sonject.Scene(**KEYS)
     scene["input.uniform"] = {"rows": 32, "columns": 40}
     patch = numpy.full((32, 40), 0.1, numpy.float32)
     meant = {
         "scene": scene,
         "patch": patch,
+        "grey": numpy.full((32, 40), 90, numpy.uint8),
+        "curve": sonject.Transfer("{kind: gamma, parameter: 2.2}"),
+        "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+        "faces": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
         "heights": [0.0, 10.0],
         "speeds": [1490.0, 1500.0],
         "along": [-10.0, 10.0],

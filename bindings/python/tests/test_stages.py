@@ -2,6 +2,7 @@
 
 import os
 
+import numpy
 import pytest
 
 import sonject
@@ -54,6 +55,24 @@ def test_impulses_are_exported_too(tmp_path):
                   progress=lambda fraction, stage: told.append(fraction))
     assert told == sorted(told) and len(told) > 3  # of both traces together
     assert (tmp_path / "arrays.h5").read_bytes().startswith(b"\x89HDF")
+
+
+def test_progress_ends_at_one(tmp_path):
+    scene, sums, parts = make_scene(), tmp_path / "impulses.sums", tmp_path / "parts"
+    patch = numpy.full((40, 50), 0.1, numpy.float32)
+    works = [
+        lambda tell: sonject.inject(patch, scene, tell),
+        lambda tell: sonject.run(scene, tmp_path / "run", tell),
+        lambda tell: sonject.run(scene, tmp_path / "run", tell),  # there is nothing left to do
+        lambda tell: sonject.trace(scene, sums, tell),
+        lambda tell: sonject.form(sums, tmp_path / "formed", progress=tell),
+        lambda tell: sonject.run(scene, parts, tell, shard=(1, 1)),
+        lambda tell: sonject.merge(parts, scene, tell),
+    ]
+    for number, work in enumerate(works):
+        told = []
+        work(lambda fraction, stage: told.append(fraction) or fraction == 1)  # too late to cancel
+        assert told == sorted(told) and told.count(1) == 1, number
 
 
 def test_progress_cancels_both_stages(tmp_path):
