@@ -77,7 +77,8 @@ def test_the_wheel_holds_package_and_library(wheel):
     assert {"sonject/scene.py", "sonject/py.typed"} <= MODULES
     examples = {name for name in names if "/share/sonject/" in name}
     assert names - examples == MODULES | {f"sonject/{name}" for name in ("libsonject.so", "sonject", "sonject-decoder")}
-    assert any(name.endswith("scenes/demo.yaml") for name in examples)
+    for name in ("scenes/demo.yaml", "matlab/sonject.m"):
+        assert any(each.endswith(f"share/sonject/{name}") for each in examples), name
 
 
 def test_the_installed_package_finds_its_library(installed):
