@@ -14,7 +14,8 @@ import sys
 TOP = pathlib.Path(__file__).resolve().parents[1]
 WORDS = TOP / ".ci" / "words"
 RARE = "fro,tread,trough"  # which codespell takes for mistakes
-ON_PURPOSE = "bandwith,cilinder,compsite,diamter,frequncy,lenght,shpere,unifrom,widht"  # in tests of messages
+# In tests of messages, and here.
+ON_PURPOSE = "bandwith,cilinder,compsite,diamter,frequncy,lenght,shpere,unifrom,widht"
 BINARY = {".png", ".mat"}
 # What is not read as words: blocks of code, code, targets of links, comments, addresses.
 NOT_TEXT = re.compile(r"^```.*?^```|^    .*?$|`[^`]*`|\]\([^)]*\)|<!--.*?-->|https?://\S+", re.M | re.S)
@@ -48,7 +49,7 @@ def unknown_words(text):
 
 def main():
     names = sys.argv[1:] or tracked()
-    tests = [name for name in names if "tests" in pathlib.Path(name).parts]
+    tests = [name for name in names if "tests" in pathlib.Path(name).parts or TOP / name == pathlib.Path(__file__).resolve()]
     found = common_mistakes([name for name in names if name not in tests], RARE)
     found += common_mistakes(tests, RARE, ON_PURPOSE)
     known, met = set(WORDS.read_text(encoding="utf-8").split()), set()
