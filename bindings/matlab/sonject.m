@@ -3,9 +3,9 @@ function [injected, truth, masks] = sonject(pixels, scene, varargin)
 %   [INJECTED, TRUTH, MASKS] = SONJECT(PIXELS, SCENE) runs a scene.
 %   [...] = SONJECT(PIXELS, SCENE, KEY, VALUE, ...) sets keys of the scene first.
 %
-%   PIXELS    a matrix with one row a ping, of class single, double, int16, uint16 or uint8,
-%             real or complex; or the name of an image file, TIFF, PNG or NumPy; or [] where the
-%             scene says what to read.
+%   PIXELS    a matrix with one row a ping, of class single or double, real or complex, or of
+%             class int16, uint16 or uint8; or the name of an image file, TIFF, PNG or NumPy; or
+%             [] where the scene says what to read.
 %   SCENE     the name of a scene file, or a struct with the keys of scene files. File names
 %             within a struct must be absolute.
 %   KEY       such as 'objects[0].heading', and VALUE such as '60 deg', 1.5, {} or a struct.

@@ -1,5 +1,5 @@
-"""What a release is made of: its version, CITATION.cff, and the sources by tools/release.sh. Wheels are in
-test_wheels.py."""
+"""What a release is made of: its version, CITATION.cff, and the sources by tools/release.sh. Its wheels are
+tested in test_wheels.py."""
 import datetime
 import hashlib
 import os
@@ -40,14 +40,13 @@ def test_pages_name_wheels_of_this_version():
     assert named == [[VERSION], [VERSION]]
 
 
-@pytest.fixture
-def git(tmp_path):
-    """Runs git in a clone of what is here, whose changelog has a section of this version."""
+def make_clone(clone):
+    """A repository of what is here, whose changelog has a section of this version, tagged as such. Returns what
+    runs git in it."""
     variables = {**os.environ, "GIT_CONFIG_GLOBAL": os.devnull}
     for who in ("AUTHOR", "COMMITTER"):
         variables.update({f"GIT_{who}_NAME": "someone", f"GIT_{who}_EMAIL": "someone@example.org",
                           f"GIT_{who}_DATE": "2026-01-02T03:04:05Z"})
-    clone = tmp_path / "clone"
     listed = subprocess.run(["git", "ls-files"], cwd=SOURCE, check=True, capture_output=True, text=True).stdout
     for name in listed.splitlines():
         if (SOURCE / name).exists():
@@ -57,13 +56,18 @@ def git(tmp_path):
     def run(*words):
         subprocess.run(["git", *words], cwd=clone, env=variables, check=True, capture_output=True)
 
+    run.folder = clone
     run("init")
     set_section(clone, f"{VERSION} (2026-01-02)")
     run("add", "-A")
     run("commit", "-m", "All")
     run("tag", f"v{VERSION}")
-    run.folder = clone
     return run
+
+
+@pytest.fixture
+def git(tmp_path):
+    return make_clone(tmp_path / "clone")
 
 
 def set_section(clone, section):
@@ -73,6 +77,13 @@ def set_section(clone, section):
 
 def release(git, *words):
     return subprocess.run(["sh", git.folder / "tools" / "release.sh", *words], check=False, capture_output=True, text=True)
+
+
+def assert_sums(folder):
+    """SHA256SUMS has all other files of a release."""
+    sums = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.iterdir() if path.name != "SHA256SUMS"}
+    lines = (folder / "SHA256SUMS").read_text().splitlines()
+    assert lines == [f"{sums[name]}  {name}" for name in sorted(sums)]
 
 
 def assert_refused(answer, words):
@@ -85,8 +96,8 @@ def test_the_sources_are_those_of_the_tag(git):
     folder = git.folder / "build-release" / f"sonject-{VERSION}"
     archive = folder / f"sonject-{VERSION}.tar.gz"
     assert answer.stdout.splitlines()[-1] == str(folder) and sorted(folder.iterdir()) == [folder / "SHA256SUMS", archive]
-    digest = hashlib.sha256(archive.read_bytes()).hexdigest()
-    assert (folder / "SHA256SUMS").read_text() == f"{digest}  {archive.name}\n"
+    assert_sums(folder)
+    before = archive.read_bytes()
     with tarfile.open(archive) as opened:
         files = {member.name: member for member in opened.getmembers() if member.isfile()}
         text = opened.extractfile(f"sonject-{VERSION}/meson.build").read()
@@ -97,7 +108,7 @@ def test_the_sources_are_those_of_the_tag(git):
     git("add", "later")
     git("commit", "-m", "Later")
     assert release(git, f"v{VERSION}", "none").returncode == 0
-    assert hashlib.sha256(archive.read_bytes()).hexdigest() == digest
+    assert archive.read_bytes() == before
 
 
 def test_what_is_no_release_is_refused(git):
