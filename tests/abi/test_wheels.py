@@ -1,4 +1,5 @@
 """Wheels of a release, by tools/wheels.sh: that they need nothing, hold the licences, and give the build's bits."""
+import functools
 import os
 import pathlib
 import re
@@ -21,19 +22,24 @@ BYTES_MAX = 15_000_000
 GLIBC = (2, 28)
 
 
-@pytest.fixture(scope="module", params=["x86_64", "aarch64", "win_amd64"])
-def wheel(request):
-    """Of a release that has it alone."""
-    clone = SOURCE / "build-wheels" / request.param
+@functools.cache  # pytest makes a fixture again where the tests between ask for another machine's
+def build(machine):
+    """The wheel of a release that has it alone."""
+    clone = SOURCE / "build-wheels" / machine
     shutil.rmtree(clone, ignore_errors=True)
-    answer = release(make_clone(clone), f"v{VERSION}", request.param)
+    answer = release(make_clone(clone), f"v{VERSION}", machine)
     assert answer.returncode == 0, answer.stdout + answer.stderr
     folder = pathlib.Path(answer.stdout.splitlines()[-1])
     assert_sums(folder)
     (found,) = folder.glob("*.whl")
-    assert re.fullmatch(rf"sonject-{VERSION}-py3-none-.*{request.param}\.whl", found.name)
+    assert re.fullmatch(rf"sonject-{VERSION}-py3-none-.*{machine}\.whl", found.name)
     assert (folder / f"sonject-{VERSION}.tar.gz").exists() and len(list(folder.iterdir())) == 3
     return found
+
+
+@pytest.fixture(scope="module", params=["x86_64", "aarch64", "win_amd64"])
+def wheel(request):
+    return build(request.param)
 
 
 def is_of_windows(wheel):
