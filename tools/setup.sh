@@ -6,7 +6,7 @@ build_packages="build-essential clang meson ninja-build pkg-config python3
     libpng-dev libtiff-dev libjpeg62-turbo-dev libhdf5-dev zlib1g-dev libyaml-dev libjansson-dev
     libexpat1-dev libxxhash-dev opencl-headers"
 test_packages="pocl-opencl-icd ocl-icd-opencl-dev git cmake doxygen groff-base libcmocka-dev python3-numpy python3-pytest
-    python3-h5py python3-pil python3-scipy python3-venv locales"
+    python3-h5py python3-pil python3-scipy python3-venv python3-yaml locales codespell hunspell hunspell-en-gb"
 # From PyPI: readers by others, which tests hold our files to, and what builds, checks and draws with
 # the Python package.
 readers="pyxtf pingverter pycocotools meson-python mypy==1.18.2 matplotlib"

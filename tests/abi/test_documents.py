@@ -16,6 +16,7 @@ DOCUMENTS = sorted({"README.md", "CONTRIBUTING.md", "CHANGELOG.md",
                     *(str(path.relative_to(SOURCE)) for folder in (*FOLDERS, "docs")
                       for path in (SOURCE / folder).rglob("*.md"))})
 READABILITY = SOURCE / ".ci" / "readability.py"
+SPELLING = SOURCE / ".ci" / "spelling.py"
 PATH = rf"(?<![\w/.])(?:{'|'.join(FOLDERS)})/[\w./*-]+"
 CODE = {".h", ".hpp", ".c", ".cpp", ".cl", ".py", ".build"}
 
@@ -96,6 +97,18 @@ def test_a_long_readme_is_refused():
         "README.md: words: 1000, at most 900"]
     assert complaints("README.md", 101 * "Short.\n") == ["README.md: lines: 101, at most 100"]
     assert complaints("docs/physics.md", 101 * "Short.\n") == []
+
+
+def test_no_word_is_misspelt(tmp_path):
+    answer = subprocess.run([sys.executable, SPELLING], check=False, capture_output=True, text=True)
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+    (tmp_path / "page.md").write_text("The colour is a color of frequncy.\n\n    widht code\n")
+    (tmp_path / "code.c").write_text("/* The lenght of a cilinder. */\n")
+    files = [tmp_path / "page.md", tmp_path / "code.c"]
+    answer = subprocess.run([sys.executable, SPELLING, *files], check=False, capture_output=True, text=True)
+    assert answer.returncode == 1
+    assert sorted(re.findall(r": (\w+)(?: ==>|: not in)", answer.stdout)) == [
+        "cilinder", "color", "frequncy", "frequncy", "lenght", "widht"]
 
 
 def test_the_reference_of_the_interface_is_made_without_warnings(tmp_path):

@@ -9,6 +9,7 @@ import pytest
 
 from test_installed import MODULES, needed_by
 from test_interface import LIBRARY, SOURCE, exported_symbols
+from test_release import VERSION
 
 READERS = os.environ.get("SONJECT_READERS")
 OPTIONS = ["-Dhdf5=disabled", "-Dtests=disabled", "-Dstatic=disabled", "-Dbuildtype=debug", "-Db_sanitize=none"]
@@ -77,7 +78,8 @@ def test_the_wheel_holds_package_and_library(wheel):
     assert {"sonject/scene.py", "sonject/py.typed"} <= MODULES
     examples = {name for name in names if "/share/sonject/" in name}
     assert names - examples == MODULES | {f"sonject/{name}" for name in ("libsonject.so", "sonject", "sonject-decoder")}
-    assert any(name.endswith("scenes/demo.yaml") for name in examples)
+    for name in ("scenes/demo.yaml", "matlab/sonject.m"):
+        assert any(each.endswith(f"share/sonject/{name}") for each in examples), name
 
 
 def test_the_installed_package_finds_its_library(installed):
@@ -93,9 +95,9 @@ print(sonject.version(), scene.object_count, pathlib.Path(_library.load()._name)
     answer = subprocess.run([READERS, "-c", program], cwd=installed, capture_output=True, text=True,
                             check=False, env={**variables, "PYTHONPATH": str(installed)})
     assert answer.returncode == 0, answer.stderr
-    assert answer.stdout.split() == ["0.1.0", "1", str(installed / "sonject")]
+    assert answer.stdout.split() == [VERSION, "1", str(installed / "sonject")]
     command = subprocess.run([installed / "sonject" / "sonject", "--version"], capture_output=True, text=True, check=True)
-    assert "0.1.0" in command.stdout
+    assert VERSION in command.stdout
 
 
 def test_the_first_command_builds_and_ends_with_the_path_of_a_picture(tmp_path):

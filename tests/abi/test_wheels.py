@@ -1,4 +1,5 @@
-"""Wheels by tools/wheels.sh: that they need nothing, hold the licences, and give the build's bits."""
+"""Wheels of a release, by tools/wheels.sh: that they need nothing, hold the licences, and give the build's bits."""
+import functools
 import os
 import pathlib
 import re
@@ -11,9 +12,9 @@ import pytest
 
 from test_installed import BUILD, MODULES, needed_by
 from test_interface import SOURCE
+from test_release import VERSION, assert_sums, make_clone, release
 
 COMMAND = BUILD / "tools" / "sonject"
-WHEELS = SOURCE / "build-wheels" / "wheels"
 OF_GLIBC = {"libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
 OF_WINDOWS = r"(?i)(kernel32|advapi32|shell32|ole32|user32|ntdll|api-ms-win-[a-z0-9-]+)\.dll"
 SOURCES = {"zlib", "libyaml", "jansson", "expat", "xxhash", "libpng1.6", "libjpeg-turbo", "tiff", "zig"}
@@ -21,12 +22,24 @@ BYTES_MAX = 15_000_000
 GLIBC = (2, 28)
 
 
+@functools.cache  # pytest makes a fixture again where the tests between ask for another machine's
+def build(machine):
+    """The wheel of a release that has it alone."""
+    clone = SOURCE / "build-wheels" / machine
+    shutil.rmtree(clone, ignore_errors=True)
+    answer = release(make_clone(clone), f"v{VERSION}", machine)
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+    folder = pathlib.Path(answer.stdout.splitlines()[-1])
+    assert_sums(folder)
+    (found,) = folder.glob("*.whl")
+    assert re.fullmatch(rf"sonject-{VERSION}-py3-none-.*{machine}\.whl", found.name)
+    assert (folder / f"sonject-{VERSION}.tar.gz").exists() and len(list(folder.iterdir())) == 3
+    return found
+
+
 @pytest.fixture(scope="module", params=["x86_64", "aarch64", "win_amd64"])
 def wheel(request):
-    answer = subprocess.run([SOURCE / "tools" / "wheels.sh", request.param], check=False, capture_output=True, text=True)
-    assert answer.returncode == 0, answer.stdout + answer.stderr
-    (found,) = WHEELS.glob(f"sonject-*-py3-none-*{request.param}.whl")
-    return found
+    return build(request.param)
 
 
 def is_of_windows(wheel):
@@ -68,8 +81,8 @@ def command(wheel, programs, tmp_path_factory):
 def test_a_wheel_holds_package_programs_examples_and_licences(wheel, unpacked):
     assert wheel.stat().st_size < BYTES_MAX
     assert MODULES <= {str(path.relative_to(unpacked)) for path in unpacked.rglob("*")}
-    assert {path.stem for path in (unpacked / "sonject-0.1.0.dist-info" / "licenses").iterdir()} >= SOURCES
-    examples = unpacked / "sonject-0.1.0.data" / "data" / "share" / "sonject"
+    assert {path.stem for path in (unpacked / f"sonject-{VERSION}.dist-info" / "licenses").iterdir()} >= SOURCES
+    examples = unpacked / f"sonject-{VERSION}.data" / "data" / "share" / "sonject"
     for folder in ("campaigns", "scenes", "targets"):
         assert {path.name for path in (examples / folder).iterdir()} == {
             path.name for path in (SOURCE / "tools" / folder).iterdir()}
@@ -180,4 +193,4 @@ def test_python_passes_its_tests_with_it(wheel, tmp_path):
     assert answer.returncode == 0, answer.stdout
     version = subprocess.run([tmp_path / "env" / "bin" / "sonject", "--version"], env=variables, check=True,
                              capture_output=True, text=True)
-    assert "0.1.0" in version.stdout
+    assert VERSION in version.stdout

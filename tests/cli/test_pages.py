@@ -1,6 +1,6 @@
 """What README and pages tell a reader to type is typed here: commands, scenes, fragments of scene
 files, programs in Python, and mistakes for their messages. What is new in a page fails until it can
-be run. C and C++ are in tests/abi/test_installed.py."""
+be run. C and C++ are in tests/abi/test_installed.py, MATLAB's language is in test_matlab.py."""
 
 import os
 import pathlib
@@ -219,7 +219,7 @@ def test_every_option_exists():
     assert sorted(named - known - of_others) == []
 
 
-LANGUAGES = {"sh", "yaml", "python", "c", "cpp", "cmake"}
+LANGUAGES = {"sh", "yaml", "python", "c", "cpp", "cmake", "matlab"}
 
 
 def test_blocks_of_code_are_in_languages_that_tests_run():
@@ -227,7 +227,7 @@ def test_blocks_of_code_are_in_languages_that_tests_run():
         fences = re.findall(r"^```(.*)$", read(page), flags=re.M)
         assert set(fences[::2]) <= LANGUAGES and set(fences[1::2]) <= {""}, page
         if page != "docs/embedding.md":
-            assert not any(blocks(page, each) for each in ("c", "cpp", "cmake")), page
+            assert not any(blocks(page, each) for each in ("c", "cpp", "cmake", "matlab")), page
 
 
 # docs/gallery.py runs that page's Python, each block after those before it.
