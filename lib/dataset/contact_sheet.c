@@ -168,17 +168,52 @@ static sonject_status draw_cell(const struct data_set *set, struct canvas *canva
     return status;
 }
 
-static sonject_status draw_cells(const struct data_set *set, struct canvas *canvas, uint32_t cells)
+static uint32_t cell_count(const struct data_set *set)
+{
+    return set->images < CELLS_MAX ? (uint32_t)set->images : CELLS_MAX;
+}
+
+static int64_t cell_x(uint32_t cell)
+{
+    return CELL_GAP + (int64_t)(cell % CELLS_ACROSS) * (CELL_SIDE + CELL_GAP);
+}
+
+static int64_t cell_y(uint32_t cell)
+{
+    return CELL_GAP + (int64_t)(cell / CELLS_ACROSS) * (CELL_SIDE + CAPTION + CELL_GAP);
+}
+
+static uint64_t cell_image(const struct data_set *set, uint64_t cell)
+{
+    return set->images * cell / cell_count(set);
+}
+
+bool contact_sheet_shows(const struct data_set *set, uint64_t id)
+{
+    const uint64_t cells = cell_count(set);
+    const uint64_t cell = (id * cells + set->images - 1) / set->images;
+    return cell < cells && cell_image(set, cell) == id;
+}
+
+json_t *contact_sheet_document(const struct data_set *set)
+{
+    json_t *cells = json_array();
+    for (uint32_t i = 0; i < cell_count(set); i++)
+        json_append(&cells,
+                    JSON_OBJECT({"image", json_count(cell_image(set, i))},
+                                {"x", json_integer(cell_x(i))}, {"y", json_integer(cell_y(i))}));
+    return JSON_OBJECT({"side", json_integer(CELL_SIDE)}, {"cells", cells});
+}
+
+static sonject_status draw_cells(const struct data_set *set, struct canvas *canvas)
 {
     sonject_status status = SONJECT_OK;
-    for (uint32_t i = 0; status == SONJECT_OK && i < cells; i++) {
-        const uint64_t id = set->images * i / cells;
+    for (uint32_t i = 0; status == SONJECT_OK && i < cell_count(set); i++) {
+        const uint64_t id = cell_image(set, i);
         size_t split = 0;
         while (id - set->split_first[split] >= set->split_images[split])
             split++;
-        status = draw_cell(
-            set, canvas, split, id, CELL_GAP + (int64_t)(i % CELLS_ACROSS) * (CELL_SIDE + CELL_GAP),
-            CELL_GAP + (int64_t)(i / CELLS_ACROSS) * (CELL_SIDE + CAPTION + CELL_GAP));
+        status = draw_cell(set, canvas, split, id, cell_x(i), cell_y(i));
     }
     return status;
 }
@@ -186,7 +221,7 @@ static sonject_status draw_cells(const struct data_set *set, struct canvas *canv
 sonject_status write_contact_sheet(const struct data_set *set)
 {
     static const struct colour white = {255, 255, 255};
-    const uint32_t cells = set->images < CELLS_MAX ? (uint32_t)set->images : CELLS_MAX;
+    const uint32_t cells = cell_count(set);
     const uint32_t across = cells < CELLS_ACROSS ? cells : CELLS_ACROSS;
     const uint32_t down = (cells + CELLS_ACROSS - 1) / CELLS_ACROSS;
     struct canvas canvas;
@@ -195,7 +230,7 @@ sonject_status write_contact_sheet(const struct data_set *set)
     if (!canvas_create(&canvas, CELL_GAP + down * (CELL_SIDE + CAPTION + CELL_GAP),
                        CELL_GAP + across * (CELL_SIDE + CELL_GAP), white))
         return report_out_of_memory(set->report, "the contact sheet");
-    sonject_status status = draw_cells(set, &canvas, cells);
+    sonject_status status = draw_cells(set, &canvas);
     if (status == SONJECT_OK) {
         const struct raster_layout layout = {canvas.height, canvas.width, 3, PIXEL_UINT8};
         status = raster_file_write(set->report, path, &layout, NULL, NULL, 0, canvas.rgb);

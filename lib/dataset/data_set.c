@@ -28,7 +28,7 @@ static size_t name_documents(uint32_t outputs, const char *names[DOCUMENTS])
     size_t count = 0;
     names[count++] = "classes.txt";
     names[count++] = "contact_sheet.png";
-    names[count++] = "report.html";
+    names[count++] = REPORT_PAGE;
     if (outputs & OUTPUT_BIT(OUTPUT_YOLO))
         names[count++] = "data.yaml";
     names[count++] = "croissant.json";

@@ -62,13 +62,14 @@ sonject_status data_set_record(const struct data_set *set, size_t split, uint64_
 sonject_status data_set_has_image(const struct data_set *set, size_t split, uint64_t id,
                                   char changed[PATH_CAPACITY], bool *has);
 
-/* Adds text as HTML shows it. */
-void add_escaped(struct growing_text *text, const char *raw);
-
 /* Write contact_sheet.png and report.html from images that are all there. Errors: as
  * data_set_finish. */
 sonject_status write_contact_sheet(const struct data_set *set);
 sonject_status write_report_page(const struct data_set *set);
+
+/* Whether the contact sheet shows an image; and where it shows which, for the page. */
+bool contact_sheet_shows(const struct data_set *set, uint64_t id);
+json_t *contact_sheet_document(const struct data_set *set);
 
 /* Write data.yaml, and croissant.json, which lists the named documents of the whole, those of
  * splits and folders. Errors: STORAGE, MEMORY, INPUT. */

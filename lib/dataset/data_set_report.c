@@ -1,4 +1,4 @@
-/* The page of statistics: counts, and histograms of what was drawn and what came of it. */
+/* The page of a data set: counts, histograms of what was drawn and what came of it, and images. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,17 +9,10 @@
 #include "dataset/data_set.h"
 #include "dataset/run.h"
 
-#define BINS   24
-#define BAR    12 /* pixels of the picture, as all below */
-#define LEFT   12
-#define WIDTH  (2 * LEFT + BINS * BAR)
-#define HEIGHT 200
-#define BOTTOM 160
-#define TOP    34
-
-#define SERIES_MAX  64    /* of more names, the later ones are left out of the page */
-#define REASONS_MAX 10    /* that are shown */
-#define IMAGES_MAX  20000 /* whose values are kept; of more, every second, third, ... is taken */
+#define BINS       24
+#define SERIES_MAX 64    /* of more names, the later ones are left out of the page */
+#define IMAGES_MAX 20000 /* that are shown; of more, every second, third, ... is taken */
+#define DIGITS     6
 
 /* Values under one name, in one unit. */
 struct series {
@@ -45,23 +38,13 @@ struct statistics_page {
     uint64_t every; /* image that is taken */
     uint64_t drawn_anew, difficult, clipped, unseen;
     uint64_t sources[COUNT(number_names)][COUNT(sources)]; /* images */
-    struct growing_text reasons; /* of the first of these, as items of a list; owned */
+    json_t *rows;                                          /* of the images that are taken; owned */
 };
 
-void add_escaped(struct growing_text *text, const char *raw)
+/* How often values come in each of BINS parts of their range. */
+static json_t *histogram_document(const struct series *series)
 {
-    for (; *raw; raw++)
-        if (strchr("<>&\"'", *raw))
-            growing_text_add(text, "&#%d;", *raw);
-        else
-            growing_text_add(text, "%c", *raw);
-}
-
-static void write_histogram(struct growing_text *text, const struct series *series)
-{
-    size_t bins[BINS] = {0};
-    size_t most = 1;
-    char ends[2][40];
+    uint64_t bins[BINS] = {0};
     double low = series->values[0];
     double high = series->values[0];
     for (size_t i = 1; i < series->count; i++) {
@@ -70,30 +53,11 @@ static void write_histogram(struct growing_text *text, const struct series *seri
     }
     for (size_t i = 0; i < series->count; i++) {
         const double place = high > low ? (series->values[i] - low) / (high - low) * BINS : 0.0;
-        const size_t bin = place < BINS ? (size_t)place : BINS - 1;
-        most = ++bins[bin] > most ? bins[bin] : most;
+        bins[place < BINS ? (size_t)place : BINS - 1]++;
     }
-    growing_text_add(text,
-                     "<svg width=\"%d\" height=\"%d\" font-size=\"12\"><text x=\"%d\" y=\"16\">",
-                     WIDTH, HEIGHT, LEFT);
-    add_escaped(text, series->name);
-    growing_text_add(text, "%s", *series->unit ? ", " : "");
-    add_escaped(text, series->unit);
-    growing_text_add(text, "</text>");
-    for (int i = 0; i < BINS; i++) {
-        const int height = (int)lround((double)(BOTTOM - TOP) * (double)bins[i] / (double)most);
-        growing_text_add(text,
-                         "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"#4878a8\"/>",
-                         LEFT + i * BAR, BOTTOM - height, BAR - 1, height);
-    }
-    growing_text_add(text,
-                     "<path d=\"M%d %dH%d\" stroke=\"#000\"/><text x=\"%d\" y=\"%d\">%s</text>"
-                     "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">%s</text>"
-                     "<text x=\"%d\" y=\"%d\">%lu values, at most %lu in a bin</text></svg>\n",
-                     LEFT, BOTTOM, WIDTH - LEFT, LEFT, BOTTOM + 16,
-                     text_of_number(ends[0], sizeof ends[0], low, 4), WIDTH - LEFT, BOTTOM + 16,
-                     text_of_number(ends[1], sizeof ends[1], high, 4), LEFT, BOTTOM + 34,
-                     (unsigned long)series->count, (unsigned long)most);
+    return JSON_OBJECT({"name", json_string(series->name)}, {"unit", json_string(series->unit)},
+                       {"low", json_number(low)}, {"high", json_number(high)},
+                       {"bins", json_counts(bins, BINS)});
 }
 
 static sonject_status add_value(struct statistics_page *page, const char *name, const char *unit,
@@ -172,15 +136,54 @@ static sonject_status add_object(struct statistics_page *page, size_t split, con
     return SONJECT_OK;
 }
 
-/* Why the image's first draw was given up, if it was. */
-static void add_reason(struct statistics_page *page, uint64_t id, const json_t *record)
+/* What the page tells of each object, and of which member of its truth. */
+static const struct {
+    const char *of, *key; /* of: "" for its own */
+} row_members[] = {{"", "class"},
+                   {"", "shape"},
+                   {"", "visible"},
+                   {"", "slant_range_m"},
+                   {"level", "over_seabed_db"},
+                   {"", "highlight_visibility_db"},
+                   {"", "shadow_visibility_db"},
+                   {"box", "row"},
+                   {"box", "column"},
+                   {"box", "rows"},
+                   {"box", "columns"}};
+
+static json_t *object_row(const json_t *object)
 {
+    json_t *row = json_array();
+    for (size_t i = 0; i < COUNT(row_members); i++) {
+        const char *of = row_members[i].of;
+        json_t *value =
+            json_object_get(*of ? json_object_get(object, of) : object, row_members[i].key);
+        json_append(&row, value ? json_incref(value) : json_null());
+    }
+    return row;
+}
+
+/* An image's row: its number, split, and the ending of its file; why its first draw was given up;
+ * its objects. */
+static void add_row(struct statistics_page *page, size_t split, uint64_t id, const json_t *record,
+                    const json_t *objects)
+{
+    size_t i;
+    const json_t *object;
+    const char *ending = strrchr(member_text(record, "image"), '.');
     const json_t *anew = json_object_get(record, "drawn_anew");
-    if (!anew || page->drawn_anew++ >= REASONS_MAX)
-        return;
-    growing_text_add(&page->reasons, "<li>image %llu: ", (unsigned long long)id);
-    add_escaped(&page->reasons, member_text(anew, "because"));
-    growing_text_add(&page->reasons, "</li>\n");
+    json_t *row = json_array();
+    json_t *list = json_array();
+    json_array_foreach(objects, i, object)
+    {
+        json_append(&list, object_row(object));
+    }
+    json_append(&row, json_count(id));
+    json_append(&row, json_count(split));
+    json_append(&row, json_text(ending ? ending : ""));
+    json_append(&row, anew ? json_text(member_text(anew, "because")) : json_null());
+    json_append(&row, list);
+    json_append(&page->rows, row);
 }
 
 static void add_sources(struct statistics_page *page, const json_t *numbers)
@@ -190,23 +193,6 @@ static void add_sources(struct statistics_page *page, const json_t *numbers)
             page->sources[i][k] +=
                 strcmp(member_text(json_object_get(numbers, number_names[i]), "from"),
                        source_word(sources[k])) == 0;
-}
-
-static void write_sources(const struct statistics_page *page, struct growing_text *text)
-{
-    growing_text_add(text, "<h2>Numbers, and where they came from</h2>\n<p>Images whose number "
-                           "came from the scene or campaign, from a calibration, from their part "
-                           "of the swath, from nowhere (the key's default), or was taken since "
-                           "that part did not tell it. A swath's own come by "
-                           "input.calibration.</p>\n<table><tr><th>number</th>");
-    for (size_t k = 0; k < COUNT(sources); k++)
-        growing_text_add(text, "<th>%s</th>", source_word(sources[k]));
-    for (size_t i = 0; i < COUNT(number_names); i++) {
-        growing_text_add(text, "</tr>\n<tr><td>%s</td>", number_names[i]);
-        for (size_t k = 0; k < COUNT(sources); k++)
-            growing_text_add(text, "<td>%llu</td>", (unsigned long long)page->sources[i][k]);
-    }
-    growing_text_add(text, "</tr>\n</table>\n");
 }
 
 static sonject_status add_image(struct statistics_page *page, size_t split, uint64_t id)
@@ -227,7 +213,7 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
         if (is_taken && json_is_string(entry))
             THEN(status, add_set_value(page, json_string_value(entry)));
     }
-    add_reason(page, id, record);
+    page->drawn_anew += json_object_get(record, "drawn_anew") != NULL;
     json_array_foreach(json_object_get(record, "annotations"), i, entry)
     {
         page->difficult += json_is_true(json_object_get(entry, "difficult"));
@@ -242,119 +228,74 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
     {
         THEN(status, add_object(page, split, entry, is_taken));
     }
+    if (status == SONJECT_OK && (is_taken || contact_sheet_shows(set, id)))
+        add_row(page, split, id, record, objects);
     json_decref(record);
     json_decref(truth);
     return status;
 }
 
-/* ": 12 of 100 images, 0.12; asked 0.1" */
-static void write_share(const struct statistics_page *page, struct growing_text *text,
-                        const char *what, const uint64_t *counts, const char *asked)
+/* Each split with its images, and its objects of each class. */
+static json_t *splits_document(const struct statistics_page *page)
 {
     const struct data_set *set = page->set;
-    uint64_t made = 0;
+    const size_t classes = json_array_size(page->classes);
+    json_t *splits = json_array();
     for (size_t i = 0; i < set->split_count; i++)
-        made += counts[i];
-    growing_text_add(text, "<p>%s: %llu of %llu images, a share of %.4g; asked for: %.4g</p>\n",
-                     what, (unsigned long long)made, (unsigned long long)set->images,
-                     (double)made / (double)set->images,
-                     json_number_value(json_object_get(set->head, asked)));
+        json_append(&splits,
+                    JSON_OBJECT({"name", json_string(set->split_names[i])},
+                                {"images", json_count(set->split_images[i])},
+                                {"empty", json_count(page->empty[i])},
+                                {"clutter_alone", json_count(page->clutter_alone[i])},
+                                {"objects", json_counts(page->counts + i * classes, classes)}));
+    return splits;
 }
 
-static void write_counts(const struct statistics_page *page, struct growing_text *text)
+/* Of each number, how many images have it from each source. */
+static json_t *numbers_document(const struct statistics_page *page)
 {
-    const struct data_set *set = page->set;
-    const size_t class_count = json_array_size(page->classes);
-    write_share(page, text, "Without objects", page->empty, "empty");
-    write_share(page, text, "Clutter without a target", page->clutter_alone, "clutter_alone");
-    growing_text_add(text, "<table><tr><th>split</th><th>images</th><th>without objects</th>"
-                           "<th>clutter alone</th>");
-    for (size_t j = 0; j < class_count; j++) {
-        growing_text_add(text, "<th>");
-        add_escaped(text, json_string_value(json_array_get(page->classes, j)));
-        growing_text_add(text, "</th>");
+    json_t *numbers = json_object();
+    for (size_t i = 0; i < COUNT(number_names); i++) {
+        json_t *from = json_object();
+        for (size_t k = 0; k < COUNT(sources); k++)
+            json_add(&from, source_word(sources[k]), json_count(page->sources[i][k]));
+        json_add(&numbers, number_names[i], from);
     }
-    growing_text_add(text, "</tr>\n");
-    for (size_t i = 0; i < set->split_count; i++) {
-        growing_text_add(text, "<tr><td>%s</td><td>%llu</td><td>%llu</td><td>%llu</td>",
-                         set->split_names[i], (unsigned long long)set->split_images[i],
-                         (unsigned long long)page->empty[i],
-                         (unsigned long long)page->clutter_alone[i]);
-        for (size_t j = 0; j < class_count; j++)
-            growing_text_add(text, "<td>%llu</td>",
-                             (unsigned long long)page->counts[i * class_count + j]);
-        growing_text_add(text, "</tr>\n");
-    }
-    growing_text_add(text, "</table>\n");
+    return numbers;
 }
 
-static void write_page(const struct statistics_page *page, struct growing_text *text)
+/* Takes the rows. */
+static json_t *page_document(struct statistics_page *page)
 {
-    const struct data_set *set = page->set;
-    size_t i;
-    const json_t *swath;
-    growing_text_add(text,
-                     "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-                     "<title>Data set</title><style>body{font-family:sans-serif;margin:2em}"
-                     "table{border-collapse:collapse;margin:1em 0}svg{margin:.5em}"
-                     "td,th{border:1px solid #999;padding:.2em .6em;text-align:right}"
-                     "</style></head><body>\n<h1>Data set of %llu images</h1>\n<p>campaign ",
-                     (unsigned long long)set->images);
-    add_escaped(text, member_text(set->head, "hash"));
-    growing_text_add(text, ", sonject ");
-    add_escaped(text, member_text(set->head, "sonject"));
-    growing_text_add(text, "</p>\n<h2>Objects by class</h2>\n");
-    write_counts(page, text);
-    growing_text_add(text, "<h2>Swaths</h2>\n<table><tr><th>swath</th><th>split</th></tr>\n");
-    json_array_foreach(json_object_get(set->head, "swaths"), i, swath)
-    {
-        growing_text_add(text, "<tr><td>");
-        add_escaped(text, member_text(swath, "path"));
-        growing_text_add(text, "</td><td>");
-        add_escaped(text, member_text(swath, "split"));
-        growing_text_add(text, "</td></tr>\n");
-    }
-    growing_text_add(text, "</table>\n");
-    write_sources(page, text);
-    if (page->drawn_anew > 0)
-        growing_text_add(text,
-                         "<h2>Drawn anew</h2>\n<p>Of %llu images values were drawn anew, since "
-                         "they did not go with each other, or an object did not fit or was not "
-                         "seen.</p>\n<ul>%s"
-                         "</ul>\n",
-                         (unsigned long long)page->drawn_anew, page->reasons.characters);
-    if (page->difficult > 0)
-        growing_text_add(text,
-                         "<p>%llu targets are seen less than they are to be, and marked "
-                         "difficult.</p>\n",
-                         (unsigned long long)page->difficult);
-    if (page->unseen > 0)
-        growing_text_add(text,
-                         "<p>%llu objects are not seen at all: seabed, noise or others hide "
-                         "them.</p>\n",
-                         (unsigned long long)page->unseen);
-    if (page->clipped > 0)
-        growing_text_add(
-            text,
-            "<p>%llu objects have more than a tenth of their highlights' pixels at the "
-            "image's ceiling.</p>\n",
-            (unsigned long long)page->clipped);
-    growing_text_add(text, "<h2>Distributions</h2>\n<div>\n");
-    for (i = 0; i < page->series_count; i++)
-        write_histogram(text, &page->series[i]);
-    growing_text_add(text, "</div>\n<h2>Images</h2>\n<p><img src=\"contact_sheet.png\" "
-                           "alt=\"images from all over the data set\"></p>\n</body></html>\n");
+    static const char *const kept[] = {"sonject", "hash",  "classes",
+                                       "swaths",  "empty", "clutter_alone"};
+    json_t *columns = json_array();
+    json_t *histograms = json_array();
+    for (size_t i = 0; i < COUNT(row_members); i++)
+        json_append(&columns, json_string(row_members[i].key));
+    for (size_t i = 0; i < page->series_count; i++)
+        json_append(&histograms, histogram_document(&page->series[i]));
+    json_t *document = JSON_OBJECT(
+        {"images", json_count(page->set->images)}, JSON_COUNT(page, every),
+        {"splits", splits_document(page)}, {"numbers", numbers_document(page)},
+        JSON_COUNT(page, drawn_anew), JSON_COUNT(page, difficult), JSON_COUNT(page, unseen),
+        JSON_COUNT(page, clipped), {"sheet", contact_sheet_document(page->set)},
+        {"histograms", histograms}, {"columns", columns}, {"rows", page->rows});
+    page->rows = NULL;
+    for (size_t i = 0; i < COUNT(kept); i++)
+        json_add(&document, kept[i], json_incref(json_object_get(page->set->head, kept[i])));
+    return document;
 }
 
 sonject_status write_report_page(const struct data_set *set)
 {
-    struct growing_text text = {NULL, 0, 0, false};
     char path[PATH_CAPACITY];
     struct statistics_page *page = allocate_array(1, sizeof *page);
     CHECK_MEMORY(set->report, page, "the report");
     page->set = set;
     page->every = (set->images + IMAGES_MAX - 1) / IMAGES_MAX;
     page->classes = json_object_get(set->head, "classes");
+    page->rows = json_array();
     page->counts =
         allocate_array(set->split_count, json_array_size(page->classes) * sizeof *page->counts);
     sonject_status status =
@@ -362,16 +303,11 @@ sonject_status write_report_page(const struct data_set *set)
     for (size_t i = 0; status == SONJECT_OK && i < set->split_count; i++)
         for (uint64_t k = 0; status == SONJECT_OK && k < set->split_images[i]; k++)
             status = add_image(page, i, set->split_first[i] + k);
-    if (status == SONJECT_OK && page->reasons.failed)
-        status = report_out_of_memory(set->report, "the report");
-    THEN(status, path_in(set->report, path, set->folder, "report.html"));
-    if (status == SONJECT_OK) {
-        write_page(page, &text);
-        status = growing_text_write(set->report, &text, path);
-    }
+    THEN(status, path_in(set->report, path, set->folder, REPORT_PAGE));
+    THEN(status, report_page_write(set->report, page_document(page), DIGITS, path));
     for (size_t i = 0; i < page->series_count; i++)
         free(page->series[i].values);
-    free(growing_text_end(&page->reasons));
+    json_decref(page->rows);
     free(page->counts);
     free(page);
     return status;

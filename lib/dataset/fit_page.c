@@ -40,6 +40,15 @@ static const char *const extent_names[EXTENT_KINDS] = {
     [EXTENT_HIGHLIGHT_LEVEL] = "highlight over the seabed, dB",
     [EXTENT_SHADOW_LEVEL] = "shadow over the seabed, dB"};
 
+static void add_escaped(struct growing_text *text, const char *raw)
+{
+    for (; *raw; raw++)
+        if (strchr("<>&\"'", *raw))
+            growing_text_add(text, "&#%d;", *raw);
+        else
+            growing_text_add(text, "%c", *raw);
+}
+
 /* Whose contacts. */
 enum series {
     SERIES_REAL,

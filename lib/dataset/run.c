@@ -101,6 +101,34 @@ static void tell_seen(struct report *report, const struct scene *scene,
     }
 }
 
+static void add_note(void *user, const char *line)
+{
+    json_append(user, json_string(line));
+}
+
+/* What is to be known of the result besides its numbers: told to the log and to the page. The
+ * document of notes is NULL where memory is out. */
+static void note_seen(struct report *report, struct run_facts *facts)
+{
+    const sonject_statistics *statistics = &facts->result->statistics;
+    json_t *notes = json_array();
+    const struct report_host host = {.log_user = &notes};
+    struct report noting = {{0}, add_note, &host};
+    size_t i;
+    const json_t *note;
+    tell_empty(&noting, facts->swath);
+    tell_noise_floor(&noting, facts->scene, statistics);
+    tell_accuracy(&noting, statistics);
+    tell_sediment(&noting, facts->scene);
+    tell_seen(&noting, facts->scene, facts->result);
+    tell_clipped(&noting, statistics);
+    json_array_foreach(notes, i, note)
+    {
+        report_log(report, "%s", json_string_value(note));
+    }
+    json_add(&facts->page, "notes", notes);
+}
+
 static sonject_status write_documents(struct report *report, struct run_facts *facts,
                                       const char *folder, double run_start, double write_start)
 {
@@ -109,6 +137,9 @@ static sonject_status write_documents(struct report *report, struct run_facts *f
     CHECK(write_truth(report, facts, path));
     CHECK(file_list_add(&facts->files, report, folder, "truth.json", true));
     CHECK(write_labels(report, facts, folder));
+    CHECK(path_in(report, path, folder, REPORT_PAGE));
+    CHECK(write_run_page(report, facts, path));
+    CHECK(file_list_add(&facts->files, report, folder, REPORT_PAGE, true));
     const double now = clock_seconds();
     facts->write_s = now - write_start;
     facts->total_s = now - run_start;
@@ -129,9 +160,12 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
     CHECK(path_in(report, path, folder, "%s", facts->image_name));
     json_t *earlier = earlier_withdraw(folder, RUN_DOCUMENT);
     facts->files = json_array();
+    facts->page = json_object();
     sonject_status status = write_layers(report, facts, folder);
     THEN(status, swath_write(report, facts->scene, facts->swath, result, path, progress_share_tell,
                              &writing, &result->statistics.output_clipped));
+    if (status == SONJECT_OK)
+        note_seen(report, facts);
     if (status == SONJECT_OK && facts->scene->input_kind == SONJECT_INPUT_FILE &&
         facts->swath->new_extension)
         report_log(report,
@@ -142,7 +176,8 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
     THEN(status, write_documents(report, facts, folder, run_start, start));
     earlier_tidy(folder, earlier, facts->files);
     json_decref(facts->files);
-    facts->files = NULL;
+    json_decref(facts->page);
+    facts->files = facts->page = NULL;
     return status;
 }
 
@@ -166,12 +201,7 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
     if (status != SONJECT_OK || !is_formed)
         return status;
     swath_leave_empty(swath, &result);
-    tell_empty(report, swath);
     tell_calibration(report, scene);
-    tell_noise_floor(report, scene, &result.statistics);
-    tell_accuracy(report, &result.statistics);
-    tell_sediment(report, scene);
-    tell_seen(report, scene, &result);
     result.statistics.input_clipped = swath->clipped;
     facts->result = &result;
     facts->device = device;
@@ -179,8 +209,6 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
                            request->user);
     if (status == SONJECT_OK && !request->sums)
         checkpoints_remove(request->folder);
-    if (status == SONJECT_OK)
-        tell_clipped(report, &result.statistics);
     injection_result_clear(&result);
     return status;
 }

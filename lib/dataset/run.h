@@ -77,15 +77,33 @@ struct run_facts {
     const char *scene_hash; /* of scene and input: inject/scene_hash.h */
     json_t *inputs;         /* of what that is made */
     json_t *files;          /* that were written, as file_list_add has them */
+    json_t *page;           /* what report.html tells besides truth: see write_layers, note_seen */
     const char *image_name;
     uint32_t label_formats; /* sum of sonject_labels */
     double read_s, write_s, total_s;
     int jpeg_quality; /* that the image is coded with; 0: without loss */
 };
 
+#define REPORT_PAGE  "report.html"
+#define TRUTH_DIGITS 12
+
+/* What truth.json says; NULL where memory is out. */
+json_t *truth_document(const struct run_facts *facts);
+
 /* Each writes one file, whole or not at all. Errors: STORAGE, MEMORY. */
 sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path);
 sonject_status write_run(struct report *report, const struct run_facts *facts, const char *path);
+
+/* The same of report.html, which takes facts->page and links to facts->files. */
+sonject_status write_run_page(struct report *report, struct run_facts *facts, const char *path);
+
+/* lib/dataset/report_page.html, where @DATA@ stands for what it shows. */
+extern const char report_page[];
+
+/* Writes a page that shows the data, which is released, its numbers with so many digits. Errors:
+ * STORAGE, MEMORY (also where data is NULL). */
+sonject_status report_page_write(struct report *report, json_t *data, size_t digits,
+                                 const char *path);
 
 /* What of a result is a file of its own: masks are images of the swath's size, all else of its
  * patch. */
@@ -95,10 +113,9 @@ enum layer {
     LAYER_HIGHLIGHT,
     LAYER_SHADOW,
     LAYER_LABELS, /* the numbers of objects */
-    LAYER_INFLUENCE,
-    LAYER_QUICKLOOK
+    LAYER_INFLUENCE
 };
-#define LAYERS (LAYER_QUICKLOOK + 1)
+#define LAYERS (LAYER_INFLUENCE + 1)
 
 /* Errors: STORAGE, MEMORY. */
 sonject_status write_layer(struct report *report, const struct run_facts *facts, enum layer layer,
@@ -106,7 +123,8 @@ sonject_status write_layer(struct report *report, const struct run_facts *facts,
 
 /* Writes patch.tif, energy.tif, highlight.png, shadow.png, labels.png, influence.png, quicklook.png
  * and, where the result has them, energy_order_1.tif and so on into the folder, each whole or not
- * at all, and lists them in facts->files. Errors: STORAGE, MEMORY. */
+ * at all, lists them in facts->files, and tells facts->page of the quicklook's panels and the
+ * orders' energies. Errors: STORAGE, MEMORY. */
 sonject_status write_layers(struct report *report, struct run_facts *facts, const char *folder);
 
 /* Writes coco.json, contacts.csv, and what facts->label_formats asks for, and lists them in

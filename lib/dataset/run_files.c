@@ -19,6 +19,9 @@
 #include "swath/image_head.h"
 #include "swath/raster_file.h"
 
+#define QUICKLOOK        "quicklook.png"
+#define QUICKLOOK_PANELS 3
+
 /* Horizontal range of a level seabed at a slant range; NaN before the first return. */
 static double level_ground_range(const struct run_facts *facts, double slant_range_m)
 {
@@ -186,7 +189,7 @@ static json_t *pings_document(const struct ping_list *list)
     return numbers;
 }
 
-sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path)
+json_t *truth_document(const struct run_facts *facts)
 {
     const struct region *patch = &facts->swath->patch;
     json_t *place = JSON_OBJECT(
@@ -207,7 +210,12 @@ sonject_status write_truth(struct report *report, const struct run_facts *facts,
                     {"objects", objects});
     if (facts->jpeg_quality > 0)
         json_add(&document, "jpeg_quality", json_integer(facts->jpeg_quality));
-    return json_document_write(report, document, 12, path);
+    return document;
+}
+
+sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path)
+{
+    return json_document_write(report, truth_document(facts), TRUTH_DIGITS, path);
 }
 
 static json_t *options_document(const struct scene *scene, const sonject_statistics *statistics)
@@ -385,8 +393,23 @@ static void amplitude_of(const float *pixels, size_t count, bool is_complex, flo
         amplitude[i] = is_complex ? hypotf(pixels[2 * i], pixels[2 * i + 1]) : pixels[i];
 }
 
+/* What the page needs to show each panel by itself, and to tell what a pixel of it is. */
+static json_t *quicklook_document(const struct plot_frame *frame, const struct plot_place *places,
+                                  uint32_t height, uint32_t width)
+{
+    json_t *panels = json_array();
+    for (int i = 0; i < QUICKLOOK_PANELS; i++)
+        json_append(&panels,
+                    JSON_OBJECT(JSON_COUNT(places + i, left), JSON_COUNT(places + i, top),
+                                JSON_COUNT(places + i, width), JSON_COUNT(places + i, height)));
+    return JSON_OBJECT({"height", json_count(height)}, {"width", json_count(width)},
+                       {"panels", panels}, JSON_NUMBER(frame, first_along_track_m),
+                       JSON_NUMBER(frame, row_spacing_m), JSON_NUMBER(frame, first_range_m),
+                       JSON_NUMBER(frame, column_spacing_m));
+}
+
 /* Amplitudes before and after, and 20 log10 of their ratio, 0 where nothing changed. */
-static sonject_status write_quicklook(struct report *report, const struct run_facts *facts,
+static sonject_status write_quicklook(struct report *report, struct run_facts *facts,
                                       const char *path)
 {
     const struct injection_result *result = facts->result;
@@ -403,7 +426,7 @@ static sonject_status write_quicklook(struct report *report, const struct run_fa
         difference[i] = result->influence[i] && before[i] > 0.0f && after[i] > 0.0f
                             ? 20.0f * log10f(after[i] / before[i])
                             : 0.0f;
-    const struct plot_panel panels[] = {
+    const struct plot_panel panels[QUICKLOOK_PANELS] = {
         {"before", before, false}, {"after", after, false}, {"difference, dB", difference, true}};
     const struct plot_frame frame = {
         .rows = patch->rows,
@@ -418,10 +441,13 @@ static sonject_status write_quicklook(struct report *report, const struct run_fa
         .difference_db = 20.0};
     uint8_t *picture = NULL;
     uint32_t height, width;
-    sonject_status status = plot_panels(report, &frame, panels, 3, &picture, &height, &width);
+    struct plot_place places[QUICKLOOK_PANELS];
+    sonject_status status =
+        plot_panels(report, &frame, panels, QUICKLOOK_PANELS, &picture, &height, &width, places);
     if (status == SONJECT_OK) {
         const struct raster_layout layout = {height, width, 3, PIXEL_UINT8};
         status = raster_file_write(report, path, &layout, NULL, NULL, 0, picture);
+        json_add(&facts->page, "quicklook", quicklook_document(&frame, places, height, width));
     }
     free(picture);
     free(before);
@@ -443,25 +469,42 @@ sonject_status write_layer(struct report *report, const struct run_facts *facts,
         return write_mask(report, facts->swath, result->shadow, NULL, path);
     case LAYER_LABELS:
         return write_label_mask(report, facts->swath, result->labels, path);
-    case LAYER_INFLUENCE:
-        return write_mask(report, facts->swath, result->influence, NULL, path);
     default:
-        return write_quicklook(report, facts, path);
+        return write_mask(report, facts->swath, result->influence, NULL, path);
     }
+}
+
+/* An order's energy, summed over the patch, and that of its brightest pixel. */
+static json_t *order_document(const struct injection_result *result, uint32_t order)
+{
+    const size_t count = result->rows * result->columns;
+    float *pixels = allocate_array(count, sizeof *pixels);
+    double sum = 0.0, most = 0.0;
+    if (!pixels)
+        return NULL;
+    injection_result_plane(result, INJECTED_ORDER + order - 1, pixels);
+    for (size_t i = 0; i < count; i++) {
+        sum += (double)pixels[i];
+        most = fmax(most, (double)pixels[i]);
+    }
+    free(pixels);
+    return JSON_OBJECT({"sum_m2", json_number(sum)}, {"brightest_m2", json_number(most)});
 }
 
 /* Orders that this result has not may be there from a run before. */
 sonject_status write_layers(struct report *report, struct run_facts *facts, const char *folder)
 {
-    static const char *const names[LAYERS] = {"patch.tif",    "energy.tif", "highlight.png",
-                                              "shadow.png",   "labels.png", "influence.png",
-                                              "quicklook.png"};
+    static const char *const names[LAYERS] = {"patch.tif",  "energy.tif", "highlight.png",
+                                              "shadow.png", "labels.png", "influence.png"};
     char name[32], path[PATH_CAPACITY];
     for (int layer = 0; layer < LAYERS; layer++) {
         CHECK(path_in(report, path, folder, "%s", names[layer]));
         CHECK(write_layer(report, facts, (enum layer)layer, path));
         CHECK(file_list_add(&facts->files, report, folder, names[layer], true));
     }
+    CHECK(path_in(report, path, folder, QUICKLOOK));
+    CHECK(write_quicklook(report, facts, path));
+    CHECK(file_list_add(&facts->files, report, folder, QUICKLOOK, true));
     for (uint32_t order = 1; order <= SCENE_INTERACTIONS_MAX; order++) {
         snprintf(name, sizeof name, "energy_order_%u.tif", (unsigned)order);
         CHECK(path_in(report, path, folder, "%s", name));
@@ -470,6 +513,7 @@ sonject_status write_layers(struct report *report, struct run_facts *facts, cons
             continue;
         }
         CHECK(write_plane(report, facts, INJECTED_ORDER + order - 1, path));
+        json_add(&facts->page, name, order_document(facts->result, order));
         CHECK(file_list_add(&facts->files, report, folder, name, true));
     }
     return SONJECT_OK;

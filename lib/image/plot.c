@@ -445,7 +445,7 @@ static sonject_status choose_limits(struct report *report, struct plot *plot)
                                               &plot->minimum_db, &plot->maximum_db);
 }
 
-static sonject_status draw_all(struct report *report, struct plot *plot)
+static sonject_status draw_all(struct report *report, struct plot *plot, struct plot_place *places)
 {
     int64_t width = axis_room(plot);
     for (uint32_t i = 0; i < plot->count; i++)
@@ -460,6 +460,9 @@ static sonject_status draw_all(struct report *report, struct plot *plot)
     draw_rows_axis(plot, x, y);
     for (uint32_t i = 0; i < plot->count; i++) {
         CHECK(draw_panel(report, plot, i, x, y));
+        if (places)
+            places[i] = (struct plot_place){(uint32_t)x, (uint32_t)y, (uint32_t)plot->panel_width,
+                                            (uint32_t)plot->panel_height};
         x += plot->panel_width + (has_bar(plot, i) ? bar_room(plot, i) : 0) + PANEL_GAP;
     }
     return SONJECT_OK;
@@ -467,7 +470,7 @@ static sonject_status draw_all(struct report *report, struct plot *plot)
 
 sonject_status plot_panels(struct report *report, const struct plot_frame *frame,
                            const struct plot_panel *panels, uint32_t count, uint8_t **picture,
-                           uint32_t *height, uint32_t *width)
+                           uint32_t *height, uint32_t *width, struct plot_place *places)
 {
     *picture = NULL;
     if (frame->rows == 0 || frame->columns == 0 || count == 0 || count > PANELS_MAX)
@@ -488,7 +491,7 @@ sonject_status plot_panels(struct report *report, const struct plot_frame *frame
     plot.values = allocate_array((size_t)plot.along_track.cells * plot.range.cells, sizeof(float));
     sonject_status status = plot.values ? SONJECT_OK : report_out_of_memory(report, "a picture");
     THEN(status, choose_limits(report, &plot));
-    THEN(status, draw_all(report, &plot));
+    THEN(status, draw_all(report, &plot, places));
     free(plot.values);
     if (status != SONJECT_OK) {
         free(plot.canvas.rgb);

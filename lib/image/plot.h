@@ -26,14 +26,19 @@ struct plot_frame {
     double difference_db; /* > 0 */
 };
 
+/* Where the pixels of a panel lie in the picture. */
+struct plot_place {
+    uint32_t left, top, width, height;
+};
+
 /* Draws the panels side by side (range to the right, row 0 at the top), large images reduced by
  * averaging energy, small ones enlarged by whole factors, to about 500...1000 pixels a panel.
  * Pixels that are zero or no number are black. *picture gets *height x *width x 3 bytes (RGB), for
- * free(); on failure NULL. Errors: INPUT (no pixel above 0 in the panel that the grey scale is
- * chosen from, or nothing to draw), MEMORY. */
+ * free(); on failure NULL. places: of each panel; may be NULL. Errors: INPUT (no pixel above 0 in
+ * the panel that the grey scale is chosen from, or nothing to draw), MEMORY. */
 sonject_status plot_panels(struct report *report, const struct plot_frame *frame,
                            const struct plot_panel *panels, uint32_t count, uint8_t **picture,
-                           uint32_t *height, uint32_t *width);
+                           uint32_t *height, uint32_t *width, struct plot_place *places);
 
 /* Ticks of an axis: multiples of 1, 2 or 5 times a power of ten. */
 #define TICK_LABEL_CAPACITY 40

@@ -146,7 +146,7 @@ static sonject_status draw(struct report *report, const struct plot_frame *frame
     const struct plot_panel panel = {"", image->amplitude, false};
     uint8_t *picture = NULL;
     uint32_t height, width;
-    CHECK(plot_panels(report, frame, &panel, 1, &picture, &height, &width));
+    CHECK(plot_panels(report, frame, &panel, 1, &picture, &height, &width, NULL));
     const struct raster_layout layout = {height, width, 3, PIXEL_UINT8};
     sonject_status status = raster_file_write(report, path, &layout, NULL, NULL, 0, picture);
     free(picture);

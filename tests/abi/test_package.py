@@ -1,4 +1,4 @@
-"""What is built once more: the library without HDF5, the Python package by pip, the first command, the site."""
+"""What is built once more: the library without HDF5, the Python package by pip, the first command."""
 import os
 import pathlib
 import shutil
@@ -109,9 +109,3 @@ def test_the_first_command_builds_and_ends_with_the_path_of_a_picture(tmp_path):
     assert answer.returncode == 0, answer.stdout + answer.stderr
     picture = pathlib.Path(answer.stdout.splitlines()[-1])
     assert picture.parent == tmp_path / "build" / "demo" and picture.read_bytes().startswith(b"\x89PNG")
-
-
-def test_the_site_is_made_without_dead_links():
-    answer = subprocess.run(["sh", SOURCE / "tools" / "site.sh"], check=False, capture_output=True, text=True)
-    assert answer.returncode == 0, answer.stdout + answer.stderr
-    assert pathlib.Path(answer.stdout.splitlines()[-1]).is_file()

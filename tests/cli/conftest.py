@@ -1,5 +1,6 @@
 """What the tests of the command share. SONJECT_COMMAND names the command."""
 
+import json
 import os
 import pathlib
 import subprocess
@@ -102,6 +103,12 @@ def scene(tmp_path, swath):
 def files_below(folder):
     """All files in the folder, none if it is not there. A command may be at work in it."""
     return sorted(pathlib.Path(place, name) for place, _, names in os.walk(folder) for name in names)
+
+
+def page_data(folder):
+    """What the folder's report.html shows."""
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    return json.loads(page.split('<script type="application/json" id="data">')[1].split("</script>")[0])
 
 
 def assert_refused(answer, code, *words, mistakes=1):

@@ -31,6 +31,7 @@ RESULTS = {
     "coco.json",
     "contacts.csv",
     "quicklook.png",
+    "report.html",
     "run.json",
 }
 DEMO = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "tools" / "scenes" / "demo.yaml"

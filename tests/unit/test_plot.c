@@ -56,11 +56,20 @@ static void draw(const struct plot_frame *frame, const struct plot_panel *panels
     struct report report;
     memset(&report, 0, sizeof report);
     free(picture.rgb);
-    assert_int_equal(
-        plot_panels(&report, frame, panels, count, &picture.rgb, &picture.height, &picture.width),
-        SONJECT_OK);
+    struct plot_place places[3];
+    assert_true(count <= COUNT(places));
+    assert_int_equal(plot_panels(&report, frame, panels, count, &picture.rgb, &picture.height,
+                                 &picture.width, places),
+                     SONJECT_OK);
     assert_non_null(picture.rgb);
     find_first_panel();
+    for (uint32_t i = 0; i < count; i++) {
+        assert_int_equal(places[i].top, picture.y);
+        assert_int_equal(places[i].width, picture.panel_width);
+        assert_int_equal(places[i].height, picture.panel_height);
+        assert_true(is_frame(places[i].left - 1, picture.y));
+    }
+    assert_int_equal(places[0].left, picture.x);
 }
 
 static void draw_one(const struct plot_frame *frame)
@@ -254,7 +263,7 @@ static void expect_no_picture(const struct plot_frame *frame)
     const struct plot_panel panel = {"", amplitude, false};
     uint8_t *drawn = (uint8_t *)&report;
     uint32_t height, width;
-    assert_int_equal(plot_panels(&report, frame, &panel, 1, &drawn, &height, &width),
+    assert_int_equal(plot_panels(&report, frame, &panel, 1, &drawn, &height, &width, NULL),
                      SONJECT_ERROR_INPUT);
     assert_null(drawn);
     assert_non_null(strstr(report.message, "nothing to draw"));

@@ -1,0 +1,174 @@
+"""report.html of runs and data sets: what it shows is what the files beside it say, and it needs no other."""
+
+import html.parser
+import json
+import re
+
+import numpy
+import pytest
+
+import images
+from conftest import page_data
+from measured_images import read_png
+from test_campaign import CAMPAIGN, SCENE
+from test_run import DEMO
+
+HOSTILE = "</script><b>&\"'é<!--"
+
+
+class Page(html.parser.HTMLParser):
+    """Checks that what is opened is closed, and keeps addresses and scripts."""
+
+    VOID = {"meta", "link", "input", "img", "br"}
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.addresses, self.texts = [], [], {}
+        self.feed(text)
+        self.close()
+        assert not self.open, self.open
+
+    def handle_starttag(self, tag, attrs):
+        self.addresses += [value for name, value in attrs if name in ("src", "href", "action", "srcset", "data")]
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        pass
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.setdefault(self.open[-1] if self.open else "", []).append(data)
+
+
+def check_page(folder):
+    """Well-formed, one file, and nothing of its data is markup; the data."""
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    assert text.startswith('<!DOCTYPE html>\n<html lang="en">')
+    page = Page(text)
+    assert not page.addresses
+    # a name of XML's is all that looks like a host
+    assert set(re.findall(r"\w+://[^\"'\s]*", text)) == {"http://www.w3.org/2000/svg"}
+    data, _ = page.texts["script"]
+    assert "<" not in data and json.loads(data) == page_data(folder)
+    return page_data(folder)
+
+
+def test_the_page_of_a_run_says_what_its_files_say(sonject, tmp_path):
+    sonject.done("run", DEMO, "-o", "demo", "--set", f"objects[0].name={json.dumps(HOSTILE)}",
+                 "--set", "injection.order_energies=true", "--set", "injection.interactions=2")
+    folder = tmp_path / "demo"
+    page = check_page(folder)
+    truth, run = (json.loads((folder / name).read_text()) for name in ("truth.json", "run.json"))
+    assert page["truth"] == truth and truth["objects"][0]["name"] == HOSTILE
+    assert page["materials"] == ["steel", None, "steel"]
+    assert page["notes"] == []
+    assert [entry["name"] for entry in run["files"]] == [*page["files"], "report.html"]
+    assert all((folder / name).is_file() for name in page["files"])
+    for order in (1, 2):
+        energy = images.read_tiff(folder / f"energy_order_{order}.tif").astype(float)
+        told = page[f"energy_order_{order}.tif"]
+        assert told["brightest_m2"] == pytest.approx(energy.max(), rel=1e-11)
+        assert told["sum_m2"] == pytest.approx(energy.sum(), rel=1e-11)
+    assert "energy_order_3.tif" not in page
+
+
+def test_the_page_knows_the_panels_of_the_quicklook(sonject, scene, tmp_path, swath):
+    sonject.done("run", scene, "-o", "result")
+    look = page_data(tmp_path / "result")["quicklook"]
+    picture = read_png(tmp_path / "result" / "quicklook.png").astype(int)
+    assert picture.shape[:2] == (look["height"], look["width"])
+    before, after, difference = [picture[each["top"] : each["top"] + each["height"], each["left"] : each["left"] + each["width"]]
+                                 for each in look["panels"]]
+    assert before.shape == after.shape == difference.shape
+    up = before.shape[0] // swath.shape[0]
+    assert before.shape[:2] == tuple(up * side for side in swath.shape) and look["row_spacing_m"] == 0.025
+    # grey rises with the amplitude, on the same scale before and after; what did not change is white
+    small = before[up // 2 :: up, up // 2 :: up, 0]
+    order = numpy.argsort(swath, axis=None)
+    assert (numpy.diff(small.ravel()[order]) >= 0).all() and small.min() == 0 and small.max() == 255
+    same = read_png(tmp_path / "result" / "influence.png") == 0
+    same = numpy.kron(same, numpy.ones((up, up), bool))
+    assert (before == after)[same].all() and not (before == after)[~same].all()
+    assert (difference[same] == 247).all()
+
+
+def test_notes_of_a_run_are_on_its_page(sonject, scene, tmp_path, swath):
+    (tmp_path / "swath.png").write_bytes(images.png_bytes(numpy.full(swath.shape, 100, numpy.uint8)))
+    done = sonject.done("run", scene, "-o", "result", "--set", "input.path=swath.png", "--verbose")
+    notes = page_data(tmp_path / "result")["notes"]
+    assert len(notes) >= 3 and any("is cut at the image's ceiling" in note for note in notes)
+    assert all(f"sonject: {note}\n" in done.stderr for note in notes)
+
+
+def test_a_run_in_shards_has_the_same_page(sonject, scene, tmp_path):
+    for shard in ("1/2", "2/2"):
+        sonject.done("run", scene, "-o", "parts", "--shard", shard)
+        assert not (tmp_path / "parts" / "report.html").exists()
+    sonject.done("merge", "parts")
+    sonject.done("run", scene, "-o", "whole")
+    assert (tmp_path / "parts" / "report.html").read_bytes() == (tmp_path / "whole" / "report.html").read_bytes()
+
+
+def test_a_calibration_is_linked_where_it_was_made(sonject, scene, tmp_path):
+    numbers = numpy.random.default_rng(3)
+    (tmp_path / "swath.png").write_bytes(images.png_bytes(numbers.rayleigh(60, (600, 400)).clip(1, 255).astype(numpy.uint8)))
+    patch = ["--set", "patch={row: 10, column: 10, rows: 96, columns: 128}"]
+    sonject.done("run", scene, "-o", "result", "--set", "input.path=swath.png", "--set", "input.calibration=auto", *patch)
+    page = check_page(tmp_path / "result")
+    assert {"calibration.yaml", "calibration.png"} <= set(page["files"])
+    assert page["truth"]["numbers"]["looks"]["from"] == "calibration" and page["swath"] == [600, 400]
+
+
+@pytest.fixture
+def data_set(sonject, tmp_path):
+    """A campaign of ten images."""
+    numbers = numpy.random.default_rng(20261122)
+    for i in range(3):
+        (tmp_path / f"swath{i}.png").write_bytes(images.png_bytes(numbers.rayleigh(30, (110, 150)).clip(1, 255)))
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    (tmp_path / "campaign.yaml").write_text(CAMPAIGN.replace('ball, "big"/<b>', HOSTILE.replace("'", "''")))
+    sonject.done("campaign", "campaign.yaml", "-o", "set")
+    return tmp_path / "set"
+
+
+def test_the_page_of_a_data_set_says_what_truth_says(data_set):
+    page = check_page(data_set)
+    assert page["classes"][0] == HOSTILE and page["every"] == 1
+    assert page["columns"] == ["class", "shape", "visible", "slant_range_m", "over_seabed_db", "highlight_visibility_db",
+                               "shadow_visibility_db", "row", "column", "rows", "columns"]
+    assert sorted(row[0] for row in page["rows"]) == list(range(page["images"])) == list(range(10))
+    counts = {split["name"]: dict.fromkeys(page["classes"], 0) for split in page["splits"]}
+    for number, split, ending, _, objects in page["rows"]:
+        folder = data_set / page["splits"][split]["name"]
+        assert (folder / "images" / f"{number:08d}{ending}").is_file()
+        truth = json.loads((folder / "truth" / f"{number:08d}.json").read_text())
+        assert len(objects) == len(truth["objects"])
+        for row, each in zip(objects, truth["objects"]):
+            told = dict(zip(page["columns"], row))
+            box = each["box"] or {}
+            expected = {**each, **each["level"], **{side: box.get(side) for side in ("row", "column", "rows", "columns")}}
+            assert told == pytest.approx({name: expected[name] for name in told}, rel=1e-5)
+            counts[folder.name][each["class"]] += 1
+    assert {split["name"]: split["objects"] for split in page["splits"]} == {
+        name: list(split.values()) for name, split in counts.items()}
+    assert sum(sum(split.values()) for split in counts.values()) > 5
+    # images of the contact sheet lie where it says, in one row after the other
+    assert [cell["image"] for cell in page["sheet"]["cells"]] == list(range(10))
+    sheet = read_png(data_set / "contact_sheet.png")
+    empty = next(row for row in page["rows"] if not row[4])
+    (cell,) = [each for each in page["sheet"]["cells"] if each["image"] == empty[0]]
+    chip = read_png(data_set / page["splits"][empty[1]]["name"] / "images" / f"{empty[0]:08d}.png")
+    drawn = sheet[cell["y"] : cell["y"] + 64, cell["x"] : cell["x"] + 64]
+    assert (drawn == chip[..., None]).all() and page["sheet"]["side"] >= 64
+
+
+def test_the_page_is_made_again_by_who_continues(sonject, data_set):
+    before = (data_set / "report.html").read_bytes()
+    (data_set / "report.html").unlink()
+    (data_set / "dataset.json").unlink()
+    next(data_set.glob("*/truth/*.json")).unlink()
+    sonject.done("campaign", "campaign.yaml", "-o", "set")
+    assert (data_set / "report.html").read_bytes() == before
