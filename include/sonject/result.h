@@ -122,7 +122,7 @@ typedef struct sonject_object_truth {
     double over_seabed_db;     /* that cross-section over a pixel's of plain seabed at its range;
                                   -infinity where nothing of it is in view */
     double seabed_strength_db; /* assumed: 10 log10 of the seabed's cross-section per m^2 at the
-                                  centre's grazing angle */
+                                  grazing angle of that plain seabed */
     double highlight_visible;  /* share, 0...1, of the energy that the patch holds of it which lies
                                   in pixels where it dominates seabed, noise and all other objects;
                                   NaN where nothing of it is in view */
@@ -154,7 +154,8 @@ typedef enum sonject_source {
     SONJECT_SOURCE_SCENE = 1,       /* the scene's key */
     SONJECT_SOURCE_CALIBRATION = 2, /* the file of the scene's input.calibration */
     SONJECT_SOURCE_PATCH = 3,       /* measured in the patch */
-    SONJECT_SOURCE_FALLBACK = 4     /* taken since the patch does not tell it */
+    SONJECT_SOURCE_FALLBACK = 4,    /* taken since the patch does not tell it */
+    SONJECT_SOURCE_FILE = 5         /* the image's file or the table of its pings */
 } sonject_source;
 
 /* Counts, times in seconds, and how the output compares with the input. */

@@ -24,9 +24,9 @@ struct series {
 /* Numbers that images were made with, and where they may come from; as truth names both. */
 static const char *const number_names[] = {"transfer", "noise_floor_db", "looks", "altitude_m",
                                            "seabed_lambert_db"};
-static const uint32_t sources[] = {SONJECT_SOURCE_SCENE, SONJECT_SOURCE_CALIBRATION,
-                                   SONJECT_SOURCE_PATCH, SONJECT_SOURCE_DEFAULT,
-                                   SONJECT_SOURCE_FALLBACK};
+static const uint32_t sources[] = {SONJECT_SOURCE_SCENE,    SONJECT_SOURCE_CALIBRATION,
+                                   SONJECT_SOURCE_PATCH,    SONJECT_SOURCE_DEFAULT,
+                                   SONJECT_SOURCE_FALLBACK, SONJECT_SOURCE_FILE};
 
 struct statistics_page {
     const struct data_set *set;

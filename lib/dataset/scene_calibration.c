@@ -163,11 +163,10 @@ void tell_calibration(struct report *report, const struct scene *scene)
 
 const char *source_word(uint32_t source)
 {
-    static const char *const words[] = {[SONJECT_SOURCE_DEFAULT] = "default",
-                                        [SONJECT_SOURCE_SCENE] = "scene",
-                                        [SONJECT_SOURCE_CALIBRATION] = "calibration",
-                                        [SONJECT_SOURCE_PATCH] = "patch",
-                                        [SONJECT_SOURCE_FALLBACK] = "fallback"};
+    static const char *const words[] = {
+        [SONJECT_SOURCE_DEFAULT] = "default",         [SONJECT_SOURCE_SCENE] = "scene",
+        [SONJECT_SOURCE_CALIBRATION] = "calibration", [SONJECT_SOURCE_PATCH] = "patch",
+        [SONJECT_SOURCE_FALLBACK] = "fallback",       [SONJECT_SOURCE_FILE] = "file"};
     return words[source < COUNT(words) ? source : 0];
 }
 
@@ -204,7 +203,9 @@ json_t *sources_document(const struct scene *scene, const sonject_statistics *st
              number_from(statistics->noise_floor_db, statistics->noise_floor_source));
     json_add(&document, "looks", number_from(statistics->looks, statistics->looks_source));
     json_add(&document, "altitude_m",
-             number_from(scene->sonar.altitude_m, scene_key_source(scene, "sonar.altitude")));
+             number_from(scene->sonar.altitude_m, scene->has_recorded_altitude
+                                                      ? (uint32_t)SONJECT_SOURCE_FILE
+                                                      : scene_key_source(scene, "sonar.altitude")));
     const bool is_modelled = !isnan(scene->seabed.grain_size_phi);
     json_add(
         &document, "seabed_lambert_db",

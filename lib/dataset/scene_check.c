@@ -59,6 +59,11 @@ static void describe_patch(struct growing_text *text, const struct scene *scene,
         text, "sonar      %.4g kHz, bandwidth %.4g kHz, altitude %.3g m, wavelength %.4g mm\n",
         scene->sonar.centre_frequency_hz / 1e3, scene->sonar.bandwidth_hz / 1e3,
         scene->sonar.altitude_m, view->wavelength_m * 1e3);
+    if (scene->altitudes_m[1] > 0.0)
+        growing_text_add(text,
+                         "           note: the altitude goes from %.2f to %.2f m over the objects' "
+                         "pings; choose the rows about one of them by patch\n",
+                         scene->altitudes_m[0], scene->altitudes_m[1]);
     describe_water(text, &view->water);
     growing_text_add(
         text, "injection  %s, paths that meet up to %u surface%s\n",
@@ -83,9 +88,10 @@ static void describe_objects(struct growing_text *text, const struct scene *scen
         growing_text_add(
             text,
             "object %-3u %s (%s): row %.1f, slant range %.2f m, grazing angle %.1f deg, top "
-            "%.3f m, shadow %.2f m\n",
+            "%.3f m, shadow %.2f m on the ground\n",
             (unsigned)(i + 1), scene->objects[i].name, shape_name(scene->objects[i].shape),
-            view_row_of_x(view, origin[0]), range, grazing * DEGREES_PER_RADIAN, object->top_m,
+            (double)scene->patch.first_row + view_row_of_x(view, origin[0]), range,
+            grazing * DEGREES_PER_RADIAN, object->top_m,
             shadow_length(view, origin[1], object->top_m));
     }
 }

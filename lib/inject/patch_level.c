@@ -394,8 +394,12 @@ sonject_status set_target_levels(const struct tracer *tracer, struct echoes *ech
                 ? echo->peak_energy / seabed_cell_energy(&tracer->view, &tracer->response, lambert,
                                                          echo->peak_range_m)
                 : 0.0;
-        const double grazing = ray_path_grazing(&tracer->view.water, tracer->objects[i].origin[1],
-                                                tracer->objects[i].origin[2]);
+        const double *origin = tracer->objects[i].origin;
+        const double range = echo->peak_energy > 0.0
+                                 ? echo->peak_range_m
+                                 : ray_path_range(&tracer->view.water, origin[1], origin[2]) *
+                                       tracer->view.range_ratio;
+        const double grazing = view_grazing(&tracer->view, range);
         sonject_object_truth *truth = &result->objects[i];
         gains[i] = gain_of(&scene->objects[i], echo->peak_energy, over_seabed);
         mean += gains[i];

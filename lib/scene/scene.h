@@ -86,6 +86,8 @@ struct scene {
     bool has_files_geometry; /* some of which the input file tells, here of the patch's rows */
     bool has_pings_range;    /* the first slant range is that of `pings`, likewise */
     bool has_recorded_altitude; /* that, or else the input file, says it row by row */
+    double altitudes_m[2];      /* of a whole line's pings whose mean is taken, lowest and highest;
+                                   0: all are alike, or a patch is chosen */
     bool input_is_complex;      /* two channels of the file are real and imaginary part */
     int32_t channel;            /* of a recording: SONJECT_CHANNEL_PORT and the like, or a number */
     char *array;                /* owned; of several in a file, its name; NULL: the only one */

@@ -260,14 +260,23 @@ static sonject_status write_new(struct report *report, const sonject_convert_par
 {
     struct raster_attribute attributes[GEOMETRY_NOTES_MAX + 1];
     struct geometry_notes notes;
-    geometry_notes_make(&notes, &conversion->geometry);
+    struct noted_geometry geometry = conversion->geometry;
+    const bool is_kept = raster_format_keeps_attributes(params->output);
+    if (geometry.altitude_varies && !(params->altitude_m > 0.0) && is_kept) {
+        report_log(report,
+                   "note: the altitude changes along the line, and %s has no place for that: "
+                   "it is left out, and sonar.altitude: from_file works with %s alone",
+                   params->output, params->input);
+        geometry.altitude_m = NAN;
+    }
+    geometry_notes_make(&notes, &geometry);
     size_t count = notes.count;
     memcpy(attributes, notes.attributes, sizeof notes.attributes);
     if (conversion->is_resampled)
         attributes[count++] = (struct raster_attribute){"sonject:resampled", "nearest column"};
     const sonject_status status = raster_format_write(report, params->output, &conversion->layout,
                                                       attributes, count, conversion->pixels);
-    if (status == SONJECT_OK && count > 0 && !raster_format_keeps_attributes(params->output))
+    if (status == SONJECT_OK && count > 0 && !is_kept)
         report_log(report, "%s keeps no geometry: .tif, .png and .h5 do", params->output);
     return status;
 }

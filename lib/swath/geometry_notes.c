@@ -83,6 +83,7 @@ static void read_recording(const struct recording *recording, struct noted_geome
     geometry->first_along_track_m = 0.0;
     geometry->first_range_m = told.first_slant_range_m;
     geometry->altitude_m = told.altitude_m > 0.0 ? told.altitude_m : NAN;
+    geometry->altitude_varies = recording_altitude_varies(&told);
     geometry->frequency_hz = geometry->bandwidth_hz = geometry->nadir_column = NAN;
     geometry->knows_side = true;
     geometry->side = recording->side == RECORDED_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
@@ -166,7 +167,7 @@ struct wanted {
     struct recording_wish wish;
     const char **key; /* gets the scene's key that a failure is about */
     sonject_geometry_params where;
-    double altitude_m;
+    double altitude_m, altitudes_m[2];
 };
 
 /* Whether a table of pings tells all of the patch's rows. */
@@ -232,13 +233,53 @@ static bool takes_altitude(const struct scene *scene, const struct wanted *wante
     return wanted->wish.altitude && scene->pings.count == 0;
 }
 
+/* Of a whole line, the pings that the objects lie at; false where no object lies among the rows. */
+static bool rows_of_objects(const struct scene *scene, uint64_t rows, double row_spacing_m,
+                            uint64_t *first, uint64_t *count)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (uint32_t i = 0; i < scene->object_count; i++) {
+        const sonject_object_params *object = &scene->objects[i];
+        const double row = object->position_kind == SONJECT_POSITION_PIXELS
+                               ? object->position_along
+                               : object->position_along / row_spacing_m;
+        low = fmin(low, row);
+        high = fmax(high, row);
+    }
+    if (!(low >= 0.0 && high <= (double)(rows - 1)))
+        return false;
+    *first = (uint64_t)low;
+    *count = (uint64_t)high - *first + 1;
+    return true;
+}
+
+/* The altitude at the objects' pings, where no patch is chosen: one of a whole line may be far off
+ * there, and with it every shadow. */
+static struct recording_geometry line_geometry(const struct scene *scene,
+                                               const struct recording *recording, uint64_t first,
+                                               uint64_t count)
+{
+    struct recording_geometry geometry = recording_geometry_of(recording, first, count);
+    if (scene->patch.rows > 0)
+        return geometry;
+    if (rows_of_objects(scene, recording->rows, geometry.row_spacing_m, &first, &count)) {
+        const struct recording_geometry there = recording_geometry_of(recording, first, count);
+        geometry.altitude_m = there.altitude_m;
+        geometry.lowest_altitude_m = there.lowest_altitude_m;
+        geometry.highest_altitude_m = there.highest_altitude_m;
+    }
+    return geometry;
+}
+
 static sonject_status take_recording(struct report *report, const struct scene *scene,
                                      const struct recording *recording, struct wanted *wanted)
 {
     uint64_t first, count;
     *wanted->key = "patch";
     CHECK(patch_rows(report, scene, recording->rows, &first, &count));
-    const struct recording_geometry geometry = recording_geometry_of(recording, first, count);
+    const struct recording_geometry geometry = takes_altitude(scene, wanted)
+                                                   ? line_geometry(scene, recording, first, count)
+                                                   : recording_geometry_of(recording, first, count);
     *wanted->key = "input.geometry";
     if (wanted->wish.geometry && !(geometry.row_spacing_m > 0.0))
         return input_failure(report, scene->input_path,
@@ -258,6 +299,10 @@ static sonject_status take_recording(struct report *report, const struct scene *
     wanted->where.side =
         recording->side == RECORDED_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
     wanted->altitude_m = geometry.altitude_m;
+    if (scene->patch.rows == 0 && recording_altitude_varies(&geometry)) {
+        wanted->altitudes_m[0] = geometry.lowest_altitude_m;
+        wanted->altitudes_m[1] = geometry.highest_altitude_m;
+    }
     return SONJECT_OK;
 }
 
@@ -306,6 +351,8 @@ static sonject_status check_and_set(struct report *report, const struct wanted *
         scene->geometry = wanted->where;
     if (wanted->wish.altitude)
         scene->sonar.altitude_m = wanted->altitude_m;
+    if (takes_altitude(scene, wanted))
+        memcpy(scene->altitudes_m, wanted->altitudes_m, sizeof scene->altitudes_m);
     scene->has_recorded_altitude = wanted->wish.altitude;
     return SONJECT_OK;
 }
@@ -314,7 +361,7 @@ sonject_status recording_describe(struct report *report, const struct recording_
                                   struct scene *scene, const char **key)
 {
     struct swath_file *file;
-    struct wanted wanted = {*wish, key, scene->geometry, 0.0};
+    struct wanted wanted = {*wish, key, scene->geometry, 0.0, {0.0, 0.0}};
     *key = "input";
     if (!scene->input_path)
         return report_failure(report, SONJECT_ERROR_INPUT, "from_file needs a file as input.path");

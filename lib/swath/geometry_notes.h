@@ -16,6 +16,7 @@ struct noted_geometry {
     double first_along_track_m, first_range_m;
     double nadir_column;
     double altitude_m, frequency_hz, bandwidth_hz;
+    bool altitude_varies; /* along a recorded line, so that the mean does not do */
     bool knows_side;
     uint32_t side; /* SONJECT_SIDE_... */
 };

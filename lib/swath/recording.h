@@ -52,7 +52,11 @@ struct recording_geometry {
     double column_spacing_m;
     double first_slant_range_m; /* of the middle of column 0 */
     double altitude_m;          /* mean; 0 where the file has none */
+    double lowest_altitude_m, highest_altitude_m;
 };
+
+/* Whether one altitude cannot stand for all of the rows: it changes by more than a tenth. */
+bool recording_altitude_varies(const struct recording_geometry *geometry);
 
 /* False for a ping that the recorder left empty, or had no navigation for. */
 bool ping_has_position(const struct recorded_ping *ping);

@@ -64,20 +64,31 @@ static double mean_spacing(const struct recording *file, uint64_t first, uint64_
 }
 
 /* Of the rows' pings that have an altitude, or of those around them; 0 if there are none. */
-static double mean_altitude(const struct recording *file, uint64_t first, uint64_t end)
+static void read_altitudes(const struct recording *file, uint64_t first, uint64_t end,
+                           struct recording_geometry *geometry)
 {
+    uint64_t sounded = 0;
+    geometry->altitude_m = geometry->lowest_altitude_m = geometry->highest_altitude_m = 0.0;
     do {
         double sum = 0.0;
-        uint64_t sounded = 0;
-        for (uint64_t row = first; row < end; row++)
-            if (file->pings[row].altitude_m > 0.0f) {
-                sum += (double)file->pings[row].altitude_m;
-                sounded++;
-            }
+        for (uint64_t row = first; row < end; row++) {
+            const double altitude = (double)file->pings[row].altitude_m;
+            if (!(altitude > 0.0))
+                continue;
+            geometry->lowest_altitude_m =
+                sounded > 0 ? fmin(geometry->lowest_altitude_m, altitude) : altitude;
+            geometry->highest_altitude_m = fmax(geometry->highest_altitude_m, altitude);
+            sum += altitude;
+            sounded++;
+        }
         if (sounded > 0)
-            return sum / (double)sounded;
-    } while (widen(file, &first, &end));
-    return 0.0;
+            geometry->altitude_m = sum / (double)sounded;
+    } while (sounded == 0 && widen(file, &first, &end));
+}
+
+bool recording_altitude_varies(const struct recording_geometry *geometry)
+{
+    return geometry->highest_altitude_m - geometry->lowest_altitude_m > 0.1 * geometry->altitude_m;
 }
 
 struct recording_geometry recording_geometry_of(const struct recording *file, uint64_t first_row,
@@ -86,7 +97,7 @@ struct recording_geometry recording_geometry_of(const struct recording *file, ui
     const struct recorded_ping *first = &file->pings[first_row];
     struct recording_geometry geometry;
     geometry.row_spacing_m = mean_spacing(file, first_row, first_row + count);
-    geometry.altitude_m = mean_altitude(file, first_row, first_row + count);
+    read_altitudes(file, first_row, first_row + count, &geometry);
     /* the delay is part of the way to the far edge */
     const double duration = (double)first->duration_s;
     const double delay = (double)first->delay_s;

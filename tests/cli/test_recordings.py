@@ -268,6 +268,42 @@ def test_a_measured_line_is_read_by_others(sonject, tmp_path):
     assert (changed.max(0) < (130, 1024 - 340)).all()
 
 
+def test_of_a_whole_line_the_altitude_is_that_at_the_objects(sonject, tmp_path, sides):
+    altitudes = numpy.linspace(5.0, 9.0, ROWS)
+    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=altitudes))
+    text = write_scene(tmp_path, "line.xtf", channel="port").read_text()
+    kept = "\n".join(line for line in text.splitlines() if not line.startswith(("patch", "objects")))
+    ball = "{shape: sphere, diameter: 0.4 m, position: {row: %d, column: 120}}"
+    (tmp_path / "one.yaml").write_text(f"{kept}\nobjects: [{ball % 15}]\n")
+    (tmp_path / "two.yaml").write_text(f"{kept}\nobjects: [{ball % 15}, {ball % 45}]\n")
+    assert "note" not in sonject.done("check", "one.yaml").stdout
+    assert "note: the altitude" not in sonject.done("run", "one.yaml", "-o", "one").stderr
+    numbers = json.loads((tmp_path / "one" / "truth.json").read_text())["numbers"]
+    assert numbers["altitude_m"] == {"value": pytest.approx(altitudes[15], abs=1e-5), "from": "file"}
+    told = rf"the altitude goes from {altitudes[15]:.2f} to {altitudes[45]:.2f} m"
+    assert told in sonject.done("check", "two.yaml").stdout
+    assert told in sonject.done("run", "two.yaml", "-o", "two").stderr
+    # a chosen patch is its user's
+    chosen = text.replace("objects: [{", "objects: [{position: {row: 45, column: 120}, ")
+    (tmp_path / "chosen.yaml").write_text(chosen)
+    sonject.done("run", "chosen.yaml", "-o", "chosen")
+    numbers = json.loads((tmp_path / "chosen" / "truth.json").read_text())["numbers"]
+    assert numbers["altitude_m"]["value"] == pytest.approx(altitudes[10:50].mean(), abs=1e-5)
+    assert "row 45.0" in sonject.done("check", "chosen.yaml").stdout
+
+
+def test_an_altitude_that_changes_is_not_converted(sonject, tmp_path, sides):
+    for name, altitudes in ("level", numpy.full(ROWS, 6.0)), ("sloping", numpy.linspace(5.0, 9.0, ROWS)):
+        (tmp_path / f"{name}.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=altitudes))
+        answer = sonject.done("convert", f"{name}.xtf", f"{name}.tif", "--channel", "port")
+        assert ("it is left out" in answer.stderr) == (name == "sloping")
+        scene = write_scene(tmp_path, f"{name}.tif")
+        if name == "level":
+            sonject.done("check", scene)
+        else:
+            assert_refused(sonject("check", scene), 3, "does not say the sonar's altitude")
+
+
 def test_a_campaign_keeps_out_of_the_water_column_whatever_the_altitude(sonject, tmp_path, sides):
     altitudes = numpy.linspace(5.0, 9.0, ROWS)
     (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=altitudes))

@@ -195,6 +195,16 @@ def test_a_sediment_is_the_lambert_that_it_tells(sonject, scene, tmp_path):
     assert "its model holds from 10 to 100 kHz" in answer.stderr
 
 
+def test_a_level_is_over_the_seabed_at_the_echos_range(sonject, scene, tmp_path):
+    """Lambert's law at the grazing angle of the seabed there, which is not that of the ball's centre."""
+    sonject.done("run", scene, "-o", "out", "--set", "seabed.lambert=-27 dB", "--quiet")
+    (ball,) = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"]
+    ranges = [ball["highlight"]["slant_range_m"] + part * ball["highlight"]["width_m"] for part in (0, 1)]
+    nearest, farthest = (-27 + 20 * math.log10(10 / distance) for distance in ranges)
+    assert nearest - farthest < 0.2
+    assert farthest <= ball["level"]["seabed_strength_db"] <= nearest
+
+
 def test_verbose_tells_what_happens_to_an_8_bit_swath(sonject, scene, tmp_path):
     swath = numpy.full((ROWS, COLUMNS), 100, numpy.uint8)
     swath[3, 4:7] = 255
