@@ -162,7 +162,23 @@ def test_the_page_of_a_data_set_says_what_truth_says(data_set):
     (cell,) = [each for each in page["sheet"]["cells"] if each["image"] == empty[0]]
     chip = read_png(data_set / page["splits"][empty[1]]["name"] / "images" / f"{empty[0]:08d}.png")
     drawn = sheet[cell["y"] : cell["y"] + 64, cell["x"] : cell["x"] + 64]
-    assert (drawn == chip[..., None]).all() and page["sheet"]["side"] >= 64
+    assert (drawn == chip[..., None]).all() and page["sheet"]["height"] == 64
+
+
+@pytest.mark.parametrize("rows, columns, height", [(32, 64, 32), (24, 150, 23), ("all", 64, 110)])
+def test_captions_stand_under_their_chips(sonject, data_set, tmp_path, rows, columns, height):
+    """Which are not square; where they have all rows of swaths, those of this one are 110."""
+    sonject.done("campaign", "campaign.yaml", "-o", "wide", "--set", f"chip={{rows: {rows}, columns: {columns}, spread: 0}}")
+    sheet = read_png(tmp_path / "wide" / "contact_sheet.png")
+    cells = page_data(tmp_path / "wide")["sheet"]["cells"]
+    first, below = cells[0], cells[8]
+    assert (first["x"], first["y"]) == (below["x"], 6)
+    band = sheet[first["y"] + height : below["y"], first["x"] : first["x"] + 20]
+    ink = numpy.flatnonzero((band < 128).all(axis=2).any(axis=1))
+    assert 2 <= ink[0] <= 6  # the row under the chip may hold a box's frame, which is not black
+    assert 10 <= ink[-1] - ink[0] <= 14 and ink[-1] < 20
+    if rows != "all":  # a swath may have more of them than the image shown
+        assert len(band) == 28
 
 
 def test_the_page_is_made_again_by_who_continues(sonject, data_set):
