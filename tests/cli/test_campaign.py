@@ -1005,6 +1005,7 @@ HOSTILE = [
      "shows the same seabed as swath0.png", "swath0.png"),
     (["swaths[0].split=vla"], "swaths[0].split", "train, test"),
     (["splits={train: 0.5}"], "splits", "add up to 0.5"),
+    (["splits={train: 1, val: 0}"], "splits.val", "must be above 0 and at most 1; leave a split without images out"),
     (["draw={seabed.lambert: {choice: [" + "0.1, " * 20000 + "0.1]}}"], "campaign.yaml",
      "more than 20000 scenes"),
 ]
