@@ -252,6 +252,16 @@ def test_trainers_of_yolo_learn_from_no_test(ground, command, splits, train, val
         ground / name / "data.yaml").read_text()
 
 
+@pytest.mark.parametrize("splits, told", [("all: 1", "all"), ("train: 0.5, val: 0.5", None), ("train: 0.5, test: 0.5", "test")])
+def test_a_run_says_once_which_images_validate_without_a_split_of_theirs(ground, command, splits, told):
+    done = command("campaign", "campaign.yaml", "-o", f"validates_{told}", "--set", f"splits={{{splits}}}", "--set", "images=2",
+                   "--set", "chip={rows: 16, columns: 16}", "--verbose")
+    assert done.returncode == 0, done.stderr
+    notes = [line for line in done.stderr.splitlines() if "validation" in line]
+    uses = f"{told}/images for validation, too" if told else ""
+    assert len(notes) == (told is not None) and all(uses in note for note in notes)
+
+
 def test_croissant_lists_files_and_records(whole):
     """What mlcroissant asks for besides was tried with it: it finds no error, and reads all records."""
     card = json.loads((whole / "croissant.json").read_text())
