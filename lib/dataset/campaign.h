@@ -166,6 +166,7 @@ struct swath_plan {
     size_t avoid_count;
     struct tree_place place;
     struct raster_layout layout; /* once it is opened */
+    uint32_t side;               /* likewise: enum recorded_side; 0 where it is no recording */
     struct crop_places room;     /* once it is measured, as all below */
     uint64_t chip_rows, chip_columns;
     struct object_columns objects;        /* where these may lie in any image */
@@ -288,8 +289,8 @@ sonject_status grow_list(struct report *report, void *list, size_t count, size_t
 /* Whether a split may have this name, which is a folder's and stands in documents. */
 bool is_split_name(const char *name);
 
-/* Gives each swath to a split and each split its images, so that no swath is in two: swaths whose
- * files have equal hashes count as one. Errors: INPUT, MEMORY. */
+/* Gives each swath to a split and each split its images, so that no swath is in two: swaths that
+ * are the same side of files with equal hashes count as one. Errors: INPUT, MEMORY. */
 sonject_status campaign_split(struct report *report, struct campaign *campaign,
                               char (*hashes)[HASH_TEXT_CAPACITY]);
 

@@ -78,6 +78,8 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
     THEN(status, swath_file_open_array(campaign->report, swath->path, trial.scene.channel,
                                        trial.scene.array, &file));
     if (status == SONJECT_OK) {
+        const struct recording *recording = swath_file_recording(file);
+        swath->side = recording ? recording->side : 0;
         swath_file_layout(file, &swath->layout);
         if (campaign->campaign.format == FORMAT_AS_INPUT)
             swath->jpeg_quality = swath_file_jpeg_quality(file);

@@ -8,7 +8,8 @@
 #define SWATH_STREAM 0x30000001u /* beyond those of distributions */
 #define SPLIT_OPEN   UINT32_MAX
 
-/* Swaths with one identity form a group, which is named after its first. */
+/* Swaths that show the same seabed form a group, which is named after its first: they are of
+ * one side of equal files. A side's channels of other frequencies show the same seabed. */
 struct groups {
     uint32_t *group_of; /* of each swath; owned, with the others behind it */
     uint32_t *split_of; /* of each group, SPLIT_OPEN until it has one */
@@ -29,8 +30,8 @@ static sonject_status take_wishes(const struct campaign *campaign, struct groups
             wish++;
         if (*split != SPLIT_OPEN && *split != wish)
             return tree_failure(&campaign->tree, plan->place, "swaths",
-                                "%s is the same image as %s, which is in split %s: no swath may be "
-                                "in two",
+                                "%s shows the same seabed as %s, which is in split %s: no swath "
+                                "may be in two",
                                 plan->written, campaign->swaths[groups->group_of[i]].written,
                                 campaign->splits[*split].name);
         *split = wish;
@@ -43,7 +44,8 @@ static sonject_status find_groups(const struct campaign *campaign,
 {
     for (size_t i = 0; i < campaign->swath_count; i++) {
         uint32_t first = 0;
-        while (strcmp(hashes[first], hashes[i]) != 0)
+        while (strcmp(hashes[first], hashes[i]) != 0 ||
+               campaign->swaths[first].side != campaign->swaths[i].side)
             first++;
         groups->group_of[i] = first;
         groups->split_of[i] = SPLIT_OPEN;

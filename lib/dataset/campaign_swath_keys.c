@@ -147,7 +147,9 @@ sonject_status campaign_read_splits(struct reader *reader, const struct tree_nod
         if (read_quantity(reader, &entry->value, QUANTITY_NUMBER, &split->fraction) != SONJECT_OK)
             status = SONJECT_ERROR_INPUT;
         else if (!(split->fraction > 0.0 && split->fraction <= 1.0))
-            status = refuse_value(reader, &entry->value, "must be above 0 and at most 1");
+            status = refuse_value(reader, &entry->value,
+                                  "must be above 0 and at most 1; leave a split without images "
+                                  "out");
         sum += split->fraction;
         key_path_shorten(&reader->path, before);
     }

@@ -74,6 +74,11 @@ static sonject_status shade(struct report *report, enum pixel_type type, struct 
     return SONJECT_OK;
 }
 
+static double thumbnail_scale(double rows, double columns)
+{
+    return fmin(1.0, CELL_SIDE / fmax(rows, columns));
+}
+
 static sonject_status load_thumbnail(struct report *report, const char *path,
                                      struct thumbnail *small)
 {
@@ -85,8 +90,7 @@ static sonject_status load_thumbnail(struct report *report, const char *path,
     CHECK(decoded_image_open(report, path, NULL, &file));
     layout = file->layout;
     const struct region all = {0, 0, layout.rows, layout.columns};
-    const double longer = (double)(layout.rows > layout.columns ? layout.rows : layout.columns);
-    small->scale = fmin(1.0, CELL_SIDE / longer);
+    small->scale = thumbnail_scale((double)layout.rows, (double)layout.columns);
     small->rows = (uint32_t)fmax(1.0, floor((double)layout.rows * small->scale));
     small->columns = (uint32_t)fmax(1.0, floor((double)layout.columns * small->scale));
     if (region_bytes(&layout, &all, &bytes))
@@ -160,7 +164,7 @@ static sonject_status draw_cell(const struct data_set *set, struct canvas *canva
         size_t length = strlen(caption);
         while (length > 0 && text_length(caption, length) > CELL_SIDE)
             length--;
-        draw_text(canvas, x, y + CELL_SIDE + FONT_ASCENT + 2, caption, length, TEXT_RIGHTWARDS,
+        draw_text(canvas, x, y + small.rows + FONT_ASCENT + 2, caption, length, TEXT_RIGHTWARDS,
                   black);
     }
     free(small.values);
@@ -178,9 +182,25 @@ static int64_t cell_x(uint32_t cell)
     return CELL_GAP + (int64_t)(cell % CELLS_ACROSS) * (CELL_SIDE + CELL_GAP);
 }
 
-static int64_t cell_y(uint32_t cell)
+/* The height of the highest image, as load_thumbnail reduces it; the most that it may be where
+ * images have all rows or columns of swaths. */
+static uint32_t cell_height(const struct data_set *set)
 {
-    return CELL_GAP + (int64_t)(cell / CELLS_ACROSS) * (CELL_SIDE + CAPTION + CELL_GAP);
+    const double rows = json_number_value(json_object_get(set->head, "rows"));
+    const double columns = json_number_value(json_object_get(set->head, "columns"));
+    if (rows < 1.0 || columns < 1.0)
+        return CELL_SIDE;
+    return (uint32_t)fmax(1.0, floor(rows * thumbnail_scale(rows, columns)));
+}
+
+static uint32_t cell_pitch(const struct data_set *set)
+{
+    return cell_height(set) + CAPTION + CELL_GAP;
+}
+
+static int64_t cell_y(const struct data_set *set, uint32_t cell)
+{
+    return CELL_GAP + (int64_t)(cell / CELLS_ACROSS) * cell_pitch(set);
 }
 
 static uint64_t cell_image(const struct data_set *set, uint64_t cell)
@@ -199,10 +219,11 @@ json_t *contact_sheet_document(const struct data_set *set)
 {
     json_t *cells = json_array();
     for (uint32_t i = 0; i < cell_count(set); i++)
-        json_append(&cells,
-                    JSON_OBJECT({"image", json_count(cell_image(set, i))},
-                                {"x", json_integer(cell_x(i))}, {"y", json_integer(cell_y(i))}));
-    return JSON_OBJECT({"side", json_integer(CELL_SIDE)}, {"cells", cells});
+        json_append(&cells, JSON_OBJECT({"image", json_count(cell_image(set, i))},
+                                        {"x", json_integer(cell_x(i))},
+                                        {"y", json_integer(cell_y(set, i))}));
+    return JSON_OBJECT({"width", json_integer(CELL_SIDE)},
+                       {"height", json_integer(cell_height(set))}, {"cells", cells});
 }
 
 static sonject_status draw_cells(const struct data_set *set, struct canvas *canvas)
@@ -213,7 +234,7 @@ static sonject_status draw_cells(const struct data_set *set, struct canvas *canv
         size_t split = 0;
         while (id - set->split_first[split] >= set->split_images[split])
             split++;
-        status = draw_cell(set, canvas, split, id, cell_x(i), cell_y(i));
+        status = draw_cell(set, canvas, split, id, cell_x(i), cell_y(set, i));
     }
     return status;
 }
@@ -227,7 +248,7 @@ sonject_status write_contact_sheet(const struct data_set *set)
     struct canvas canvas;
     char path[PATH_CAPACITY];
     CHECK(path_in(set->report, path, set->folder, "contact_sheet.png"));
-    if (!canvas_create(&canvas, CELL_GAP + down * (CELL_SIDE + CAPTION + CELL_GAP),
+    if (!canvas_create(&canvas, CELL_GAP + down * cell_pitch(set),
                        CELL_GAP + across * (CELL_SIDE + CELL_GAP), white))
         return report_out_of_memory(set->report, "the contact sheet");
     sonject_status status = draw_cells(set, &canvas);

@@ -48,8 +48,13 @@ sonject_status write_yolo_card(const struct data_set *set)
         train = val < count ? val : test;
     if (val == count)
         val = split_but(set, test, train, true);
-    if (val == count)
+    if (val == count) {
         val = test < count ? test : train;
+        report_log(set->report,
+                   "data.yaml names %s/images for validation, too, since no split is left for it; "
+                   "for one that trainers do not see otherwise, add val to the campaign's splits",
+                   set->split_names[val]);
+    }
     CHECK(path_in(set->report, path, set->folder, "data.yaml"));
     growing_text_add(&text, "# Targets injected by sonject, for trainers of YOLO: "
                             "yolo train data=data.yaml\n");

@@ -36,7 +36,7 @@ struct statistics_page {
     uint64_t empty[CAMPAIGN_SPLITS_MAX], clutter_alone[CAMPAIGN_SPLITS_MAX];
     const json_t *classes;
     uint64_t every; /* image that is taken */
-    uint64_t drawn_anew, difficult, clipped, unseen;
+    uint64_t drawn_anew, difficult, clipped, unseen, cut;
     uint64_t sources[COUNT(number_names)][COUNT(sources)]; /* images */
     json_t *rows;                                          /* of the images that are taken; owned */
 };
@@ -214,10 +214,13 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
             THEN(status, add_set_value(page, json_string_value(entry)));
     }
     page->drawn_anew += json_object_get(record, "drawn_anew") != NULL;
+    bool is_cut = false;
     json_array_foreach(json_object_get(record, "annotations"), i, entry)
     {
         page->difficult += json_is_true(json_object_get(entry, "difficult"));
+        is_cut = is_cut || json_is_true(json_object_get(entry, "truncated"));
     }
+    page->cut += is_cut;
     add_sources(page, json_object_get(truth, "numbers"));
     const json_t *objects = json_object_get(truth, "objects");
     if (json_array_size(objects) == 0)
@@ -275,12 +278,13 @@ static json_t *page_document(struct statistics_page *page)
         json_append(&columns, json_string(row_members[i].key));
     for (size_t i = 0; i < page->series_count; i++)
         json_append(&histograms, histogram_document(&page->series[i]));
-    json_t *document = JSON_OBJECT(
-        {"images", json_count(page->set->images)}, JSON_COUNT(page, every),
-        {"splits", splits_document(page)}, {"numbers", numbers_document(page)},
-        JSON_COUNT(page, drawn_anew), JSON_COUNT(page, difficult), JSON_COUNT(page, unseen),
-        JSON_COUNT(page, clipped), {"sheet", contact_sheet_document(page->set)},
-        {"histograms", histograms}, {"columns", columns}, {"rows", page->rows});
+    json_t *document =
+        JSON_OBJECT({"images", json_count(page->set->images)}, JSON_COUNT(page, every),
+                    {"splits", splits_document(page)}, {"numbers", numbers_document(page)},
+                    JSON_COUNT(page, drawn_anew), JSON_COUNT(page, difficult),
+                    JSON_COUNT(page, unseen), JSON_COUNT(page, clipped), JSON_COUNT(page, cut),
+                    {"sheet", contact_sheet_document(page->set)}, {"histograms", histograms},
+                    {"columns", columns}, {"rows", page->rows});
     page->rows = NULL;
     for (size_t i = 0; i < COUNT(kept); i++)
         json_add(&document, kept[i], json_incref(json_object_get(page->set->head, kept[i])));
@@ -303,6 +307,11 @@ sonject_status write_report_page(const struct data_set *set)
     for (size_t i = 0; status == SONJECT_OK && i < set->split_count; i++)
         for (uint64_t k = 0; status == SONJECT_OK && k < set->split_images[i]; k++)
             status = add_image(page, i, set->split_first[i] + k);
+    if (page->cut > 0)
+        report_log(set->report,
+                   "%llu of %llu images have an object whose highlight or shadow the image's edge "
+                   "cuts; a lower chip.spread or larger images have fewer",
+                   (unsigned long long)page->cut, (unsigned long long)set->images);
     THEN(status, path_in(set->report, path, set->folder, REPORT_PAGE));
     THEN(status, report_page_write(set->report, page_document(page), DIGITS, path));
     for (size_t i = 0; i < page->series_count; i++)

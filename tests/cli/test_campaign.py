@@ -15,6 +15,7 @@ import numpy
 import pytest
 
 import images
+import recordings
 from conftest import COMMAND, assert_refused, files_below, page_data
 from documents import SOURCE, comment_commands
 from measured_images import read_png
@@ -249,6 +250,16 @@ def test_trainers_of_yolo_learn_from_no_test(ground, command, splits, train, val
     assert done.returncode == 0, done.stderr
     assert f"\ntrain: {train}/images\nval: {val}/images\ntest: {test}/images\n" in (
         ground / name / "data.yaml").read_text()
+
+
+@pytest.mark.parametrize("splits, told", [("all: 1", "all"), ("train: 0.5, val: 0.5", None), ("train: 0.5, test: 0.5", "test")])
+def test_a_run_says_once_which_images_validate_without_a_split_of_theirs(ground, command, splits, told):
+    done = command("campaign", "campaign.yaml", "-o", f"validates_{told}", "--set", f"splits={{{splits}}}", "--set", "images=2",
+                   "--set", "chip={rows: 16, columns: 16}", "--verbose")
+    assert done.returncode == 0, done.stderr
+    notes = [line for line in done.stderr.splitlines() if "validation" in line]
+    uses = f"{told}/images for validation, too" if told else ""
+    assert len(notes) == (told is not None) and all(uses in note for note in notes)
 
 
 def test_croissant_lists_files_and_records(whole):
@@ -1001,9 +1012,10 @@ HOSTILE = [
     (["chip.columns=all", "chip.range_over_altitude=[8, 9]"], "swath0.png", "8 to 9 times the sonar's altitude"),
     (["swaths[1].path=swath0.png", "swaths[2].path=swath0.png"], "too few for 2 splits", "swath"),
     (["swaths[1].path=swath0.png", "swaths[0].split=train", "swaths[1].split=test"],
-     "same image", "swath0.png"),
+     "shows the same seabed as swath0.png", "swath0.png"),
     (["swaths[0].split=vla"], "swaths[0].split", "train, test"),
     (["splits={train: 0.5}"], "splits", "add up to 0.5"),
+    (["splits={train: 1, val: 0}"], "splits.val", "must be above 0 and at most 1; leave a split without images out"),
     (["draw={seabed.lambert: {choice: [" + "0.1, " * 20000 + "0.1]}}"], "campaign.yaml",
      "more than 20000 scenes"),
 ]
@@ -1015,6 +1027,42 @@ def test_bad_campaigns_are_refused_with_a_line(command, ground, changes, where, 
     answer = command("campaign", "campaign.yaml", "-o", "hostile", *settings)
     assert_refused(answer, 3, where, what)
     assert not (ground / "hostile").exists()
+
+
+@pytest.fixture(scope="module")
+def lines(ground):
+    """One line as an XTF file, and as a JSF file of two frequencies; and their scene."""
+    numbers = numpy.random.default_rng(4)
+    sides = [numbers.rayleigh(3000, (ROWS, COLUMNS)).clip(1, 30000).astype("<u2") for _ in range(2)]
+    (ground / "line.xtf").write_bytes(recordings.xtf_bytes(*sides))
+    (ground / "line.jsf").write_bytes(recordings.jsf_bytes(*sides, subsystems=(20, 21)))
+    (ground / "line.yaml").write_text("sonject: 1\ninput: {geometry: from_file}\n"
+                                       "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: from_file}\n")
+
+
+def of_line(name, one, other, *more):
+    swaths = ", ".join(f"{{path: {name}, set: {{input.channel: {channel}}}}}" for channel in (one, other))
+    settings = ["scene=line.yaml", f"swaths=[{swaths}]", "images=6", "chip={rows: 48, columns: 48}", *more]
+    return [part for setting in settings for part in ("--set", setting)]
+
+
+@pytest.mark.parametrize("name, one, other", [("line.xtf", "port", "starboard"), ("line.jsf", 0, 3)])
+def test_the_sides_of_a_line_are_two_swaths(ground, command, lines, name, one, other):
+    folder = name.replace(".", "_")
+    answer = command("campaign", "campaign.yaml", "-o", folder, *of_line(name, one, other))
+    assert answer.returncode == 0, answer.stderr
+    channels = {split: {text for record in records(ground / folder) if record["split"] == split
+                        for text in record["set"] if text.startswith("input.channel=")} for split in ("train", "test")}
+    assert sorted(map(sorted, channels.values())) == [[f"input.channel={one}"], [f"input.channel={other}"]]
+
+
+@pytest.mark.parametrize("name, one, other", [
+    ("line.xtf", "port", "port"), ("line.xtf", "port", 1), ("line.jsf", 0, 2)])  # the same, or its other frequency
+def test_a_side_of_a_line_is_in_no_two_splits(command, lines, name, one, other):
+    assert_refused(command("campaign", "campaign.yaml", "-o", "hostile", *of_line(name, one, other)), 3,
+                   "1 different swaths are too few for 2 splits")
+    asked = of_line(name, one, other, "swaths[0].split=train", "swaths[1].split=test")
+    assert_refused(command("campaign", "campaign.yaml", "-o", "hostile", *asked), 3, "shows the same seabed as line.", "split train")
 
 
 MISTAKEN = """\

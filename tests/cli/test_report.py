@@ -155,6 +155,8 @@ def test_the_page_of_a_data_set_says_what_truth_says(data_set):
     assert {split["name"]: split["objects"] for split in page["splits"]} == {
         name: list(split.values()) for name, split in counts.items()}
     assert sum(sum(split.values()) for split in counts.values()) > 5
+    records = [json.loads(path.read_text()) for path in data_set.glob("*/records/*.json")]
+    assert page["cut"] == sum(any(each["truncated"] for each in record["annotations"]) for record in records)
     # images of the contact sheet lie where it says, in one row after the other
     assert [cell["image"] for cell in page["sheet"]["cells"]] == list(range(10))
     sheet = read_png(data_set / "contact_sheet.png")
@@ -162,7 +164,34 @@ def test_the_page_of_a_data_set_says_what_truth_says(data_set):
     (cell,) = [each for each in page["sheet"]["cells"] if each["image"] == empty[0]]
     chip = read_png(data_set / page["splits"][empty[1]]["name"] / "images" / f"{empty[0]:08d}.png")
     drawn = sheet[cell["y"] : cell["y"] + 64, cell["x"] : cell["x"] + 64]
-    assert (drawn == chip[..., None]).all() and page["sheet"]["side"] >= 64
+    assert (drawn == chip[..., None]).all() and page["sheet"]["height"] == 64
+
+
+@pytest.mark.parametrize("rows, columns, height", [(32, 64, 32), (24, 150, 23), ("all", 64, 110)])
+def test_captions_stand_under_their_chips(sonject, data_set, tmp_path, rows, columns, height):
+    """Which are not square; where they have all rows of swaths, those of this one are 110."""
+    sonject.done("campaign", "campaign.yaml", "-o", "wide", "--set", f"chip={{rows: {rows}, columns: {columns}, spread: 0}}")
+    sheet = read_png(tmp_path / "wide" / "contact_sheet.png")
+    cells = page_data(tmp_path / "wide")["sheet"]["cells"]
+    first, below = cells[0], cells[8]
+    assert (first["x"], first["y"]) == (below["x"], 6)
+    band = sheet[first["y"] + height : below["y"], first["x"] : first["x"] + 20]
+    ink = numpy.flatnonzero((band < 128).all(axis=2).any(axis=1))
+    assert 2 <= ink[0] <= 6  # the row under the chip may hold a box's frame, which is not black
+    assert 10 <= ink[-1] - ink[0] <= 14 and ink[-1] < 20
+    if rows != "all":  # a swath may have more of them than the image shown
+        assert len(band) == 28
+
+
+def test_images_whose_edge_cuts_a_contact_are_counted(sonject, data_set, tmp_path):
+    """A shadow of 30 pixels and more is longer than half of a chip."""
+    done = sonject.done("campaign", "campaign.yaml", "-o", "narrow", "--verbose", "--set", "empty=0.2", "--set",
+                        "chip={rows: 64, columns: 40}")
+    records = [json.loads(path.read_text()) for path in (tmp_path / "narrow").glob("*/records/*.json")]
+    cut = [record for record in records if any(each["truncated"] for each in record["annotations"])]
+    assert len(cut) > 3 and page_data(tmp_path / "narrow")["cut"] == len(cut)
+    notes = [line for line in done.stderr.splitlines() if "edge" in line]
+    assert len(notes) == 1 and f"{len(cut)} of 10 images have an object" in notes[0]
 
 
 def test_the_page_is_made_again_by_who_continues(sonject, data_set):
