@@ -59,10 +59,13 @@ static const struct question altitude = {
 static const struct question frequency = {"sonar.frequency", "centre frequency (such as 100 kHz)",
                                           NULL};
 static const struct question bandwidth = {
-    "sonar.bandwidth", "bandwidth, which sets the range resolution (such as 30 kHz)", NULL};
-static const struct question array_length = {
-    "sonar.array.length",
-    "length of a sidescan's array (such as 0.5 m; nothing for synthetic aperture)", ""};
+    "sonar.bandwidth",
+    "bandwidth (such as 30 kHz; if you don't know it, c / 2 over the column spacing)", NULL};
+static const struct question array_length = {"sonar.array.length",
+                                             "length of a sidescan's array, 0.89 wavelengths over "
+                                             "its beam in rad (such as 0.5 m; nothing for "
+                                             "synthetic aperture)",
+                                             ""};
 
 struct interview {
     sonject_context *context;
@@ -248,7 +251,9 @@ static void write_scene(const struct interview *interview, const char *image, FI
           "    length: 1.5 m\n"
           "    diameter: 0.5 m\n"
           "    heading: 30 deg # from along-track towards range\n"
-          "    material: steel\n",
+          "    material: steel\n"
+          "    level: {over_seabed: 15 dB} # measured pictures show 8 to 19 dB; else the "
+          "material's\n",
           file);
 }
 

@@ -49,6 +49,9 @@ TYPED = {
         "SONJECT_MUTATIONS=500 build/tests/unit/unit_scene_hostile",
     "build/tests/unit/unit_scene_reference tools/scenes/KEYS.md":
         "build/tests/unit/unit_scene_reference KEYS.md && cmp KEYS.md tools/scenes/KEYS.md",
+    "export PATH=$PWD/build/tools:$PATH PYTHONPATH=$PWD/build/bindings/python":
+        "export PATH=$PWD/build/tools:$PATH PYTHONPATH=$PWD/build/bindings/python; cd /; "
+        "sonject help sonar.frequency && python3 -c 'import sonject; print(sonject.version())'",
     "export PYTHONPATH=build/bindings/python SONJECT_LIBRARY=build/lib/libsonject.so.0":
         "export PYTHONPATH=build/bindings/python SONJECT_LIBRARY=build/lib/libsonject.so.0; "
         "python3 -c 'import sonject; print(sonject.version())'",
