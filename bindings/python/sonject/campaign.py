@@ -28,6 +28,11 @@ class Campaign(Handle):
     threads, or processes that are spawned and not forked, for which it can be pickled: they read
     the file again.
 
+    The image of a result is linear, whatever its swath's type: float32 amplitudes, or complex64
+    of a complex swath. Amplitudes are those of the numbers that run() writes, rounded and limited as
+    these are: the swath's Transfer makes the one of the other. Full scale is 1, or what the curve of
+    kind decibel says. A JPEG loses more.
+
     overrides: as of Scene.read, but of the campaign's keys: ``{"images": 100}``.
     """
 
