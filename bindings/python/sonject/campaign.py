@@ -33,6 +33,8 @@ class Campaign(Handle):
     these are: the swath's Transfer makes the one of the other. Full scale is 1, or what the curve of
     kind decibel says. A JPEG loses more.
 
+    calibration: auto is for run(), which keeps the file in its folder: name that for images in memory.
+
     overrides: as of Scene.read, but of the campaign's keys: ``{"images": 100}``.
     """
 

@@ -86,6 +86,22 @@ def test_images_in_memory_are_those_of_the_files(kind, curve, campaign_folder):
     assert cut > 0 or kind == "float32"
 
 
+def test_what_a_campaign_without_a_folder_lacks_is_made_by_one_with_a_folder(campaign_folder):
+    """As the message of images in memory says."""
+    numbers = numpy.random.default_rng(8)
+    numpy.save(campaign_folder / "swath.npy", numbers.rayleigh(20, (300, 300)).astype(numpy.uint8))
+    scene = campaign_folder / "scene.yaml"
+    scene.write_text(CAMPAIGN_SCENE.replace("input:\n", "input:\n  calibration: auto\n"))
+    whole = sonject.Campaign(campaign_folder / "campaign.yaml")
+    with pytest.raises(sonject.SonjectError, match="image 4: .*sonject campaign --only 4 -o FOLDER, and name "
+                                                   "FOLDER/calibrations/0.yaml") as caught:
+        whole[4]
+    assert "\n" not in str(caught.value)
+    whole.run(campaign_folder / "set", only=4)
+    scene.write_text(scene.read_text().replace("auto", "set/calibrations/0.yaml"))
+    assert sonject.Campaign(campaign_folder / "campaign.yaml")[4].shape == (64, 64)
+
+
 def test_what_did_not_fail_leaves_no_message(campaign, tmp_path):
     """Be it seen too little, or drawn anew before it fitted."""
     context = sonject.Context()
