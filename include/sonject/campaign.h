@@ -63,9 +63,11 @@ SONJECT_API sonject_status sonject_campaign_scene(sonject_context *context,
 
 /* Makes an image in memory: sonject_inject of that scene into the image's part of the swath, with
  * values and places of objects drawn anew, up to 64 times, where they do not fit; no file is
- * written. Truth of objects counts the image's pixels. On success *result is the caller's,
- * for sonject_result_release; on failure NULL. Errors: ARGUMENT, INPUT, DEVICE, STORAGE, MEMORY,
- * CANCELLED. */
+ * written. The layer IMAGE is linear: floats, the amplitudes of the numbers that the image's file
+ * would store, rounded and limited as these are, before a JPEG's loss; 1 is full scale, but by a
+ * decibel curve what that says; or complex pixels of a complex swath. Truth of objects counts the
+ * image's pixels. On success *result is the caller's, for sonject_result_release; on failure NULL.
+ * Errors: ARGUMENT, INPUT, DEVICE, STORAGE, MEMORY, CANCELLED. */
 SONJECT_API sonject_status sonject_campaign_inject(sonject_context *context,
                                                    sonject_campaign *campaign, uint64_t id,
                                                    sonject_progress_function progress, void *user,

@@ -101,6 +101,10 @@ sonject_status find_input(struct report *report, const struct scene *scene,
         CHECK(take_pixels(report, pixels, swath));
         return swath->stored ? swath_find_empty(report, scene, swath) : SONJECT_OK;
     }
+    if (scene->input_kind == SONJECT_INPUT_FILE)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "the scene names a file, which only runs read: use sonject_run (in "
+                              "Python sonject.run(scene, folder)), or give the file's pixels");
     if (scene->input_kind != SONJECT_INPUT_UNIFORM && scene->input_kind != SONJECT_INPUT_SYNTHETIC)
         return null_argument(report, "pixels");
     struct injection_input input;

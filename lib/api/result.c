@@ -58,6 +58,8 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *han
     }
     tell_noise_floor(report, scene, &made->result.statistics);
     tell_accuracy(report, &made->result.statistics);
+    tell_sediment(report, scene);
+    tell_seen(report, scene, &made->result);
     *result = made;
     return context_finish(context, SONJECT_OK);
 }

@@ -209,6 +209,22 @@ sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t i
     }
 }
 
+/* Calibrations are kept in a campaign's folder, which images in memory lack. */
+static sonject_status check_calibrated(const struct sonject_campaign *campaign,
+                                       const struct campaign_image *image)
+{
+    if (!image->scene.calibrates_itself)
+        return SONJECT_OK;
+    return scene_locate(
+        &image->scene, campaign->report,
+        report_failure(campaign->report, SONJECT_ERROR_INPUT,
+                       "auto is for campaigns with a folder: make one image "
+                       "by sonject campaign --only %llu -o FOLDER, and name "
+                       "FOLDER/" CALIBRATIONS_FOLDER "/%u.yaml, which it leaves, instead of auto",
+                       (unsigned long long)image->plan.id, (unsigned)image->plan.swath),
+        "input.calibration");
+}
+
 /* *is_drawn: whether it failed for what was drawn. */
 static sonject_status make_attempt(struct device *device, struct sonject_campaign *campaign,
                                    sonject_progress_function progress, void *user,
@@ -278,6 +294,7 @@ sonject_status campaign_image_make(struct device *device, struct sonject_campaig
         image->scene.mesh_store = &campaign->meshes;
         sonject_status status =
             campaign_draw_scene(campaign, id, &attempts, reason, &image->plan, &image->scene);
+        THEN(status, check_calibrated(campaign, image));
         THEN(status, make_attempt(device, campaign, progress, user, image, &is_drawn));
         const uint32_t given_up = attempts.of_all + redrawn;
         struct attempts next = attempts;

@@ -65,8 +65,7 @@ void tell_empty(struct report *report, const struct swath *swath)
                    ping_list_text(&swath->empty, text));
 }
 
-/* Where the model of sediments was not made for the frequency. */
-static void tell_sediment(struct report *report, const struct scene *scene)
+void tell_sediment(struct report *report, const struct scene *scene)
 {
     const double frequency_khz = 1e-3 * scene->sonar.centre_frequency_hz;
     if (!isnan(scene->seabed.grain_size_phi) && !(frequency_khz >= 10.0 && frequency_khz <= 100.0))
@@ -86,10 +85,8 @@ static void tell_altitudes(struct report *report, const struct scene *scene)
                    scene->altitudes_m[0], scene->altitudes_m[1], scene->sonar.altitude_m);
 }
 
-/* Objects that nobody would find who labels the image, and those of which little but white is left.
- */
-static void tell_seen(struct report *report, const struct scene *scene,
-                      const struct injection_result *result)
+void tell_seen(struct report *report, const struct scene *scene,
+               const struct injection_result *result)
 {
     for (uint32_t i = 0; i < result->object_count; i++) {
         const sonject_object_truth *truth = &result->objects[i];

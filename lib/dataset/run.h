@@ -34,6 +34,14 @@ void tell_empty(struct report *report, const struct swath *swath);
 /* How many rays the scene's accuracy took, if it asked for one. */
 void tell_accuracy(struct report *report, const sonject_statistics *statistics);
 
+/* Where the model of sediments was not made for the frequency. */
+void tell_sediment(struct report *report, const struct scene *scene);
+
+/* Objects that nobody would find who labels the image, and those of which little but white is left.
+ */
+void tell_seen(struct report *report, const struct scene *scene,
+               const struct injection_result *result);
+
 /* Traces the request's scene and writes its sums to the file, and its impulses to export_file where
  * that is neither NULL nor "": sonject_trace. */
 sonject_status trace_scene(struct report *report, struct device_slot *slot,

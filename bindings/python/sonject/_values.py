@@ -217,7 +217,8 @@ def _single_precision(array: Any) -> Any:
     if array.dtype.kind not in "fc":
         raise TypeError(
             f"a patch of {array.dtype} is refused without its transfer function: say how grey levels "
-            'came from amplitudes, for instance transfer="{kind: decibel, parameter: 0.5}"'
+            'came from amplitudes, for instance transfer="{kind: decibel, parameter: 0.5}"; a scene\'s '
+            'input.transfer is that of its file alone: pass transfer=scene["input.transfer"]'
         )
     target = numpy.float32 if array.dtype.kind == "f" else numpy.complex64
     with numpy.errstate(over="ignore"):

@@ -63,7 +63,7 @@ def inject(
 
     Raises SonjectError, Cancelled, and TypeError or ValueError for arrays that are no patch.
     """
-    curve = None if transfer is None else Transfer(transfer)
+    curve = _curve(transfer)
     pixels, array = _optional_pixels(patch, curve)
     context = scene.context
     count = scene.object_count
@@ -82,7 +82,11 @@ def inject(
     return Result(context, pointer, count, curve)
 
 
-def _optional_pixels(patch: Any, transfer: Optional[AnyTransfer]) -> tuple[Any, Any]:
+def _curve(transfer: Optional[AnyTransfer]) -> Optional[Transfer]:
+    return None if transfer is None else Transfer(transfer)
+
+
+def _optional_pixels(patch: Any, transfer: Optional[Transfer]) -> tuple[Any, Any]:
     """The argument for a patch or None, and the array that it points into, to be kept meanwhile."""
     if patch is None:
         return None, None
@@ -321,7 +325,7 @@ def measure(
     and Result.labels); both of the image's shape, None: not told.
     """
     context = default_context() if context is None else context
-    pixels, array = library_pixels(image, transfer)
+    pixels, array = library_pixels(image, _curve(transfer))
     masks = [
         None if mask is None else _mask(name, mask, array.shape)
         for name, mask in (("influence", influence), ("labels", labels))
@@ -394,7 +398,7 @@ def measure_contact(
     they are unknown, and lengths are known in pixels alone.
     """
     context = default_context() if context is None else context
-    pixels, array = library_pixels(image, transfer)
+    pixels, array = library_pixels(image, _curve(transfer))
     place = None if box is None else s.sonject_box(*(
         whole_number(name, getattr(box, name), 2**31)
         for name in ("first_row", "first_column", "rows", "columns")))
@@ -444,7 +448,7 @@ def element_series(
     seabed; in composite mode the seabed is the measured patch, which has no element data. patch,
     progress, transfer, and what is raised: as for inject.
     """
-    pixels, array = _optional_pixels(patch, transfer)
+    pixels, array = _optional_pixels(patch, _curve(transfer))
     layout = _find_layout(scene, *((0, 0) if array is None else array.shape))
     is_complex = layout.elements.form == SeriesForm.BASEBAND
     series = numpy.empty(layout.shape, numpy.complex64 if is_complex else numpy.float32)

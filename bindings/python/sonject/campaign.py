@@ -25,8 +25,15 @@ class Campaign(Handle):
     As a sequence it makes images in memory, without files: campaign[17] is the Result of image 17,
     the same however often and in whatever order it is asked for, so that
     ``for result in campaign`` or a loader with workers of its own can train on it: the workers are
-    threads, or processes that are spawned and not forked, for which it can be pickled: they read
-    the file again.
+    threads, or processes. Those that are spawned get it pickled and read the file again. Those that
+    are forked inject on the device native alone.
+
+    The image of a result is linear, whatever its swath's type: float32 amplitudes, or complex64
+    of a complex swath. Amplitudes are those of the numbers that run() writes, rounded and limited as
+    these are: the swath's Transfer makes the one of the other. Full scale is 1, or what the curve of
+    kind decibel says. A JPEG loses more.
+
+    calibration: auto is for run(), which keeps the file in its folder: name that for images in memory.
 
     overrides: as of Scene.read, but of the campaign's keys: ``{"images": 100}``.
     """

@@ -6,6 +6,7 @@ import collections
 import contextlib
 import ctypes
 import importlib
+import logging
 import threading
 import weakref
 from typing import Any, Callable, Iterator, Optional, Sequence, Type, TypeVar, Union
@@ -87,6 +88,18 @@ class LogBridge:
             self.error = error
 
 
+_logger = logging.getLogger("sonject")
+
+
+def _log_by_logging(line: str) -> None:
+    """What a user must see comes as a note, and is shown even where nobody set up logging."""
+    start, note, rest = line.partition("note: ")
+    if note and not start:
+        _logger.warning("%s", rest)
+    else:
+        _logger.info("%s", line)
+
+
 def counted(number: int, word: str) -> str:
     """1 object, 2 objects."""
     return f"{number} {word}" if number == 1 else f"{number} {word}s"
@@ -146,10 +159,11 @@ class Context:
     """Works with one device.
 
     device: part of the device's name, None for the one that SONJECT_DEVICE names, else a GPU, else
-    native, this processor; log: called with lines of news; opencl_context, opencl_device: addresses
-    of a host's cl_context and cl_device_id to work in; decodes_in_process: read images and HDF5
-    here, not in a child (a damaged file may end this); threads: of a launch on native, 0 for one a
-    processor.
+    native, this processor; log: called with lines of news, None for the logger "sonject" of
+    logging, where notes that a user must see are warnings and other lines are info; opencl_context,
+    opencl_device: addresses of a host's cl_context and cl_device_id to work in; decodes_in_process:
+    read images and HDF5 here, not in a child (a damaged file may end this); threads: of a launch on
+    native, 0 for one a processor.
 
     Calls from several threads on one context wait for each other; use a context per thread to work
     at once. The device native works in forked children, too; OpenCL's are refused in a child whose
@@ -171,7 +185,7 @@ class Context:
         self._owner: Optional[int] = None
         self._waiting: collections.deque[Any] = collections.deque()
         self._handles: weakref.WeakValueDictionary[int, Handle] = weakref.WeakValueDictionary()
-        self._log = None if log is None else LogBridge(log)
+        self._log = LogBridge(_log_by_logging if log is None else log)
         params = filled(
             s.sonject_context_params,
             device_name=optional_file_name("device", device),
@@ -180,8 +194,7 @@ class Context:
             decodes_in_process=int(decodes_in_process),
             threads=threads,
         )
-        if self._log is not None:
-            params.log = self._log.callback
+        params.log = self._log.callback
         self._pointer = ctypes.POINTER(s.sonject_context)()
         status = self._library.sonject_context_create(
             ctypes.byref(params), ctypes.byref(self._pointer)
@@ -336,7 +349,7 @@ class Context:
                 self._release_waiting()
 
 
-def _release_context(pointer: Any, _log: Optional[LogBridge]) -> None:
+def _release_context(pointer: Any, _log: LogBridge) -> None:
     load().sonject_context_release(ctypes.byref(pointer))
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Dict, Mapping, Union
+from typing import Any, Dict, Mapping, Union, get_args, get_type_hints
 
 import numpy
 
 from ._parameters import Array
 from ._values import STORED_KINDS, keys_text, library_pixels, scene_value
 from .context import default_context
+from .keys import InputTransfer
 
 
 class Transfer(Dict[str, Any]):
@@ -25,7 +26,9 @@ class Transfer(Dict[str, Any]):
         if isinstance(keys, str):
             keys = scene_value("input.transfer", keys)
         if not isinstance(keys, Mapping):
-            raise TypeError(f"a transfer function is a dictionary of keys or its text, not {keys!r}")
+            kinds = ", ".join(get_args(get_type_hints(InputTransfer)["kind"]))
+            raise TypeError("a transfer function is a dictionary of keys or its text, such as "
+                            f'"{{kind: decibel, parameter: 0.5}}", of a kind {kinds}; not {keys!r}')
         super().__init__(keys)
         self.to_amplitude(numpy.zeros(1, numpy.uint8))  # refuses keys that are none
 

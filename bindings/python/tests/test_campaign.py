@@ -58,6 +58,50 @@ def test_the_scene_of_an_image_is_one_to_inject(campaign):
     assert 64 * 0.35 - 1 <= truth.row <= 64 * 0.65 and truth.is_visible
 
 
+@pytest.mark.parametrize("kind, curve", [
+    ("uint8", "{kind: decibel, parameter: 0.378, offset: -80 dB}"),
+    ("uint16", "{kind: amplitude}"),
+    ("uint16", "{kind: gamma, parameter: 2, full_scale: 4095}"),
+    ("float32", "{kind: intensity}"),
+])
+def test_images_in_memory_are_those_of_the_files(kind, curve, campaign_folder):
+    """With bright targets, which full scale cuts, and a row where nothing was heard."""
+    transfer = sonject.Transfer(curve)
+    swath = transfer.from_amplitude(2 * numpy.load(campaign_folder / "swath.npy"), kind)
+    swath[40] = 0
+    numpy.save(campaign_folder / "swath.npy", swath)
+    (campaign_folder / "scene.yaml").write_text(
+        CAMPAIGN_SCENE.replace("input:\n", f"input:\n  transfer: {curve}\n"))
+    bright = {"draw": {"objects[].diameter": 0.3, "objects[].level.over_seabed": "30 dB"}}
+    whole = sonject.Campaign(campaign_folder / "campaign.yaml", bright)
+    whole.run(campaign_folder / "set")
+    cut = 0
+    for number, made in enumerate(whole):
+        (path,) = (campaign_folder / "set" / "all" / "images").glob(f"{number:08}.*")
+        sonject.convert(path, campaign_folder / f"{number}.npy")
+        stored = numpy.load(campaign_folder / f"{number}.npy")
+        assert stored.dtype == kind and made.image.dtype == numpy.float32
+        assert numpy.array_equal(made.image, transfer.to_amplitude(stored))
+        cut += made.statistics.output_clipped
+    assert cut > 0 or kind == "float32"
+
+
+def test_what_a_campaign_without_a_folder_lacks_is_made_by_one_with_a_folder(campaign_folder):
+    """As the message of images in memory says."""
+    numbers = numpy.random.default_rng(8)
+    numpy.save(campaign_folder / "swath.npy", numbers.rayleigh(20, (300, 300)).astype(numpy.uint8))
+    scene = campaign_folder / "scene.yaml"
+    scene.write_text(CAMPAIGN_SCENE.replace("input:\n", "input:\n  calibration: auto\n"))
+    whole = sonject.Campaign(campaign_folder / "campaign.yaml")
+    with pytest.raises(sonject.SonjectError, match="image 4: .*sonject campaign --only 4 -o FOLDER, and name "
+                                                   "FOLDER/calibrations/0.yaml") as caught:
+        whole[4]
+    assert "\n" not in str(caught.value)
+    whole.run(campaign_folder / "set", only=4)
+    scene.write_text(scene.read_text().replace("auto", "set/calibrations/0.yaml"))
+    assert sonject.Campaign(campaign_folder / "campaign.yaml")[4].shape == (64, 64)
+
+
 def test_what_did_not_fail_leaves_no_message(campaign, tmp_path):
     """Be it seen too little, or drawn anew before it fitted."""
     context = sonject.Context()

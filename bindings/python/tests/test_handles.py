@@ -152,6 +152,26 @@ def test_the_log_tells_device_programs_and_noise_floor():
     assert lines[-1].startswith("noise floor: no shadow")
 
 
+@pytest.mark.parametrize("log, is_printed", [("None", True), ("lambda line: None", False)])
+def test_notes_are_printed_unless_a_log_takes_them(log, is_printed, tmp_path):
+    """By inject and run alike, and without the lines that only tell what happens."""
+    answer = run_python(
+        "import numpy, sonject\n"
+        f"with sonject.Context(log={log}) as context:\n"
+        f"    scene = sonject.Scene(**{KEYS}, context=context)\n"
+        "    scene['objects[0].level.over_seabed'] = '33 dB'\n"
+        "    patch = numpy.random.default_rng(1).rayleigh(50, size=(96, 128)).astype(numpy.uint8)\n"
+        "    sonject.inject(patch, scene, transfer='{kind: amplitude}')\n"
+        f"    numpy.save('{tmp_path}/swath.npy', patch)\n"
+        f"    scene['input.path'] = '{tmp_path}/swath.npy'\n"
+        f"    sonject.run(scene, '{tmp_path}/out')\n"
+    )
+    assert answer.returncode == 0, answer.stderr
+    lines = answer.stderr.splitlines()
+    assert len(lines) == 2 * is_printed
+    assert all("of the highlight of 'ball' is cut at the image's ceiling" in line for line in lines)
+
+
 def run_python(code, **environment):
     variables = {**os.environ, "PYTHONPATH": str(PACKAGE.parent), **environment}
     return subprocess.run(

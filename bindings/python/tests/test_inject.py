@@ -250,6 +250,14 @@ def test_garbage_collected_in_a_callback_is_released_afterwards(amplitude_patch,
     assert not scene.context._waiting
 
 
+def test_the_file_of_a_scene_is_for_runs(make_scene, tmp_path):
+    scene = make_scene()
+    scene["input.path"] = tmp_path / "swath.npy"
+    with pytest.raises(sonject.SonjectError, match=r"names a file.* sonject\.run\(scene, folder\)") as caught:
+        sonject.inject(None, scene)
+    assert "\n" not in str(caught.value)
+
+
 def test_other_threads_run_meanwhile(amplitude_patch, make_scene):
     expected = sonject.inject(amplitude_patch, make_scene()).image.tobytes()
     images = []

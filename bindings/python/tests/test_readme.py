@@ -37,8 +37,30 @@ def test_the_example_of_a_campaign_runs(campaign_folder, capsys, monkeypatch):
     monkeypatch.chdir(campaign_folder)
     exec(compile(EXAMPLES[1], "README.md", "exec"), {})
     lines = capsys.readouterr().out.splitlines()
-    assert len(EXAMPLES) == 2 and len(lines) == 6
+    assert len(EXAMPLES) == 3 and len(lines) == 6
     assert {line.rsplit("(64, 64)")[-1] for line in lines} == {" True", " False"}
+
+
+def test_the_example_of_a_data_set_has_the_boxes_of_targets(campaign_folder, monkeypatch):
+    """Whose outermost pixels are those of the layer labels; clutter has none."""
+    monkeypatch.chdir(campaign_folder)
+    with open("campaign.yaml", "a", encoding="utf-8") as file:
+        file.write("clutter: {number: 1, alone: 0.2, objects: [{class: stone, object: {shape: sphere, diameter: 25 cm}}]}\n")
+    names = {}
+    exec(compile(EXAMPLES[2], "README.md", "exec"), names)
+    chips = names["chips"]
+    seen = set()
+    for number in range(len(chips)):
+        image, boxes, labels = chips[number]
+        made = chips.campaign[number]
+        assert numpy.array_equal(image, made.image) and len(boxes) == len(labels)
+        assert labels == (["ball"] if chips.campaign.describe(number).has_target else [])
+        for left, top, right, bottom in boxes:
+            rows, columns = numpy.nonzero(made.labels == 1)
+            assert (left, top) == (columns.min(), rows.min())
+            assert (right, bottom) == (columns.max() + 1, rows.max() + 1)
+        seen.add((len(made.objects), len(boxes)))
+    assert seen == {(0, 0), (1, 0), (2, 1)}  # empty, clutter alone, a target beside clutter
 
 
 def calls():

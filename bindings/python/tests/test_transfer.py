@@ -69,13 +69,16 @@ def test_a_transfer_is_a_dictionary_of_keys(make_scene):
     ("{kind: gama, parameter: 2}", sonject.SonjectError, "did you mean 'gamma'"),
     ("{kind: decibel}", sonject.SonjectError, "this kind of transfer needs it"),
     ({"kind": "intensity", "parameter": 2}, sonject.SonjectError, "has none; remove it"),
-    ("gamma", TypeError, "dictionary of keys or its text"),
+    ("gamma", TypeError, r"such as \"\{kind: decibel, .*\", of a kind amplitude, .*, schlick; not 'gamma'"),
     (2.2, TypeError, "dictionary of keys or its text"),
 ])
 def test_what_is_no_transfer_function_is_refused(keys, error, message):
-    with pytest.raises(error, match=message) as caught:
-        sonject.Transfer(keys)
-    assert "\n" not in str(caught.value)
+    grey = numpy.ones((9, 9), numpy.uint8)
+    for work in (sonject.Transfer, lambda curve: sonject.measure(grey, transfer=curve),
+                 lambda curve: sonject.measure_contact(grey, transfer=curve)):
+        with pytest.raises(error, match=message) as caught:
+            work(keys)
+        assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("stored, error, message", [
@@ -165,6 +168,17 @@ def test_no_element_hears_a_transfer(amplitude_patch, make_scene):
     grey = curve.from_amplitude(0.3 * amplitude_patch)
     series = sonject.element_series(grey, scene, transfer=curve)
     assert numpy.array_equal(series, sonject.element_series(curve.to_amplitude(grey), scene))
+
+
+def test_the_transfer_of_a_scene_is_that_of_its_file(amplitude_patch, make_scene):
+    """Grey levels without one are refused in words that do as they say."""
+    scene = make_scene()
+    scene["input.transfer"] = {"kind": "gamma", "parameter": 2}
+    grey = sonject.Transfer(scene["input.transfer"]).from_amplitude(0.3 * amplitude_patch)
+    with pytest.raises(TypeError, match="is that of its file alone: pass transfer=scene") as caught:
+        sonject.inject(grey, scene)
+    advice = str(caught.value).rpartition("pass transfer=")[2]
+    assert sonject.inject(grey, scene, transfer=eval(advice)).image.dtype == numpy.uint8
 
 
 def test_complex_pixels_have_no_transfer(complex_patch, make_scene):
