@@ -107,5 +107,8 @@ def test_the_first_command_builds_and_ends_with_the_path_of_a_picture(tmp_path):
         shutil.copy(SOURCE / name, tmp_path / name)
     answer = subprocess.run(["sh", "tools/first-run.sh"], cwd=tmp_path, check=False, capture_output=True, text=True)
     assert answer.returncode == 0, answer.stdout + answer.stderr
+    variables = {name: value for name, value in os.environ.items() if name != "SONJECT_LIBRARY"}
+    variables["PYTHONPATH"] = str(tmp_path / "build" / "bindings" / "python")
+    subprocess.run([sys.executable, "-c", "import sonject; sonject.version()"], env=variables, check=True)
     picture = pathlib.Path(answer.stdout.splitlines()[-1])
     assert picture.parent == tmp_path / "build" / "demo" and picture.read_bytes().startswith(b"\x89PNG")

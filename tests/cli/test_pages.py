@@ -50,10 +50,11 @@ TYPED = {
     "build/tests/unit/unit_scene_reference tools/scenes/KEYS.md":
         "build/tests/unit/unit_scene_reference KEYS.md && cmp KEYS.md tools/scenes/KEYS.md",
     "export PATH=$PWD/build/tools:$PATH PYTHONPATH=$PWD/build/bindings/python":
-        "export PATH=$PWD/build/tools:$PATH PYTHONPATH=$PWD/build/bindings/python; cd /; "
+        "export PATH=$PWD/build/tools:$PATH PYTHONPATH=$PWD/build/bindings/python; "
+        "unset SONJECT_LIBRARY; cd /; "
         "sonject help sonar.frequency && python3 -c 'import sonject; print(sonject.version())'",
-    "export PYTHONPATH=build/bindings/python SONJECT_LIBRARY=build/lib/libsonject.so.0":
-        "export PYTHONPATH=build/bindings/python SONJECT_LIBRARY=build/lib/libsonject.so.0; "
+    "export PYTHONPATH=$PWD/build/bindings/python":
+        "export PYTHONPATH=$PWD/build/bindings/python; unset SONJECT_LIBRARY; cd /; "
         "python3 -c 'import sonject; print(sonject.version())'",
     "array=$(sbatch --parsable --array=1-4 tools/slurm/shards.sh 4 campaign campaign.yaml -o data)":
         "array=$(sbatch --parsable --array=1-4 tools/slurm/shards.sh 4 campaign campaign.yaml "
