@@ -208,9 +208,9 @@ def test_shapes_by_code_need_consent(make_scene, amplitude_patch):
         make_scene(objects=[shape])
     scene = make_scene(objects=[shape], allows_user_shapes=True)
     ours, theirs = (sonject.inject(amplitude_patch, each).objects[0] for each in (scene, make_scene()))
-    # the same rays meet the same sphere, but for roundings along its outline
+    # the same rough part, but glints of the sphere have wider cells
     assert abs(ours.target_strength_db - theirs.target_strength_db) < 0.01
-    assert ours.highlight_pixels == theirs.highlight_pixels
+    assert ours.highlight_pixels == pytest.approx(theirs.highlight_pixels, rel=0.02)
 
 
 def test_the_types_of_keys_know_all_sections():
