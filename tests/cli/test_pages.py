@@ -47,8 +47,9 @@ TYPED = {
     "sonject help KEY": "sonject help sonar.frequency && sonject help sonar.",
     "SONJECT_MUTATIONS=100000 build/tests/unit/unit_scene_hostile":
         "SONJECT_MUTATIONS=500 build/tests/unit/unit_scene_hostile",
-    "build/tests/unit/unit_scene_reference tools/scenes/KEYS.md":
-        "build/tests/unit/unit_scene_reference KEYS.md && cmp KEYS.md tools/scenes/KEYS.md",
+    "build/tests/unit/unit_scene_reference tools/scenes/KEYS.md tools/campaigns/KEYS.md":
+        "build/tests/unit/unit_scene_reference KEYS.md CAMPAIGNS.md && cmp KEYS.md tools/scenes/KEYS.md && "
+        "cmp CAMPAIGNS.md tools/campaigns/KEYS.md",
     "export PYTHONPATH=build/bindings/python SONJECT_LIBRARY=build/lib/libsonject.so.0":
         "export PYTHONPATH=build/bindings/python SONJECT_LIBRARY=build/lib/libsonject.so.0; "
         "python3 -c 'import sonject; print(sonject.version())'",
