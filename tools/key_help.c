@@ -1,4 +1,4 @@
-/* What keys of scene files mean, for sonject help. */
+/* What keys of scene and campaign files mean, for sonject help. */
 #include <string.h>
 
 #include <jansson.h>
@@ -66,25 +66,38 @@ static bool print_keys(const json_t *keys, const char *name, struct nearest *nea
     return is_found;
 }
 
+/* Adds those of one kind of file. */
+static sonject_status add_keys(sonject_context *context, json_t *keys,
+                               sonject_status (*list)(sonject_context *context, char **json))
+{
+    char *text = NULL;
+    const sonject_status status = list(context, &text);
+    json_t *listed = text ? json_loads(text, 0, NULL) : NULL;
+    json_array_extend(keys, listed);
+    json_decref(listed);
+    sonject_text_release(&text);
+    return status;
+}
+
 int key_help(const char *name, struct nearest *nearest)
 {
     sonject_context *context = NULL;
-    char *text = NULL;
+    json_t *keys = json_array();
     sonject_status status = sonject_context_create(NULL, &context);
     if (status == SONJECT_OK)
-        status = sonject_keys(context, &text);
+        status = add_keys(context, keys, sonject_keys);
+    if (status == SONJECT_OK)
+        status = add_keys(context, keys, sonject_campaign_keys);
     int code = status == SONJECT_OK ? EXIT_CODE_DONE : fail_with(context, status);
-    json_t *keys = text ? json_loads(text, 0, NULL) : NULL;
-    if (keys && print_keys(keys, name, nearest)) {
+    if (status == SONJECT_OK && print_keys(keys, name, nearest)) {
         code = finish_output();
-    } else if (keys) {
+    } else if (status == SONJECT_OK) {
         message("there is no verb or key \"", name,
                 nearest->best ? "\"; did you mean " : "\"; see ",
                 nearest->best ? nearest->best : "sonject --help", nearest->best ? "?" : "");
         code = EXIT_CODE_USAGE;
     }
     json_decref(keys);
-    sonject_text_release(&text);
     sonject_context_release(&context);
     return code;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "schema/keys.h"
 #include "schema/scene_file.h"
 
 sonject_status sonject_scene_create(sonject_context *context, sonject_scene **scene)
@@ -191,7 +192,7 @@ sonject_status sonject_keys(sonject_context *context, char **json)
         return SONJECT_ERROR_ARGUMENT;
     *json = NULL;
     context_begin_call(context);
-    return scene_keys_json(&context->report, json);
+    return section_keys_json(&context->report, &scene_section, json);
 }
 
 sonject_status sonject_scene_object_count(const sonject_scene *scene, uint32_t *count)

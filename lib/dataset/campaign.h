@@ -267,6 +267,9 @@ sonject_status campaign_read(struct report *report, const char *path, const char
                              const char *const *overrides, size_t count, struct campaign *campaign);
 void campaign_clear(struct campaign *campaign);
 
+/* What campaign files may say. */
+extern const struct section campaign_section, campaign_swath_section;
+
 /* Whether key, which is at place and path, is one of the scene (or of an object) that a campaign
  * may set. Errors: INPUT. */
 sonject_status campaign_check_key(const struct tree *tree, struct tree_place place,

@@ -10,7 +10,7 @@
 #include "dataset/campaign.h"
 #include "schema/keys.h"
 
-#define RATIO_MAX     1000.0
+#define RATIO_MAX     1000
 #define OBJECT_PREFIX "objects[]."
 
 sonject_status grow_list(struct report *report, void *list, size_t count, size_t size)
@@ -155,12 +155,11 @@ static sonject_status finish_item(struct reader *reader, const struct tree_node 
 #define STRUCTURE struct item
 static const struct field item_fields[] = {
     {"class", "label for training", LABEL(class_name), REQUIRED},
-    {"weight", "how often, beside the others; by default 1", QUANTITY(weight, NUMBER),
-     WITHIN(0.0, 1e9)},
-    {"object", "keys of an object that are not drawn", .kind = FIELD_SPECIAL, .read = read_object,
-     REQUIRED},
+    {"weight", "how often, beside the others", QUANTITY(weight, NUMBER), WITHIN(0.0, 1e9),
+     .preset = 1.0},
+    {"object", "keys of an object that are not drawn", SPECIAL(read_object, "section"), REQUIRED},
     {"draw", "what other keys of the object are drawn from; table: rows of a file",
-     .kind = FIELD_SPECIAL, .read = read_item_draws},
+     SPECIAL(read_item_draws, "section")},
 };
 static const struct section item_section = {ROWS(item_fields), .finish = finish_item};
 #undef STRUCTURE
@@ -233,7 +232,7 @@ static sonject_status read_ratio(struct reader *reader, const struct tree_node *
         campaign->most_ratio <= RATIO_MAX)
         return SONJECT_OK;
     return refuse_value(reader, node,
-                        "must rise within 1...%g, where 1 is straight below the sonar, not from %g "
+                        "must rise within 1...%d, where 1 is straight below the sonar, not from %g "
                         "to %g",
                         RATIO_MAX, campaign->least_ratio, campaign->most_ratio);
 }
@@ -318,26 +317,28 @@ static sonject_status check_items(struct reader *reader, const struct tree_node 
                       CAMPAIGN_ITEMS_MAX);
 }
 
-#define STRUCTURE struct campaign
+#define STRUCTURE  struct campaign
+#define SIDE_RANGE TEXT_OF(CAMPAIGN_CHIP_MIN) "..." TEXT_OF(CAMPAIGN_CHIP_MAX) " pixels, or all"
 static const struct field chip_fields[] = {
-    {"rows", "of each image; all: those of its swath", .kind = FIELD_SPECIAL, .read = read_rows,
-     .unit = "whole number, or all", REQUIRED},
-    {"columns", "of each image; all: those of its swath", .kind = FIELD_SPECIAL,
-     .read = read_columns, .unit = "whole number, or all", REQUIRED},
-    {"edge", "pixels that images stay away from swaths' edges", COUNT32(edge, 0, UINT32_MAX / 4)},
+    {"rows", "of each image; all: those of its swath", SPECIAL(read_rows, "whole number, or all"),
+     .range = SIDE_RANGE, REQUIRED},
+    {"columns", "of each image; all: those of its swath",
+     SPECIAL(read_columns, "whole number, or all"), .range = SIDE_RANGE, REQUIRED},
+    {"edge", "pixels that images stay away from swaths' edges", COUNT32(edge, 0, UINT32_MAX / 4),
+     .per = " pixels"},
     {"clearance",
      "pixels that images stay away from contacts to avoid; objects' middles, where rows or columns "
      "are all",
-     COUNT32(clearance, 0, UINT32_MAX / 4)},
-    {"spread", "part of the sides in which objects lie, about the middle, 0 to 1",
-     QUANTITY(spread, NUMBER), WITHIN(0.0, 1.0)},
+     COUNT32(clearance, 0, UINT32_MAX / 4), .per = " pixels"},
+    {"spread", "part of the sides in which objects lie, about the middle", QUANTITY(spread, NUMBER),
+     WITHIN(0.0, 1.0), .preset = 0.5},
     {"slant_range", "[nearest, farthest] of images' middles, or of objects where columns: all",
-     .kind = FIELD_SPECIAL, .read = read_range, .unit = "list of two lengths"},
+     SPECIAL(read_range, "list of two lengths")},
     {"range_over_altitude",
      "[least, most] of the same over the sonar's altitude there; images may then begin in the "
      "water "
      "column",
-     .kind = FIELD_SPECIAL, .read = read_ratio, .unit = "list of two numbers"},
+     SPECIAL(read_ratio, "list of two numbers"), .range = "1..." TEXT_OF(RATIO_MAX)},
 };
 static const struct section chip_section = {ROWS(chip_fields)};
 
@@ -371,8 +372,9 @@ static sonject_status finish_clutter(struct reader *reader, const struct tree_no
 static const struct field clutter_fields[] = {
     {"objects", "list of what clutter may be, as targets are",
      ENTRIES(clutter, clutter_count, "object", item_section), REQUIRED},
-    {"number", "of clutter objects in an image; where they are alone one at least",
-     .kind = FIELD_SPECIAL, .unit = "whole number, or a distribution", .read = read_clutter_number},
+    {"number", "of clutter objects in an image, by default 1; where they are alone one at least",
+     SPECIAL(read_clutter_number, "whole number, or a choice"),
+     .range = "0..." TEXT_OF(CAMPAIGN_CLUTTER_MAX)},
     {"alone", "fraction of images with clutter and no target", QUANTITY(clutter_alone, NUMBER),
      WITHIN(0.0, 1.0)},
 };
@@ -394,38 +396,41 @@ static sonject_status finish_campaign(struct reader *reader, const struct tree_n
 
 /* Draws are read last, in this order, so that streams of random numbers keep their places. */
 static const struct field campaign_fields[] = {
-    {"sonject_campaign", "version of the format, 1", .kind = FIELD_SPECIAL, .read = read_version,
+    {"sonject_campaign", "version of the format, 1", SPECIAL(read_version, "whole number"),
      REQUIRED},
-    {"scene", "scene file with all that is not drawn", .kind = FIELD_SPECIAL,
-     .read = read_scene_name, .unit = "file name", REQUIRED},
+    {"scene", "scene file with all that is not drawn", SPECIAL(read_scene_name, "file name"),
+     REQUIRED},
     {"images", "number of images", COUNT64(images, 1, CAMPAIGN_IMAGES_MAX), REQUIRED},
-    {"seed", "of all that is drawn", COUNT64(seed, 0, 0)},
+    {"seed", "of all that is drawn", COUNT64(seed, 0, 0), .preset = 1.0},
     {"design", "how values are drawn",
      WORD(design) =
-         {[DESIGN_RANDOM] = "random", [DESIGN_STRATIFIED] = "stratified", [DESIGN_GRID] = "grid"}},
+         {[DESIGN_RANDOM] = "random", [DESIGN_STRATIFIED] = "stratified", [DESIGN_GRID] = "grid"},
+     .preset = DESIGN_STRATIFIED},
     {"chip", "size of images, and where in swaths they lie", SAME(chip_section), REQUIRED},
     {"outputs",
-     "written beside image and truth: highlight, shadow, masks, influence, energy, field",
-     .kind = FIELD_SPECIAL, .read = read_outputs, .unit = "list of words"},
+     "written beside image and truth, by default the first three: highlight, shadow, masks, "
+     "influence, energy, field",
+     SPECIAL(read_outputs, "list of words")},
     {"format", "of images; as_input: JPEG where the swath is one, coded as that is",
      WORD(format) = {[FORMAT_LOSSLESS] = "lossless", [FORMAT_AS_INPUT] = "as_input"}},
-    {"labels", "beside COCO: yolo, voc", .kind = FIELD_SPECIAL, .read = read_outputs,
-     .unit = "list of words"},
+    {"labels", "beside COCO: yolo, voc", SPECIAL(read_outputs, "list of words")},
     {"empty", "fraction of images without any object", QUANTITY(empty, NUMBER), WITHIN(0.0, 1.0)},
     {"visible", "how well targets must be seen", SAME(visible_section)},
-    {"splits", "names and fractions, such as {train: 0.8, test: 0.2}", .kind = FIELD_SPECIAL,
-     .read = campaign_read_splits, .unit = "section"},
-    {"swaths", "list of the images that objects are put into", .kind = FIELD_SPECIAL,
-     .read = campaign_read_swaths, .unit = "list", REQUIRED},
-    {"draw", "what keys of the scene are drawn from", .kind = FIELD_SPECIAL,
-     .read = read_campaign_draws, .unit = "section"},
+    {"splits", "names and fractions, such as {train: 0.8, test: 0.2}; by default {all: 1}",
+     SPECIAL(campaign_read_splits, "section"), .range = "fractions above 0 that add up to 1"},
+    {"swaths", "list of the images that objects are put into",
+     SPECIAL(campaign_read_swaths, "list"), .is_list = true, .section = &campaign_swath_section,
+     REQUIRED},
+    {"draw", "what keys of the scene are drawn from", SPECIAL(read_campaign_draws, "section")},
     {"targets", "list of what is to be found",
      ENTRIES(targets, target_count, "target", item_section)},
     {"clutter", "what else lies there", SAME(clutter_section)},
-    {"targets_per_image", "where there are any; all but the first are drawn by weight",
-     .kind = FIELD_SPECIAL, .read = read_target_number, .unit = "whole number, or a distribution"},
+    {"targets_per_image",
+     "where there are any, by default 1; all but the first are drawn by weight",
+     SPECIAL(read_target_number, "whole number, or a choice"),
+     .range = "1..." TEXT_OF(CAMPAIGN_TARGETS_MAX)},
 };
-static const struct section campaign_section = {ROWS(campaign_fields), .finish = finish_campaign};
+const struct section campaign_section = {ROWS(campaign_fields), .finish = finish_campaign};
 
 static sonject_status fill_campaign(struct tree *tree, const char *const *overrides, size_t count,
                                     struct campaign *campaign)
@@ -448,19 +453,14 @@ sonject_status campaign_read(struct report *report, const char *path, const char
     char *read = NULL;
     size_t bytes = text ? strlen(text) : 0;
     memset(campaign, 0, sizeof *campaign);
-    campaign->seed = 1;
-    campaign->design = DESIGN_STRATIFIED;
-    campaign->spread = 0.5;
-    campaign->visible_highlight_db = campaign->visible_shadow_db = NAN;
+    section_defaults(&campaign_section, campaign, NULL);
     campaign->outputs = OUTPUT_ALWAYS | OUTPUT_BIT(OUTPUT_HIGHLIGHT) | OUTPUT_BIT(OUTPUT_SHADOW) |
                         OUTPUT_BIT(OUTPUT_MASKS);
     campaign->splits[0].fraction = 1.0;
     strcpy(campaign->splits[0].name, "all");
     campaign->split_count = 1;
-    for (size_t i = 0; i < CAMPAIGN_ITEMS_MAX; i++) {
+    for (size_t i = 0; i < CAMPAIGN_ITEMS_MAX; i++)
         campaign->targets[i].campaign = campaign->clutter[i].campaign = campaign;
-        campaign->targets[i].weight = campaign->clutter[i].weight = 1.0;
-    }
     campaign->path = copy_text(path);
     campaign->folder = path_folder(path);
     CHECK_MEMORY(report, campaign->path && campaign->folder, "the campaign");

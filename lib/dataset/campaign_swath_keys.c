@@ -70,15 +70,16 @@ static sonject_status read_avoid(struct reader *reader, const struct tree_node *
 
 #define STRUCTURE struct swath_plan
 static const struct field swath_fields[] = {
-    {"path", "image file", .kind = FIELD_SPECIAL, .read = read_swath_path, REQUIRED},
-    {"split", "that all of its images are in", TEXT(split)},
-    {"set", "keys of the scene for this swath", .kind = FIELD_SPECIAL, .read = read_swath_keys},
+    {"path", "image file", SPECIAL(read_swath_path, "file name"), REQUIRED},
+    {"split", "that all of its images are in; by default any", TEXT(split)},
+    {"set", "keys of the scene for this swath, such as {input.channel: port}",
+     SPECIAL(read_swath_keys, "section")},
     {"avoid",
      "boxes of contacts that images are not to show; that they may show and objects keep away "
      "from, where rows or columns are all",
-     .kind = FIELD_SPECIAL, .read = read_avoid},
+     SPECIAL(read_avoid, "list"), .is_list = true, .section = &box_section},
 };
-static const struct section swath_section = {ROWS(swath_fields)};
+const struct section campaign_swath_section = {ROWS(swath_fields)};
 #undef STRUCTURE
 
 static sonject_status check_split_name(struct reader *reader, const struct campaign *campaign,
@@ -103,7 +104,7 @@ static sonject_status read_swath(struct reader *reader, const struct tree_node *
                     sizeof *campaign->swaths));
     struct swath_plan *swath = &campaign->swaths[campaign->swath_count++];
     swath->place = node->place;
-    const sonject_status status = read_section(reader, &swath_section, node, swath);
+    const sonject_status status = read_section(reader, &campaign_swath_section, node, swath);
     return reading_ends(status) ? status : check_split_name(reader, campaign, swath, node);
 }
 

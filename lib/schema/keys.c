@@ -339,13 +339,13 @@ static void add_json(json_t **keys, const char *prefix, const struct section *se
     }
 }
 
-sonject_status scene_keys_json(struct report *report, char **text)
+sonject_status section_keys_json(struct report *report, const struct section *section, char **text)
 {
     json_t *keys = json_array();
-    add_json(&keys, "", &scene_section);
+    add_json(&keys, "", section);
     *text = json_document_text(keys, JSON_INDENT(1) | JSON_REAL_PRECISION(15));
     json_decref(keys);
-    return *text ? SONJECT_OK : report_out_of_memory(report, "the keys of scenes");
+    return *text ? SONJECT_OK : report_out_of_memory(report, "the keys");
 }
 
 /* ---- Whether there is a key. */

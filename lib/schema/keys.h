@@ -157,6 +157,16 @@ struct section {
  * it sets, too; NULL: none. */
 void section_defaults(const struct section *section, void *structure, struct scene *scene);
 
+/* A section's keys, and those below, as a JSON array, in the tables' order, for free(): objects
+ * with path
+ * ("objects[].heading"), section (the path of the section that it is in, "" at the top), meaning,
+ * kind (quantity, count, flag, word, name, text, file, section, list or special), unit (as users
+ * are told it), has_value (it may be written as one value; else as a section or list alone),
+ * is_list, is_required (in its section), words (an array, or null), default and range (in words, as
+ * users are told), preset, least and most (the same as numbers in the SI unit; least and most may
+ * be open). What there is none of is null. Errors: MEMORY. */
+sonject_status section_keys_json(struct report *report, const struct section *section, char **text);
+
 /* Whether a key's value in the structure is within its bounds; else what gets "must be 1...8, not
  * 9". */
 bool field_is_sound(const struct field *field, const void *structure, char what[300]);

@@ -87,13 +87,4 @@ sonject_status scene_source_text(struct scene_source *source, struct report *rep
 /* Whether a band may have this name, which is a folder's. */
 bool is_band_name(const char *text);
 
-/* All keys as a JSON array, in the tables' order, for free(): objects with path
- * ("objects[].heading"), section (the path of the section that it is in, "" at the top), meaning,
- * kind (quantity, count, flag, word, name, text, file, section, list or special), unit (as users
- * are told it), has_value (it may be written as one value; else as a section or list alone),
- * is_list, is_required (in its section), words (an array, or null), default and range (in words, as
- * users are told), preset, least and most (the same as numbers in the SI unit; least and most may
- * be open). What there is none of is null. Errors: MEMORY. */
-sonject_status scene_keys_json(struct report *report, char **text);
-
 #endif

@@ -47,8 +47,9 @@ TYPED = {
     "sonject help KEY": "sonject help sonar.frequency && sonject help sonar.",
     "SONJECT_MUTATIONS=100000 build/tests/unit/unit_scene_hostile":
         "SONJECT_MUTATIONS=500 build/tests/unit/unit_scene_hostile",
-    "build/tests/unit/unit_scene_reference tools/scenes/KEYS.md":
-        "build/tests/unit/unit_scene_reference KEYS.md && cmp KEYS.md tools/scenes/KEYS.md",
+    "build/tests/unit/unit_scene_reference tools/scenes/KEYS.md tools/campaigns/KEYS.md":
+        "build/tests/unit/unit_scene_reference KEYS.md CAMPAIGNS.md && cmp KEYS.md tools/scenes/KEYS.md && "
+        "cmp CAMPAIGNS.md tools/campaigns/KEYS.md",
     "export PATH=$PWD/build/tools:$PATH PYTHONPATH=$PWD/build/bindings/python":
         "export PATH=$PWD/build/tools:$PATH PYTHONPATH=$PWD/build/bindings/python; "
         "unset SONJECT_LIBRARY; cd /; "
@@ -165,9 +166,20 @@ def project(tmp_path_factory, environment):
     (folder / "both_sides.tif").write_bytes(images.tiff_bytes(both))
     samples = numpy.rint(1000 * swath).astype("<u2")
     (folder / "line.xtf").write_bytes(recordings.xtf_bytes(samples, samples))
+    (folder / "my_mine.stl").write_text(stl_of_a_box(300, 1200, 300))
     for source in ("tools/targets/rock.obj", "tests/unit/pulse.csv"):
         (folder / pathlib.Path(source).name).write_bytes((SOURCE / source).read_bytes())
     return folder, type_in
+
+
+def stl_of_a_box(width, length, height):
+    """In text, of twelve triangles: x, y and z are its sides."""
+    corners = [(x, y, z) for x in (0, width) for y in (0, length) for z in (0, height)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    triangles = [each for a, b, c, d in faces for each in ((a, b, c), (a, c, d))]
+    lines = [f"facet normal 0 0 0\nouter loop\n" + "".join("vertex {} {} {}\n".format(*corners[i]) for i in each) +
+             "endloop\nendfacet\n" for each in triangles]
+    return "solid mine\n" + "".join(lines) + "endsolid mine\n"
 
 
 def own_scene():

@@ -46,6 +46,16 @@ def test_help_of_a_key_is_its_row(sonject):
     assert "    unit: m, km, cm, mm, or from_file" in facts
 
 
+def test_help_tells_keys_of_campaigns(sonject):
+    reference = (SOURCE / "tools/campaigns/KEYS.md").read_text(encoding="utf-8")
+    answer = sonject.done("help", "chip")
+    listed = re.findall(r"^(\S+)", answer.stdout, flags=re.M)
+    assert listed == re.findall(r"^\| `(chip[^`]*)`", reference, flags=re.M) and "chip.spread" in listed
+    key, meaning, *facts = sonject.done("help", "targets[1].weight").stdout.splitlines()
+    assert f"| `{key}` | {meaning.strip()} | number | 1 |" in reference and "    default: 1" in facts
+    assert_refused(sonject("help", "chip.spraed"), 2, "did you mean chip.spread?")
+
+
 def test_help_of_a_section_is_all_its_keys(sonject):
     reference = (SOURCE / "tools/scenes/KEYS.md").read_text(encoding="utf-8")
     for section in ("sonar", "elements."):  # elements is a verb, too

@@ -8,6 +8,7 @@
 #include "claims.h"
 #include "scene/point_response.h"
 #include "scene_folder.h"
+#include "schema/keys.h"
 
 #define GEOMETRY "geometry: {row_spacing: 1, column_spacing: 1, first_slant_range: 40}\n"
 #define ARRAY    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10"
@@ -510,7 +511,7 @@ static inline json_t *list_keys(void)
 {
     struct report report = {{0}, NULL, NULL};
     char *text;
-    assert_int_equal(scene_keys_json(&report, &text), SONJECT_OK);
+    assert_int_equal(section_keys_json(&report, &scene_section, &text), SONJECT_OK);
     json_t *keys = json_loads(text, 0, NULL);
     assert_true(json_is_array(keys));
     free(text);

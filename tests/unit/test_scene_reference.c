@@ -1,15 +1,15 @@
-/* The reference of scene files, tools/scenes/KEYS.md, is made of the tables of keys. Run with a
- * file's name this program writes it. */
+/* The references of scene and campaign files, tools/scenes/KEYS.md and tools/campaigns/KEYS.md, are
+ * made of the tables of keys. Run with two files' names this program writes them. */
 #define _POSIX_C_SOURCE 200809L
 
 #include <jansson.h>
 
 #include "claims.h"
+#include "dataset/campaign.h"
 #include "scene/shapes/shape.h"
 #include "schema/scene_file.h"
 
-#define REFERENCE SOURCE_ROOT "/tools/scenes/KEYS.md"
-#define PART      "objects[].parts[]."
+#define PART_PREFIX "objects[].parts[]."
 
 static const char introduction[] =
     "# Keys of scene files\n\n"
@@ -38,8 +38,9 @@ static bool is_repeated(const json_t *keys, const json_t *key)
     json_array_foreach(keys, i, other)
     {
         const char *alike = text_of(other, "path");
-        if (strncmp(path, PART, strlen(PART)) == 0 && strncmp(alike, "objects[].", 10) == 0 &&
-            strcmp(alike + 10, path + strlen(PART)) == 0)
+        if (strncmp(path, PART_PREFIX, strlen(PART_PREFIX)) == 0 &&
+            strncmp(alike, "objects[].", 10) == 0 &&
+            strcmp(alike + 10, path + strlen(PART_PREFIX)) == 0)
             return strcmp(text_of(other, "meaning"), text_of(key, "meaning")) == 0;
     }
     return false;
@@ -159,7 +160,7 @@ static void print_reference(FILE *out, const json_t *keys)
     json_array_foreach(keys, i, key) if (json_is_true(json_object_get(key, "has_value")) &&
                                          is_repeated(keys, key))
     {
-        fprintf(out, "%s `%s`", joint, text_of(key, "path") + strlen(PART));
+        fprintf(out, "%s `%s`", joint, text_of(key, "path") + strlen(PART_PREFIX));
         joint = ",";
     }
     fputs(".\n", out);
@@ -167,46 +168,84 @@ static void print_reference(FILE *out, const json_t *keys)
     print_materials(out);
 }
 
-/* The whole reference, for free(). */
-static char *make_reference(void)
+/* One table, since a campaign has few keys; its sections say what they are for. */
+static void print_campaign_reference(FILE *out, const json_t *keys)
+{
+    size_t i;
+    json_t *key;
+    fputs("# Keys of campaign files\n\n"
+          "[Data sets](../../docs/data_sets.md) tells what campaigns are for, and "
+          "[minefield.yaml](minefield.yaml) is one that explains itself. `[]` stands for each "
+          "entry of a list.\n"
+          "Keys marked * must be there if their section is. A default of – is none, or the meaning "
+          "says it. `object`, `draw` and `set` take [keys of scenes](../scenes/KEYS.md).\n\n"
+          "| key | meaning | unit | default | range |\n|---|---|---|---|---|\n",
+          out);
+    json_array_foreach(keys, i, key) print_key(out, key);
+}
+
+/* The two references. */
+static const struct reference {
+    const char *file;
+    const struct section *section;
+    void (*print)(FILE *out, const json_t *keys);
+} references[] = {
+    {SOURCE_ROOT "/tools/scenes/KEYS.md", &scene_section, print_reference},
+    {SOURCE_ROOT "/tools/campaigns/KEYS.md", &campaign_section, print_campaign_reference},
+};
+
+/* The whole of one, for free(). */
+static char *make_reference(const struct reference *reference)
 {
     struct report report = {{0}, NULL, NULL};
     char *listed, *text = NULL;
     size_t bytes = 0;
     FILE *out = open_memstream(&text, &bytes);
-    assert_int_equal(scene_keys_json(&report, &listed), SONJECT_OK);
+    assert_int_equal(section_keys_json(&report, reference->section, &listed), SONJECT_OK);
     json_t *keys = json_loads(listed, 0, NULL);
     assert_true(out && json_is_array(keys));
-    print_reference(out, keys);
+    reference->print(out, keys);
     assert_int_equal(fclose(out), 0);
     json_decref(keys);
     free(listed);
     return text;
 }
 
-static void test_the_reference_is_up_to_date(void **state)
+static void check_reference(const struct reference *reference)
 {
-    char *expected = make_reference();
+    char *expected = make_reference(reference);
     char *found = calloc(strlen(expected) + 2, 1);
-    FILE *stream = fopen(REFERENCE, "rb");
-    (void)state;
+    FILE *stream = fopen(reference->file, "rb");
     assert_true(found && stream);
     found[fread(found, 1, strlen(expected) + 1, stream)] = 0;
     fclose(stream);
     if (strcmp(found, expected) != 0)
-        fail_msg("%s is not up to date: run this program with its name", REFERENCE);
+        fail_msg("%s is not up to date: run this program with both names", reference->file);
     free(found);
     free(expected);
 }
 
+static void test_the_references_are_up_to_date(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < COUNT(references); i++)
+        check_reference(&references[i]);
+}
+
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {TEST(test_the_reference_is_up_to_date)};
-    FILE *stream = argc > 1 ? fopen(argv[1], "wb") : NULL;
-    if (!stream)
+    const struct CMUnitTest tests[] = {TEST(test_the_references_are_up_to_date)};
+    if (argc != 1 + (int)COUNT(references))
         return cmocka_run_group_tests(tests, NULL, NULL);
-    char *text = make_reference();
-    fputs(text, stream);
-    free(text);
-    return fclose(stream);
+    for (size_t i = 0; i < COUNT(references); i++) {
+        FILE *stream = fopen(argv[1 + i], "wb");
+        if (!stream)
+            return 1;
+        char *text = make_reference(&references[i]);
+        fputs(text, stream);
+        free(text);
+        if (fclose(stream) != 0)
+            return 1;
+    }
+    return 0;
 }
