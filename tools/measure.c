@@ -62,8 +62,8 @@ static const struct argument arguments[] = {
     {"--range-to-left", NULL, NULL,
      "range grows to the left, as in the port half of an image of two sides; truth tells it",
      ARGUMENT_FLAG, false, MEMBER(range_to_left)},
-    {"--row-spacing", NULL, "M", "of contacts' lengths in metres", ARGUMENT_NUMBER, false,
-     MEMBER(row_spacing)},
+    {"--row-spacing", NULL, "M", "of contacts' lengths in metres; else as truth or the file tells",
+     ARGUMENT_NUMBER, false, MEMBER(row_spacing)},
     {"--column-spacing", NULL, "M", "likewise, of slant range", ARGUMENT_NUMBER, false,
      MEMBER(column_spacing)},
 };

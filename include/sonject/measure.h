@@ -33,7 +33,7 @@ typedef struct sonject_measure_params {
                                  NULL */
     const sonject_box *boxes; /* box_count of them, beside those of truth; where neither is given,
                                  contacts are looked for in the whole image */
-    double row_spacing_m;     /* 0: unknown, or as truth tells */
+    double row_spacing_m;     /* 0: as truth or the image's file tells, if they do */
     double column_spacing_m;  /* of slant range */
     double find_contrast_db;  /* a contact's brightest mean of 3 x 3 pixels is at least so far over
                                  the seabed within some 64 pixels of it; 6...100, 0: 12 */

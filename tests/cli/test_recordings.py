@@ -292,6 +292,16 @@ def test_of_a_whole_line_the_altitude_is_that_at_the_objects(sonject, tmp_path, 
     assert "row 45.0" in sonject.done("check", "chosen.yaml").stdout
 
 
+def test_contacts_of_a_recording_are_measured_in_metres(sonject, tmp_path, sides):
+    sides[0][20:30, 100:104] *= 20
+    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides))
+    box = ("--box", "15,80,20,50")
+    of_file, given = (json.loads(sonject.done("measure", "line.xtf", "--channel", "port", *box, *more).stdout)
+                      for more in ((), ("--row-spacing", "0.1", "--column-spacing", "0.15")))
+    (one,), (other,) = of_file["contacts"], given["contacts"]
+    assert one["highlight_along_m"] == pytest.approx(other["highlight_along_m"], rel=1e-3) and other["highlight_along_m"] > 0
+
+
 def test_an_altitude_that_changes_is_not_converted(sonject, tmp_path, sides):
     for name, altitudes in ("level", numpy.full(ROWS, 6.0)), ("sloping", numpy.linspace(5.0, 9.0, ROWS)):
         (tmp_path / f"{name}.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=altitudes))
