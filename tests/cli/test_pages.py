@@ -2,6 +2,7 @@
 files, programs in Python, and mistakes for their messages. What is new in a page fails until it can
 be run. C and C++ are in tests/abi/test_installed.py, MATLAB's language is in test_matlab.py."""
 
+import json
 import os
 import pathlib
 import re
@@ -312,6 +313,19 @@ def test_mistakes_have_the_messages_that_are_explained(project, message):
         type_in(MISTAKES[message])
     expected = ".*".join(re.escape(part) for part in re.split(r" ?\.\.\. ?", message))
     assert re.search(expected, str(failure.value)), str(failure.value)
+
+
+def test_all_keys_of_truth_are_explained(project):
+    folder, type_in = project
+    type_in("sonject run scene.yaml -o explained")
+    truth = json.loads((folder / "explained" / "truth.json").read_text())
+    keys = list(truth)
+    for key, value in truth["objects"][0].items():
+        is_section = key in ("pose", "dimensions", "level")
+        keys += [f"{key}.{part}" for part in value] if is_section else [key]
+    rows = re.findall(r"^\| (`.*?) \|", read("docs/truth.md"), flags=re.M)
+    told = [span for row in rows for span in re.findall(r"`([^`]+)`", row)]
+    assert sorted(told) == sorted(keys)
 
 
 def test_exit_codes_are_those_of_the_command():
