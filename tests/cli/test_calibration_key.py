@@ -212,7 +212,7 @@ def test_campaigns_make_one_for_each_swath(sonject, tmp_path):
              for path in (tmp_path / "whole").glob("*/truth/*.json")}
     assert kinds == {"schlick", "decibel"}
     assert page_data(tmp_path / "whole")["numbers"]["transfer"] == {
-        "scene": 0, "calibration": 4, "patch": 0, "default": 0, "fallback": 0}
+        "scene": 0, "calibration": 4, "patch": 0, "default": 0, "fallback": 0, "file": 0}
     assert {path.name for path in (tmp_path / "whole" / "calibrations").iterdir()} == {
         "0.yaml", "0.png", "1.yaml", "1.png"}
     # whoever goes on has the numbers that the images there have, and another campaign has none of them
