@@ -240,29 +240,32 @@ static bool rows_of_objects(const struct scene *scene, uint64_t rows, double row
     double low = INFINITY, high = -INFINITY;
     for (uint32_t i = 0; i < scene->object_count; i++) {
         const sonject_object_params *object = &scene->objects[i];
-        const double row = object->position_kind == SONJECT_POSITION_PIXELS
-                               ? object->position_along
-                               : object->position_along / row_spacing_m;
+        double row = 0.5 * (double)(rows - 1);
+        if (object->position_kind == SONJECT_POSITION_PIXELS)
+            row = object->position_along;
+        else if (object->position_kind == SONJECT_POSITION_METRES)
+            row = (object->position_along - scene->geometry.first_along_track_m) / row_spacing_m;
         low = fmin(low, row);
         high = fmax(high, row);
     }
-    if (!(low >= 0.0 && high <= (double)(rows - 1)))
+    if (scene->object_count == 0 || !(low >= 0.0 && high <= (double)(rows - 1)))
         return false;
     *first = (uint64_t)low;
-    *count = (uint64_t)high - *first + 1;
+    *count = (uint64_t)ceil(high) - *first + 1;
     return true;
 }
 
 /* The altitude at the objects' pings, where no patch is chosen: one of a whole line may be far off
- * there, and with it every shadow. */
+ * there, and with it every shadow. is_told: the file tells the rows' spacing, too. */
 static struct recording_geometry line_geometry(const struct scene *scene,
-                                               const struct recording *recording, uint64_t first,
-                                               uint64_t count)
+                                               const struct recording *recording, bool is_told,
+                                               uint64_t first, uint64_t count)
 {
     struct recording_geometry geometry = recording_geometry_of(recording, first, count);
     if (scene->patch.rows > 0)
         return geometry;
-    if (rows_of_objects(scene, recording->rows, geometry.row_spacing_m, &first, &count)) {
+    const double row_spacing = is_told ? geometry.row_spacing_m : scene->geometry.row_spacing_m;
+    if (rows_of_objects(scene, recording->rows, row_spacing, &first, &count)) {
         const struct recording_geometry there = recording_geometry_of(recording, first, count);
         geometry.altitude_m = there.altitude_m;
         geometry.lowest_altitude_m = there.lowest_altitude_m;
@@ -277,9 +280,10 @@ static sonject_status take_recording(struct report *report, const struct scene *
     uint64_t first, count;
     *wanted->key = "patch";
     CHECK(patch_rows(report, scene, recording->rows, &first, &count));
-    const struct recording_geometry geometry = takes_altitude(scene, wanted)
-                                                   ? line_geometry(scene, recording, first, count)
-                                                   : recording_geometry_of(recording, first, count);
+    const struct recording_geometry geometry =
+        takes_altitude(scene, wanted)
+            ? line_geometry(scene, recording, wanted->wish.geometry, first, count)
+            : recording_geometry_of(recording, first, count);
     *wanted->key = "input.geometry";
     if (wanted->wish.geometry && !(geometry.row_spacing_m > 0.0))
         return input_failure(report, scene->input_path,
@@ -299,7 +303,7 @@ static sonject_status take_recording(struct report *report, const struct scene *
     wanted->where.side =
         recording->side == RECORDED_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
     wanted->altitude_m = geometry.altitude_m;
-    if (scene->patch.rows == 0 && recording_altitude_varies(&geometry)) {
+    if (scene->patch.rows == 0 && scene->object_count > 0 && recording_altitude_varies(&geometry)) {
         wanted->altitudes_m[0] = geometry.lowest_altitude_m;
         wanted->altitudes_m[1] = geometry.highest_altitude_m;
     }

@@ -74,7 +74,7 @@ def test_what_the_file_tells_is_not_asked_for(sonject, image):
 
 def test_a_recording_tells_the_geometry(sonject, tmp_path):
     sides = [numpy.random.default_rng(7).rayleigh(2000.0, (120, 400)).astype(numpy.uint16) for _ in range(2)]
-    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides))
+    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=numpy.linspace(5.0, 9.0, 120)))
     answer = init(sonject, "line.xtf", "--channel", "port", answers=["600 kHz", "10 kHz", "0.5 m"])
     assert answer.returncode == 0, answer.stderr
     scene = (tmp_path / "line.yaml").read_text()

@@ -276,10 +276,15 @@ def test_of_a_whole_line_the_altitude_is_that_at_the_objects(sonject, tmp_path, 
     ball = "{shape: sphere, diameter: 0.4 m, position: {row: %d, column: 120}}"
     (tmp_path / "one.yaml").write_text(f"{kept}\nobjects: [{ball % 15}]\n")
     (tmp_path / "two.yaml").write_text(f"{kept}\nobjects: [{ball % 15}, {ball % 45}]\n")
+    (tmp_path / "none.yaml").write_text(f"{kept}\n")
+    assert "altitude 7 m" in sonject.done("check", "none.yaml").stdout
     assert "note" not in sonject.done("check", "one.yaml").stdout
     assert "note: the altitude" not in sonject.done("run", "one.yaml", "-o", "one").stderr
     numbers = json.loads((tmp_path / "one" / "truth.json").read_text())["numbers"]
     assert numbers["altitude_m"] == {"value": pytest.approx(altitudes[15], abs=1e-5), "from": "file"}
+    for position, altitude in ("", altitudes[29:31].mean()), ("position: {along_track: 2 m, slant_range: 18 m}", altitudes[20]):
+        (tmp_path / "other.yaml").write_text(f"{kept}\nobjects: [{{shape: sphere, diameter: 0.4 m, {position}}}]\n")
+        assert f"altitude {altitude:.3g} m" in sonject.done("check", "other.yaml").stdout
     told = rf"the altitude goes from {altitudes[15]:.2f} to {altitudes[45]:.2f} m"
     assert told in sonject.done("check", "two.yaml").stdout
     assert told in sonject.done("run", "two.yaml", "-o", "two").stderr
