@@ -9,7 +9,6 @@
 #include "base/memory.h"
 #include "measure/calibration.h"
 #include "measure/measures.h"
-#include "swath/geometry_notes.h"
 
 #define FIND_MOST     100
 #define FIND_CONTRAST 12.0 /* dB */
@@ -141,25 +140,6 @@ static sonject_status check_contacts(struct report *report, sonject_measure_para
     return check_spacings(report, params->row_spacing_m, params->column_spacing_m);
 }
 
-/* Spacings that nobody gave, where the image's file tells them. */
-static sonject_status find_spacings(struct report *report, const struct image_options *options,
-                                    sonject_measure_params *params)
-{
-    struct swath_file *file;
-    struct noted_geometry noted;
-    sonject_geometry_params told;
-    if (!params->image || params->row_spacing_m > 0.0 || params->column_spacing_m > 0.0)
-        return SONJECT_OK;
-    CHECK(swath_file_open_array(report, params->image, options->channel, options->array, &file));
-    geometry_notes_read(file, &noted);
-    swath_file_close(&file);
-    if (noted.axis != RANGE_GROUND && geometry_notes_tell(&noted, &told)) {
-        params->row_spacing_m = told.row_spacing_m;
-        params->column_spacing_m = told.column_spacing_m;
-    }
-    return SONJECT_OK;
-}
-
 sonject_status sonject_measure_contacts(sonject_context *context,
                                         const sonject_measure_params *params, char **text)
 {
@@ -174,7 +154,6 @@ sonject_status sonject_measure_contacts(sonject_context *context,
     memset(&measured, 0, sizeof measured);
     CHECK(take_image(report, params, &taken, &options));
     CHECK(check_contacts(report, &taken));
-    CHECK(find_spacings(report, &options, &taken));
     sonject_status status = taken.pixels ? take_amplitudes(report, taken.pixels, &measured)
                                          : read_amplitudes(report, &taken, &options, &measured);
     THEN(status, measured_square(report, &measured));

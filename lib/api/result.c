@@ -18,8 +18,6 @@ static sonject_status store_image(struct report *report, const struct swath *swa
     made->stored_type = swath->layout.type;
     made->stored = swath_stored_result(swath, &made->result, &statistics->output_clipped);
     CHECK_MEMORY(report, made->stored, "the result");
-    tell_empty(report, swath);
-    tell_clipped(report, statistics);
     return SONJECT_OK;
 }
 
@@ -51,15 +49,13 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *han
         if (swath.stored)
             THEN(status, store_image(report, &swath, made));
     }
+    if (status == SONJECT_OK)
+        tell_result(report, scene, &swath, &made->result);
     swath_close(&swath);
     if (status != SONJECT_OK) {
         sonject_result_release(&made);
         return status;
     }
-    tell_noise_floor(report, scene, &made->result.statistics);
-    tell_accuracy(report, &made->result.statistics);
-    tell_sediment(report, scene);
-    tell_seen(report, scene, &made->result);
     *result = made;
     return context_finish(context, SONJECT_OK);
 }

@@ -20,7 +20,7 @@
 #define TRACE_START 0.1
 #define WRITE_START 0.8
 
-void tell_accuracy(struct report *report, const sonject_statistics *statistics)
+static void tell_accuracy(struct report *report, const sonject_statistics *statistics)
 {
     if (!isnan(statistics->energy_error))
         report_log(report,
@@ -29,8 +29,8 @@ void tell_accuracy(struct report *report, const sonject_statistics *statistics)
                    100.0 * statistics->energy_error, statistics->ray_scale);
 }
 
-void tell_noise_floor(struct report *report, const struct scene *scene,
-                      const sonject_statistics *statistics)
+static void tell_noise_floor(struct report *report, const struct scene *scene,
+                             const sonject_statistics *statistics)
 {
     if (statistics->noise_floor_source == SONJECT_SOURCE_PATCH)
         report_log(report, "noise floor estimated from the patch: %.1f dB over the mean seabed",
@@ -42,7 +42,7 @@ void tell_noise_floor(struct report *report, const struct scene *scene,
                    statistics->noise_floor_db);
 }
 
-void tell_clipped(struct report *report, const sonject_statistics *statistics)
+static void tell_clipped(struct report *report, const sonject_statistics *statistics)
 {
     if (statistics->input_clipped > 0)
         report_log(report,
@@ -54,7 +54,7 @@ void tell_clipped(struct report *report, const sonject_statistics *statistics)
                    (unsigned long long)statistics->output_clipped);
 }
 
-void tell_empty(struct report *report, const struct swath *swath)
+static void tell_empty(struct report *report, const struct swath *swath)
 {
     char text[PING_LIST_CAPACITY];
     if (swath->skipped.count > 0)
@@ -65,7 +65,8 @@ void tell_empty(struct report *report, const struct swath *swath)
                    ping_list_text(&swath->empty, text));
 }
 
-void tell_sediment(struct report *report, const struct scene *scene)
+/* Where the model of sediments was not made for the frequency. */
+static void tell_sediment(struct report *report, const struct scene *scene)
 {
     const double frequency_khz = 1e-3 * scene->sonar.centre_frequency_hz;
     if (!isnan(scene->seabed.grain_size_phi) && !(frequency_khz >= 10.0 && frequency_khz <= 100.0))
@@ -85,8 +86,10 @@ static void tell_altitudes(struct report *report, const struct scene *scene)
                    scene->altitudes_m[0], scene->altitudes_m[1], scene->sonar.altitude_m);
 }
 
-void tell_seen(struct report *report, const struct scene *scene,
-               const struct injection_result *result)
+/* Objects that nobody would find who labels the image, and those of which little but white is left.
+ */
+static void tell_seen(struct report *report, const struct scene *scene,
+                      const struct injection_result *result)
 {
     for (uint32_t i = 0; i < result->object_count; i++) {
         const sonject_object_truth *truth = &result->objects[i];
@@ -110,28 +113,34 @@ void tell_seen(struct report *report, const struct scene *scene,
     }
 }
 
+void tell_result(struct report *report, const struct scene *scene, const struct swath *swath,
+                 const struct injection_result *result)
+{
+    const sonject_statistics *statistics = &result->statistics;
+    tell_empty(report, swath);
+    tell_noise_floor(report, scene, statistics);
+    tell_accuracy(report, statistics);
+    tell_sediment(report, scene);
+    tell_altitudes(report, scene);
+    tell_seen(report, scene, result);
+    tell_clipped(report, statistics);
+}
+
 static void add_note(void *user, const char *line)
 {
     json_append(user, json_string(line));
 }
 
-/* What is to be known of the result besides its numbers: told to the log and to the page. The
- * document of notes is NULL where memory is out. */
-static void note_seen(struct report *report, struct run_facts *facts)
+/* Tells the result to the log and to the page. The document of notes is NULL where memory is out.
+ */
+static void note_result(struct report *report, struct run_facts *facts)
 {
-    const sonject_statistics *statistics = &facts->result->statistics;
     json_t *notes = json_array();
     const struct report_host host = {.log_user = &notes};
     struct report noting = {{0}, add_note, &host};
     size_t i;
     const json_t *note;
-    tell_empty(&noting, facts->swath);
-    tell_noise_floor(&noting, facts->scene, statistics);
-    tell_accuracy(&noting, statistics);
-    tell_sediment(&noting, facts->scene);
-    tell_altitudes(&noting, facts->scene);
-    tell_seen(&noting, facts->scene, facts->result);
-    tell_clipped(&noting, statistics);
+    tell_result(&noting, facts->scene, facts->swath, facts->result);
     json_array_foreach(notes, i, note)
     {
         report_log(report, "%s", json_string_value(note));
@@ -175,7 +184,7 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
     THEN(status, swath_write(report, facts->scene, facts->swath, result, path, progress_share_tell,
                              &writing, &result->statistics.output_clipped));
     if (status == SONJECT_OK)
-        note_seen(report, facts);
+        note_result(report, facts);
     if (status == SONJECT_OK && facts->scene->input_kind == SONJECT_INPUT_FILE &&
         facts->swath->new_extension)
         report_log(report,

@@ -21,26 +21,10 @@
 sonject_status run_scene(struct report *report, struct device_slot *slot,
                          const struct run_request *request, int *was_finished);
 
-/* News of the noise floor, where it was estimated. */
-void tell_noise_floor(struct report *report, const struct scene *scene,
-                      const sonject_statistics *statistics);
-
-/* Stored pixels that full scale cuts, before or after. */
-void tell_clipped(struct report *report, const sonject_statistics *statistics);
-
-/* Rows and pings where nothing was heard. */
-void tell_empty(struct report *report, const struct swath *swath);
-
-/* How many rays the scene's accuracy took, if it asked for one. */
-void tell_accuracy(struct report *report, const sonject_statistics *statistics);
-
-/* Where the model of sediments was not made for the frequency. */
-void tell_sediment(struct report *report, const struct scene *scene);
-
-/* Objects that nobody would find who labels the image, and those of which little but white is left.
- */
-void tell_seen(struct report *report, const struct scene *scene,
-               const struct injection_result *result);
+/* Logs what is to be known of a result besides its numbers: empty rows, noise floor, accuracy,
+ * limits of models, altitudes, objects that are not seen, what full scale cuts. */
+void tell_result(struct report *report, const struct scene *scene, const struct swath *swath,
+                 const struct injection_result *result);
 
 /* Traces the request's scene and writes its sums to the file, and its impulses to export_file where
  * that is neither NULL nor "": sonject_trace. */
@@ -85,7 +69,7 @@ struct run_facts {
     const char *scene_hash; /* of scene and input: inject/scene_hash.h */
     json_t *inputs;         /* of what that is made */
     json_t *files;          /* that were written, as file_list_add has them */
-    json_t *page;           /* what report.html tells besides truth: see write_layers, note_seen */
+    json_t *page; /* what report.html tells besides truth: see write_layers, note_result */
     const char *image_name;
     uint32_t label_formats; /* sum of sonject_labels */
     double read_s, write_s, total_s;

@@ -466,6 +466,10 @@ sonject_status measure_listed_contacts(struct report *report, const sonject_meas
     memset(&image, 0, sizeof image);
     sonject_status status =
         take_boxes(&list, report, params, intensities->rows, intensities->columns);
+    if (!(list.row_spacing_m > 0.0 || list.column_spacing_m > 0.0)) {
+        list.row_spacing_m = intensities->row_spacing_m;
+        list.column_spacing_m = intensities->column_spacing_m;
+    }
     const bool looks = !params->truth && list.count == 0;
     size_t count = looks ? params->find_most : list.count;
     if (status == SONJECT_OK) {

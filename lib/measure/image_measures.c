@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "image/raster.h"
 #include "image/statistics.h"
+#include "swath/geometry_notes.h"
 #include "swath/swath_file.h"
 
 #define NEAR 2 /* pixels around changed ones: rounding hides small changes */
@@ -86,9 +87,22 @@ struct measured_image {
     const char *array;
 };
 
-/* All of an image; *stored is for free(). */
+/* The spacings that a file tells. */
+static void take_spacings(const struct swath_file *file, struct measured *measured)
+{
+    struct noted_geometry noted;
+    sonject_geometry_params told;
+    geometry_notes_read(file, &noted);
+    if (noted.axis == RANGE_GROUND || !geometry_notes_tell(&noted, &told))
+        return;
+    measured->row_spacing_m = told.row_spacing_m;
+    measured->column_spacing_m = told.column_spacing_m;
+}
+
+/* All of an image; *stored is for free(). measured: gets the spacings; NULL: nobody asks. */
 static sonject_status read_stored(struct report *report, const struct measured_image *image,
-                                  struct raster_layout *layout, void **stored)
+                                  struct raster_layout *layout, void **stored,
+                                  struct measured *measured)
 {
     struct swath_file *file = NULL;
     size_t bytes = 0;
@@ -96,6 +110,8 @@ static sonject_status read_stored(struct report *report, const struct measured_i
     CHECK(swath_file_open_beside(report, image->path, image->other, image->channel, image->array,
                                  &file));
     swath_file_layout(file, layout);
+    if (measured)
+        take_spacings(file, measured);
     const struct region whole = {0, 0, layout->rows, layout->columns};
     if (layout->rows * layout->columns <= (uint64_t)1 << 31 && region_bytes(layout, &whole, &bytes))
         *stored = allocate_array(bytes, 1);
@@ -112,7 +128,7 @@ static sonject_status read_image(struct report *report, const struct measured_im
     void *stored = NULL;
     size_t bad = 0;
     uint64_t clipped = 0;
-    sonject_status status = read_stored(report, image, &layout, &stored);
+    sonject_status status = read_stored(report, image, &layout, &stored, measured);
     if (status != SONJECT_OK) {
         free(stored);
         return status;
@@ -157,7 +173,7 @@ static sonject_status read_mask(struct report *report, const char *path,
     if (!path)
         return SONJECT_OK;
     const struct measured_image image = {path, NULL, SONJECT_CHANNEL_ONLY, NULL};
-    sonject_status status = read_stored(report, &image, &layout, &stored);
+    sonject_status status = read_stored(report, &image, &layout, &stored, NULL);
     THEN(status, check_size(report, path, layout.rows, layout.columns, measured));
     if (status == SONJECT_OK) {
         const size_t bytes = layout.channels * pixel_bytes(layout.type);

@@ -38,8 +38,9 @@ sonject_status check_spacings(struct report *report, double row_spacing_m, doubl
 struct measured {
     size_t rows, columns;
     float *amplitudes;
-    float *before;               /* amplitudes; NULL: not told */
-    uint8_t *influence, *labels; /* NULL: not told */
+    float *before;                          /* amplitudes; NULL: not told */
+    uint8_t *influence, *labels;            /* NULL: not told */
+    double row_spacing_m, column_spacing_m; /* that its file tells, of slant range; 0: none */
 };
 void measured_clear(struct measured *measured);
 

@@ -35,6 +35,7 @@ def write_mesh(path: PathLike, vertices: Any, faces: Any) -> str:
     head = ("ply\nformat binary_little_endian 1.0\n"
             f"element vertex {len(points)}\n" + "".join(f"property double {axis}\n" for axis in "xyz")
             + f"element face {len(corners)}\nproperty list uchar uint vertex_indices\nend_header\n")
-    with open(name, "wb") as file:
+    with open(name + ".part", "wb") as file:
         file.write(head.encode("ascii") + points.astype("<f8").tobytes() + rows.tobytes())
+    os.replace(name + ".part", name)  # whole or not at all
     return name
