@@ -248,7 +248,7 @@ static bool rows_of_objects(const struct scene *scene, uint64_t rows, double row
         low = fmin(low, row);
         high = fmax(high, row);
     }
-    if (scene->object_count == 0 || !(low >= 0.0 && high <= (double)(rows - 1)))
+    if (!(low >= 0.0 && low <= high && high <= (double)(rows - 1))) /* also where there are none */
         return false;
     *first = (uint64_t)low;
     *count = (uint64_t)ceil(high) - *first + 1;
