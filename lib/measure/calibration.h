@@ -110,7 +110,8 @@ struct calibration {
     struct plain_tiles tiles;
     struct estimate full_scale, clipped, looks, shape;
     struct estimate along_rows, range_columns; /* half-power widths of the response, pixels */
-    struct estimate noise_floor_db;            /* over the swath's median seabed */
+    struct estimate noise_floor_db;            /* over the seabed about shadows */
+    size_t shadows;                            /* that tell it */
     struct estimate nadir_column, altitude_m;
     struct first_returns returns;
     double row_spacing_m, column_spacing_m, first_slant_range_m; /* NAN: unknown */

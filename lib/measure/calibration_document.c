@@ -205,7 +205,10 @@ json_t *calibration_document(const struct calibration *found, const char *path, 
     json_add(&measured, "response_range",
              measured_response(&found->range_columns, found->correlation[1], "columns",
                                found->column_spacing_m));
-    json_add(&measured, "noise_floor", seen(&found->noise_floor_db, "dB"));
+    json_t *floor = seen(&found->noise_floor_db, "dB");
+    if (!found->noise_floor_db.unseen)
+        json_add(&floor, "shadows", json_count(found->shadows));
+    json_add(&measured, "noise_floor", floor);
     if (found->returns.sides != WATER_UNSEEN)
         json_add(&measured, "sides", json_text(side_words[found->returns.sides]));
     json_t *nadir = seen(&found->nadir_column, NULL);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "image/shadow_floor.h"
 #include "image/statistics.h"
 
 #define DECIBELS 4.3429448190325182 /* of one neper of intensity */
@@ -18,16 +19,9 @@
 #define UNEVEN_MOST          2.0  /* of the tiles' median variance */
 #define PEAK_MOST            14.0 /* over a tile's mean; brighter pixels are no speckle */
 
-/* Noise floor: blocks of pixels. */
-#define BLOCK           4
-#define TREND_BANDS     6   /* a running mean reaches so small a part of the bands to either side */
-#define DARK            0.1 /* of the median seabed, -10 dB */
-#define FLOOR_HIGHEST   0.063 /* -12 dB; what is not darker may be seabed */
-#define BLOCKS_LEAST    8     /* in all, each amid dark ones */
-#define COMPONENT_LEAST 4     /* in one dark part */
-#define SAME_LEVEL      2.0   /* 3 dB */
-#define ROUNDING_MOST   0.05  /* of the floor */
-#define LOWEST_SHARE    0.05  /* of pixels that may lie at the lowest number */
+/* Noise floor. */
+#define ROUNDING_MOST 0.05 /* of the floor */
+#define LOWEST_SHARE  0.05 /* of pixels that may lie at the lowest number */
 
 static double median_level(const struct calibration *found, double *scratch)
 {
@@ -204,164 +198,33 @@ static void find_gain(struct calibration *found, double level)
     }
 }
 
-/* The seabed's trend over range: running means over the bands that have tiles, over the median
- * level. scatter: what the bands scatter about it, dB. */
-static void find_trend(const struct calibration *found, double trend[GAIN_BANDS], double *scatter)
-{
-    const size_t bands = found->gain_bands;
-    double squares = 0.0, count = 0.0, last = 1.0;
-    for (size_t band = 0; band < bands; band++) {
-        double sum = 0.0, near = 0.0;
-        for (size_t k = 0; k < bands; k++) {
-            const size_t apart = k > band ? k - band : band - k;
-            if (apart <= bands / TREND_BANDS && !isnan(found->gain_db[k])) {
-                sum += found->gain_db[k];
-                near += 1.0;
-            }
-        }
-        trend[band] = near > 0.0 ? exp(sum / near / DECIBELS) : NAN;
-        if (near > 0.0 && !isnan(found->gain_db[band])) {
-            squares += (found->gain_db[band] - sum / near) * (found->gain_db[band] - sum / near);
-            count += 1.0;
-        }
-    }
-    *scatter = count > 0.0 ? sqrt(squares / count) : 0.0;
-    for (size_t band = bands; band-- > 0;) /* in the water that of the seabed behind it */
-        last = trend[band] = isnan(trend[band]) ? last : trend[band];
-    for (size_t band = 0; band < bands; band++)
-        last = trend[band] = isfinite(trend[band]) ? trend[band] : last;
-}
+/* ---- The noise floor, from shadows. */
 
-/* ---- The noise floor, from what is dark. */
-
-struct block_map {
-    size_t rows, columns; /* in blocks */
-    double trend[GAIN_BANDS], trend_scatter_db;
-    double *means;
-    size_t *parts; /* number of the dark part that a block is amid, from 1; 0: none */
-};
-
-struct dark_part {
-    double mean;
-    size_t blocks, number;
-};
-
-static int compare_parts(const void *a, const void *b)
-{
-    const double x = ((const struct dark_part *)a)->mean;
-    const double y = ((const struct dark_part *)b)->mean;
-    return (x > y) - (x < y);
-}
-
-static double trend_at(const struct calibration *found, const struct block_map *map, size_t block)
-{
-    const size_t column = block % map->columns * BLOCK + BLOCK / 2;
-    return map->trend[column * found->gain_bands / found->columns];
-}
-
-/* Means of blocks over the seabed at their range; those of nothing but 0 are blank, not dark, and
- * infinite here. */
-static void fill_blocks(const struct calibration *found, const struct stored_swath *swath,
-                        const float *intensity, struct block_map *map)
-{
-    for (size_t i = 0; i < map->rows * map->columns; i++) {
-        double sum = 0.0;
-        bool is_blank = true;
-        for (size_t k = 0; k < BLOCK * BLOCK; k++) {
-            const size_t at = (i / map->columns * BLOCK + k / BLOCK) * swath->columns +
-                              i % map->columns * BLOCK + k % BLOCK;
-            sum += (double)intensity[at];
-            is_blank = is_blank && swath->values[at] == 0.0f;
-        }
-        map->means[i] = is_blank ? INFINITY : sum / (BLOCK * BLOCK) / trend_at(found, map, i);
-    }
-}
-
-static bool is_amid_dark(const struct block_map *map, size_t row, size_t column)
-{
-    if (row == 0 || column == 0 || row + 1 >= map->rows || column + 1 >= map->columns)
-        return false;
-    for (size_t i = 0; i < 9; i++)
-        if (!(map->means[(row + i / 3 - 1) * map->columns + column + i % 3 - 1] < DARK))
-            return false;
-    return true;
-}
-
-/* Gives all blocks that hang together the part's number; stack: room for all blocks. */
-static struct dark_part flood(struct block_map *map, size_t start, size_t number, size_t *stack)
-{
-    struct dark_part part = {0.0, 0, number};
-    size_t height = 0;
-    stack[height++] = start;
-    map->parts[start] = number;
-    while (height > 0) {
-        const size_t at = stack[--height];
-        const size_t beside[] = {at - 1, at + 1, at - map->columns, at + map->columns};
-        part.mean += map->means[at];
-        part.blocks++;
-        for (size_t i = 0; i < 4; i++) /* none lies at the map's edge */
-            if (map->parts[beside[i]] == 0 &&
-                is_amid_dark(map, beside[i] / map->columns, beside[i] % map->columns)) {
-                map->parts[beside[i]] = number;
-                stack[height++] = beside[i];
-            }
-    }
-    part.mean /= (double)part.blocks;
-    return part;
-}
-
-/* The darkest parts that are as dark as each other: how many of the sorted list. */
-static size_t count_darkest(const struct dark_part *list, size_t count, double *mean,
-                            size_t *blocks)
-{
-    size_t taken = 0;
-    *mean = 0.0;
-    *blocks = 0;
-    while (taken < count && (taken == 0 || list[taken].mean < SAME_LEVEL * *mean)) {
-        const double sum = *mean * (double)*blocks + list[taken].mean * (double)list[taken].blocks;
-        *blocks += list[taken].blocks;
-        *mean = sum / (double)*blocks;
-        taken++;
-    }
-    return taken;
-}
-
-/* What rounding to stored steps adds to the mean of intensities, and which share of the pixels lies
- * at the lowest number. */
+/* What rounding to stored steps adds to the intensities of the shadows' pixels, as a share of them,
+ * and which share of these pixels lies at the lowest number. */
 static void look_at_steps(const struct calibration *found, const struct stored_swath *swath,
-                          const struct block_map *map, const uint8_t *is_taken, double lowest,
-                          double level, double *rounding, double *at_lowest)
+                          const float *intensity, const uint8_t *states, double level,
+                          double *rounding, double *at_lowest)
 {
-    size_t pixels = 0, low = 0;
-    *rounding = 0.0;
-    for (size_t i = 0; i < map->rows * map->columns; i++) {
-        if (!is_taken[map->parts[i]])
+    const size_t count = swath->rows * swath->columns;
+    double pixels = 0.0, low = 0.0, sum = 0.0, squares = 0.0, lowest = INFINITY;
+    for (size_t i = 0; i < count; i++)
+        lowest = fmin(lowest, (double)swath->values[i]);
+    for (size_t i = 0; i < count; i++) {
+        if (!(states[i] & SHADOW_CORE))
             continue;
-        for (size_t k = 0; k < BLOCK * BLOCK; k++) {
-            const size_t at = (i / map->columns * BLOCK + k / BLOCK) * swath->columns +
-                              i % map->columns * BLOCK + k % BLOCK;
-            const double value = (double)swath->values[at], half = 0.5 * swath->unit;
-            const double step =
-                exp(0.5 * (pixel_log_intensity(found, swath, value + half) - level)) -
-                (value > half ? exp(0.5 * (pixel_log_intensity(found, swath, value - half) - level))
-                              : 0.0);
-            *rounding += half > 0.0 ? step * step / 12.0 / trend_at(found, map, i) : 0.0;
-            low += value <= lowest;
-            pixels++;
-        }
+        const double value = (double)swath->values[i], half = 0.5 * swath->unit;
+        const double step =
+            exp(0.5 * (pixel_log_intensity(found, swath, value + half) - level)) -
+            (value > half ? exp(0.5 * (pixel_log_intensity(found, swath, value - half) - level))
+                          : 0.0);
+        squares += half > 0.0 ? step * step / 12.0 : 0.0;
+        sum += (double)intensity[i];
+        low += value <= lowest;
+        pixels += 1.0;
     }
-    *rounding /= (double)pixels;
-    *at_lowest = (double)low / (double)pixels;
-}
-
-static double block_deviation(const struct block_map *map, const uint8_t *is_taken, double mean,
-                              size_t blocks)
-{
-    double squares = 0.0;
-    for (size_t i = 0; i < map->rows * map->columns; i++)
-        if (is_taken[map->parts[i]])
-            squares += (map->means[i] - mean) * (map->means[i] - mean);
-    return sqrt(squares / (double)blocks);
+    *rounding = squares / sum;
+    *at_lowest = low / pixels;
 }
 
 /* By how many dB a standard error of the curve's parameter moves the floor over the seabed. */
@@ -382,76 +245,48 @@ static double floor_by_parameter(const struct calibration *found, double level, 
     return DECIBELS * (slopes[0] - slopes[1]) * error;
 }
 
-static void judge_floor(const struct calibration *found, const struct stored_swath *swath,
-                        struct block_map *map, struct dark_part *list, size_t count, double level,
-                        uint8_t *is_taken, struct estimate *noise)
+static void judge_floor(struct calibration *found, const struct stored_swath *swath,
+                        const struct shadow_floor *shadows, const float *intensity,
+                        const uint8_t *states, double level)
 {
-    double mean, rounding, at_lowest, lowest = INFINITY;
-    size_t blocks;
-    qsort(list, count, sizeof *list, compare_parts);
-    const size_t taken = count_darkest(list, count, &mean, &blocks);
-    noise->how = "darkest shadows or water column, over the seabed at their range";
-    noise->unseen = "no shadow or water column of 16 x 16 pixels lies 12 dB under the seabed and "
-                    "above 0";
-    if (blocks < BLOCKS_LEAST || !(mean < FLOOR_HIGHEST))
+    struct estimate *noise = &found->noise_floor_db;
+    double rounding, at_lowest;
+    found->shadows = shadows->shadows;
+    noise->how = "mean over shadows amid the seabed, each over the seabed about it";
+    noise->unseen = found->returns.sides == WATER_UNSEEN
+                        ? "no shadow lies amid the seabed, 9 dB under it"
+                        : "no shadow lies amid the seabed, 9 dB under it; the water column is none";
+    if (shadows->shadows == 0)
         return;
-    for (size_t i = 0; i < taken; i++)
-        is_taken[list[i].number] = 1;
-    for (size_t i = 0; i < swath->rows * swath->columns; i++)
-        lowest = fmin(lowest, (double)swath->values[i]);
-    look_at_steps(found, swath, map, is_taken, lowest, level, &rounding, &at_lowest);
-    noise->unseen = "the darkest shadows lie below what the stored numbers tell apart";
-    if ((found->family == CURVE_DECIBEL && at_lowest > LOWEST_SHARE) ||
-        rounding > ROUNDING_MOST * mean)
+    look_at_steps(found, swath, intensity, states, level, &rounding, &at_lowest);
+    noise->unseen = "the shadows lie below what the stored numbers tell apart";
+    if ((found->family == CURVE_DECIBEL && at_lowest > LOWEST_SHARE) || rounding > ROUNDING_MOST)
         return;
     noise->unseen = NULL;
-    const double floor = mean - rounding;
-    /* neighbouring blocks share their speckle: as if there were a quarter of them */
-    double scatter =
-        block_deviation(map, is_taken, mean, blocks) / mean / sqrt(0.25 * (double)blocks);
-    double squares = 0.0;
-    for (size_t i = 0; i < taken; i++)
-        squares += (double)list[i].blocks * (list[i].mean - mean) * (list[i].mean - mean);
-    if (taken > 2)
-        scatter = fmax(scatter, sqrt(squares / (double)blocks / (double)(taken - 1)) / mean);
-    noise->value = DECIBELS * log(floor);
-    noise->error = hypot(hypot(DECIBELS * (scatter + 0.5 * rounding / floor),
-                               map->trend_scatter_db / sqrt((double)taken)),
-                         floor_by_parameter(found, level, log(floor)));
+    const double log_floor = shadows->log_ratio + log(1.0 - rounding);
+    noise->value = DECIBELS * log_floor;
+    noise->error = hypot(DECIBELS * (shadows->log_error + 0.5 * rounding),
+                         floor_by_parameter(found, level, log_floor));
 }
 
 static sonject_status find_floor(struct report *report, struct calibration *found,
                                  const struct stored_swath *swath, const float *intensity,
                                  double level)
 {
-    struct block_map map = {.rows = swath->rows / BLOCK, .columns = swath->columns / BLOCK};
-    const size_t blocks = map.rows * map.columns;
-    map.means = allocate_array(blocks, sizeof *map.means);
-    map.parts = allocate_array(blocks, sizeof *map.parts);
-    size_t *stack = allocate_array(blocks, sizeof *stack);
-    struct dark_part *list = allocate_array(blocks + 1, sizeof *list);
-    uint8_t *is_taken = allocate_array(blocks + 1, 1);
-    const bool is_complete = map.means && map.parts && stack && list && is_taken;
-    size_t count = 0, number = 0;
-    if (is_complete) {
-        find_trend(found, map.trend, &map.trend_scatter_db);
-        fill_blocks(found, swath, intensity, &map);
-        for (size_t i = 0; i < blocks; i++) {
-            if (map.parts[i] != 0 || !is_amid_dark(&map, i / map.columns, i % map.columns))
-                continue;
-            const struct dark_part part = flood(&map, i, ++number, stack);
-            if (part.blocks >= COMPONENT_LEAST)
-                list[count++] = part;
-        }
-        judge_floor(found, swath, &map, list, count, level, is_taken, &found->noise_floor_db);
+    const size_t count = swath->rows * swath->columns;
+    uint8_t *states = allocate_array(count, 1);
+    struct shadow_floor shadows;
+    CHECK_MEMORY(report, states, "a calibration");
+    for (size_t i = 0; i < count; i++) {
+        const struct water_place place = {i / swath->columns, i % swath->columns, 1, 1};
+        states[i] = first_returns_cover(&found->returns, &place, swath->columns);
     }
-    free(map.means);
-    free(map.parts);
-    free(stack);
-    free(list);
-    free(is_taken);
-    CHECK_MEMORY(report, is_complete, "a calibration");
-    return SONJECT_OK;
+    const sonject_status status =
+        shadow_floor_find(report, intensity, states, swath->rows, swath->columns, &shadows);
+    if (status == SONJECT_OK)
+        judge_floor(found, swath, &shadows, intensity, states, level);
+    free(states);
+    return status;
 }
 
 /* ---- The water column. */

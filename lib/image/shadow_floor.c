@@ -1,0 +1,322 @@
+#include "image/shadow_floor.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "image/statistics.h"
+
+/* Of the local mean that is the seabed's level, pixels, and of the image's shorter side. */
+#define LEVEL_DEVIATION 28.0
+#define LEVEL_SHARE     0.04
+#define SHARE_LEAST     0.02 /* of pixels about one that tell its level */
+#define PLAIN           4.0f /* seabed lies within 6 dB of the level */
+#define DARK            0.25f
+#define BLANK           1e-6f /* of the level; nothing but 0 is no shadow */
+#define HIGHEST         0.126 /* -9 dB; a part that is not so dark is dim ground */
+#define LAGS            8     /* pixels; from here on speckle is forgotten */
+#define BRIGHTEST       6.0   /* over the level, of pixels whose speckle counts */
+#define LOOKS_LEAST     4.0   /* independent pixels, of a shadow's middle */
+
+/* What else makes a shadow's level uncertain, a look's variance: the middle of a small one is near
+ * its edges, which fill it. */
+#define EDGES 3.0
+
+/* Deviations of the means that shadows are looked for in, at least, and for each pixel of speckle's
+ * length: about 3 rows and 7 columns, which hold ten independent pixels or more. */
+#define ROW_DEVIATION    0.85
+#define ROW_BY_LENGTH    0.6
+#define COLUMN_DEVIATION 2.0
+#define COLUMN_BY_LENGTH 1.5
+#define BEYOND           2.0  /* of the deviations, where a shadow's end has made way to seabed */
+#define SHARP            0.5f /* of the level */
+#define LEAST_BY_COLUMN  4.0  /* columns of a shadow, of these deviations */
+
+/* Deviation of shadows' levels where fewer than three tell it, nepers: 4 dB, as they differ in a
+ * sidescan line of 600 kHz. */
+#define SCATTER_UNKNOWN 0.92
+
+/* A pixel's state: what it is, and whether it lies in the middle of its dark run along an axis. */
+enum {
+    SEABED = 0,
+    NO_SEABED = 1,
+    SHADOW = 2,
+    KINDS = 3,
+    MIDDLE = 4, /* of the rows; twice that of the columns */
+    SEEN = 32
+};
+
+struct shadow_search {
+    const float *intensity;
+    uint8_t *states;
+    size_t rows, columns;
+    float *weights, *smooth, *level, *scratch;
+    double row_length, column_length; /* of a look, pixels */
+    double variance;                  /* of speckle, over the mean's square */
+    double row_deviation, column_deviation, level_deviation;
+};
+
+struct shadow {
+    double log_ratio, variance;
+};
+
+static bool holds(const struct shadow_search *search, size_t i, int kind)
+{
+    return (search->states[i] & KINDS) == kind;
+}
+
+/* Local means of the values that have a weight; not a number where hardly any is near. */
+static sonject_status weighted_mean(struct report *report, const struct shadow_search *search,
+                                    const float *values, double row_deviation,
+                                    double column_deviation, float *mean)
+{
+    const size_t count = search->rows * search->columns;
+    for (size_t i = 0; i < count; i++)
+        search->scratch[i] = search->weights[i] * values[i];
+    CHECK(local_mean(report, search->scratch, search->rows, search->columns, row_deviation,
+                     column_deviation, mean));
+    CHECK(local_mean(report, search->weights, search->rows, search->columns, row_deviation,
+                     column_deviation, search->scratch));
+    for (size_t i = 0; i < count; i++)
+        mean[i] = search->scratch[i] > (float)SHARE_LEAST ? mean[i] / search->scratch[i] : NAN;
+    return SONJECT_OK;
+}
+
+/* How many pixels along an axis are one look, by the squared differences of pixels some way apart;
+ * variance: of a pixel. */
+static double look_length(const struct shadow_search *search, size_t step, size_t length,
+                          double *variance)
+{
+    const size_t count = search->rows * search->columns;
+    double sums[LAGS + 1] = {0.0}, counts[LAGS + 1] = {0.0}, sum = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        const double own = (double)search->intensity[i] / (double)search->level[i];
+        if (!holds(search, i, SEABED) || !(own < BRIGHTEST))
+            continue;
+        sum += own;
+        counts[0] += 1.0;
+        for (size_t lag = 1; lag <= LAGS && i / step % length + lag < length; lag++) {
+            const size_t at = i + lag * step;
+            const double other = (double)search->intensity[at] / (double)search->level[at];
+            if (!holds(search, at, SEABED) || !(other < BRIGHTEST))
+                continue;
+            sums[lag] += (own - other) * (own - other);
+            counts[lag] += 1.0;
+        }
+    }
+    const double far = sums[LAGS] / fmax(1.0, counts[LAGS]);
+    const double mean = sum / fmax(1.0, counts[0]);
+    double pixels = 1.0;
+    for (size_t lag = 1; far > 0.0 && lag < LAGS; lag++)
+        pixels += 2.0 * fmax(0.0, 1.0 - sums[lag] / fmax(1.0, counts[lag]) / far);
+    *variance = far > 0.0 ? fmin(1.0, 0.5 * far / (mean * mean)) : 1.0;
+    return pixels;
+}
+
+/* Fills the seabed's level and the means that shadows are looked for in, and tells apart what is
+ * dark. */
+static sonject_status find_dark(struct report *report, struct shadow_search *search)
+{
+    const size_t count = search->rows * search->columns;
+    const size_t side = search->rows < search->columns ? search->rows : search->columns;
+    double variance;
+    search->level_deviation = fmax(LEVEL_DEVIATION, LEVEL_SHARE * (double)side);
+    for (size_t i = 0; i < count; i++) {
+        search->weights[i] = holds(search, i, SEABED) ? 1.0f : 0.0f;
+        search->smooth[i] = sqrtf(sqrtf(search->intensity[i])); /* so that no highlight counts */
+    }
+    CHECK(weighted_mean(report, search, search->smooth, search->level_deviation,
+                        search->level_deviation, search->level));
+    for (size_t i = 0; i < count; i++)
+        search->level[i] *= search->level[i] * search->level[i] * search->level[i];
+    search->row_length = look_length(search, search->columns, search->rows, &variance);
+    search->column_length = look_length(search, 1, search->columns, &search->variance);
+    search->variance = fmax(search->variance, variance);
+    search->column_deviation = fmax(COLUMN_DEVIATION, COLUMN_BY_LENGTH * search->column_length);
+    search->row_deviation = fmax(ROW_DEVIATION, ROW_BY_LENGTH * search->row_length);
+    CHECK(weighted_mean(report, search, search->intensity, search->row_deviation,
+                        search->column_deviation, search->smooth));
+    for (size_t i = 0; i < count; i++)
+        if (!(search->smooth[i] * PLAIN > search->level[i] &&
+              search->smooth[i] < PLAIN * search->level[i]))
+            search->weights[i] = 0.0f;
+    CHECK(weighted_mean(report, search, search->intensity, search->level_deviation,
+                        search->level_deviation, search->level));
+    for (size_t i = 0; i < count; i++) {
+        if (!(search->smooth[i] > BLANK * search->level[i]))
+            search->states[i] = NO_SEABED;
+        else if (holds(search, i, SEABED) && search->smooth[i] < DARK * search->level[i])
+            search->states[i] = SHADOW;
+    }
+    return SONJECT_OK;
+}
+
+/* An axis along which dark runs are looked at. */
+struct axis {
+    size_t step, length, lines_apart; /* of pixels, and from line to line */
+    double deviation;                 /* of the means */
+    size_t least;                     /* pixels of a run */
+    bool is_sharp;                    /* where it ends */
+    uint8_t mark;
+};
+
+/* Whether a dark run ends at seabed, one pixel beyond its last. Along the track, where no shadow
+ * fades away, what lies some pixels beyond it must be bright, too; dim ground has no such edges. */
+static bool ends(const struct shadow_search *search, const struct axis *axis, size_t first,
+                 size_t last, size_t beyond)
+{
+    const size_t at = first + beyond * axis->step;
+    return holds(search, first + last * axis->step, SEABED) &&
+           (!axis->is_sharp || search->smooth[at] > SHARP * search->level[at]);
+}
+
+/* Marks the middle thirds of dark runs along an axis that begin and end at seabed. */
+static void mark_middles(const struct shadow_search *search, const struct axis *axis)
+{
+    const size_t lines = search->rows * search->columns / axis->length, step = axis->step;
+    const size_t beyond = axis->is_sharp ? (size_t)ceil(BEYOND * axis->deviation) : 1;
+    for (size_t line = 0; line < lines; line++) {
+        const size_t first = line * axis->lines_apart;
+        for (size_t start = 0, end; start < axis->length; start = end) {
+            const bool is_dark = holds(search, first + start * step, SHADOW);
+            end = start + 1;
+            while (end < axis->length && is_dark == holds(search, first + end * step, SHADOW))
+                end++;
+            if (!is_dark || end - start < axis->least || start < beyond ||
+                end - 1 + beyond >= axis->length ||
+                !ends(search, axis, first, start - 1, start - beyond) ||
+                !ends(search, axis, first, end, end - 1 + beyond))
+                continue;
+            const size_t third = (end - start) / 3;
+            for (size_t k = start + third; k < end - third; k++)
+                search->states[first + k * step] |= axis->mark;
+        }
+    }
+}
+
+/* Lists a shadow's pixels from one on; list has room for all dark ones. */
+static size_t list_shadow(const struct shadow_search *search, size_t start, size_t *list)
+{
+    size_t count = 1;
+    list[0] = start;
+    search->states[start] |= SEEN;
+    for (size_t done = 0; done < count; done++) {
+        const size_t row = list[done] / search->columns, column = list[done] % search->columns;
+        const size_t beside[] = {list[done] - search->columns, list[done] + search->columns,
+                                 list[done] - 1, list[done] + 1};
+        const bool is_inside[] = {row > 0, row + 1 < search->rows, column > 0,
+                                  column + 1 < search->columns};
+        for (int i = 0; i < 4; i++)
+            if (is_inside[i] && holds(search, beside[i], SHADOW) &&
+                !(search->states[beside[i]] & SEEN)) {
+                search->states[beside[i]] |= SEEN;
+                list[count++] = beside[i];
+            }
+    }
+    return count;
+}
+
+/* Whether a dark part's middle tells a shadow's level. */
+static bool judge_shadow(const struct shadow_search *search, const size_t *list, size_t count,
+                         struct shadow *shadow)
+{
+    const int middle = 3 * MIDDLE;
+    double sum = 0.0, pixels = 0.0;
+    for (size_t k = 0; k < count; k++)
+        if ((search->states[list[k]] & middle) == middle) {
+            sum += (double)search->intensity[list[k]] / (double)search->level[list[k]];
+            pixels += 1.0;
+        }
+    const double looks = pixels / (search->row_length * search->column_length);
+    if (!(looks >= LOOKS_LEAST) || !(sum < HIGHEST * pixels) || !(sum > 0.0))
+        return false;
+    for (size_t k = 0; k < count; k++)
+        if ((search->states[list[k]] & middle) == middle)
+            search->states[list[k]] |= SHADOW_CORE;
+    shadow->variance = (search->variance + EDGES) / looks;
+    /* the logarithm of a mean of few looks lies low */
+    shadow->log_ratio = log(sum / pixels) + 0.5 * search->variance / looks;
+    return true;
+}
+
+/* The mean over shadows that differ by more than their speckle: each weighs what both variances
+ * leave it (R. DerSimonian, N. Laird, "Meta-analysis in clinical trials", Controlled Clinical
+ * Trials 7, 1986). */
+static void average(const struct shadow *shadows, size_t count, struct shadow_floor *found)
+{
+    double between = SCATTER_UNKNOWN * SCATTER_UNKNOWN;
+    found->shadows = count;
+    for (int pass = count < 3; pass < 2; pass++) {
+        double sum = 0.0, weights = 0.0, squares = 0.0, off = 0.0;
+        for (size_t i = 0; i < count; i++) {
+            const double weight = 1.0 / (shadows[i].variance + (pass == 1 ? between : 0.0));
+            sum += weight * shadows[i].log_ratio;
+            weights += weight;
+            squares += weight * weight;
+        }
+        found->log_ratio = sum / weights;
+        found->log_error = 1.0 / sqrt(weights);
+        for (size_t i = 0; i < count; i++)
+            off += (shadows[i].log_ratio - found->log_ratio) *
+                   (shadows[i].log_ratio - found->log_ratio) / shadows[i].variance;
+        if (pass == 0)
+            between = fmax(0.0, (off - (double)(count - 1)) / (weights - squares / weights));
+    }
+}
+
+static sonject_status find_shadows(struct report *report, struct shadow_search *search,
+                                   struct shadow_floor *found)
+{
+    const size_t count = search->rows * search->columns;
+    const struct axis along = {search->columns, search->rows, 1, search->row_deviation, 1, true,
+                               MIDDLE};
+    const struct axis range = {1,
+                               search->columns,
+                               search->columns,
+                               search->column_deviation,
+                               (size_t)(LEAST_BY_COLUMN * search->column_deviation),
+                               false,
+                               2 * MIDDLE};
+    size_t dark = 0, shadows = 0;
+    mark_middles(search, &along);
+    mark_middles(search, &range);
+    for (size_t i = 0; i < count; i++)
+        dark += holds(search, i, SHADOW);
+    size_t *list = allocate_array(dark, sizeof *list);
+    struct shadow *all = allocate_array(dark / (size_t)LOOKS_LEAST + 1, sizeof *all);
+    const bool is_complete = list && all;
+    for (size_t i = 0; is_complete && i < count; i++)
+        if ((search->states[i] & (3 * MIDDLE)) == 3 * MIDDLE && !(search->states[i] & SEEN)) {
+            const size_t pixels = list_shadow(search, i, list);
+            shadows += judge_shadow(search, list, pixels, &all[shadows]);
+        }
+    if (shadows > 0)
+        average(all, shadows, found);
+    free(list);
+    free(all);
+    CHECK_MEMORY(report, is_complete, "an image's shadows");
+    return SONJECT_OK;
+}
+
+sonject_status shadow_floor_find(struct report *report, const float *intensity, uint8_t *states,
+                                 size_t rows, size_t columns, struct shadow_floor *found)
+{
+    const size_t count = rows * columns;
+    float *planes = allocate_array(count, 4 * sizeof *planes);
+    struct shadow_search search = {.intensity = intensity,
+                                   .states = states,
+                                   .rows = rows,
+                                   .columns = columns,
+                                   .weights = planes,
+                                   .smooth = planes + count,
+                                   .level = planes + 2 * count,
+                                   .scratch = planes + 3 * count};
+    memset(found, 0, sizeof *found);
+    CHECK_MEMORY(report, planes, "an image's shadows");
+    sonject_status status = find_dark(report, &search);
+    THEN(status, find_shadows(report, &search, found));
+    free(planes);
+    return status;
+}
