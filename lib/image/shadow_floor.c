@@ -11,14 +11,15 @@
 /* Of the local mean that is the seabed's level, pixels, and of the image's shorter side. */
 #define LEVEL_DEVIATION 28.0
 #define LEVEL_SHARE     0.04
-#define SHARE_LEAST     0.02 /* of pixels about one that tell its level */
-#define PLAIN           4.0f /* seabed lies within 6 dB of the level */
-#define DARK            0.25f
-#define BLANK           1e-6f /* of the level; nothing but 0 is no shadow */
-#define HIGHEST         0.126 /* -9 dB; a part that is not so dark is dim ground */
-#define LAGS            8     /* pixels; from here on speckle is forgotten */
-#define BRIGHTEST       6.0   /* over the level, of pixels whose speckle counts */
-#define LOOKS_LEAST     4.0   /* independent pixels, of a shadow's middle */
+#define SHARE_LEAST     0.02     /* of pixels about one that tell its level */
+#define PLAIN           4.0f     /* seabed lies within 6 dB of the level */
+#define DARK            0.316f   /* 5 dB */
+#define BLANK           1e-6f    /* of the level; nothing but 0 is no shadow */
+#define HIGHEST         0.126    /* -9 dB; a part that is not so dark is dim ground */
+#define LONE_HIGHEST    (-2.763) /* -12 dB, as a logarithm, where there is but one */
+#define LAGS            8        /* pixels; from here on speckle is forgotten */
+#define BRIGHTEST       6.0      /* over the level, of pixels whose speckle counts */
+#define LOOKS_LEAST     3.0      /* independent pixels, of a shadow's middle */
 
 /* What else makes a shadow's level uncertain, a look's variance: the middle of a small one is near
  * its edges, which fill it. */
@@ -26,10 +27,10 @@
 
 /* Deviations of the means that shadows are looked for in, at least, and for each pixel of speckle's
  * length: about 3 rows and 7 columns, which hold ten independent pixels or more. */
-#define ROW_DEVIATION    0.85
-#define ROW_BY_LENGTH    0.6
-#define COLUMN_DEVIATION 2.0
-#define COLUMN_BY_LENGTH 1.5
+#define ROW_DEVIATION    0.7
+#define ROW_BY_LENGTH    0.4
+#define COLUMN_DEVIATION 1.5
+#define COLUMN_BY_LENGTH 1.2
 #define BEYOND           2.0  /* of the deviations, where a shadow's end has made way to seabed */
 #define SHARP            0.5f /* of the level */
 #define LEAST_BY_COLUMN  4.0  /* columns of a shadow, of these deviations */
@@ -292,7 +293,7 @@ static sonject_status find_shadows(struct report *report, struct shadow_search *
             const size_t pixels = list_shadow(search, i, list);
             shadows += judge_shadow(search, list, pixels, &all[shadows]);
         }
-    if (shadows > 0)
+    if (shadows > 1 || (shadows == 1 && all[0].log_ratio < LONE_HIGHEST))
         average(all, shadows, found);
     free(list);
     free(all);

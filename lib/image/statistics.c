@@ -14,11 +14,6 @@
 #define SORT_BITS 11 /* at a time: three times are enough for all 32 */
 #define SORT_BINS ((size_t)1 << SORT_BITS)
 
-#define NOISE_BLOCK   7            /* pixels on a side */
-#define NOISE_LOWEST  1e-3         /* -30 dB */
-#define NOISE_HIGHEST 1e-2         /* -20 dB */
-#define NOISE_UNKNOWN 5.6234133e-3 /* -22.5 dB, amid what shadows are measured at */
-
 /* A running mean along a line: full weight up to radius, edge_weight (0...1) one pixel further on
  * either side, so that any variance can be had, not only those of whole widths. */
 struct line_mean {
@@ -189,38 +184,6 @@ double median_of(double *values, size_t count)
 {
     qsort(values, count, sizeof *values, compare_doubles);
     return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
-}
-
-/* What is left in the deepest shadow of the patch is noise: ambient and receiver noise, and the
- * sidelobes and echoes by other ways that fill real shadows. The darkest block of 7 x 7 pixels
- * finds it: large enough to average speckle (some twenty looks, so the smallest of many is perhaps
- * 2 dB low), small enough to fit into the shadow of a stone.
- *
- * Two things can fool it, so the answer is limited. In a patch without a shadow the darkest block
- * is merely seabed, about -3 dB; taken for noise it would fill the target's shadow to the brim.
- * Measured shadows lie 15 to 30 dB below the seabed around them and hold some seabed echo too, so
- * noise is not above -20 dB; where nothing is as dark as that, -22.5 dB is taken. And a picture
- * that was clipped at its dark end says less than is there, so it is not below -30 dB. Blocks of
- * nothing but 0 are blank corners, not water. */
-double estimate_noise_floor(const float *intensity, const float *level, size_t rows, size_t columns,
-                            bool *is_measured)
-{
-    const size_t high = smaller(NOISE_BLOCK, rows);
-    const size_t wide = smaller(NOISE_BLOCK, columns);
-    double darkest = INFINITY;
-    for (size_t row = 0; row + high <= rows && row < rows; row += high)
-        for (size_t column = 0; column + wide <= columns && column < columns; column += wide) {
-            double sum = 0.0;
-            for (size_t i = 0; i < high * wide; i++) {
-                const size_t at = (row + i / wide) * columns + column + i % wide;
-                sum += (double)intensity[at] / (double)level[at];
-            }
-            sum /= (double)(high * wide);
-            if (sum > 0.0 && sum < darkest)
-                darkest = sum;
-        }
-    *is_measured = darkest <= NOISE_HIGHEST;
-    return *is_measured ? fmax(NOISE_LOWEST, darkest) : NOISE_UNKNOWN;
 }
 
 /* A whole number that is larger the larger the float is. */

@@ -25,13 +25,6 @@ void mean_and_deviation(const float *values, size_t count, double *mean, double 
 /* Sorts the values; count > 0. */
 double median_of(double *values, size_t count);
 
-/* Noise floor over the local mean, as an energy ratio, from the darkest block of about 7 x 7 pixels
- * of the patch; at least 0.001 (-30 dB). Where it is above 0.01 (-20 dB) there is no shadow in the
- * patch and the darkest block is merely seabed: then 0.0056 (-22.5 dB), and *is_measured is false.
- * intensity and level: rows x columns, level > 0. */
-double estimate_noise_floor(const float *intensity, const float *level, size_t rows, size_t columns,
-                            bool *is_measured);
-
 /* Largest distance between the cumulative distributions of two samples (Kolmogorov-Smirnov), each
  * first divided by its own mean: 0...1. Errors: MEMORY. */
 sonject_status histogram_distance(struct report *report, const float *a, const float *b,

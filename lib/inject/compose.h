@@ -29,15 +29,13 @@ struct patch_facts {
     double mean_intensity;
     double noise_ratio;  /* noise energy over level */
     bool measures_noise; /* it was estimated, and a shadow of the patch told it */
-    float *level;        /* the patch's, where the noise was sought in it; owned; NULL: not known */
 };
 
-/* pixels: amplitudes or pairs, in the view's row order. To be given to patch_facts_clear, also on
- * failure. Errors: INPUT (nothing but zeros; not a finite number: says where), MEMORY. */
+/* pixels: amplitudes or pairs, in the view's row order. Errors: INPUT (nothing but zeros; not a
+ * finite number: says where), MEMORY. */
 sonject_status patch_facts_init(struct patch_facts *facts, struct report *report,
                                 const struct scene *scene, const struct patch_view *view,
                                 const float *pixels, bool is_complex);
-void patch_facts_clear(struct patch_facts *facts);
 
 /* Of the tracer's window of the patch: what all of the patch would tell there. view, pixels: the
  * patch's. Errors: MEMORY. On failure nothing is held. */

@@ -152,7 +152,6 @@ static sonject_status trace_and_hear(struct injection_setup *setup, bool is_comp
         patch_facts_init(&facts, tracer->report, tracer->scene, view, setup->pixels, is_complex);
     THEN(status, patch_request_init(&patch, tracer, view, &facts, setup->pixels, is_complex,
                                     progress_share_tell, &tracing));
-    patch_facts_clear(&facts);
     CHECK(status);
     memset(&taker, 0, sizeof taker);
     taker.tracer = tracer;

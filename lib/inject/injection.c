@@ -95,7 +95,6 @@ static sonject_status prepare(struct prepared *prepared, struct report *report,
 static void prepared_clear(struct prepared *prepared)
 {
     influence_windows_clear(&prepared->windows);
-    patch_facts_clear(&prepared->facts);
     injection_setup_clear(&prepared->setup);
 }
 

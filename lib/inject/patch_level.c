@@ -5,10 +5,13 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "image/shadow_floor.h"
 #include "scene/point_response.h"
 
-#define LEVEL_FLOOR 1e-6  /* of the mean intensity: blank corners of a swath have no level */
-#define WATER_SHARE 0.05f /* of seabed around a pixel that tells its level */
+#define LEVEL_FLOOR   1e-6 /* of the mean intensity: blank corners of a swath have no level */
+#define NOISE_LOWEST  1e-3 /* -30 dB */
+#define NOISE_UNKNOWN 5.6234133e-3 /* -22.5 dB, amid what shadows are measured at */
+#define WATER_SHARE   0.05f        /* of seabed around a pixel that tells its level */
 
 double seabed_cell_energy(const struct patch_view *view, const struct point_response *response,
                           double mu, double processor_range_m)
@@ -183,34 +186,45 @@ static float *intensities_in(const struct level_region *region, const float *pix
     return intensity;
 }
 
+/* The noise floor, from shadows of the patch: ambient and receiver noise, and the side lobes and
+ * echoes by other ways that fill real shadows. What a picture was clipped at says less than is
+ * there. */
+static sonject_status estimate_noise(struct patch_facts *facts, struct report *report,
+                                     const struct patch_view *view, const float *pixels,
+                                     bool is_complex)
+{
+    const size_t count = view->rows * view->columns, water = view_water_columns(view);
+    float *intensity = allocate_array(count, sizeof *intensity);
+    uint8_t *states = allocate_array(count, 1);
+    struct shadow_floor shadows;
+    sonject_status status =
+        intensity && states ? SONJECT_OK : report_out_of_memory(report, "the patch");
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++) {
+        intensity[i] = intensity_of(pixels, is_complex, i);
+        states[i] = i % view->columns < water;
+    }
+    THEN(status, shadow_floor_find(report, intensity, states, view->rows, view->columns, &shadows));
+    if (status == SONJECT_OK && shadows.shadows > 0) {
+        facts->measures_noise = true;
+        facts->noise_ratio = fmax(NOISE_LOWEST, exp(shadows.log_ratio));
+    }
+    free(intensity);
+    free(states);
+    return status;
+}
+
 sonject_status patch_facts_init(struct patch_facts *facts, struct report *report,
                                 const struct scene *scene, const struct patch_view *view,
                                 const float *pixels, bool is_complex)
 {
-    const struct window whole = {0, view->rows, 0, view->columns};
     memset(facts, 0, sizeof *facts);
     CHECK(check_pixels(report, view, pixels, is_complex, &facts->mean_intensity));
     if (!scene->injection.estimate_noise) {
         facts->noise_ratio = pow(10.0, scene->injection.noise_floor_db / 10.0);
         return SONJECT_OK;
     }
-    const struct level_region region = region_about(scene, view, &whole, facts->mean_intensity);
-    float *intensity = intensities_in(&region, pixels, is_complex);
-    facts->level = allocate_array(view->rows, view->columns * sizeof *facts->level);
-    sonject_status status =
-        intensity && facts->level ? SONJECT_OK : report_out_of_memory(report, "the patch");
-    THEN(status, find_level(report, &region, intensity, facts->level));
-    if (status == SONJECT_OK)
-        facts->noise_ratio = estimate_noise_floor(intensity, facts->level, view->rows,
-                                                  view->columns, &facts->measures_noise);
-    free(intensity);
-    return status;
-}
-
-void patch_facts_clear(struct patch_facts *facts)
-{
-    free(facts->level);
-    memset(facts, 0, sizeof *facts);
+    facts->noise_ratio = NOISE_UNKNOWN;
+    return estimate_noise(facts, report, view, pixels, is_complex);
 }
 
 void patch_level_clear(struct patch_level *level)
@@ -228,18 +242,6 @@ static void cut(const struct window *from, const float *plane, const struct wind
                plane + (part->first_row - from->first_row + row) * from->columns +
                    part->first_column - from->first_column,
                part->columns * sizeof *out);
-}
-
-/* Fills a plane of the region with its level: a part of the patch's where that is known. */
-static sonject_status take_level(struct report *report, const struct level_region *region,
-                                 const struct patch_facts *facts, const float *intensity,
-                                 float *level)
-{
-    const struct window whole = {0, region->view->rows, 0, region->view->columns};
-    if (!facts->level)
-        return find_level(report, region, intensity, level);
-    cut(&whole, facts->level, &region->at, level);
-    return SONJECT_OK;
 }
 
 sonject_status patch_level_init(struct patch_level *level, const struct tracer *tracer,
@@ -260,7 +262,7 @@ sonject_status patch_level_init(struct patch_level *level, const struct tracer *
     sonject_status status = intensity && planes && level->intensity
                                 ? SONJECT_OK
                                 : report_out_of_memory(report, "the patch");
-    THEN(status, take_level(report, &region, facts, intensity, planes));
+    THEN(status, find_level(report, &region, intensity, planes));
     THEN(status, find_map(report, &region, intensity, planes, planes + wide));
     if (status == SONJECT_OK) {
         level->water_columns = view_water_columns(&tracer->view);

@@ -38,6 +38,23 @@ def speckle(seed, textures=None, gain_db=0.0, schlick=1.0):
     return numpy.clip(numpy.round(60000 * schlick * a / (1 + (schlick - 1) * a)), 0, 60000).astype(numpy.uint16)
 
 
+def sidescan(shadow_db=None, water_db=-30.0, water=100, seed=1):
+    """Amplitudes of a waterfall of two sides, the nadir in its middle: water to the first return, seabed, and
+    shadows of stones of 6 to 14 pings in it, so much darker than what is about them; None: no shadow."""
+    random = numpy.random.default_rng(seed)
+    shape = (480, 1000)
+    level = _smooth(random.standard_normal(shape), 40.0).real
+    level = 10 ** (level * LEVEL_DB / level.std() / 10)
+    off = numpy.abs(numpy.arange(1000) - 499.5)
+    for number in range(24 if shadow_db is not None else 0):
+        row, column = 20 + number // 4 * 75, (40, 270, 640, 860)[number % 4]
+        rows, columns = random.integers(6, 15), random.integers(30, 60)
+        level[row : row + rows, column : column + columns] *= 10 ** (shadow_db / 10)
+    level[:, off < water] = 10 ** (water_db / 10)
+    amplitude = 4000 * level**0.5 * numpy.abs(_field(random, shape))
+    return numpy.clip(numpy.round(amplitude), 0, 65535).astype(numpy.uint16)
+
+
 class Made:
     """numbers: stored, 8 or 16 bits; the rest is what a calibration is to find."""
 

@@ -7,7 +7,7 @@ import pytest
 
 from conftest import assert_refused
 from images import png_bytes
-from made_swaths import COLUMNS, KINDS, ROWS, Made, deviations, speckle
+from made_swaths import COLUMNS, KINDS, ROWS, Made, deviations, sidescan, speckle
 from measured_images import measured, read_png, read_xtf
 
 
@@ -127,6 +127,19 @@ def test_water_columns_of_one_side_and_two(sonject, tmp_path):
             assert "one side" in told["nadir_column"]["not_seen"]
         if sides.endswith("left"):  # of wide swaths, too, to the half
             assert found["input"]["geometry"] == {"nadir_column": numbers.shape[1] - 0.5}
+
+
+def test_shadows_tell_the_noise_floor_and_the_water_column_does_not(sonject, tmp_path):
+    for shadow_db in (-10.0, -14.0, -25.0):
+        numpy.save(tmp_path / "shadows.npy", sidescan(shadow_db))
+        found = calibrated(sonject, "shadows.npy")
+        floor = found["measured"]["noise_floor"]
+        assert found["measured"]["sides"] == "two" and 12 <= floor["shadows"] <= 24
+        assert abs(floor["value"] - shadow_db) < 2 * floor["standard_error"] < 1.6, (shadow_db, floor)
+    numpy.save(tmp_path / "none.npy", sidescan())
+    none = calibrated(sonject, "none.npy")
+    assert none["measured"]["sides"] == "two" and "noise_floor" not in none["injection"]
+    assert "the water column is none" in none["measured"]["noise_floor"]["not_seen"]
 
 
 def test_first_returns_of_long_swaths_are_told_of_some_pings(sonject, tmp_path):

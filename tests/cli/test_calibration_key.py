@@ -12,7 +12,7 @@ import pytest
 
 from conftest import COMMAND, assert_refused, page_data
 from images import png_bytes
-from made_swaths import Made
+from made_swaths import Made, sidescan
 from test_campaign import contents
 
 GEOMETRY = "{row_spacing: 5 cm, column_spacing: 2.5 cm, first_slant_range: 30 m}"
@@ -116,6 +116,21 @@ def test_a_floor_that_no_shadow_tells_is_named_a_fallback(sonject, tmp_path):
     assert numbers["noise_floor_db"] == {"value": pytest.approx(-22.5), "from": "fallback"}
     assert numbers["transfer"] == {"kind": "amplitude", "from": "default"}
     assert "no shadow of the patch tells it, -22.5 dB" in answer.stderr
+
+
+def test_shadows_of_a_patch_tell_its_floor_and_the_water_column_does_not(sonject, tmp_path):
+    """The patch begins 60 columns before the first return."""
+    for shadow_db in (-14, None):
+        numpy.save(tmp_path / "swath.npy", sidescan(shadow_db))
+        text = (SCENE % ("x", "altitude: 10 m")).replace("  calibration: x\n", "").replace("swath.png", "swath.npy")
+        text = text.replace(GEOMETRY, "{row_spacing: 10 cm, column_spacing: 10 cm, nadir_column: 499.5, "
+                            "first_slant_range: 0 m, side: starboard}")
+        (tmp_path / "scene.yaml").write_text(text.replace(
+            "{row: 300, column: 300, rows: 96, columns: 128}", "{row: 0, column: 540, rows: 480, columns: 460}"))
+        floor = run_document(sonject, tmp_path, "--overwrite")[0]["noise_floor_db"]
+        # of ten shadows or more, each known to 2 dB by the seabed's texture and speckle
+        assert floor == ({"value": pytest.approx(-14, abs=1.3), "from": "patch"} if shadow_db else
+                         {"value": pytest.approx(-22.5), "from": "fallback"})
 
 
 @pytest.mark.parametrize("text, words", [

@@ -240,7 +240,6 @@ const struct patch_level *sea_level(struct sea *sea, const float *pixels, bool i
                                        is_complex));
     EXPECT_OK(report, patch_level_init(level, &sea->bench->tracer, sea_view(sea), &facts, pixels,
                                        is_complex));
-    patch_facts_clear(&facts);
     claim_end(clear_level, level);
     return level;
 }

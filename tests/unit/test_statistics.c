@@ -2,6 +2,7 @@
  */
 #include "plain_seabed.h"
 
+#include "image/shadow_floor.h"
 #include "image/statistics.h"
 
 #define ROWS    512
@@ -157,44 +158,63 @@ static void test_mean_and_deviation(void **state)
     free(many);
 }
 
-/* Speckled seabed with a square hole of the given energy ratio; blank everywhere where wanted. */
-static double floor_of(double shadow, size_t hole, size_t blank_columns)
+/* Speckled seabed, 2 dB brighter and darker from place to place, with shadows of a size whose floor
+ * is that much of the seabed about them, and columns of water, a thousandth of it, at the left. */
+struct made_shadows {
+    double floor;
+    size_t rows, columns, water;
+    bool is_open; /* each reaches the edge of the image */
+};
+
+static struct shadow_floor floor_of(const struct made_shadows *made)
 {
-    const size_t rows = 200;
-    const size_t columns = 180;
+    const size_t rows = 320, columns = 360;
     float *intensity = make_map(rows, columns, 0.0f);
-    float *level = make_map(rows, columns, 2.5f);
+    uint8_t *states = calloc(rows * columns, 1);
+    struct shadow_floor found;
     uint64_t random = 11;
+    assert_non_null(states);
     for (size_t row = 0; row < rows; row++)
         for (size_t i = 0; i < columns; i++) {
-            const int is_hole = row >= 61 && row < 61 + hole && i >= 97 && i < 97 + hole;
-            intensity[row * columns + i] = 2.5f * speckle(&random) *
-                                           (float)(is_hole ? shadow : 1.0) *
-                                           (float)(i < blank_columns ? 0.0 : 1.0);
+            const size_t first = made->is_open ? columns - made->columns : 80 + row / 40 % 3 * 90;
+            const bool is_shadow = row % 40 >= 16 && row % 40 < 16 + made->rows && i >= first &&
+                                   i < first + made->columns;
+            const double seabed = 2.5 * exp(0.46 * sin((double)row / 50.0 + (double)i / 70.0));
+            const double share = i < made->water ? 1e-3 : is_shadow ? made->floor : 1.0;
+            states[row * columns + i] = i < made->water;
+            intensity[row * columns + i] = (float)(seabed * share) * speckle(&random);
         }
-    bool is_measured;
-    const double ratio = estimate_noise_floor(intensity, level, rows, columns, &is_measured);
-    assert_int_equal(is_measured, shadow < 1.0 && hole >= 30); /* else it is no measurement */
+    assert_int_equal(shadow_floor_find(&report, intensity, states, rows, columns, &found),
+                     SONJECT_OK);
     free(intensity);
-    free(level);
-    return 10.0 * log10(ratio);
+    free(states);
+    return found;
 }
 
-static void test_noise_floor(void **state)
+static void test_shadows_tell_the_floor_and_water_does_not(void **state)
 {
-    /* 49 looks a block have a deviation of 1/7 or 0.6 dB; the least of the nine blocks in a hole of
-     * 30 pixels lies about 1.5 deviations low, 1 dB; four deviations about that */
-    expect_near(floor_of(pow(10.0, -2.5), 30, 0), -26.0, 2.5);
-    expect_near(floor_of(pow(10.0, -2.5), 30, 50), -26.0, 2.5); /* blank columns do not count */
-    expect_near(floor_of(1.0, 0, 0), -22.5, 1e-6);              /* no shadow */
-    expect_near(floor_of(1e-6, 30, 0), -30.0, 1e-9);            /* clipped shadow */
-    expect_near(floor_of(pow(10.0, -2.5), 5, 0), -22.5, 1e-6);  /* a hole smaller than a block */
-    /* a patch smaller than a block */
-    bool is_measured = false;
-    expect_near(estimate_noise_floor((const float[]){0.004f, 0.006f}, (const float[]){1.0f, 1.0f},
-                                     1, 2, &is_measured),
-                0.005, 1e-9);
-    assert_true(is_measured);
+    for (double floor_db = -10.0; floor_db > -26.0; floor_db -= 3.0)
+        for (size_t size = 0; size < 2; size++) { /* also as narrow as a small stone's */
+            const struct made_shadows made = {pow(10.0, 0.1 * floor_db), size == 0 ? 4 : 12,
+                                              size == 0 ? 24 : 40, 40, false};
+            const struct shadow_floor found = floor_of(&made);
+            assert_in_range(found.shadows, 5, 8);
+            assert_true(found.log_error < 0.32); /* 1.4 dB */
+            expect_near(found.log_ratio, log(made.floor), 3.0 * found.log_error);
+        }
+}
+
+static void test_what_is_no_shadow_amid_the_seabed_tells_none(void **state)
+{
+    const struct made_shadows none[] = {
+        {1.0, 12, 40, 40, false},  /* plain seabed behind water */
+        {0.03, 12, 40, 0, true},   /* dark to the edge of the image */
+        {0.03, 2, 2, 0, false},    /* smaller than what speckle needs */
+        {0.2, 12, 40, 0, false},   /* dim ground */
+        {1e-12, 12, 40, 0, false}, /* nothing but 0, as where an image is blank */
+    };
+    for (size_t i = 0; i < COUNT(none); i++)
+        assert_int_equal(floor_of(&none[i]).shadows, 0);
 }
 
 static double distance_of(const float *a, const float *b, size_t count)
@@ -367,6 +387,7 @@ static void test_saturation(void **state)
 
 TEST_PROGRAM(NULL, NULL, TEST(test_a_point_spreads_with_the_deviation_asked_for), TEST(test_edges),
              TEST(test_a_bright_echo_leaves_no_trace), TEST(test_mean_and_deviation),
-             TEST(test_noise_floor), TEST(test_histogram_distance), TEST(test_correlation),
-             TEST(test_looks), TEST(test_speckle_correlation), TEST(test_texture),
-             TEST(test_what_does_not_count), TEST(test_saturation))
+             TEST(test_shadows_tell_the_floor_and_water_does_not),
+             TEST(test_what_is_no_shadow_amid_the_seabed_tells_none), TEST(test_histogram_distance),
+             TEST(test_correlation), TEST(test_looks), TEST(test_speckle_correlation),
+             TEST(test_texture), TEST(test_what_does_not_count), TEST(test_saturation))
