@@ -64,8 +64,9 @@ struct curve_fit {
     double texture_error;
     double likelihood; /* logarithm */
     double misfit;     /* largest distance between the law and what is in the tiles, as shares */
-    double *by_tile;   /* the same of each tile; owned */
-    double *levels;    /* log of each tile's mean intensity; owned */
+    double misfit_error;
+    double *by_tile; /* the same of each tile; owned */
+    double *levels;  /* log of each tile's mean intensity; owned */
 };
 
 /* Fits a family to the tiles; looks, parameter: NAN where they are to be found. full_scale: of the
@@ -138,6 +139,9 @@ void calibration_clear(struct calibration *calibration);
 #define CURVE_TEXT_CAPACITY 64
 const char *curve_text(const struct calibration *calibration, enum curve_family family,
                        char text[CURVE_TEXT_CAPACITY]);
+
+/* Whether the tiles' numbers lie about the fitted law as samples of it do. */
+bool curve_fits(const struct curve_fit *fit);
 
 /* As a document: keys of scenes, and `measured` with standard errors. Numbers have four significant
  * digits. NULL where memory is out; for json_decref. */

@@ -10,10 +10,12 @@
 #include "measure/calibration.h"
 #include "schema/keys.h"
 
-#define DIGITS     4
-#define WHOLE_MOST 1e6 /* whole numbers, such as a ceiling, stay as they are */
-#define LINE_WIDTH 96
-#define LOOKS_KEPT 64.0 /* that injection.match.looks takes at most */
+#define DIGITS        4
+#define WHOLE_MOST    1e6 /* whole numbers, such as a ceiling, stay as they are */
+#define LINE_WIDTH    96
+#define CLEARLY       3.0   /* standard errors */
+#define MISFIT_UNSEEN 0.005 /* that levels varying within plain tiles make, as shares */
+#define LOOKS_KEPT    64.0  /* that injection.match.looks takes at most */
 #define RETURNS_MOST                                                                               \
     20000 /* first returns that are told; a scene's reader takes TREE_NODES_MAX values */
 
@@ -135,6 +137,11 @@ const char *curve_text(const struct calibration *found, enum curve_family family
     return text;
 }
 
+bool curve_fits(const struct curve_fit *fit)
+{
+    return fit->misfit <= CLEARLY * fit->misfit_error + MISFIT_UNSEEN;
+}
+
 static json_t *measured_curve(const struct calibration *found)
 {
     json_t *curve = json_object();
@@ -153,6 +160,14 @@ static json_t *measured_curve(const struct calibration *found)
     json_add(&curve, "cannot_be_told_from", alike);
     if (found->transfer.kind >= SONJECT_TRANSFER_DECIBEL)
         json_add(&curve, "parameter", seen(&found->parameter, NULL));
+    const struct curve_fit *fit = &found->fits[found->family];
+    json_add(
+        &curve, "misfit",
+        JSON_OBJECT({"value", number_of(fit->misfit)},
+                    {"standard_error", number_of(fit->misfit_error)},
+                    {"fits", json_boolean(curve_fits(fit))},
+                    {"how", json_text("largest distance between the shares of pixels below a level "
+                                      "and the law's; fits to 3 errors and 0.005")}));
     json_add(&curve, "tiles", json_count(found->tiles.count));
     json_add(&curve, "tile_side", json_count(found->tiles.side));
     return curve;
@@ -255,6 +270,8 @@ static void add_value(struct growing_text *text, const json_t *value)
     else if (json_is_real(value))
         growing_text_add(text, "%s",
                          text_of_number(number, sizeof number, json_real_value(value), 10));
+    else if (json_is_boolean(value))
+        growing_text_add(text, "%s", json_is_true(value) ? "true" : "false");
     else
         growing_text_add(text, "null");
 }

@@ -144,6 +144,12 @@ sonject_status calibrate_image(struct report *report, const sonject_calibrate_pa
         swath_file_close(&file);
     THEN(status, calibrate_swath(report, &swath, &geometry, &found));
     if (status == SONJECT_OK) {
+        const struct curve_fit *fit = &found.fits[found.family];
+        if (!found.transfer_kind.unseen && !curve_fits(fit))
+            report_log(report,
+                       "note: the curve and law of speckle do not fit the swath's plain tiles: "
+                       "they are off by %.2g of the pixels, with a standard error of %.1g",
+                       fit->misfit, fit->misfit_error);
         status = write_results(report, params, &swath, &found, text);
         calibration_clear(&found);
     }

@@ -294,6 +294,9 @@ static void draw_law(struct chart *chart, const struct calibration *found,
     else
         snprintf(text, sizeof text, "looks %.3g +- %.2g", found->looks.value, found->looks.error);
     draw_legend(chart, 0, false, text, blue);
+    snprintf(text, sizeof text, "misfit %.2g +- %.1g: %s", fit->misfit, fit->misfit_error,
+             curve_fits(fit) ? "fits" : "does not fit");
+    draw_legend(chart, 1, false, text, blue);
     if (fit->texture > 0.0) {
         snprintf(text, sizeof text, "K shape %.3g", 1.0 / fit->texture);
         draw_legend(chart, 1, false, text, blue);
@@ -395,8 +398,8 @@ static void draw_gain(struct chart *chart, const struct calibration *found)
             draw_dot(chart, x, found->gain_db[band] + found->noise_floor_db.value, 6.0, red);
     }
     if (has_floor) {
-        snprintf(text, sizeof text, "noise floor %.3g +- %.2g dB", found->noise_floor_db.value,
-                 found->noise_floor_db.error);
+        snprintf(text, sizeof text, "noise floor %.3g +- %.2g dB, of %zu shadows",
+                 found->noise_floor_db.value, found->noise_floor_db.error, found->shadows);
     } else {
         snprintf(text, sizeof text, "noise floor not seen");
     }

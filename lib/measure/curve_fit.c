@@ -317,15 +317,16 @@ static sonject_status find_errors(struct fitting *fit, struct report *report, co
 }
 
 /* Largest distance between what shares of the tiles' numbers should lie below the law's twentieths
- * and what do (Kolmogorov and Smirnov's statistic, coarsely). */
-static double find_misfit(const struct fitting *fit)
+ * and what do (Kolmogorov and Smirnov's statistic, coarsely); *error: its standard error, of what
+ * the tiles scatter there. */
+static double find_misfit(const struct fitting *fit, double *error)
 {
     const struct plain_tiles *tiles = fit->tiles;
-    double shares[MISFIT_BINS] = {0.0}, sum = 0.0, largest = 0.0;
-    const double all = (double)(tiles->count * tiles->side * tiles->side);
+    double sums[MISFIT_BINS] = {0.0}, squares[MISFIT_BINS] = {0.0}, largest = 0.0;
+    const double pixels = (double)(tiles->side * tiles->side), count = (double)tiles->count;
     for (size_t i = 0; i < tiles->count; i++) {
         const uint16_t *counts = tiles->counts + i * (tiles->edge_count + 1);
-        double below = 0.0, density;
+        double below = 0.0, density, shares[MISFIT_BINS] = {0.0}, off = 0.0;
         for (size_t cell = 0; cell <= tiles->edge_count; cell++) {
             const double upper =
                 cell < tiles->edge_count
@@ -336,15 +337,22 @@ static double find_misfit(const struct fitting *fit)
                 const double low = fmax(below, (double)bin / MISFIT_BINS);
                 const double high = fmin(upper, (bin + 1.0) / MISFIT_BINS);
                 if (high > low)
-                    shares[bin] += counts[cell] / all * (high - low) / (upper - below);
+                    shares[bin] += counts[cell] / pixels * (high - low) / (upper - below);
             }
             below = upper;
         }
+        for (int bin = 0; bin < MISFIT_BINS; bin++) {
+            off += shares[bin] - 1.0 / MISFIT_BINS;
+            sums[bin] += off / count;
+            squares[bin] += off * off / count;
+        }
     }
-    for (int bin = 0; bin < MISFIT_BINS; bin++) {
-        sum += shares[bin];
-        largest = fmax(largest, fabs(sum - (bin + 1.0) / MISFIT_BINS));
-    }
+    *error = 0.0;
+    for (int bin = 0; bin < MISFIT_BINS; bin++)
+        if (fabs(sums[bin]) > largest) {
+            largest = fabs(sums[bin]);
+            *error = sqrt(fmax(0.0, squares[bin] - largest * largest) / count);
+        }
     return largest;
 }
 
@@ -394,7 +402,7 @@ sonject_status curve_fit_find(struct report *report, const struct plain_tiles *t
     fit->looks_error = errors[1];
     fit->texture = texture;
     fit->likelihood = evaluate(fitting, logs);
-    fit->misfit = find_misfit(fitting);
+    fit->misfit = find_misfit(fitting, &fit->misfit_error);
     free(fitting);
     return status;
 }

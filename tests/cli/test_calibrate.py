@@ -79,6 +79,18 @@ def test_curves_that_one_level_cannot_tell_apart_are_named(sonject, tmp_path):
     assert calibrated(sonject, "many.npy")["measured"]["transfer"]["cannot_be_told_from"] == []
 
 
+def test_a_misfit_tells_what_no_law_of_speckle_explains(sonject, tmp_path):
+    """Amplitudes above the middle are stretched: a curve of no family."""
+    plain = speckle(3)
+    bent = numpy.where(plain < 7000, plain, numpy.clip(3.0 * plain - 14000, 0, 65535)).astype(numpy.uint16)
+    told = []
+    for numbers in (plain, bent):
+        numpy.save(tmp_path / "made.npy", numbers)
+        told.append(calibrated(sonject, "made.npy")["measured"]["transfer"]["misfit"])
+    assert told[0]["fits"] and told[0]["value"] < 0.005 and 0 < told[0]["standard_error"] < 0.002
+    assert not told[1]["fits"] and told[1]["value"] > 0.05
+
+
 def test_complex_pixels_have_no_curve(sonject, tmp_path):
     random = numpy.random.default_rng(2)
     field = random.standard_normal((256, 256, 2)).view(numpy.complex128)[..., 0]
@@ -165,6 +177,7 @@ def test_yaml_says_what_json_says(sonject, tmp_path):
     assert f"    parameter: {transfer['parameter']:g}" in lines
     assert f"    full_scale: {transfer['full_scale']}" in lines
     assert f"  noise_floor: {found['injection']['noise_floor']}" in lines
+    assert "      fits: true" in lines and f"      shadows: {found['measured']['noise_floor']['shadows']}"[2:] in lines
     assert (tmp_path / "made.png").read_bytes()[:4] == b"\x89PNG"
 
 
