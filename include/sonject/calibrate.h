@@ -26,15 +26,16 @@ typedef struct sonject_calibrate_params {
     const char *output;   /* file that gets the text; NULL: none */
 } sonject_calibrate_params;
 
-/* Estimates a swath's transfer function, ceiling and clipped share, looks, texture, response, noise
- * floor, water column and gain against range, from fixed tiles all over it. *text, which may be
- * asked for by a pointer that is not NULL, gets a document whose keys are a scene's, for
- * input.calibration, and a section `measured`: of each estimate `value`, `standard_error` and `how`
- * it was found, or `not_seen` with the reason (kernels/MATH.md, "Calibration", lists them). Numbers
- * have four significant digits. *text is the caller's, for sonject_text_release; on failure NULL.
- * Scenes for sonject_inject, whose pixels are linear, take the keys above `measured` by
- * sonject_scene_set(scene, "injection.noise_floor", ...) and so on, or all by "input.calibration".
- * Files appear whole or not at all. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED. */
+/* Estimates a swath's transfer function and how well it fits, ceiling and clipped share, looks,
+ * texture, response, noise floor, water column and gain against range, from fixed tiles all over
+ * it. *text, which may be asked for by a pointer that is not NULL, gets a document whose keys are a
+ * scene's, for input.calibration, and a section `measured`: of each estimate `value`,
+ * `standard_error` and `how` it was found, or `not_seen` with the reason (kernels/MATH.md,
+ * "Calibration", lists them). Numbers have four significant digits. *text is the caller's, for
+ * sonject_text_release; on failure NULL. Scenes for sonject_inject, whose pixels are linear, take
+ * the keys above `measured` by sonject_scene_set(scene, "injection.noise_floor", ...) and so on, or
+ * all by "input.calibration". Files appear whole or not at all. Errors: ARGUMENT, INPUT, STORAGE,
+ * MEMORY, UNSUPPORTED. */
 SONJECT_API sonject_status sonject_calibrate(sonject_context *context,
                                              const sonject_calibrate_params *params, char **text);
 

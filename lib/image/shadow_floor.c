@@ -8,7 +8,8 @@
 #include "base/memory.h"
 #include "image/statistics.h"
 
-/* Of the local mean that is the seabed's level, pixels, and of the image's shorter side. */
+/* Deviation of the local mean that is the seabed's level: in pixels, at least, and as a share of
+ * the image's shorter side. */
 #define LEVEL_DEVIATION 28.0
 #define LEVEL_SHARE     0.04
 #define SHARE_LEAST     0.02     /* of pixels about one that tell its level */
@@ -26,7 +27,7 @@
 #define EDGES 3.0
 
 /* Deviations of the means that shadows are looked for in, at least, and for each pixel of speckle's
- * length: about 3 rows and 7 columns, which hold ten independent pixels or more. */
+ * length: some 3 rows and 6 columns, which hold about 6 independent pixels or more. */
 #define ROW_DEVIATION    0.7
 #define ROW_BY_LENGTH    0.4
 #define COLUMN_DEVIATION 1.5
@@ -35,8 +36,8 @@
 #define SHARP            0.5f /* of the level */
 #define LEAST_BY_COLUMN  4.0  /* columns of a shadow, of these deviations */
 
-/* Deviation of shadows' levels where fewer than three tell it, nepers: 4 dB, as they differ in a
- * sidescan line of 600 kHz. */
+/* Deviation of shadows' levels where fewer than three tell it, nepers: 4 dB. Those of a sidescan
+ * line of 600 kHz differ by 4 to 7. */
 #define SCATTER_UNKNOWN 0.92
 
 /* A pixel's state: what it is, and whether it lies in the middle of its dark run along an axis. */

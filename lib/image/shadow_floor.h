@@ -17,7 +17,7 @@ struct shadow_floor {
 /* Where the pixels are that tell it; see shadow_floor_find. */
 #define SHADOW_CORE 16
 
-/* Looks for shadows. A shadow is 6 dB darker than the seabed about it in means over a few rows and
+/* Looks for shadows. A shadow is 5 dB darker than the seabed about it in means over a few rows and
  * columns, and ends at seabed before and behind it and on either side: what reaches the edge of the
  * image or of what is no seabed is none. Its middle third along both axes tells its darkness,
  * chosen by its place and not by its own level. intensity: rows x columns. states: room for as
