@@ -243,29 +243,26 @@ static bool judge_shadow(const struct shadow_search *search, const size_t *list,
     return true;
 }
 
-/* The mean over shadows that differ by more than their speckle: each weighs what both variances
- * leave it (R. DerSimonian, N. Laird, "Meta-analysis in clinical trials", Controlled Clinical
- * Trials 7, 1986). */
+/* The mean over shadows, each by its independent pixels. How much they differ beyond their own
+ * variances is in its standard error. */
 static void average(const struct shadow *shadows, size_t count, struct shadow_floor *found)
 {
-    double between = SCATTER_UNKNOWN * SCATTER_UNKNOWN;
-    found->shadows = count;
-    for (int pass = count < 3; pass < 2; pass++) {
-        double sum = 0.0, weights = 0.0, squares = 0.0, off = 0.0;
-        for (size_t i = 0; i < count; i++) {
-            const double weight = 1.0 / (shadows[i].variance + (pass == 1 ? between : 0.0));
-            sum += weight * shadows[i].log_ratio;
-            weights += weight;
-            squares += weight * weight;
-        }
-        found->log_ratio = sum / weights;
-        found->log_error = 1.0 / sqrt(weights);
-        for (size_t i = 0; i < count; i++)
-            off += (shadows[i].log_ratio - found->log_ratio) *
-                   (shadows[i].log_ratio - found->log_ratio) / shadows[i].variance;
-        if (pass == 0)
-            between = fmax(0.0, (off - (double)(count - 1)) / (weights - squares / weights));
+    double weights = 0.0, sum = 0.0, plain = 0.0, squares = 0.0, own = 0.0, error = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        weights += 1.0 / shadows[i].variance;
+        sum += shadows[i].log_ratio / shadows[i].variance;
+        plain += shadows[i].log_ratio / (double)count;
+        own += shadows[i].variance / (double)count;
     }
+    for (size_t i = 0; i < count; i++)
+        squares += (shadows[i].log_ratio - plain) * (shadows[i].log_ratio - plain);
+    const double between = count < 3 ? SCATTER_UNKNOWN * SCATTER_UNKNOWN
+                                     : fmax(0.0, squares / (double)(count - 1) - own);
+    for (size_t i = 0; i < count; i++)
+        error += (between + shadows[i].variance) / (shadows[i].variance * shadows[i].variance);
+    found->shadows = count;
+    found->log_ratio = sum / weights;
+    found->log_error = sqrt(error) / weights;
 }
 
 static sonject_status find_shadows(struct report *report, struct shadow_search *search,
