@@ -13,6 +13,7 @@ void device_take_info(struct device *device, const sonject_device_info *info)
     memcpy(device->platform, info->platform, sizeof device->platform);
     memcpy(device->driver, info->driver, sizeof device->driver);
     device->width = info->vector_width;
+    device->group_items = 1;
     device->compute_units = info->compute_units;
 }
 
