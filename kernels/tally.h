@@ -45,7 +45,7 @@ FUNCTION void tally_add(GLOBAL TALLY *tally, int is_shared, float quanta, float 
 {
     if (!is_countable(quanta, faults))
         return;
-    if (is_shared || GROUP_ITEMS > 1)
+    if (is_shared | (GROUP_ITEMS > 1))
         ATOMIC_ADD(tally, whole_quanta(quanta, chance));
     else
         *tally += whole_quanta(quanta, chance);
