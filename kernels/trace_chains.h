@@ -298,8 +298,9 @@ FUNCTION void trace_chain_block(const struct fan_record *fan,
     struct target_choice choice;
     const int is_shared = chains->groups > 0 && fan->only_object == -1;
     const RECORD_WORD count = rays_from(fan, first_ray, THIN_BLOCK);
-    for (RECORD_WORD ray = GROUP_ITEM * WIDTH; ray < count; ray += GROUP_WIDTH) {
-        if (is_shared && (ray % CHOICE_RAYS == 0 || GROUP_ITEMS > 1))
+    const RECORD_WORD first = GROUP_ITEM * WIDTH;
+    for (RECORD_WORD ray = first; ray < count; ray += GROUP_WIDTH) {
+        if (is_shared && (ray % CHOICE_RAYS == 0 || ray == first))
             aim_choice(fan, pieces, chains, spheres, strip, first_ray + ray - ray % CHOICE_RAYS,
                        &choice);
         trace_chain_group(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
