@@ -45,6 +45,15 @@ static void print_key(const json_t *key)
     puts(json_array_size(json_object_get(key, "words")) ? "\n" : "");
 }
 
+/* Whether a key is the one wanted, in that section, or has that name in whichever section. */
+static bool is_wanted(const char *path, const char *wanted)
+{
+    const size_t length = strlen(wanted), section = length - (wanted[length - 1] == '.');
+    const size_t before = strlen(path) > length ? strlen(path) - length : 0;
+    return (strncmp(path, wanted, section) == 0 && (!path[section] || path[section] == '.')) ||
+           (before > 0 && path[before - 1] == '.' && strcmp(path + before, wanted) == 0);
+}
+
 /* Whether one was printed. */
 static bool print_keys(const json_t *keys, const char *name, struct nearest *nearest)
 {
@@ -53,12 +62,16 @@ static bool print_keys(const json_t *keys, const char *name, struct nearest *nea
     size_t i;
     json_t *key;
     strip_entries(name, wanted);
-    const size_t length = strlen(wanted) - (wanted[0] && wanted[strlen(wanted) - 1] == '.');
+    if (!*wanted)
+        return false;
     json_array_foreach(keys, i, key)
     {
+        const char *name_in_section = strrchr(text_of(key, "path"), '.');
         strip_entries(text_of(key, "path"), path);
         nearest_consider(nearest, text_of(key, "path"));
-        if (strncmp(path, wanted, length) != 0 || (path[length] && path[length] != '.'))
+        if (name_in_section)
+            nearest_consider(nearest, name_in_section + 1);
+        if (!is_wanted(path, wanted))
             continue;
         print_key(key);
         is_found = true;
