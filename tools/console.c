@@ -158,8 +158,15 @@ int progress_update(void *user, double fraction, const char *stage)
 
 void progress_log(void *user, const char *line)
 {
-    progress_end(user);
+    if (user)
+        progress_end(user);
     message(line);
+}
+
+void progress_note(void *user, const char *line)
+{
+    if (strncmp(line, "note: ", 6) == 0)
+        progress_log(user, line);
 }
 
 void progress_end(struct progress *progress)

@@ -1,6 +1,7 @@
 /* sonject init: asks for what an image does not tell of itself, and writes a scene to begin with.
  */
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,10 +11,15 @@
 #include <sonject/sonject.h>
 
 #include "base/system/file_system.h"
+#include "base/text.h"
 #include "console.h"
 #include "image_arguments.h"
 #include "stage.h"
 #include "verbs.h"
+
+#define SOUND_SPEED     1500.0 /* m/s, a scene's without another */
+#define USUAL_LEVEL_DB  15.0
+#define CEILING_ROOM_DB 3.0 /* over an echo's peak, so that the ceiling cuts little of it */
 
 enum {
     ANSWER = 100,
@@ -55,7 +61,7 @@ static const struct question first_range = {"input.geometry.first_slant_range",
 static const struct question side = {
     "input.geometry.side", "side of the track to put targets into, port or starboard", "port"};
 static const struct question altitude = {
-    "sonar.altitude", "altitude of the sonar over the seabed (such as 10 m)", NULL};
+    "sonar.altitude", "altitude of the sonar over the seabed (such as 10 m, or from_file)", NULL};
 static const struct question frequency = {"sonar.frequency", "centre frequency (such as 100 kHz)",
                                           NULL};
 static const struct question bandwidth = {
@@ -74,7 +80,10 @@ struct interview {
     size_t count;
     char scene[NAME], calibration[NAME]; /* files */
     bool has_geometry, has_altitude;     /* the image's file */
-    bool has_nadir;                      /* the image, as its calibration found */
+    /* The image, as its calibration found; NAN: it did not. */
+    bool has_nadir;
+    double column_spacing_m, altitude_m, recorded_altitude_m, ceiling_over_seabed_db;
+    bool assumes_bandwidth; /* that of the columns */
 };
 
 /* The answer about a key; NULL: it was not asked for, or there was none. */
@@ -88,22 +97,52 @@ static const char *answer_about(const struct interview *interview, const char *k
     return NULL;
 }
 
+/* Reads a scene of the image with what was answered so far and keys that may follow. */
+static sonject_status read_image_scene(const struct interview *interview, const char *text,
+                                       sonject_scene **scene)
+{
+    const struct init_options *options = interview->options;
+    const char *overrides[ANSWERS + 4];
+    char path[NAME], channel[ANSWER], array[NAME];
+    uint32_t count = 0;
+    snprintf(path, sizeof path, "input.path=%s", options->image);
+    snprintf(channel, sizeof channel, "input.channel=%s", options->channel ? options->channel : "");
+    snprintf(array, sizeof array, "input.array=%s", options->array ? options->array : "");
+    overrides[count++] = path;
+    if (options->channel)
+        overrides[count++] = channel;
+    if (options->array)
+        overrides[count++] = array;
+    if (answer_about(interview, array_length.key))
+        overrides[count++] = "sonar.kind=real";
+    for (size_t i = 0; i < interview->count; i++)
+        overrides[count++] = interview->answers[i];
+    const sonject_scene_read_params params = {.struct_size = sizeof params,
+                                              .text = text,
+                                              .overrides = overrides,
+                                              .override_count = count};
+    return sonject_scene_read(interview->context, NULL, &params, scene);
+}
+
 /* Whether a scene with what was answered so far can be read; a message is left if not. */
 static bool is_possible(struct interview *interview)
 {
-    static const char text[] = "sonject: 1\n"
-                               "sonar: {altitude: 10 m, frequency: 100 kHz, bandwidth: 10 kHz}\n"
-                               "input: {geometry: {row_spacing: 5 cm, column_spacing: 5 cm, "
-                               "first_slant_range: 30 m}}\n";
-    const char *overrides[ANSWERS + 1] = {"sonar.kind=real"};
-    const size_t is_real = answer_about(interview, array_length.key) != NULL;
-    sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
     sonject_scene *scene = NULL;
-    for (size_t i = 0; i < interview->count; i++)
-        overrides[is_real + i] = interview->answers[i];
-    params.overrides = overrides;
-    params.override_count = (uint32_t)(is_real + interview->count);
-    const sonject_status status = sonject_scene_read(interview->context, NULL, &params, &scene);
+    char *json = NULL;
+    sonject_status status = read_image_scene(
+        interview,
+        interview->has_geometry
+            ? "sonject: 1\ninput: {geometry: from_file}\n"
+              "sonar: {altitude: 10 m, frequency: 100 kHz, bandwidth: 10 kHz}\n"
+            : "sonject: 1\nsonar: {altitude: 10 m, frequency: 100 kHz, bandwidth: 10 kHz}\n"
+              "input: {geometry: {row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 30 "
+              "m}}\n",
+        &scene);
+    if (status == SONJECT_OK && answer_about(interview, column_spacing.key)) {
+        status = sonject_scene_get(scene, column_spacing.key, &json);
+        interview->column_spacing_m = json ? strtod(json, NULL) : NAN;
+        sonject_text_release(&json);
+    }
     sonject_scene_release(&scene);
     return status == SONJECT_OK;
 }
@@ -139,6 +178,39 @@ static bool ask(struct interview *interview, const struct question *question)
     }
 }
 
+/* What the file tells, or else the first returns, is the usual answer. */
+static bool ask_altitude(struct interview *interview)
+{
+    struct question question = altitude;
+    char text[ANSWER], usual[ANSWER];
+    if (interview->has_altitude) {
+        snprintf(text, sizeof text,
+                 "altitude of the sonar over the seabed; the file's mean is %.4g m",
+                 interview->recorded_altitude_m);
+        question.text = text;
+        question.usual = "from_file";
+    } else if (interview->altitude_m > 0.0) {
+        snprintf(usual, sizeof usual, "%.4g m", interview->altitude_m);
+        question.text = "altitude of the sonar over the seabed, as first returns show it";
+        question.usual = usual;
+    }
+    return ask(interview, &question);
+}
+
+/* That of the columns is the usual answer: no file tells it. */
+static bool ask_bandwidth(struct interview *interview)
+{
+    struct question question = bandwidth;
+    char usual[ANSWER];
+    snprintf(usual, sizeof usual, "%.4g kHz", 0.5e-3 * SOUND_SPEED / interview->column_spacing_m);
+    question.usual = interview->column_spacing_m > 0.0 ? usual : NULL;
+    if (!ask(interview, &question))
+        return false;
+    interview->assumes_bandwidth =
+        question.usual && strcmp(answer_about(interview, bandwidth.key), question.usual) == 0;
+    return true;
+}
+
 static bool ask_all(struct interview *interview)
 {
     struct question range = first_range;
@@ -146,34 +218,16 @@ static bool ask_all(struct interview *interview)
     return (interview->has_geometry ||
             (ask(interview, &row_spacing) && ask(interview, &column_spacing) &&
              ask(interview, &range))) &&
-           (!interview->has_nadir || ask(interview, &side)) &&
-           (interview->has_altitude || ask(interview, &altitude)) && ask(interview, &frequency) &&
-           ask(interview, &bandwidth) && ask(interview, &array_length);
+           (!interview->has_nadir || ask(interview, &side)) && ask_altitude(interview) &&
+           ask(interview, &frequency) && ask_bandwidth(interview) && ask(interview, &array_length);
 }
 
-/* Whether the image's file tells the geometry, and the altitude if that is asked for. */
-static bool file_tells(struct interview *interview, bool with_altitude)
+/* Whether the image's file tells what this scene leaves to it. */
+static bool file_tells(struct interview *interview, const char *scene_text)
 {
-    const struct init_options *options = interview->options;
-    sonject_scene_read_params params = {.struct_size = sizeof params, .override_count = 1};
     sonject_scene *scene = NULL;
-    char *text = NULL, path[NAME];
-    const char *overrides[3] = {path};
-    char channel[ANSWER], array[NAME];
-    params.text = with_altitude
-                      ? "sonject: 1\ninput: {geometry: from_file}\n"
-                        "sonar: {altitude: from_file, frequency: 1 kHz, bandwidth: 1 Hz}\n"
-                      : "sonject: 1\ninput: {geometry: from_file}\n"
-                        "sonar: {altitude: 1 mm, frequency: 1 kHz, bandwidth: 1 Hz}\n";
-    snprintf(path, sizeof path, "input.path=%s", options->image);
-    snprintf(channel, sizeof channel, "input.channel=%s", options->channel ? options->channel : "");
-    snprintf(array, sizeof array, "input.array=%s", options->array ? options->array : "");
-    if (options->channel)
-        overrides[params.override_count++] = channel;
-    if (options->array)
-        overrides[params.override_count++] = array;
-    params.overrides = overrides;
-    sonject_status status = sonject_scene_read(interview->context, NULL, &params, &scene);
+    char *text = NULL;
+    sonject_status status = read_image_scene(interview, scene_text, &scene);
     if (status == SONJECT_OK)
         status = sonject_check(interview->context, scene, &text);
     sonject_text_release(&text);
@@ -237,10 +291,10 @@ static void write_scene(const struct interview *interview, const char *image, FI
         fprintf(file, "  kind: real\n  array: {length: %s}\n", array);
     add_key(file, "  ", "frequency", answer_about(interview, frequency.key), "centre of the band");
     add_key(file, "  ", "bandwidth", answer_about(interview, bandwidth.key),
-            "range resolution is c / 2B");
-    add_key(file, "  ", "altitude",
-            interview->has_altitude ? "from_file" : answer_about(interview, altitude.key),
-            "over the seabed");
+            interview->assumes_bandwidth
+                ? "c / 2 over the column spacing: write your sonar's, which no file tells"
+                : "range resolution is c / 2B");
+    add_key(file, "  ", "altitude", answer_about(interview, altitude.key), "over the seabed");
     if (!array)
         fputs("  # resolution: 4 cm # along the track; without it, the row spacing\n", file);
     fputs("\nseabed:\n"
@@ -252,9 +306,16 @@ static void write_scene(const struct interview *interview, const char *image, FI
           "    diameter: 0.5 m\n"
           "    heading: 30 deg # from along-track towards range\n"
           "    material: steel\n"
-          "    level: {over_seabed: 15 dB} # measured pictures show 8 to 19 dB; else the "
-          "material's\n",
+          "    # measured pictures show 8 to 19 dB; without this line the material decides\n",
           file);
+    const double most_db = floor(interview->ceiling_over_seabed_db - CEILING_ROOM_DB);
+    if (most_db < USUAL_LEVEL_DB)
+        fprintf(file,
+                "    level: {over_seabed: %.0f dB} # the image's ceiling cuts what is %.0f dB over "
+                "its seabed\n",
+                most_db, interview->ceiling_over_seabed_db);
+    else
+        fprintf(file, "    level: {over_seabed: %.0f dB}\n", USUAL_LEVEL_DB);
 }
 
 /* Writes a file whole or not at all: the scene, or a text instead. False after a message. */
@@ -302,6 +363,17 @@ static bool name_files(struct interview *interview, char *image, size_t capacity
     return false;
 }
 
+/* A number among what a calibration measured; NAN where there is none. */
+static double measured(const char *calibration, const char *key)
+{
+    char sought[ANSWER];
+    const char *rest;
+    double number;
+    snprintf(sought, sizeof sought, "\n  %s:\n    value: ", key);
+    const char *found = strstr(calibration, sought);
+    return found && text_to_number(found + strlen(sought), &number, &rest) ? number : NAN;
+}
+
 /* Calibrates the image, and finds out what else it tells. *text: the calibration, for
  * sonject_text_release. */
 static sonject_status learn(struct interview *interview, char **text)
@@ -317,8 +389,18 @@ static sonject_status learn(struct interview *interview, char **text)
         return status;
     const char *nadir = strstr(*text, "nadir_column:"), *end = strstr(*text, "\nmeasured:");
     interview->has_nadir = nadir && end && nadir < end; /* behind it are reasons and errors */
-    interview->has_altitude = file_tells(interview, true);
-    interview->has_geometry = interview->has_altitude || file_tells(interview, false);
+    interview->column_spacing_m = measured(*text, "column_spacing");
+    interview->altitude_m = measured(*text, "altitude");
+    interview->recorded_altitude_m = measured(*text, "recorded_altitude");
+    interview->ceiling_over_seabed_db = measured(*text, "ceiling_over_seabed");
+    interview->has_geometry =
+        file_tells(interview, "sonject: 1\ninput: {geometry: from_file}\n"
+                              "sonar: {altitude: 1 mm, frequency: 1 kHz, bandwidth: 1 Hz}\n");
+    interview->has_altitude =
+        interview->recorded_altitude_m > 0.0 &&
+        file_tells(interview, "sonject: 1\ninput: {geometry: {row_spacing: 1 cm, column_spacing: "
+                              "1 cm, first_slant_range: 1 km}}\n"
+                              "sonar: {altitude: from_file, frequency: 1 kHz, bandwidth: 1 Hz}\n");
     return SONJECT_OK;
 }
 
@@ -363,7 +445,8 @@ static int hold(struct interview *interview)
 static int work(const void *verb_options)
 {
     struct interview interview = {.options = verb_options};
-    const sonject_status status = sonject_context_create(NULL, &interview.context);
+    const sonject_context_params params = {.struct_size = sizeof params, .log = progress_note};
+    const sonject_status status = sonject_context_create(&params, &interview.context);
     const int code = status == SONJECT_OK ? hold(&interview) : fail_with(NULL, status);
     sonject_context_release(&interview.context);
     return code;
@@ -376,9 +459,11 @@ const struct verb init_verb = {
     .operand_offset = MEMBER(image),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes = "Calibrates the image, then asks, one line each, for what is left: spacings, ranges,\n"
-             "altitude, frequency, bandwidth, a sidescan's array. Answers may have units, and may\n"
-             "come from a file (init IMAGE <answers). Ends as sonject check does.",
+    .notes =
+        "Calibrates the image, then asks, one line each, for what is left: spacings and ranges\n"
+        "that its file does not tell, altitude, frequency, bandwidth, a sidescan's array. Enter\n"
+        "takes what stands in brackets. Answers may have units, and may come from a file (init\n"
+        "IMAGE <answers). Ends as sonject check does.",
     .options_size = sizeof(struct init_options),
     .work = work,
 };

@@ -86,6 +86,13 @@ static void tell_altitudes(struct report *report, const struct scene *scene)
                    scene->altitudes_m[0], scene->altitudes_m[1], scene->sonar.altitude_m);
 }
 
+void tell_scene(struct report *report, const struct scene *scene)
+{
+    tell_sediment(report, scene);
+    tell_altitudes(report, scene);
+    tell_calibration_doubts(report, scene);
+}
+
 /* Objects that nobody would find who labels the image, and those of which little but white is left.
  */
 static void tell_seen(struct report *report, const struct scene *scene,
@@ -106,10 +113,12 @@ static void tell_seen(struct report *report, const struct scene *scene,
         if (truth->highlight_clipped > CLIPPED_MUCH)
             report_log(
                 report,
-                "note: %.0f %% of the highlight of '%s' is cut at the image's ceiling: lower "
-                "objects[].level, of which measured pictures show 8 to 19 dB over the "
-                "seabed",
-                100.0 * truth->highlight_clipped, scene->objects[i].name);
+                "note: %.0f %% of the highlight of '%s' is cut at the image's ceiling, %.1f dB "
+                "over "
+                "the seabed there: objects[].level of {over_seabed: %.0f dB} would leave room",
+                100.0 * truth->highlight_clipped, scene->objects[i].name,
+                truth->ceiling_over_seabed_db,
+                floor(truth->ceiling_over_seabed_db - CEILING_ROOM_DB));
     }
 }
 
@@ -120,8 +129,7 @@ void tell_result(struct report *report, const struct scene *scene, const struct 
     tell_empty(report, swath);
     tell_noise_floor(report, scene, statistics);
     tell_accuracy(report, statistics);
-    tell_sediment(report, scene);
-    tell_altitudes(report, scene);
+    tell_scene(report, scene);
     tell_seen(report, scene, result);
     tell_clipped(report, statistics);
 }
