@@ -80,11 +80,10 @@ static bool print_keys(const json_t *keys, const char *name, struct nearest *nea
 }
 
 /* Adds those of one kind of file. */
-static sonject_status add_keys(sonject_context *context, json_t *keys,
-                               sonject_status (*list)(sonject_context *context, char **json))
+static sonject_status add_keys(sonject_context *context, json_t *keys, sonject_keys_of of)
 {
     char *text = NULL;
-    const sonject_status status = list(context, &text);
+    const sonject_status status = sonject_keys(context, of, &text);
     json_t *listed = text ? json_loads(text, 0, NULL) : NULL;
     json_array_extend(keys, listed);
     json_decref(listed);
@@ -98,9 +97,9 @@ int key_help(const char *name, struct nearest *nearest)
     json_t *keys = json_array();
     sonject_status status = sonject_context_create(NULL, &context);
     if (status == SONJECT_OK)
-        status = add_keys(context, keys, sonject_keys);
+        status = add_keys(context, keys, SONJECT_KEYS_OF_SCENES);
     if (status == SONJECT_OK)
-        status = add_keys(context, keys, sonject_campaign_keys);
+        status = add_keys(context, keys, SONJECT_KEYS_OF_CAMPAIGNS);
     int code = status == SONJECT_OK ? EXIT_CODE_DONE : fail_with(context, status);
     if (status == SONJECT_OK && print_keys(keys, name, nearest)) {
         code = finish_output();

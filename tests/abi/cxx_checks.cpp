@@ -60,6 +60,15 @@ static void check_errors(const sonject::context &context)
     } catch (const sonject::error &) {
     }
     expect(sonject::keys(context).find("sonar.altitude") != std::string::npos, "keys are listed");
+    expect(sonject::keys(context, SONJECT_KEYS_OF_CAMPAIGNS).find("chip.spread") !=
+               std::string::npos,
+           "those of campaigns, too");
+    try {
+        sonject::keys(context, static_cast<sonject_keys_of>(2));
+        expect(false, "files of other kinds have none");
+    } catch (const sonject::error &error) {
+        expect(error.status() == SONJECT_ERROR_ARGUMENT, "which is a wrong argument");
+    }
 }
 
 static void check_transfers(const sonject::context &context)
