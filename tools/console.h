@@ -58,10 +58,10 @@ int progress_update(void *user, double fraction, const char *stage);
 
 /* A sonject_log_function; user: struct progress, or NULL. Prints the line, the bar comes back below
  * it. */
-void progress_log(void *user, const char *line);
+void progress_log(void *user, uint32_t level, const char *line);
 
 /* The same of notes alone. */
-void progress_note(void *user, const char *line);
+void progress_note(void *user, uint32_t level, const char *line);
 
 /* Removes the bar. */
 void progress_end(struct progress *progress);

@@ -34,9 +34,10 @@ static void describe_water(struct growing_text *text, const struct ray_path *pat
                          path->is_straight ? ", none of which the sound crosses" : "");
 }
 
-static void add_note(void *user, const char *line)
+static void add_note(void *user, uint32_t level, const char *line)
 {
-    growing_text_add(user, "           %s\n", line);
+    (void)level;
+    growing_text_add(user, "           note: %s\n", line);
 }
 
 static void describe_patch(struct growing_text *text, const struct scene *scene,

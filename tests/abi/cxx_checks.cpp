@@ -321,8 +321,12 @@ static void check_campaigns(const sonject::context &context)
 int main()
 {
     std::vector<std::string> lines;
+    std::size_t notes = 0;
     sonject::context_options options;
-    options.log = [&](const char *line) { lines.push_back(line); };
+    options.log = [&](sonject_log_level level, const char *line) {
+        lines.push_back(line);
+        notes += level == SONJECT_LOG_NOTE;
+    };
     sonject::context made(options);
     sonject::context context = std::move(made);
     expect(!context.devices().empty(), "there are devices");
@@ -338,7 +342,8 @@ int main()
     check_transfer(context);
     check_progress(context);
     check_campaigns(context);
-    expect(!lines.empty(), "news reach the log, also after the context has moved");
+    expect(lines.size() > notes, "news reach the log, also after the context has moved");
+    expect(notes > 0, "and notes as such");
     if (failures == 0)
         std::puts("all right");
     return failures != 0;
