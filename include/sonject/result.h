@@ -142,6 +142,9 @@ typedef struct sonject_object_truth {
     double shadow_visibility_db;
     double highlight_clipped; /* share, 0...1, of its highlight's pixels that are as bright as the
                                  image, or what its file stores, can be; NaN where it has none */
+    double ceiling_over_seabed_db; /* that brightest there can be over the local mean seabed where
+                                      its echo is strongest; infinity: nothing is cut; NaN: no
+                                      highlight */
 } sonject_object_truth;
 
 /* Truth of object number index. truth->struct_size must be set. Errors: ARGUMENT. */
