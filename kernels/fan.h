@@ -3,6 +3,7 @@
 #define SONJECT_KERNELS_FAN_H
 
 #include "elementary.h"
+#include "group.h"
 #include "interval.h"
 #include "layout.h"
 #include "random.h"
@@ -66,14 +67,25 @@ FUNCTION vfloat refraction_gain(const struct fan_record *fan, const struct fan_r
     return ray->spreading * range * range / (ground * (ray->wavefront + distance));
 }
 
-/* The strip of a work-item. Devices hand work-items out in runs, and strips near targets take
- * longest: neighbours in a run are strides apart, so that all runs take about as long. The stride
- * has no factor in common with the number of strips, so every strip gets its turn, in one call of
- * the kernel or in several. */
-FUNCTION int strip_of_item(const struct fan_record *fan, int item)
+/* The strip of a group. Devices hand groups out in runs, and strips near targets take longest:
+ * neighbours in a run are strides apart, so that all runs take about as long. The stride has no
+ * factor in common with the number of strips, so every strip gets its turn, in one call of the
+ * kernel or in several. */
+FUNCTION int strip_of_group(const struct fan_record *fan, int group)
 {
-    const PLACE turn = (PLACE)fan->first_turn + item / fan->segments;
+    const PLACE turn = (PLACE)fan->first_turn + group / fan->segments;
     return (int)(turn * fan->strip_stride % fan->strips);
+}
+
+/* The first rays of an item of a group that follows a segment, and how far its next ones are. */
+FUNCTION RECORD_WORD first_ray_of_item(int segment)
+{
+    return (RECORD_WORD)segment * GROUP_WIDTH + GROUP_ITEM * WIDTH;
+}
+
+FUNCTION RECORD_WORD ray_step(const struct fan_record *fan)
+{
+    return (RECORD_WORD)fan->segments * GROUP_WIDTH;
 }
 
 /* The random numbers of a strip of this launch: the same in a window as in the whole patch. */

@@ -225,8 +225,8 @@ struct fan_record {
                                 surface, -1 the seabed, -2 any */
     RECORD_INT target;       /* record of the part, or the object's first one (second_order.h) */
     RECORD_INT is_sample;    /* not rays but samples of the object's paths of second order */
-    RECORD_INT segments;     /* work-items that share a strip */
-    RECORD_INT strip_stride; /* from a work-item's strip to the next one's, see strip_of_item */
+    RECORD_INT segments;     /* groups of work-items that share a strip */
+    RECORD_INT strip_stride; /* from a group's strip to the next one's, see strip_of_group */
     RECORD_INT first_turn;   /* of the strips in that order: where this call begins */
     struct ray_table_record table;
     RECORD_WORD relief_words; /* where the relief_record is, in words from the first object's
@@ -273,8 +273,8 @@ enum chain_estimator {
 
 #define CHAIN_ORDERS_MAX 8
 
-/* How chains of several interactions are walked and where their echoes are tallied: for each order a
- * plane of the whole track's strips times bins. */
+/* How chains of several interactions are walked and where their echoes are tallied: for each order
+ * a plane of the whole track's strips times bins. */
 struct chain_record {
     RECORD_INT interactions; /* most surfaces that a path may meet */
     RECORD_INT estimator;

@@ -328,8 +328,8 @@ FUNCTION struct outcome_record trace_second_order_strip(
 {
     struct outcome_record outcome = {0, 0, 0, 0};
     const struct random_key key = key_of_strip(fan, strip);
-    const RECORD_WORD stride = (RECORD_WORD)fan->segments * WIDTH;
-    for (RECORD_WORD sample = (RECORD_WORD)segment * WIDTH; sample < fan->rays; sample += stride)
+    for (RECORD_WORD sample = first_ray_of_item(segment); sample < fan->rays;
+         sample += ray_step(fan))
         trace_second_order_group(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
                                  sample, &outcome);
     return outcome;

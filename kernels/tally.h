@@ -3,6 +3,7 @@
 #ifndef SONJECT_KERNELS_TALLY_H
 #define SONJECT_KERNELS_TALLY_H
 
+#include "group.h"
 #include "layout.h"
 #include "width.h"
 
@@ -37,20 +38,14 @@ FUNCTION TALLY whole_quanta(float quanta, float chance)
     return count + (chance < rest) - (chance < -rest);
 }
 
-#if defined(TALLY_IS_SHARED)
-#define TALLIES_ARE_SHARED 1
-#else
-#define TALLIES_ARE_SHARED 0
-#endif
-
-/* Adds quanta to a tally; is_shared: other work-items may add to it at the same time, which they
- * may to any where TALLY_IS_SHARED. */
+/* Adds quanta to a tally; is_shared: other work-items may add to it at the same time, which those
+ * of a group may to any. */
 FUNCTION void tally_add(GLOBAL TALLY *tally, int is_shared, float quanta, float chance,
                         RECORD_WORD *faults)
 {
     if (!is_countable(quanta, faults))
         return;
-    if (is_shared || TALLIES_ARE_SHARED)
+    if (is_shared | (GROUP_ITEMS > 1))
         ATOMIC_ADD(tally, whole_quanta(quanta, chance));
     else
         *tally += whole_quanta(quanta, chance);

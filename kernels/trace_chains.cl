@@ -1,8 +1,8 @@
-/* Entry point: one work-item follows one segment of one strip. Echoes of chains end in other strips
- * too, so all work-items share the tallies. */
+/* Entry point: one group follows one segment of one strip. Echoes of chains end in other strips too,
+ * so all groups share the tallies. */
 #include "trace_chains.h"
 
-__kernel void trace_chains(__global const struct fan_record *fan_buffer,
+GROUP_KERNEL void trace_chains(__global const struct fan_record *fan_buffer,
                            __global const struct ray_piece_record *pieces,
                            __global const struct chain_record *chains,
                            __global const struct object_record *objects,
@@ -10,8 +10,11 @@ __kernel void trace_chains(__global const struct fan_record *fan_buffer,
                            __global TALLY *tallies, __global struct outcome_record *outcomes)
 {
     const struct fan_record fan = *fan_buffer;
-    const int strip = strip_of_item(&fan, (int)get_global_id(0));
-    const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
-    outcomes[get_global_id(0)] =
-        trace_chains_strip(&fan, pieces, chains, objects, spheres, map, tallies, strip, segment);
+    const int strip = strip_of_group(&fan, GROUP_NUMBER);
+    const int segment = GROUP_NUMBER % fan.segments;
+    GROUP_MEMORY float throughputs[GROUP_WIDTH];
+    const struct outcome_record outcome =
+        trace_chains_strip(&fan, pieces, chains, objects, spheres, map, tallies, throughputs, strip,
+                           segment);
+    count_outcome(&outcomes[GROUP_NUMBER], &outcome);
 }

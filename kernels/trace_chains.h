@@ -298,23 +298,24 @@ FUNCTION void trace_chain_block(const struct fan_record *fan,
     struct target_choice choice;
     const int is_shared = chains->groups > 0 && fan->only_object == -1;
     const RECORD_WORD count = rays_from(fan, first_ray, THIN_BLOCK);
-    for (RECORD_WORD ray = 0; ray < count; ray += WIDTH) {
-        if (is_shared && ray % CHOICE_RAYS == 0)
-            aim_choice(fan, pieces, chains, spheres, strip, first_ray + ray, &choice);
+    const RECORD_WORD first = GROUP_ITEM * WIDTH;
+    for (RECORD_WORD ray = first; ray < count; ray += GROUP_WIDTH) {
+        if (is_shared && (ray % CHOICE_RAYS == 0 || ray == first))
+            aim_choice(fan, pieces, chains, spheres, strip, first_ray + ray - ray % CHOICE_RAYS,
+                       &choice);
         trace_chain_group(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
                           first_ray + ray, throughput, is_shared ? &choice : 0, outcome);
     }
 }
 
 /* Traces the share `segment` of a strip's fan, or of a target's paths of second order. tallies:
- * orders x tally_strips x bins. */
-FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
-                                                  GLOBAL const struct ray_piece_record *pieces,
-                                                  GLOBAL const struct chain_record *chains,
-                                                  GLOBAL const struct object_record *objects,
-                                                  GLOBAL const struct sphere_record *spheres,
-                                                  GLOBAL const float *map, GLOBAL TALLY *tallies,
-                                                  int strip, int segment)
+ * orders x tally_strips x bins; throughputs: room for GROUP_WIDTH, which the group's items share.
+ */
+FUNCTION struct outcome_record trace_chains_strip(
+    const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
+    GLOBAL const struct chain_record *chains, GLOBAL const struct object_record *objects,
+    GLOBAL const struct sphere_record *spheres, GLOBAL const float *map, GLOBAL TALLY *tallies,
+    GROUP_MEMORY float *throughputs, int strip, int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};
     if (fan->is_sample)
@@ -322,23 +323,26 @@ FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
                                         segment);
     const struct random_key key = key_of_strip(fan, strip);
     const RECORD_WORD blocks = (fan->rays + THIN_BLOCK - 1u) / THIN_BLOCK;
-    const RECORD_WORD stride = (RECORD_WORD)fan->segments * WIDTH;
-    for (RECORD_WORD some = (RECORD_WORD)segment * WIDTH; some < blocks; some += stride) {
-        const vfloat throughput = russian_roulette(fan, pieces, chains, objects, spheres, key,
-                                                   strip, SPLAT_WORD(some) + LANE_NUMBERS);
-        float lanes[WIDTH];
-        STORE_VFLOAT(throughput, lanes);
-        for (RECORD_WORD lane = 0; lane < WIDTH && some + lane < blocks; lane++) {
-            const RECORD_WORD first_ray = (some + lane) * THIN_BLOCK;
+    const RECORD_WORD stride = (RECORD_WORD)fan->segments;
+    const RECORD_WORD own = GROUP_ITEM * WIDTH;
+    for (RECORD_WORD some = (RECORD_WORD)segment; some < blocks; some += stride * GROUP_WIDTH) {
+        const word mine = SPLAT_WORD(some) + (SPLAT_WORD(own) + LANE_NUMBERS) * stride;
+        const vfloat throughput =
+            russian_roulette(fan, pieces, chains, objects, spheres, key, strip, mine);
+        STORE_VFLOAT(throughput, throughputs + own);
+        GROUP_WAIT();
+        for (RECORD_WORD i = 0; i < GROUP_WIDTH && some + i * stride < blocks; i++) {
+            const RECORD_WORD first_ray = (some + i * stride) * THIN_BLOCK;
             /* rays that are known to miss their object are traced by that */
-            if (lanes[lane] > 0.0f || fan->only_object >= 0) {
+            if (GROUP_ITEM == 0 && (throughputs[i] > 0.0f || fan->only_object >= 0)) {
                 outcome.rays += rays_from(fan, first_ray, THIN_BLOCK);
                 outcome.queries += rays_from(fan, first_ray, THIN_BLOCK);
             }
-            if (lanes[lane] > 0.0f)
+            if (throughputs[i] > 0.0f)
                 trace_chain_block(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
-                                  first_ray, lanes[lane], &outcome);
+                                  first_ray, throughputs[i], &outcome);
         }
+        GROUP_WAIT();
     }
     return outcome;
 }

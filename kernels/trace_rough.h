@@ -344,8 +344,7 @@ FUNCTION struct outcome_record trace_rough_strip(const struct fan_record *fan,
     struct outcome_record outcome = {0, 0, 0, 0};
     const struct random_key key = key_of_strip(fan, strip);
     const struct rough_tallies tallies = rough_tallies_of(fan, strip, seabed, tiles);
-    const RECORD_WORD step = (RECORD_WORD)fan->segments * WIDTH;
-    for (RECORD_WORD ray = (RECORD_WORD)segment * WIDTH; ray < fan->rays; ray += step) {
+    for (RECORD_WORD ray = first_ray_of_item(segment); ray < fan->rays; ray += ray_step(fan)) {
         struct rough_echo echo;
         outcome.rays += rays_from(fan, ray, WIDTH);
         trace_rough_group(fan, pieces, objects, edges, strip, key, ray, &echo, &outcome);

@@ -58,8 +58,7 @@ FUNCTION struct outcome_record trace_rough_images_strip(
     const struct random_key key = key_of_strip(fan, strip);
     GLOBAL const struct object_record *object = &objects[fan->only_object];
     GLOBAL TALLY *line = tile_line(object, tiles, TILE_ENERGY, fan->first_strip + strip);
-    const RECORD_WORD step = (RECORD_WORD)fan->segments * WIDTH;
-    for (RECORD_WORD ray = (RECORD_WORD)segment * WIDTH; ray < fan->rays; ray += step) {
+    for (RECORD_WORD ray = first_ray_of_item(segment); ray < fan->rays; ray += ray_step(fan)) {
         struct image_echo echo;
         outcome.rays += rays_from(fan, ray, WIDTH);
         trace_rough_images_group(fan, pieces, pair, objects, strip, key, ray, &echo, &outcome);

@@ -249,9 +249,8 @@ FUNCTION struct outcome_record trace_smooth_strip(const struct fan_record *fan,
     struct outcome_record outcome = {0, 0, 0, 0};
     const struct random_key key = key_of_strip(fan, strip);
     GLOBAL TALLY *line = tally + (PLACE)strip * fan->bins * 2;
-    const RECORD_WORD step = (RECORD_WORD)fan->segments * WIDTH;
     for (int stratum = 0; stratum < (int)fan->strata; stratum++)
-        for (RECORD_WORD ray = (RECORD_WORD)segment * WIDTH; ray < fan->rays; ray += step) {
+        for (RECORD_WORD ray = first_ray_of_item(segment); ray < fan->rays; ray += ray_step(fan)) {
             outcome.rays += rays_from(fan, ray, WIDTH);
             const struct smooth_cells cells =
                 trace_smooth_group(fan, pieces, objects, strip, stratum, key, ray);

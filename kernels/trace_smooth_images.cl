@@ -2,7 +2,7 @@
  * few scenes have boundaries. */
 #include "trace_smooth_images.h"
 
-__kernel void trace_smooth_images(__global const struct fan_record *fan_buffer,
+GROUP_KERNEL void trace_smooth_images(__global const struct fan_record *fan_buffer,
                                   __global const struct ray_piece_record *pieces,
                                   __global const struct object_record *objects,
                                   __global TALLY *tally,
@@ -10,8 +10,9 @@ __kernel void trace_smooth_images(__global const struct fan_record *fan_buffer,
                                   __global struct outcome_record *outcomes)
 {
     const struct fan_record fan = *fan_buffer;
-    const int strip = strip_of_item(&fan, (int)get_global_id(0));
-    const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
-    outcomes[get_global_id(0)] =
+    const int strip = strip_of_group(&fan, GROUP_NUMBER);
+    const int segment = GROUP_NUMBER % fan.segments;
+    const struct outcome_record outcome =
         trace_smooth_images_strip(&fan, pieces, pair, objects, tally, strip, segment);
+    count_outcome(&outcomes[GROUP_NUMBER], &outcome);
 }

@@ -51,9 +51,8 @@ FUNCTION struct outcome_record trace_smooth_images_strip(
     struct outcome_record outcome = {0, 0, 0, 0};
     const struct random_key key = key_of_strip(fan, strip);
     GLOBAL TALLY *line = tally + (PLACE)strip * fan->bins * 2;
-    const RECORD_WORD step = (RECORD_WORD)fan->segments * WIDTH;
     for (int stratum = 0; stratum < (int)fan->strata; stratum++)
-        for (RECORD_WORD ray = (RECORD_WORD)segment * WIDTH; ray < fan->rays; ray += step) {
+        for (RECORD_WORD ray = first_ray_of_item(segment); ray < fan->rays; ray += ray_step(fan)) {
             outcome.rays += rays_from(fan, ray, WIDTH);
             const struct smooth_cells cells = trace_smooth_images_group(
                 fan, pieces, pair, objects, strip, stratum, key, ray, &outcome);

@@ -57,7 +57,9 @@ static int work(const void *verb_options)
         return EXIT_CODE_USAGE;
     sonject_context *context = NULL;
     char *text = NULL;
-    sonject_status status = sonject_context_create(NULL, &context);
+    const sonject_context_params context_params = {.struct_size = sizeof(context_params),
+                                                   .log = progress_note};
+    sonject_status status = sonject_context_create(&context_params, &context);
     if (status == SONJECT_OK)
         status = sonject_calibrate(context, &params, &text);
     if (text && !options->output)

@@ -156,10 +156,17 @@ int progress_update(void *user, double fraction, const char *stage)
     return stop_is_asked();
 }
 
-void progress_log(void *user, const char *line)
+void progress_log(void *user, uint32_t level, const char *line)
 {
-    progress_end(user);
-    message(line);
+    if (user)
+        progress_end(user);
+    message(level == SONJECT_LOG_NOTE ? "note: " : "", line);
+}
+
+void progress_note(void *user, uint32_t level, const char *line)
+{
+    if (level == SONJECT_LOG_NOTE)
+        progress_log(user, level, line);
 }
 
 void progress_end(struct progress *progress)

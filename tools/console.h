@@ -56,8 +56,12 @@ void progress_begin(struct progress *progress, bool is_quiet);
 /* A sonject_progress_function; user: struct progress. Cancels once a signal asks to stop. */
 int progress_update(void *user, double fraction, const char *stage);
 
-/* A sonject_log_function; user: struct progress. Prints the line, the bar comes back below it. */
-void progress_log(void *user, const char *line);
+/* A sonject_log_function; user: struct progress, or NULL. Prints the line, the bar comes back below
+ * it. */
+void progress_log(void *user, uint32_t level, const char *line);
+
+/* The same of notes alone. */
+void progress_note(void *user, uint32_t level, const char *line);
 
 /* Removes the bar. */
 void progress_end(struct progress *progress);

@@ -56,12 +56,6 @@ static bool read_type(const struct convert_options *options, sonject_convert_par
     return true;
 }
 
-static void tell(void *user, const char *line)
-{
-    (void)user;
-    message(line);
-}
-
 static int work(const void *verb_options)
 {
     const struct convert_options *options = verb_options;
@@ -81,7 +75,7 @@ static int work(const void *verb_options)
     if (options->geometry.range_axis)
         params.range_axis = is_ground ? SONJECT_CONVERT_AXIS_GROUND : SONJECT_CONVERT_AXIS_SLANT;
     sonject_context_params context_params = {.struct_size = sizeof(context_params)};
-    context_params.log = tell;
+    context_params.log = progress_log;
     sonject_context *context = NULL;
     sonject_status status = sonject_context_create(&context_params, &context);
     if (status == SONJECT_OK)

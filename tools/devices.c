@@ -51,20 +51,14 @@ static void print_table(const sonject_device_info *devices, size_t count)
     }
 }
 
-/* Why OpenCL's are not among them. */
-static void tell(void *user, const char *line)
-{
-    (void)user;
-    message(line);
-}
-
 static int work(const void *verb_options)
 {
     (void)verb_options;
     sonject_context *context = NULL;
     sonject_device_info *devices = NULL;
     size_t count = 0;
-    const sonject_context_params params = {.struct_size = sizeof params, .log = tell};
+    /* which says why OpenCL's are not among them */
+    const sonject_context_params params = {.struct_size = sizeof params, .log = progress_log};
     sonject_status status = sonject_context_create(&params, &context);
     if (status == SONJECT_OK)
         status = list_devices(context, &devices, &count);

@@ -1,6 +1,7 @@
 /* sonject init: asks for what an image does not tell of itself, and writes a scene to begin with.
  */
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,23 +11,15 @@
 #include <sonject/sonject.h>
 
 #include "base/system/file_system.h"
+#include "base/text.h"
 #include "console.h"
 #include "image_arguments.h"
+#include "interview.h"
 #include "stage.h"
 #include "verbs.h"
 
-enum {
-    ANSWER = 100,
-    ANSWERS = 8,
-    NAME = 1024
-};
-
-struct init_options {
-    const char *image;
-    const char *output;
-    const char *channel;
-    const char *array;
-};
+#define USUAL_LEVEL_DB  15.0
+#define CEILING_ROOM_DB 3.0 /* over an echo's peak, so that the ceiling cuts little of it */
 
 #define MEMBER(name) offsetof(struct init_options, name)
 
@@ -39,141 +32,12 @@ static const struct argument arguments[] = {
      MEMBER(array)},
 };
 
-/* What is asked for. Without `usual` there must be an answer. */
-struct question {
-    const char *key, *text, *usual;
-};
-
-static const struct question row_spacing = {
-    "input.geometry.row_spacing", "row spacing, from ping to ping along the track (such as 5 cm)",
-    NULL};
-static const struct question column_spacing = {
-    "input.geometry.column_spacing",
-    "column spacing, from sample to sample in slant range (such as 2.5 cm)", NULL};
-static const struct question first_range = {"input.geometry.first_slant_range",
-                                            "slant range of the first column (such as 30 m)", NULL};
-static const struct question side = {
-    "input.geometry.side", "side of the track to put targets into, port or starboard", "port"};
-static const struct question altitude = {
-    "sonar.altitude", "altitude of the sonar over the seabed (such as 10 m)", NULL};
-static const struct question frequency = {"sonar.frequency", "centre frequency (such as 100 kHz)",
-                                          NULL};
-static const struct question bandwidth = {
-    "sonar.bandwidth",
-    "bandwidth (such as 30 kHz; if you don't know it, c / 2 over the column spacing)", NULL};
-static const struct question array_length = {"sonar.array.length",
-                                             "length of a sidescan's array, 0.89 wavelengths over "
-                                             "its beam in rad (such as 0.5 m; nothing for "
-                                             "synthetic aperture)",
-                                             ""};
-
-struct interview {
-    sonject_context *context;
-    const struct init_options *options;
-    char answers[ANSWERS][ANSWER]; /* "key=value" */
-    size_t count;
-    char scene[NAME], calibration[NAME]; /* files */
-    bool has_geometry, has_altitude;     /* the image's file */
-    bool has_nadir;                      /* the image, as its calibration found */
-};
-
-/* The answer about a key; NULL: it was not asked for, or there was none. */
-static const char *answer_about(const struct interview *interview, const char *key)
+/* Whether the image's file tells what this scene leaves to it. */
+static bool file_tells(struct interview *interview, const char *scene_text)
 {
-    const size_t length = strlen(key);
-    for (size_t i = 0; i < interview->count; i++)
-        if (strncmp(interview->answers[i], key, length) == 0 &&
-            interview->answers[i][length] == '=')
-            return interview->answers[i] + length + 1;
-    return NULL;
-}
-
-/* Whether a scene with what was answered so far can be read; a message is left if not. */
-static bool is_possible(struct interview *interview)
-{
-    static const char text[] = "sonject: 1\n"
-                               "sonar: {altitude: 10 m, frequency: 100 kHz, bandwidth: 10 kHz}\n"
-                               "input: {geometry: {row_spacing: 5 cm, column_spacing: 5 cm, "
-                               "first_slant_range: 30 m}}\n";
-    const char *overrides[ANSWERS + 1] = {"sonar.kind=real"};
-    const size_t is_real = answer_about(interview, array_length.key) != NULL;
-    sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
     sonject_scene *scene = NULL;
-    for (size_t i = 0; i < interview->count; i++)
-        overrides[is_real + i] = interview->answers[i];
-    params.overrides = overrides;
-    params.override_count = (uint32_t)(is_real + interview->count);
-    const sonject_status status = sonject_scene_read(interview->context, NULL, &params, &scene);
-    sonject_scene_release(&scene);
-    return status == SONJECT_OK;
-}
-
-/* Asks until there is an answer that is possible. False after a message: there is none. */
-static bool ask(struct interview *interview, const struct question *question)
-{
-    char line[ANSWER];
-    for (;;) {
-        const bool has_usual = question->usual && *question->usual;
-        fprintf(stderr, "%s%s%s%s: ", question->text, has_usual ? " [" : "",
-                has_usual ? question->usual : "", has_usual ? "]" : "");
-        fflush(stderr);
-        if (!fgets(line, sizeof line, stdin)) {
-            fputc('\n', stderr);
-            message("init: no answer was given for ", question->key);
-            return false;
-        }
-        line[strcspn(line, "\r\n")] = '\0';
-        const char *value = line + strspn(line, " \t");
-        if (!*value && question->usual) {
-            if (!has_usual)
-                return true; /* nothing is an answer, too */
-            value = question->usual;
-        }
-        const int length =
-            snprintf(interview->answers[interview->count++], ANSWER, "%s=%s", question->key, value);
-        if (*value && length < ANSWER && is_possible(interview))
-            return true;
-        interview->count--;
-        if (*value)
-            (void)fail_with(interview->context, SONJECT_ERROR_INPUT);
-    }
-}
-
-static bool ask_all(struct interview *interview)
-{
-    struct question range = first_range;
-    range.usual = interview->has_nadir ? "0 m" : NULL;
-    return (interview->has_geometry ||
-            (ask(interview, &row_spacing) && ask(interview, &column_spacing) &&
-             ask(interview, &range))) &&
-           (!interview->has_nadir || ask(interview, &side)) &&
-           (interview->has_altitude || ask(interview, &altitude)) && ask(interview, &frequency) &&
-           ask(interview, &bandwidth) && ask(interview, &array_length);
-}
-
-/* Whether the image's file tells the geometry, and the altitude if that is asked for. */
-static bool file_tells(struct interview *interview, bool with_altitude)
-{
-    const struct init_options *options = interview->options;
-    sonject_scene_read_params params = {.struct_size = sizeof params, .override_count = 1};
-    sonject_scene *scene = NULL;
-    char *text = NULL, path[NAME];
-    const char *overrides[3] = {path};
-    char channel[ANSWER], array[NAME];
-    params.text = with_altitude
-                      ? "sonject: 1\ninput: {geometry: from_file}\n"
-                        "sonar: {altitude: from_file, frequency: 1 kHz, bandwidth: 1 Hz}\n"
-                      : "sonject: 1\ninput: {geometry: from_file}\n"
-                        "sonar: {altitude: 1 mm, frequency: 1 kHz, bandwidth: 1 Hz}\n";
-    snprintf(path, sizeof path, "input.path=%s", options->image);
-    snprintf(channel, sizeof channel, "input.channel=%s", options->channel ? options->channel : "");
-    snprintf(array, sizeof array, "input.array=%s", options->array ? options->array : "");
-    if (options->channel)
-        overrides[params.override_count++] = channel;
-    if (options->array)
-        overrides[params.override_count++] = array;
-    params.overrides = overrides;
-    sonject_status status = sonject_scene_read(interview->context, NULL, &params, &scene);
+    char *text = NULL;
+    sonject_status status = read_image_scene(interview, scene_text, &scene);
     if (status == SONJECT_OK)
         status = sonject_check(interview->context, scene, &text);
     sonject_text_release(&text);
@@ -210,7 +74,7 @@ static void add_key(FILE *file, const char *indent, const char *key, const char 
 static void write_scene(const struct interview *interview, const char *image, FILE *file)
 {
     const struct init_options *options = interview->options;
-    const char *array = answer_about(interview, array_length.key);
+    const char *array = answer_about(interview, "sonar.array.length");
     fprintf(
         file,
         "# Check it with sonject check, then run it with sonject run. sonject help KEY explains "
@@ -224,23 +88,27 @@ static void write_scene(const struct interview *interview, const char *image, FI
         fputs("  geometry: from_file\n", file);
     } else {
         fputs("  geometry:\n", file);
-        add_key(file, "    ", "row_spacing", answer_about(interview, row_spacing.key), "of pings");
-        add_key(file, "    ", "column_spacing", answer_about(interview, column_spacing.key),
+        add_key(file, "    ", "row_spacing", answer_about(interview, "input.geometry.row_spacing"),
+                "of pings");
+        add_key(file, "    ", "column_spacing",
+                answer_about(interview, "input.geometry.column_spacing"),
                 "of samples, in slant range");
-        add_key(file, "    ", "first_slant_range", answer_about(interview, first_range.key),
+        add_key(file, "    ", "first_slant_range",
+                answer_about(interview, "input.geometry.first_slant_range"),
                 interview->has_nadir ? "at the nadir column, which the calibration has"
                                      : "of column 0");
-        add_key(file, "    ", "side", answer_about(interview, side.key), "");
+        add_key(file, "    ", "side", answer_about(interview, "input.geometry.side"), "");
     }
     fputs("\nsonar:\n", file);
     if (array)
         fprintf(file, "  kind: real\n  array: {length: %s}\n", array);
-    add_key(file, "  ", "frequency", answer_about(interview, frequency.key), "centre of the band");
-    add_key(file, "  ", "bandwidth", answer_about(interview, bandwidth.key),
-            "range resolution is c / 2B");
-    add_key(file, "  ", "altitude",
-            interview->has_altitude ? "from_file" : answer_about(interview, altitude.key),
-            "over the seabed");
+    add_key(file, "  ", "frequency", answer_about(interview, "sonar.frequency"),
+            "centre of the band");
+    add_key(file, "  ", "bandwidth", answer_about(interview, "sonar.bandwidth"),
+            interview->assumes_bandwidth
+                ? "c / 2 over the column spacing: write your sonar's, which no file tells"
+                : "range resolution is c / 2B");
+    add_key(file, "  ", "altitude", answer_about(interview, "sonar.altitude"), "over the seabed");
     if (!array)
         fputs("  # resolution: 4 cm # along the track; without it, the row spacing\n", file);
     fputs("\nseabed:\n"
@@ -252,9 +120,16 @@ static void write_scene(const struct interview *interview, const char *image, FI
           "    diameter: 0.5 m\n"
           "    heading: 30 deg # from along-track towards range\n"
           "    material: steel\n"
-          "    level: {over_seabed: 15 dB} # measured pictures show 8 to 19 dB; else the "
-          "material's\n",
+          "    # measured pictures show 8 to 19 dB; without this line the material decides\n",
           file);
+    const double most_db = floor(interview->ceiling_over_seabed_db - CEILING_ROOM_DB);
+    if (most_db < USUAL_LEVEL_DB)
+        fprintf(file,
+                "    level: {over_seabed: %.0f dB} # the image's ceiling cuts what is %.0f dB over "
+                "its seabed\n",
+                most_db, interview->ceiling_over_seabed_db);
+    else
+        fprintf(file, "    level: {over_seabed: %.0f dB}\n", USUAL_LEVEL_DB);
 }
 
 /* Writes a file whole or not at all: the scene, or a text instead. False after a message. */
@@ -302,6 +177,17 @@ static bool name_files(struct interview *interview, char *image, size_t capacity
     return false;
 }
 
+/* A number among what a calibration measured; NAN where there is none. */
+static double measured(const char *calibration, const char *key)
+{
+    char sought[ANSWER];
+    const char *rest;
+    double number;
+    snprintf(sought, sizeof sought, "\n  %s:\n    value: ", key);
+    const char *found = strstr(calibration, sought);
+    return found && text_to_number(found + strlen(sought), &number, &rest) ? number : NAN;
+}
+
 /* Calibrates the image, and finds out what else it tells. *text: the calibration, for
  * sonject_text_release. */
 static sonject_status learn(struct interview *interview, char **text)
@@ -317,8 +203,18 @@ static sonject_status learn(struct interview *interview, char **text)
         return status;
     const char *nadir = strstr(*text, "nadir_column:"), *end = strstr(*text, "\nmeasured:");
     interview->has_nadir = nadir && end && nadir < end; /* behind it are reasons and errors */
-    interview->has_altitude = file_tells(interview, true);
-    interview->has_geometry = interview->has_altitude || file_tells(interview, false);
+    interview->column_spacing_m = measured(*text, "column_spacing");
+    interview->altitude_m = measured(*text, "altitude");
+    interview->recorded_altitude_m = measured(*text, "recorded_altitude");
+    interview->ceiling_over_seabed_db = measured(*text, "ceiling_over_seabed");
+    interview->has_geometry =
+        file_tells(interview, "sonject: 1\ninput: {geometry: from_file}\n"
+                              "sonar: {altitude: 1 mm, frequency: 1 kHz, bandwidth: 1 Hz}\n");
+    interview->has_altitude =
+        interview->recorded_altitude_m > 0.0 &&
+        file_tells(interview, "sonject: 1\ninput: {geometry: {row_spacing: 1 cm, column_spacing: "
+                              "1 cm, first_slant_range: 1 km}}\n"
+                              "sonar: {altitude: from_file, frequency: 1 kHz, bandwidth: 1 Hz}\n");
     return SONJECT_OK;
 }
 
@@ -363,7 +259,8 @@ static int hold(struct interview *interview)
 static int work(const void *verb_options)
 {
     struct interview interview = {.options = verb_options};
-    const sonject_status status = sonject_context_create(NULL, &interview.context);
+    const sonject_context_params params = {.struct_size = sizeof params, .log = progress_note};
+    const sonject_status status = sonject_context_create(&params, &interview.context);
     const int code = status == SONJECT_OK ? hold(&interview) : fail_with(NULL, status);
     sonject_context_release(&interview.context);
     return code;
@@ -376,9 +273,11 @@ const struct verb init_verb = {
     .operand_offset = MEMBER(image),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes = "Calibrates the image, then asks, one line each, for what is left: spacings, ranges,\n"
-             "altitude, frequency, bandwidth, a sidescan's array. Answers may have units, and may\n"
-             "come from a file (init IMAGE <answers). Ends as sonject check does.",
+    .notes =
+        "Calibrates the image, then asks, one line each, for what is left: spacings and ranges\n"
+        "that its file does not tell, altitude, frequency, bandwidth, a sidescan's array. Enter\n"
+        "takes what stands in brackets. Answers may have units, and may come from a file (init\n"
+        "IMAGE <answers). Ends as sonject check does.",
     .options_size = sizeof(struct init_options),
     .work = work,
 };

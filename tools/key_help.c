@@ -45,6 +45,15 @@ static void print_key(const json_t *key)
     puts(json_array_size(json_object_get(key, "words")) ? "\n" : "");
 }
 
+/* Whether a key is the one wanted, in that section, or has that name in whichever section. */
+static bool is_wanted(const char *path, const char *wanted)
+{
+    const size_t length = strlen(wanted), section = length - (wanted[length - 1] == '.');
+    const size_t before = strlen(path) > length ? strlen(path) - length : 0;
+    return (strncmp(path, wanted, section) == 0 && (!path[section] || path[section] == '.')) ||
+           (before > 0 && path[before - 1] == '.' && strcmp(path + before, wanted) == 0);
+}
+
 /* Whether one was printed. */
 static bool print_keys(const json_t *keys, const char *name, struct nearest *nearest)
 {
@@ -53,12 +62,16 @@ static bool print_keys(const json_t *keys, const char *name, struct nearest *nea
     size_t i;
     json_t *key;
     strip_entries(name, wanted);
-    const size_t length = strlen(wanted) - (wanted[0] && wanted[strlen(wanted) - 1] == '.');
+    if (!*wanted)
+        return false;
     json_array_foreach(keys, i, key)
     {
+        const char *name_in_section = strrchr(text_of(key, "path"), '.');
         strip_entries(text_of(key, "path"), path);
         nearest_consider(nearest, text_of(key, "path"));
-        if (strncmp(path, wanted, length) != 0 || (path[length] && path[length] != '.'))
+        if (name_in_section)
+            nearest_consider(nearest, name_in_section + 1);
+        if (!is_wanted(path, wanted))
             continue;
         print_key(key);
         is_found = true;
@@ -67,11 +80,10 @@ static bool print_keys(const json_t *keys, const char *name, struct nearest *nea
 }
 
 /* Adds those of one kind of file. */
-static sonject_status add_keys(sonject_context *context, json_t *keys,
-                               sonject_status (*list)(sonject_context *context, char **json))
+static sonject_status add_keys(sonject_context *context, json_t *keys, sonject_keys_of of)
 {
     char *text = NULL;
-    const sonject_status status = list(context, &text);
+    const sonject_status status = sonject_keys(context, of, &text);
     json_t *listed = text ? json_loads(text, 0, NULL) : NULL;
     json_array_extend(keys, listed);
     json_decref(listed);
@@ -85,9 +97,9 @@ int key_help(const char *name, struct nearest *nearest)
     json_t *keys = json_array();
     sonject_status status = sonject_context_create(NULL, &context);
     if (status == SONJECT_OK)
-        status = add_keys(context, keys, sonject_keys);
+        status = add_keys(context, keys, SONJECT_KEYS_OF_SCENES);
     if (status == SONJECT_OK)
-        status = add_keys(context, keys, sonject_campaign_keys);
+        status = add_keys(context, keys, SONJECT_KEYS_OF_CAMPAIGNS);
     int code = status == SONJECT_OK ? EXIT_CODE_DONE : fail_with(context, status);
     if (status == SONJECT_OK && print_keys(keys, name, nearest)) {
         code = finish_output();

@@ -17,15 +17,15 @@ static void print_help(FILE *file)
     fputs("sonject puts ray-traced targets into measured sonar images.\n\n", file);
     for (size_t i = 0; i < verb_count; i++)
         fprintf(file, "  sonject %-10s %s\n", verbs[i]->name, verbs[i]->summary);
-    fputs(
-        "\n"
-        "  sonject help VERB   the verb's options\n"
-        "  sonject help KEY    what a key of scene files means; or all keys of a section: sonar.\n"
-        "  sonject --version   the version\n"
-        "\n"
-        "Exit status: 0 done, 2 wrong usage, 3 unusable scene or image, 4 device,\n"
-        "5 files or memory, 85 stopped by SIGTERM (run the same command again).\n",
-        file);
+    fputs("\n"
+          "  sonject help VERB   the verb's options\n"
+          "  sonject help KEY    what a key means: sonar.altitude, or altitude in any section; "
+          "sonar.: all of it\n"
+          "  sonject --version   the version\n"
+          "\n"
+          "Exit status: 0 done, 2 wrong usage, 3 unusable scene or image, 4 device,\n"
+          "5 files or memory, 85 stopped by SIGTERM (run the same command again).\n",
+          file);
 }
 
 /* NULL: none has that name; then `nearest` knows those that are like it. */

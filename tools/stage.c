@@ -6,12 +6,6 @@
 
 #include "base/text.h"
 
-static void log_notes(void *progress, const char *line)
-{
-    if (strncmp(line, "note: ", 6) == 0)
-        progress_log(progress, line);
-}
-
 int stage_work(const struct stage_options *stage, stage_function function, const void *verb_options,
                const char *done)
 {
@@ -20,7 +14,7 @@ int stage_work(const struct stage_options *stage, stage_function function, const
     progress_begin(&progress, stage->is_quiet);
     sonject_context_params params = {.struct_size = sizeof(params)};
     params.device_name = stage->device;
-    params.log = stage->is_quiet ? NULL : stage->is_verbose ? progress_log : log_notes;
+    params.log = stage->is_quiet ? NULL : stage->is_verbose ? progress_log : progress_note;
     params.log_user = &progress;
     sonject_context *context = NULL;
     int was_finished = 0;

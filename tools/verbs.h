@@ -25,9 +25,9 @@
 #define VERB_DECLARATION(name) extern const struct verb name##_verb;
 VERBS(VERB_DECLARATION)
 
-/* sonject help KEY (key_help.c): prints the key of scene files of that name, or all keys below it;
- * numbers in brackets do not matter. nearest: knows the verbs that may have been meant. Gives the
- * exit code. */
+/* sonject help KEY (key_help.c): prints the keys of that name, whichever their section, and all
+ * below it; numbers in brackets do not matter. nearest: knows the verbs that may have been meant.
+ * Gives the exit code. */
 int key_help(const char *name, struct nearest *nearest);
 
 #endif

@@ -29,10 +29,6 @@ SONJECT_API sonject_status sonject_campaign_read(sonject_context *context, const
 /* Releases the campaign and sets *campaign to NULL; NULL allowed. */
 SONJECT_API void sonject_campaign_release(sonject_campaign **campaign);
 
-/* All keys that campaign files have, as sonject_keys lists those of scenes. *json is the caller's,
- * for sonject_text_release; on failure NULL. Errors: ARGUMENT, MEMORY. */
-SONJECT_API sonject_status sonject_campaign_keys(sonject_context *context, char **json);
-
 /* Number of images; their ids count from 0. Errors: ARGUMENT. */
 SONJECT_API sonject_status sonject_campaign_image_count(const sonject_campaign *campaign,
                                                         uint64_t *count);

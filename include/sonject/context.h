@@ -12,9 +12,15 @@ SONJECT_BEGIN_DECLARATIONS
 
 typedef struct sonject_context sonject_context;
 
-/* Receives one line of news (no newline at its end); called on the thread that made the call. A
- * line that begins with "note: " says that a result is not of its input's kind: show it always. */
-typedef void (*sonject_log_function)(void *user, const char *line);
+/* What a line of the log is. */
+typedef enum sonject_log_level {
+    SONJECT_LOG_NEWS = 0, /* what is done, for who asks */
+    SONJECT_LOG_NOTE = 1  /* what who uses the result must know: show it always */
+} sonject_log_level;
+
+/* Receives one line (no newline at its end) of a sonject_log_level; called on the thread that made
+ * the call. */
+typedef void (*sonject_log_function)(void *user, uint32_t level, const char *line);
 
 /* Called between pieces of work with the finished fraction, 0...1. Return 0 to go on, anything else
  * to cancel: the call then answers SONJECT_CANCELLED. A call that succeeds tells 1 at its end, when

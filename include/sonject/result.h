@@ -142,6 +142,9 @@ typedef struct sonject_object_truth {
     double shadow_visibility_db;
     double highlight_clipped; /* share, 0...1, of its highlight's pixels that are as bright as the
                                  image, or what its file stores, can be; NaN where it has none */
+    double ceiling_over_seabed_db; /* that brightest there can be over the local mean seabed where
+                                      its echo is strongest; infinity: nothing is cut; NaN: no
+                                      highlight */
 } sonject_object_truth;
 
 /* Truth of object number index. truth->struct_size must be set. Errors: ARGUMENT. */
@@ -188,17 +191,18 @@ typedef struct sonject_statistics {
     double seabed_row_correlation;    /* of speckle's intensity, from a row to the next */
     double seabed_column_correlation; /* from a column to the next */
     /* What was used for what was put in. */
-    double along_track_resolution_m;
-    double range_resolution_m;   /* -3 dB width */
-    double looks;                /* 1: single-look */
-    double saturation_amplitude; /* infinite: none but the format's full scale */
-    uint32_t noise_floor_source; /* sonject_source */
-    uint32_t looks_source;       /* sonject_source */
-    double seabed_lambert;       /* mu of the seabed, as given or of its sediment */
-    double ray_scale;            /* factor on the number of rays that were traced */
-    double energy_error;         /* standard error of the expected energies, over them and the noise
-                                    floor, rms over the changed pixels; NaN unless the scene asks for
-                                    an accuracy */
+    double along_track_resolution_m; /* of a real aperture the energy width of its two-way beam in
+                                        the middle of the patch */
+    double range_resolution_m;       /* -3 dB width */
+    double looks;                    /* 1: single-look */
+    double saturation_amplitude;     /* infinite: none but the format's full scale */
+    uint32_t noise_floor_source;     /* sonject_source */
+    uint32_t looks_source;           /* sonject_source */
+    double seabed_lambert;           /* mu of the seabed, as given or of its sediment */
+    double ray_scale;                /* factor on the number of rays that were traced */
+    double energy_error; /* standard error of the expected energies, over them and the noise
+                            floor, rms over the changed pixels; NaN unless the scene asks for
+                            an accuracy */
 } sonject_statistics;
 
 /* statistics->struct_size must be set. Errors: ARGUMENT. */

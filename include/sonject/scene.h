@@ -89,13 +89,19 @@ SONJECT_API sonject_status sonject_scene_get(const sonject_scene *scene, const c
  * campaign's scene), MEMORY. */
 SONJECT_API sonject_status sonject_scene_text(const sonject_scene *scene, char **text);
 
-/* All keys that scenes have, as a JSON list of objects: path ("objects[].heading"), section (the
- * path of the one that it is in), meaning, kind (quantity, count, flag, word, name, text, file,
- * section, list or special), unit, has_value (it may be written as one value), is_list,
- * is_required (in its section), words (an array of them), default and range in words, and preset,
- * least and most in the SI unit; null where there is none. *json is the caller's, for
- * sonject_text_release; on failure NULL. Errors: ARGUMENT, MEMORY. */
-SONJECT_API sonject_status sonject_keys(sonject_context *context, char **json);
+/* Files that have keys. */
+typedef enum sonject_keys_of {
+    SONJECT_KEYS_OF_SCENES = 0,
+    SONJECT_KEYS_OF_CAMPAIGNS = 1
+} sonject_keys_of;
+
+/* All keys that files of a kind, a sonject_keys_of, have, as a JSON list of objects: path
+ * ("objects[].heading"), section (the path of the one that it is in), meaning, kind (quantity,
+ * count, flag, word, name, text, file, section, list or special), unit, has_value (it may be
+ * written as one value), is_list, is_required (in its section), words (an array of them), default
+ * and range in words, and preset, least and most in the SI unit; null where there is none. *json is
+ * the caller's, for sonject_text_release; on failure NULL. Errors: ARGUMENT, MEMORY. */
+SONJECT_API sonject_status sonject_keys(sonject_context *context, uint32_t of, char **json);
 
 /* The names of the bands that a scene (section `bands`), read as sonject_scene_read would, leaves
  * to be chosen by an override such as "band=low": in the file's order, one a line, "" for a file

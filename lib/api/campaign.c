@@ -13,15 +13,6 @@
 #include "schema/scene_file.h"
 #include "schema/yaml_tree.h"
 
-sonject_status sonject_campaign_keys(sonject_context *context, char **json)
-{
-    if (!context || !json)
-        return SONJECT_ERROR_ARGUMENT;
-    *json = NULL;
-    context_begin_call(context);
-    return section_keys_json(&context->report, &campaign_section, json);
-}
-
 sonject_status sonject_campaign_read(sonject_context *context, const char *path,
                                      const sonject_scene_read_params *params,
                                      sonject_campaign **campaign)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "dataset/campaign.h"
 #include "schema/keys.h"
 #include "schema/scene_file.h"
 
@@ -186,13 +187,18 @@ sonject_status sonject_scene_text(const sonject_scene *scene, char **text)
     return scene_source_text(&((sonject_scene *)scene)->source, scene->report, text);
 }
 
-sonject_status sonject_keys(sonject_context *context, char **json)
+sonject_status sonject_keys(sonject_context *context, uint32_t of, char **json)
 {
     if (!context || !json)
         return SONJECT_ERROR_ARGUMENT;
     *json = NULL;
     context_begin_call(context);
-    return section_keys_json(&context->report, &scene_section, json);
+    if (of > SONJECT_KEYS_OF_CAMPAIGNS)
+        return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
+                              "keys are those of scenes (%d) or campaigns (%d), not %u",
+                              SONJECT_KEYS_OF_SCENES, SONJECT_KEYS_OF_CAMPAIGNS, (unsigned)of);
+    return section_keys_json(
+        &context->report, of == SONJECT_KEYS_OF_SCENES ? &scene_section : &campaign_section, json);
 }
 
 sonject_status sonject_scene_object_count(const sonject_scene *scene, uint32_t *count)

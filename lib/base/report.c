@@ -47,17 +47,35 @@ bool report_is_cancelled(const struct report *report)
            host->progress(host->progress_user, host->fraction, host->stage) != 0;
 }
 
+void report_line(struct report *report, uint32_t level, const char *line)
+{
+    if (report->log)
+        report->log(report->host ? report->host->log_user : NULL, level, line);
+}
+
+static void report_formatted(struct report *report, uint32_t level, const char *format,
+                             va_list arguments)
+{
+    char line[REPORT_LINE];
+    vsnprintf(line, sizeof line, format, arguments);
+    text_make_printable(line);
+    report_line(report, level, line);
+}
+
 void report_log(struct report *report, const char *format, ...)
 {
-    if (!report->log)
-        return;
-    char line[REPORT_LINE];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(line, sizeof line, format, arguments);
+    report_formatted(report, SONJECT_LOG_NEWS, format, arguments);
     va_end(arguments);
-    text_make_printable(line);
-    report->log(report->host ? report->host->log_user : NULL, line);
+}
+
+void report_note(struct report *report, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    report_formatted(report, SONJECT_LOG_NOTE, format, arguments);
+    va_end(arguments);
 }
 
 static void fail(struct check *check, const char *key, const char *others, const char *format,

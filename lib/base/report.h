@@ -85,8 +85,10 @@ sonject_status report_gather(struct report *report, char lines[REPORT_CAPACITY],
 /* Whether the caller wants the call under way to end, for those who wait for another process. */
 bool report_is_cancelled(const struct report *report);
 
-/* Sends a line to the log, if there is one. */
+/* Send a line to the log, if there is one: news, a note, or a line of a level that is known. */
 void report_log(struct report *report, const char *format, ...) REPORT_FORMAT(2);
+void report_note(struct report *report, const char *format, ...) REPORT_FORMAT(2);
+void report_line(struct report *report, uint32_t level, const char *line);
 
 /* Of lengths that a sonar can meet. */
 #define LENGTH_MIN_M 1e-6

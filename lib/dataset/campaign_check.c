@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "dataset/campaign.h"
+#include "dataset/run.h"
 #include "inject/scene_hash.h"
 #include "schema/scene_file.h"
 #include "swath/geometry_notes.h"
@@ -84,6 +85,7 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
         if (campaign->campaign.format == FORMAT_AS_INPUT)
             swath->jpeg_quality = swath_file_jpeg_quality(file);
         status = measure_rows(campaign, number, &trial.scene, file);
+        tell_calibration_doubts(campaign->report, &trial.scene);
     }
     swath_file_close(&file);
     trial_clear(&trial);

@@ -41,13 +41,23 @@ static bool is_taken(const char *key, bool is_object)
 sonject_status campaign_check_key(const struct tree *tree, struct tree_place place,
                                   const char *path, const char *key, bool is_object)
 {
-    const char *near;
-    const struct section *section;
+    const char *near, *unused, *of_objects = key;
+    const struct section *section, *other;
     struct word_list list = {{0}, 0};
+    if (!is_object && strncmp(key, "objects", 7) == 0 && strchr(key, '.'))
+        of_objects = strchr(key, '.') + 1;
+    if (!is_object && !is_taken(of_objects, true) &&
+        scene_key_find(&object_section, of_objects, &unused, &other))
+        return tree_failure(tree, place, path,
+                            "is of objects: write objects[].%s in draw, or %s in targets[].draw",
+                            of_objects, of_objects);
     if (is_taken(key, is_object))
         return tree_failure(tree, place, path, "the campaign itself sets %s; remove it", key);
     if (scene_key_find(is_object ? &object_section : &scene_section, key, &near, &section))
         return SONJECT_OK;
+    if (is_object && scene_key_find(&scene_section, key, &unused, &other))
+        return tree_failure(tree, place, path,
+                            "is of scenes: write it in the scene's file or the campaign's draw");
     for (size_t i = 0; i < section->count; i++)
         if (!section->fields[i].is_hidden)
             list_word(&list, section->fields[i].key);

@@ -372,11 +372,10 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
     room->boxes = allocate_array(plan->avoid_count + 2 * RATIO_BLOCKS + 1, sizeof *room->boxes);
     CHECK_MEMORY(report, room->boxes, "the places for images");
     if (images_show_contacts(campaign) && plan->avoid_count > 0 && campaign->clearance == 0)
-        report_log(
-            report,
-            "note: chip.clearance is 0: objects may reach into contacts to avoid in %s, from "
-            "which their middles alone keep away",
-            plan->written);
+        report_note(report,
+                    "chip.clearance is 0: objects may reach into contacts to avoid in %s, from "
+                    "which their middles alone keep away",
+                    plan->written);
     const bool has_ratio = campaign->least_ratio > 0.0;
     if (has_ratio && campaign->chip_columns > 0)
         limit_ratios(&limits, plan);

@@ -134,6 +134,9 @@ static json_t *head_of(const struct sonject_campaign *campaign, const struct dev
             &swaths,
             JSON_OBJECT({"path", json_string(swath->written)},
                         {"hash", json_string(campaign->swath_hashes[i])},
+                        {"side", swath->side == RECORDED_PORT        ? json_string("port")
+                                 : swath->side == RECORDED_STARBOARD ? json_string("starboard")
+                                                                     : json_null()},
                         {"split", json_string(plan->splits[swath->split_number].name)},
                         {"jpeg_quality", swath->jpeg_quality > 0 ? json_integer(swath->jpeg_quality)
                                                                  : json_null()}));

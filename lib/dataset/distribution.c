@@ -388,10 +388,18 @@ static const struct {
              [DISTRIBUTION_CHOICE] = {"choice", read_choice, "weights", read_weights},
              [DISTRIBUTION_FIXED] = {"fixed", read_fixed, NULL, NULL}};
 
-static sonject_status refuse_kind(struct reader *reader, const struct tree_node *node)
+static sonject_status refuse_kind(struct reader *reader, const struct tree_node *node,
+                                  const char *key)
 {
     struct word_list list = {{0}, 0};
-    const char *words[COUNT(kinds)];
+    const char *words[COUNT(kinds)], *unused;
+    const struct section *section;
+    char path[REPORT_LINE];
+    snprintf(path, sizeof path, "%s.%s", key, node->count > 0 ? node->entries[0].key : "");
+    if (scene_key_find(&object_section, path, &unused, &section) ||
+        scene_key_find(&scene_section, path, &unused, &section))
+        return refuse_value(reader, node, "is a section: draw its keys, such as %s: {uniform: ...}",
+                            path);
     for (size_t i = 0; i < COUNT(kinds); i++)
         list_word(&list, words[i] = kinds[i].word);
     const char *near =
@@ -441,7 +449,7 @@ sonject_status distribution_read(struct reader *reader, const struct tree_node *
             known++;
         }
     if (known != 1)
-        return refuse_kind(reader, node);
+        return refuse_kind(reader, node, key);
     CHECK(read_keys(reader, node, distribution, true));
     return read_keys(reader, node, distribution, false);
 }

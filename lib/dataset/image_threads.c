@@ -47,10 +47,11 @@ static void tell_news(struct image_pool *pool)
     pthread_cond_signal(&pool->changed);
 }
 
-static void keep_line(void *user, const char *line)
+/* A line of the text has its level before it. */
+static void keep_line(void *user, uint32_t level, const char *line)
 {
     struct image_thread *thread = user;
-    growing_text_add(&thread->lines, "%s\n", line);
+    growing_text_add(&thread->lines, "%u%s\n", (unsigned)level, line);
 }
 
 /* Also asked while a thread waits for another process, with the fraction that it told last. */
@@ -179,7 +180,7 @@ static void tell_lines(struct report *report, char *lines)
 {
     for (char *line = lines, *end; (end = strchr(line, '\n')) != NULL; line = end + 1) {
         *end = '\0';
-        report_log(report, "%s", line);
+        report_line(report, (uint32_t)(*line - '0'), line + 1);
     }
 }
 

@@ -58,11 +58,10 @@ static void tell_empty(struct report *report, const struct swath *swath)
 {
     char text[PING_LIST_CAPACITY];
     if (swath->skipped.count > 0)
-        report_log(report, "note: pings without samples make no row: %s",
-                   ping_list_text(&swath->skipped, text));
+        report_note(report, "pings without samples make no row: %s",
+                    ping_list_text(&swath->skipped, text));
     if (swath->empty.count > 0)
-        report_log(report, "note: empty rows stay as they are: %s",
-                   ping_list_text(&swath->empty, text));
+        report_note(report, "empty rows stay as they are: %s", ping_list_text(&swath->empty, text));
 }
 
 /* Where the model of sediments was not made for the frequency. */
@@ -70,20 +69,28 @@ static void tell_sediment(struct report *report, const struct scene *scene)
 {
     const double frequency_khz = 1e-3 * scene->sonar.centre_frequency_hz;
     if (!isnan(scene->seabed.grain_size_phi) && !(frequency_khz >= 10.0 && frequency_khz <= 100.0))
-        report_log(report,
-                   "note: seabed.sediment: its model holds from 10 to 100 kHz, and tells little of "
-                   "%g kHz",
-                   frequency_khz);
+        report_note(report,
+                    "seabed.sediment: its model holds from 10 to 100 kHz, and tells little of "
+                    "%g kHz",
+                    frequency_khz);
 }
 
 static void tell_altitudes(struct report *report, const struct scene *scene)
 {
     if (scene->altitudes_m[1] > 0.0)
-        report_log(report,
-                   "note: the altitude goes from %.2f to %.2f m over the objects' pings, and the "
-                   "mean of %.2f m is taken, so that shadows are too short or too long; choose the "
-                   "rows about one object by patch",
-                   scene->altitudes_m[0], scene->altitudes_m[1], scene->sonar.altitude_m);
+        report_note(
+            report,
+            "the altitude goes from %.2f to %.2f m over the objects' pings, and the "
+            "mean of %.2f m is taken, so that shadows are too short or too long; choose the "
+            "rows about one object by patch",
+            scene->altitudes_m[0], scene->altitudes_m[1], scene->sonar.altitude_m);
+}
+
+void tell_scene(struct report *report, const struct scene *scene)
+{
+    tell_sediment(report, scene);
+    tell_altitudes(report, scene);
+    tell_calibration_doubts(report, scene);
 }
 
 /* Objects that nobody would find who labels the image, and those of which little but white is left.
@@ -96,20 +103,22 @@ static void tell_seen(struct report *report, const struct scene *scene,
         const double highlight_db = truth->highlight_visibility_db;
         const double shadow_db = truth->shadow_visibility_db;
         if (!truth->is_visible)
-            report_log(report, "note: nothing of '%s' is in view", scene->objects[i].name);
+            report_note(report, "nothing of '%s' is in view", scene->objects[i].name);
         else if (!(isnan(highlight_db) && isnan(shadow_db)) && !(highlight_db > 0.0) &&
                  !(shadow_db < 0.0))
-            report_log(report,
-                       "note: '%s' drowns in the seabed: neither its highlight nor its shadow "
-                       "stands out; see objects[].level and seabed.lambert",
-                       scene->objects[i].name);
+            report_note(report,
+                        "'%s' drowns in the seabed: neither its highlight nor its shadow "
+                        "stands out; see objects[].level and seabed.lambert",
+                        scene->objects[i].name);
         if (truth->highlight_clipped > CLIPPED_MUCH)
-            report_log(
+            report_note(
                 report,
-                "note: %.0f %% of the highlight of '%s' is cut at the image's ceiling: lower "
-                "objects[].level, of which measured pictures show 8 to 19 dB over the "
-                "seabed",
-                100.0 * truth->highlight_clipped, scene->objects[i].name);
+                "%.0f %% of the highlight of '%s' is cut at the image's ceiling, %.1f dB "
+                "over "
+                "the seabed there: objects[].level of {over_seabed: %.0f dB} would leave room",
+                100.0 * truth->highlight_clipped, scene->objects[i].name,
+                truth->ceiling_over_seabed_db,
+                floor(truth->ceiling_over_seabed_db - CEILING_ROOM_DB));
     }
 }
 
@@ -120,32 +129,32 @@ void tell_result(struct report *report, const struct scene *scene, const struct 
     tell_empty(report, swath);
     tell_noise_floor(report, scene, statistics);
     tell_accuracy(report, statistics);
-    tell_sediment(report, scene);
-    tell_altitudes(report, scene);
+    tell_scene(report, scene);
     tell_seen(report, scene, result);
     tell_clipped(report, statistics);
 }
 
-static void add_note(void *user, const char *line)
+/* Who hears a result's notes. */
+struct result_notes {
+    struct report *report;
+    json_t *page; /* NULL where memory is out */
+};
+
+static void add_note(void *user, uint32_t level, const char *line)
 {
-    json_append(user, json_string(line));
+    struct result_notes *notes = user;
+    json_append(&notes->page, json_string(line));
+    report_line(notes->report, level, line);
 }
 
-/* Tells the result to the log and to the page. The document of notes is NULL where memory is out.
- */
+/* Tells the result to the log and to the page. */
 static void note_result(struct report *report, struct run_facts *facts)
 {
-    json_t *notes = json_array();
+    struct result_notes notes = {report, json_array()};
     const struct report_host host = {.log_user = &notes};
     struct report noting = {{0}, add_note, &host};
-    size_t i;
-    const json_t *note;
     tell_result(&noting, facts->scene, facts->swath, facts->result);
-    json_array_foreach(notes, i, note)
-    {
-        report_log(report, "%s", json_string_value(note));
-    }
-    json_add(&facts->page, "notes", notes);
+    json_add(&facts->page, "notes", notes.page);
 }
 
 static sonject_status write_documents(struct report *report, struct run_facts *facts,
@@ -187,9 +196,8 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
         note_result(report, facts);
     if (status == SONJECT_OK && facts->scene->input_kind == SONJECT_INPUT_FILE &&
         facts->swath->new_extension)
-        report_log(report,
-                   "note: %s is written anew: of the input's metadata it keeps the description",
-                   facts->image_name);
+        report_note(report, "%s is written anew: of the input's metadata it keeps the description",
+                    facts->image_name);
     THEN(status, file_list_add(&facts->files, report, folder, facts->image_name, true));
     THEN(status, calibration_files_list(report, facts->scene, folder, &facts->files));
     THEN(status, write_documents(report, facts, folder, run_start, start));

@@ -15,6 +15,9 @@
 /* Share of a highlight's pixels at the image's ceiling above which that is told. */
 #define CLIPPED_MUCH 0.1
 
+/* Of the ceiling over an echo's peak, so that speckle reaches it in a few of its pixels. */
+#define CEILING_ROOM_DB 3.0
+
 #define LABEL_FORMATS ((uint32_t)(SONJECT_LABELS_YOLO | SONJECT_LABELS_VOC))
 
 /* Injects and writes the folder's files: sonject_run. was_finished may be NULL. */
@@ -153,6 +156,13 @@ sonject_status calibration_files_list(struct report *report, const struct scene 
 
 /* Logs which keys a scene has from its calibration. */
 void tell_calibration(struct report *report, const struct scene *scene);
+
+/* Logs what speaks against it: another side's, or one whose first returns are not what the scene's
+ * recorded altitude says. */
+void tell_calibration_doubts(struct report *report, const struct scene *scene);
+
+/* Logs what a scene's user should know before it is run. */
+void tell_scene(struct report *report, const struct scene *scene);
 
 /* The word of a sonject_source. */
 const char *source_word(uint32_t source);

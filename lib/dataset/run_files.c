@@ -62,7 +62,8 @@ static json_t *level_document(const sonject_object_params *object,
     return JSON_OBJECT({"set_by", json_string(kinds[truth->level_kind])},
                        {"asked_db", is_physical ? json_null() : json_number(object->level_db)},
                        {"gain_db", json_number(truth->level_gain_db)},
-                       JSON_NUMBER(truth, over_seabed_db), JSON_NUMBER(truth, seabed_strength_db));
+                       JSON_NUMBER(truth, over_seabed_db), JSON_NUMBER(truth, seabed_strength_db),
+                       JSON_NUMBER(truth, ceiling_over_seabed_db));
 }
 
 /* Which edge a box of the patch touches: "swath", where the swath goes on "patch", or null. */

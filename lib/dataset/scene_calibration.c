@@ -103,15 +103,18 @@ sonject_status scene_calibrate(struct report *report, const struct scene *scene,
     if (is_it || (file_exists(path) && !replaces))
         return SONJECT_OK;
     CHECK(folder_make(report, folder));
-    CHECK(calibrate_image(report, &params, &options, NULL, &text));
-    sonject_status status = made_for_line(report, scene, hash, text, strlen(text), line);
+    const sonject_log_function log = report->log;
+    report->log = NULL; /* the scene's own notes say more */
+    sonject_status status = calibrate_image(report, &params, &options, NULL, &text);
+    report->log = log;
+    THEN(status, made_for_line(report, scene, hash, text, strlen(text), line));
     if (status == SONJECT_OK) {
         growing_text_add(&made, "%s%s", text, line);
         status = growing_text_write(report, &made, path);
     }
     free(text);
     if (status == SONJECT_OK)
-        report_log(report, "note: calibration made: %s, with a picture beside it", path);
+        report_note(report, "calibration made: %s, with a picture beside it", path);
     return status;
 }
 
@@ -157,6 +160,26 @@ void tell_calibration(struct report *report, const struct scene *scene)
     }
     keys[length] = '\0';
     report_log(report, "calibration %s tells %s", scene->calibration, *keys ? keys : "nothing");
+}
+
+void tell_calibration_doubts(struct report *report, const struct scene *scene)
+{
+    const double share = scene->calibrated_altitudes;
+    const char *side = scene->geometry.side == SONJECT_SIDE_PORT ? "port" : "starboard";
+    if (*scene->calibrated_side && strcmp(scene->calibrated_side, side) != 0)
+        report_note(report,
+                    "%s was measured on the %s side, and this is %s: calibrate that (sonject "
+                    "calibrate --channel %s), or write input.calibration: auto",
+                    scene->calibration, scene->calibrated_side, side, side);
+    if (share > 0.0 && fabs(share - 1.0) > ALTITUDES_ALIKE && scene->has_recorded_altitude &&
+        scene->pings.count == 0)
+        report_note(report,
+                    "the recorded altitude, %.2f m here, is %.0f %% %s the first return as %s "
+                    "has it, and shadows get too %s: if the first return is right, write "
+                    "sonar.altitude: %.2f m",
+                    scene->sonar.altitude_m, 100.0 * fabs(share - 1.0),
+                    share < 1.0 ? "below" : "above", scene->calibration,
+                    share < 1.0 ? "long" : "short", scene->sonar.altitude_m / share);
 }
 
 /* ---- Where numbers came from. */

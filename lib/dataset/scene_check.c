@@ -34,6 +34,12 @@ static void describe_water(struct growing_text *text, const struct ray_path *pat
                          path->is_straight ? ", none of which the sound crosses" : "");
 }
 
+static void add_note(void *user, uint32_t level, const char *line)
+{
+    (void)level;
+    growing_text_add(user, "           note: %s\n", line);
+}
+
 static void describe_patch(struct growing_text *text, const struct scene *scene,
                            const struct swath *swath, const struct patch_view *view)
 {
@@ -59,11 +65,9 @@ static void describe_patch(struct growing_text *text, const struct scene *scene,
         text, "sonar      %.4g kHz, bandwidth %.4g kHz, altitude %.3g m, wavelength %.4g mm\n",
         scene->sonar.centre_frequency_hz / 1e3, scene->sonar.bandwidth_hz / 1e3,
         scene->sonar.altitude_m, view->wavelength_m * 1e3);
-    if (scene->altitudes_m[1] > 0.0)
-        growing_text_add(text,
-                         "           note: the altitude goes from %.2f to %.2f m over the objects' "
-                         "pings; choose the rows about one of them by patch\n",
-                         scene->altitudes_m[0], scene->altitudes_m[1]);
+    const struct report_host host = {.log_user = text};
+    struct report noting = {{0}, add_note, &host};
+    tell_scene(&noting, scene);
     describe_water(text, &view->water);
     growing_text_add(
         text, "injection  %s, paths that meet up to %u surface%s\n",

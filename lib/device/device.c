@@ -13,6 +13,7 @@ void device_take_info(struct device *device, const sonject_device_info *info)
     memcpy(device->platform, info->platform, sizeof device->platform);
     memcpy(device->driver, info->driver, sizeof device->driver);
     device->width = info->vector_width;
+    device->group_items = 1;
     device->compute_units = info->compute_units;
 }
 
@@ -26,7 +27,7 @@ sonject_status device_list(struct report *report, sonject_device_info *devices, 
         native_describe(&devices[0]);
     if (opencl_list(&of_opencl, rest > 0 ? devices + 1 : NULL, rest, count, &gpu) != SONJECT_OK &&
         capacity > 0)
-        report_log(report, "note: %s", of_opencl.message);
+        report_note(report, "%s", of_opencl.message);
     const size_t chosen = gpu < *count ? gpu + 1 : 0;
     *count += 1;
     for (size_t i = 0; i < *count && i < capacity; i++)

@@ -20,7 +20,8 @@ struct device_calls;
 struct device {
     const struct device_calls *calls; /* backend.h */
     bool is_cpu;
-    uint32_t width; /* lanes that the kernels are compiled for */
+    uint32_t width;       /* lanes that the kernels are compiled for */
+    uint32_t group_items; /* that trace a segment together (kernels/group.h) */
     uint32_t compute_units;
     size_t allocation_limit; /* bytes of one buffer */
     char name[128];

@@ -12,6 +12,7 @@
  * the image's shorter side. */
 #define LEVEL_DEVIATION 28.0
 #define LEVEL_SHARE     0.04
+#define SQUARE          4        /* pixels */
 #define SHARE_LEAST     0.02     /* of pixels about one that tell its level */
 #define PLAIN           4.0f     /* seabed lies within 6 dB of the level */
 #define DARK            0.316f   /* 5 dB */
@@ -19,6 +20,7 @@
 #define HIGHEST         0.126    /* -9 dB; a part that is not so dark is dim ground */
 #define LONE_HIGHEST    (-2.763) /* -12 dB, as a logarithm, where there is but one */
 #define LAGS            8        /* pixels; from here on speckle is forgotten */
+#define PIXELS_ENOUGH   65536    /* that tell speckle's length */
 #define BRIGHTEST       6.0      /* over the level, of pixels whose speckle counts */
 #define LOOKS_LEAST     3.0      /* independent pixels, of a shadow's middle */
 
@@ -54,7 +56,7 @@ struct shadow_search {
     const float *intensity;
     uint8_t *states;
     size_t rows, columns;
-    float *weights, *smooth, *level, *scratch;
+    float *weights, *smooth, *level;
     double row_length, column_length; /* of a look, pixels */
     double variance;                  /* of speckle, over the mean's square */
     double row_deviation, column_deviation, level_deviation;
@@ -69,31 +71,55 @@ static bool holds(const struct shadow_search *search, size_t i, int kind)
     return (search->states[i] & KINDS) == kind;
 }
 
-/* Local means of the values that have a weight; not a number where hardly any is near. */
-static sonject_status weighted_mean(struct report *report, const struct shadow_search *search,
-                                    const float *values, double row_deviation,
-                                    double column_deviation, float *mean)
+/* Local means of the values that have a weight, over planes of any size; not a number where hardly
+ * any is near. weights and values are lost. */
+static sonject_status weighted_mean(struct report *report, size_t rows, size_t columns,
+                                    float *weights, float *values, double row_deviation,
+                                    double column_deviation)
 {
-    const size_t count = search->rows * search->columns;
-    for (size_t i = 0; i < count; i++)
-        search->scratch[i] = search->weights[i] * values[i];
-    CHECK(local_mean(report, search->scratch, search->rows, search->columns, row_deviation,
-                     column_deviation, mean));
-    CHECK(local_mean(report, search->weights, search->rows, search->columns, row_deviation,
-                     column_deviation, search->scratch));
-    for (size_t i = 0; i < count; i++)
-        mean[i] = search->scratch[i] > (float)SHARE_LEAST ? mean[i] / search->scratch[i] : NAN;
+    CHECK(local_mean(report, values, rows, columns, row_deviation, column_deviation, values));
+    CHECK(local_mean(report, weights, rows, columns, row_deviation, column_deviation, weights));
+    for (size_t i = 0; i < rows * columns; i++)
+        values[i] = weights[i] > (float)SHARE_LEAST ? values[i] / weights[i] : NAN;
     return SONJECT_OK;
 }
 
-/* How many pixels along an axis are one look, by the squared differences of pixels some way apart;
- * variance: of a pixel. */
+/* The seabed's level, which changes so slowly that squares of pixels tell it. values: of pixels. */
+static sonject_status find_level(struct report *report, struct shadow_search *search,
+                                 const float *values)
+{
+    const size_t rows = (search->rows + SQUARE - 1) / SQUARE;
+    const size_t columns = (search->columns + SQUARE - 1) / SQUARE;
+    float *sums = allocate_array(2 * rows * columns, sizeof *sums);
+    CHECK_MEMORY(report, sums, "an image's shadows");
+    float *weights = sums + rows * columns;
+    for (size_t row = 0, i = 0; row < search->rows; row++)
+        for (size_t column = 0; column < search->columns; column++, i++) {
+            const size_t square = row / SQUARE * columns + column / SQUARE;
+            sums[square] += search->weights[i] * values[i] / (SQUARE * SQUARE);
+            weights[square] += search->weights[i] / (SQUARE * SQUARE);
+        }
+    const double deviation = search->level_deviation / SQUARE;
+    const sonject_status status =
+        weighted_mean(report, rows, columns, weights, sums, deviation, deviation);
+    for (size_t row = 0, i = 0; status == SONJECT_OK && row < search->rows; row++)
+        for (size_t column = 0; column < search->columns; column++, i++)
+            search->level[i] = sums[row / SQUARE * columns + column / SQUARE];
+    free(sums);
+    return status;
+}
+
+/* How many pixels along an axis are one look, by the squared differences of pixels some way apart
+ * on some of its lines; variance: of a pixel. */
 static double look_length(const struct shadow_search *search, size_t step, size_t length,
                           double *variance)
 {
     const size_t count = search->rows * search->columns;
+    const size_t lines_apart = 1 + count / PIXELS_ENOUGH;
     double sums[LAGS + 1] = {0.0}, counts[LAGS + 1] = {0.0}, sum = 0.0;
     for (size_t i = 0; i < count; i++) {
+        if ((step == 1 ? i / length : i % step) % lines_apart != 0)
+            continue;
         const double own = (double)search->intensity[i] / (double)search->level[i];
         if (!holds(search, i, SEABED) || !(own < BRIGHTEST))
             continue;
@@ -129,8 +155,7 @@ static sonject_status find_dark(struct report *report, struct shadow_search *sea
         search->weights[i] = holds(search, i, SEABED) ? 1.0f : 0.0f;
         search->smooth[i] = sqrtf(sqrtf(search->intensity[i])); /* so that no highlight counts */
     }
-    CHECK(weighted_mean(report, search, search->smooth, search->level_deviation,
-                        search->level_deviation, search->level));
+    CHECK(find_level(report, search, search->smooth));
     for (size_t i = 0; i < count; i++)
         search->level[i] *= search->level[i] * search->level[i] * search->level[i];
     search->row_length = look_length(search, search->columns, search->rows, &variance);
@@ -138,14 +163,17 @@ static sonject_status find_dark(struct report *report, struct shadow_search *sea
     search->variance = fmax(search->variance, variance);
     search->column_deviation = fmax(COLUMN_DEVIATION, COLUMN_BY_LENGTH * search->column_length);
     search->row_deviation = fmax(ROW_DEVIATION, ROW_BY_LENGTH * search->row_length);
-    CHECK(weighted_mean(report, search, search->intensity, search->row_deviation,
-                        search->column_deviation, search->smooth));
     for (size_t i = 0; i < count; i++)
+        search->smooth[i] = search->weights[i] * search->intensity[i];
+    CHECK(weighted_mean(report, search->rows, search->columns, search->weights, search->smooth,
+                        search->row_deviation, search->column_deviation));
+    for (size_t i = 0; i < count; i++) {
+        search->weights[i] = holds(search, i, SEABED) ? 1.0f : 0.0f;
         if (!(search->smooth[i] * PLAIN > search->level[i] &&
               search->smooth[i] < PLAIN * search->level[i]))
             search->weights[i] = 0.0f;
-    CHECK(weighted_mean(report, search, search->intensity, search->level_deviation,
-                        search->level_deviation, search->level));
+    }
+    CHECK(find_level(report, search, search->intensity));
     for (size_t i = 0; i < count; i++) {
         if (!(search->smooth[i] > BLANK * search->level[i]))
             search->states[i] = NO_SEABED;
@@ -303,15 +331,14 @@ sonject_status shadow_floor_find(struct report *report, const float *intensity, 
                                  size_t rows, size_t columns, struct shadow_floor *found)
 {
     const size_t count = rows * columns;
-    float *planes = allocate_array(count, 4 * sizeof *planes);
+    float *planes = allocate_array(count, 3 * sizeof *planes);
     struct shadow_search search = {.intensity = intensity,
                                    .states = states,
                                    .rows = rows,
                                    .columns = columns,
                                    .weights = planes,
                                    .smooth = planes + count,
-                                   .level = planes + 2 * count,
-                                   .scratch = planes + 3 * count};
+                                   .level = planes + 2 * count};
     memset(found, 0, sizeof *found);
     CHECK_MEMORY(report, planes, "an image's shadows");
     sonject_status status = find_dark(report, &search);

@@ -11,7 +11,7 @@
 /* Smooth local mean of a rows x columns map: three running means one after the other, which are
  * close to a Gaussian and have exactly its standard deviation (in pixels, per axis; 0 leaves the
  * axis as it is). Near edges it is the mean over what is inside. The time does not depend on the
- * deviation. values and mean must not overlap. Errors: MEMORY. */
+ * deviation. mean may be values. Errors: MEMORY. */
 sonject_status local_mean(struct report *report, const float *values, size_t rows, size_t columns,
                           double row_deviation, double column_deviation, float *mean);
 

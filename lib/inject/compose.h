@@ -96,7 +96,7 @@ sonject_status match_image(struct tracer *tracer, const float *pixels,
 /* Intensity correlation of single-look speckle formed by the response, at a distance in m. */
 double along_track_speckle_correlation(const struct point_response *response, double distance_m);
 
-void tell_match(const struct image_match *match, const struct point_response *response,
+void tell_match(const struct image_match *match, const struct tracer *tracer,
                 sonject_statistics *statistics);
 
 /* -INFINITY for 0. */

@@ -114,10 +114,11 @@ static sonject_status check_scene(struct report *report, const struct scene *sce
                               "heading and pitch to 0");
     for (uint32_t i = 0; i < scene->object_count; i++)
         if (scene->objects[i].level_kind != SONJECT_LEVEL_PHYSICAL)
-            return report_failure(report, SONJECT_ERROR_INPUT,
-                                  "objects[%u].level sets an image's levels alone: take it away for "
-                                  "the element level, where shape and material decide",
-                                  (unsigned)i);
+            return report_failure(
+                report, SONJECT_ERROR_INPUT,
+                "objects[%u].level sets an image's levels alone: take it away for "
+                "the element level, where shape and material decide",
+                (unsigned)i);
     if (scene->injection.estimator == SONJECT_ESTIMATOR_CONNECT)
         return SONJECT_OK;
     return report_failure(report, SONJECT_ERROR_INPUT,

@@ -174,9 +174,11 @@ sonject_status match_image(struct tracer *tracer, const float *pixels,
     return SONJECT_OK;
 }
 
-void tell_match(const struct image_match *match, const struct point_response *response,
+void tell_match(const struct image_match *match, const struct tracer *tracer,
                 sonject_statistics *statistics)
 {
+    const struct point_response *response = &tracer->response;
+    const double middle = view_processor_range(&tracer->view, 0.5 * (double)tracer->view.columns);
     const struct speckle_statistics *seabed = &match->seabed;
     const bool is_known = seabed->blocks > 0;
     statistics->seabed_amplitude_contrast = is_known ? seabed->amplitude_contrast : NAN;
@@ -184,7 +186,9 @@ void tell_match(const struct image_match *match, const struct point_response *re
     statistics->seabed_looks = is_known ? seabed->looks : NAN;
     statistics->seabed_row_correlation = is_known ? seabed->along_track.correlation[1] : NAN;
     statistics->seabed_column_correlation = is_known ? seabed->range.correlation[1] : NAN;
-    statistics->along_track_resolution_m = response->resolution_m;
+    statistics->along_track_resolution_m = response->array_length_m > 0.0
+                                               ? cross_range_energy_width(response, middle)
+                                               : response->resolution_m;
     statistics->range_resolution_m = response->range_resolution_m;
     statistics->looks = match->looks;
     statistics->looks_source = match->looks_source;

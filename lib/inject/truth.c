@@ -80,6 +80,8 @@ static void find_object(const struct patch_level *level, double ceiling,
     uint64_t clipped = 0;
     double energy = 0.0;
     double dominant = 0.0;
+    double strongest = 0.0;
+    truth->ceiling_over_seabed_db = NAN;
     for (size_t row = 0; echo->energy && row < echoes->rows; row++)
         for (size_t column = echo->first_column;
              !is_empty[row] && column < echo->first_column + echo->columns; column++) {
@@ -94,6 +96,10 @@ static void find_object(const struct patch_level *level, double ceiling,
                 box_include(&truth->highlight, row, column);
                 truth->highlight_pixels++;
                 clipped += intensity_at(result, i) >= most;
+                if (levels.own > strongest) {
+                    strongest = levels.own;
+                    truth->ceiling_over_seabed_db = decibels(ceiling * ceiling / level->level[i]);
+                }
             } else if (levels.hidden_share > 0.5) {
                 result->labels[i] = result->labels[i] ? result->labels[i] : label;
                 result->shadow[i] = 255;

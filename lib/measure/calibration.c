@@ -10,6 +10,7 @@
 #include "measure/speckle_law.h"
 
 #define EDGES_LEAST 4
+#define DECIBELS    (10.0 / log(10.0)) /* of one neper of intensity */
 
 /* Looks. */
 #define LOOKS_NO_SPECKLE  32.0 /* as many, of one fit, say that the law is not that of speckle */
@@ -352,8 +353,8 @@ void calibration_clear(struct calibration *calibration)
 static void fill_unseen(struct calibration *found)
 {
     struct estimate *const all[] = {
-        &found->transfer_kind, &found->parameter,     &found->looks,         &found->shape,
-        &found->along_rows,    &found->range_columns, &found->noise_floor_db};
+        &found->transfer_kind, &found->parameter,     &found->looks,          &found->shape,
+        &found->along_rows,    &found->range_columns, &found->noise_floor_db, &found->room_db};
     for (size_t i = 0; i < COUNT(all); i++)
         all[i]->unseen = too_small;
 }
@@ -380,6 +381,35 @@ static sonject_status find_from_tiles(struct report *report, struct calibration 
     return SONJECT_OK;
 }
 
+/* What highlights have over the seabed before they are cut, where objects without a position lie.
+ */
+static void find_room(struct calibration *found, const struct stored_swath *swath)
+{
+    const double *levels = found->fits[found->family].levels;
+    double count = 0.0, sum = 0.0, squares = 0.0;
+    found->room_db.how = "the ceiling over plain tiles in the middle third of the columns";
+    found->room_db.unseen = found->full_scale.unseen;
+    if (found->room_db.unseen)
+        return;
+    for (size_t i = 0; i < found->tiles.count; i++) {
+        const size_t middle = found->tiles.columns[i] + found->tiles.side / 2;
+        const double level = DECIBELS * levels[i];
+        if (middle < found->columns / 3 || middle >= 2 * found->columns / 3)
+            continue;
+        count += 1.0;
+        sum += level;
+        squares += level * level;
+    }
+    if (count < 2.0) {
+        found->room_db.unseen = "fewer than two plain tiles are in the middle third of the columns";
+        return;
+    }
+    const double mean = sum / count;
+    found->room_db.value =
+        DECIBELS * pixel_log_intensity(found, swath, found->full_scale.value) - mean;
+    found->room_db.error = sqrt(fmax(0.0, squares / count - mean * mean) / count);
+}
+
 sonject_status calibrate_swath(struct report *report, const struct stored_swath *swath,
                                const struct calibration_geometry *geometry,
                                struct calibration *calibration)
@@ -403,6 +433,8 @@ sonject_status calibrate_swath(struct report *report, const struct stored_swath 
     }
     if (status == SONJECT_OK && !found->transfer_kind.unseen)
         status = find_parts(report, found, swath);
+    if (status == SONJECT_OK && !found->transfer_kind.unseen)
+        find_room(found, swath);
     if (!found->full_scale.unseen)
         found->transfer.full_scale = found->full_scale.value;
     found->transfer.parameter =

@@ -16,6 +16,8 @@
 #include "measure/first_return.h"
 #include "scene/scene.h"
 
+#define ALTITUDES_ALIKE  0.05 /* recorded ones and first returns, but for slopes */
+#define SIDE_UNKNOWN     UINT32_MAX
 #define CURVE_FAMILIES   3
 #define CALIBRATION_LAGS 12 /* 0...11 pixels */
 #define GAIN_BANDS       24
@@ -110,12 +112,16 @@ struct calibration {
     enum curve_family family;
     struct plain_tiles tiles;
     struct estimate full_scale, clipped, looks, shape;
+    struct estimate room_db; /* of the ceiling over the seabed in the middle columns */
     struct estimate along_rows, range_columns; /* half-power widths of the response, pixels */
     struct estimate noise_floor_db;            /* over the seabed about shadows */
     size_t shadows;                            /* that tell it */
     struct estimate nadir_column, altitude_m;
     struct first_returns returns;
     double row_spacing_m, column_spacing_m, first_slant_range_m; /* NAN: unknown */
+    uint32_t side;              /* SONJECT_SIDE_... that the file tells; SIDE_UNKNOWN */
+    double recorded_altitude_m; /* that the file tells, in the mean; 0: it does not */
+    double recorded_share;      /* median of what pings tell over their first returns; 0: unknown */
     /* For the page. */
     double correlation[2][CALIBRATION_LAGS]; /* of intensity, along rows' axis and columns' */
     double gain_db[GAIN_BANDS], gain_error_db[GAIN_BANDS]; /* of gain_bands; NAN: no tiles there */

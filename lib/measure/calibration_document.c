@@ -75,6 +75,12 @@ static json_t *seen(const struct estimate *estimate, const char *unit)
     return object;
 }
 
+/* A length, m, that the file or the caller tells. */
+static json_t *told(double value)
+{
+    return JSON_OBJECT({"value", number_of(value)}, {"unit", json_text("m")});
+}
+
 static json_t *transfer_keys(const struct calibration *found)
 {
     json_t *transfer = json_object();
@@ -207,11 +213,17 @@ json_t *calibration_document(const struct calibration *found, const char *path, 
         json_add(&measured, "swath_xxh3", json_text(hash));
     if (channel)
         json_add(&measured, "channel", json_text(channel));
+    if (found->side != SIDE_UNKNOWN)
+        json_add(&measured, "side",
+                 json_text(found->side == SONJECT_SIDE_PORT ? "port" : "starboard"));
     json_add(&measured, "rows", json_count(found->rows));
     json_add(&measured, "columns", json_count(found->columns));
+    if (found->column_spacing_m > 0.0)
+        json_add(&measured, "column_spacing", told(found->column_spacing_m));
     json_add(&measured, "transfer", measured_curve(found));
     json_add(&measured, "full_scale", seen(&found->full_scale, NULL));
     json_add(&measured, "clipped", seen(&found->clipped, NULL));
+    json_add(&measured, "ceiling_over_seabed", seen(&found->room_db, "dB"));
     json_add(&measured, "looks", seen(&found->looks, NULL));
     json_add(&measured, "k_shape", seen(&found->shape, NULL));
     json_add(
@@ -231,6 +243,12 @@ json_t *calibration_document(const struct calibration *found, const char *path, 
         json_add(&nadir, "value", column_of(found->nadir_column.value));
     json_add(&measured, "nadir_column", nadir);
     json_add(&measured, "altitude", seen(&found->altitude_m, "m"));
+    if (found->recorded_altitude_m > 0.0) {
+        json_t *recorded = told(found->recorded_altitude_m);
+        if (found->recorded_share > 0.0)
+            json_add(&recorded, "over_first_return", number_of(found->recorded_share));
+        json_add(&measured, "recorded_altitude", recorded);
+    }
     if (found->returns.columns) {
         const size_t every = (found->rows - 1) / RETURNS_MOST + 1;
         json_add(&measured, "first_return_every", json_count(every));

@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
+#include "image/statistics.h"
 #include "measure/calibration.h"
 #include "swath/geometry_notes.h"
 #include "swath/swath_file.h"
@@ -74,21 +75,56 @@ static sonject_status read_swath(struct report *report, const char *path, struct
     return status;
 }
 
-static void find_geometry(const struct swath_file *file, const struct image_options *options,
+/* noted: by the file; NULL: there is none. */
+static void find_geometry(const struct noted_geometry *noted, const struct image_options *options,
                           struct calibration_geometry *geometry)
 {
-    struct noted_geometry noted;
     sonject_geometry_params known = options->geometry;
-    if (file && !options->has_geometry) {
-        geometry_notes_read(file, &noted);
-        geometry->column_spacing_m = noted.axis == RANGE_GROUND ? NAN : noted.column_spacing_m;
-        geometry->row_spacing_m = noted.row_spacing_m;
-        geometry->first_slant_range_m = noted.axis == RANGE_GROUND ? NAN : noted.first_range_m;
+    if (noted && !options->has_geometry) {
+        geometry->column_spacing_m = noted->axis == RANGE_GROUND ? NAN : noted->column_spacing_m;
+        geometry->row_spacing_m = noted->row_spacing_m;
+        geometry->first_slant_range_m = noted->axis == RANGE_GROUND ? NAN : noted->first_range_m;
     } else if (options->has_geometry) {
         geometry->column_spacing_m = known.column_spacing_m;
         geometry->row_spacing_m = known.row_spacing_m;
         geometry->first_slant_range_m = known.first_slant_range_m;
     }
+}
+
+/* What the pings say of the altitude beside where their seabed begins. */
+static sonject_status compare_altitudes(struct report *report, const struct recording *recording,
+                                        struct calibration *found)
+{
+    const struct first_returns *returns = &found->returns;
+    size_t count = 0;
+    if (!recording || !returns->columns || returns->sides == WATER_BETWEEN)
+        return SONJECT_OK;
+    double *shares = allocate_array(found->rows, sizeof *shares);
+    CHECK_MEMORY(report, shares, "a calibration");
+    for (size_t row = 0; row < found->rows; row++) {
+        const double recorded = (double)recording->pings[row].altitude_m;
+        const double first =
+            found->first_slant_range_m + returns->columns[row] * found->column_spacing_m;
+        if (recorded > 0.0 && first > 0.0)
+            shares[count++] = recorded / first;
+    }
+    if (count > 0)
+        found->recorded_share = median_of(shares, count);
+    free(shares);
+    return SONJECT_OK;
+}
+
+/* Of this image; where altitude and first return differ, shadows do. */
+static void tell_altitude(struct report *report, const char *image, const struct calibration *found)
+{
+    const double share = found->recorded_share;
+    if (share > 0.0 && fabs(share - 1.0) > ALTITUDES_ALIKE)
+        report_note(report,
+                    "%s: the recorded altitude, %.2f m in the mean, is %.0f %% %s the first "
+                    "return, and sonar.altitude: from_file makes shadows too %s: if the first "
+                    "return is right, divide altitudes by %.3g (sonar.altitude, or input.pings)",
+                    path_name(image), found->recorded_altitude_m, 100.0 * fabs(share - 1.0),
+                    share < 1.0 ? "below" : "above", share < 1.0 ? "long" : "short", share);
 }
 
 static sonject_status write_results(struct report *report, const sonject_calibrate_params *params,
@@ -119,6 +155,16 @@ static sonject_status write_results(struct report *report, const sonject_calibra
     return status;
 }
 
+static void tell_misfit(struct report *report, const struct calibration *found)
+{
+    const struct curve_fit *fit = &found->fits[found->family];
+    if (!found->transfer_kind.unseen && !curve_fits(fit))
+        report_note(report,
+                    "the curve and law of speckle do not fit the swath's plain tiles: they are off "
+                    "by %.2g of the pixels, with a standard error of %.1g",
+                    fit->misfit, fit->misfit_error);
+}
+
 sonject_status calibrate_image(struct report *report, const sonject_calibrate_params *params,
                                const struct image_options *options, struct stored_swath *pixels,
                                char **text)
@@ -127,6 +173,7 @@ sonject_status calibrate_image(struct report *report, const sonject_calibrate_pa
     struct calibration_geometry geometry = {NAN, NAN, NAN};
     struct calibration found;
     struct swath_file *file = NULL;
+    struct noted_geometry noted = {.altitude_m = 0.0};
     float *values = NULL;
     sonject_status status = SONJECT_OK;
     *text = NULL;
@@ -138,21 +185,24 @@ sonject_status calibrate_image(struct report *report, const sonject_calibrate_pa
             swath_file_open_array(report, params->image, options->channel, options->array, &file);
         THEN(status, read_swath(report, params->image, file, &swath, &values));
     }
+    if (status == SONJECT_OK && file)
+        geometry_notes_read(file, &noted);
     if (status == SONJECT_OK)
-        find_geometry(file, options, &geometry);
-    if (file)
-        swath_file_close(&file);
+        find_geometry(file ? &noted : NULL, options, &geometry);
     THEN(status, calibrate_swath(report, &swath, &geometry, &found));
     if (status == SONJECT_OK) {
-        const struct curve_fit *fit = &found.fits[found.family];
-        if (!found.transfer_kind.unseen && !curve_fits(fit))
-            report_log(report,
-                       "note: the curve and law of speckle do not fit the swath's plain tiles: "
-                       "they are off by %.2g of the pixels, with a standard error of %.1g",
-                       fit->misfit, fit->misfit_error);
-        status = write_results(report, params, &swath, &found, text);
+        tell_misfit(report, &found);
+        found.side = noted.knows_side ? noted.side : SIDE_UNKNOWN;
+        found.recorded_altitude_m = noted.altitude_m;
+        if (file)
+            status = compare_altitudes(report, swath_file_recording(file), &found);
+        THEN(status, write_results(report, params, &swath, &found, text));
+        if (status == SONJECT_OK && params->image)
+            tell_altitude(report, params->image, &found);
         calibration_clear(&found);
     }
+    if (file)
+        swath_file_close(&file);
     free(values);
     return status;
 }

@@ -1,10 +1,12 @@
 /* A calibration under a scene: the file that input.calibration names has keys of scenes, which
  * count where the scene has none of its own. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "schema/keys.h"
 
 struct layer {
@@ -98,6 +100,22 @@ static sonject_status lay_under(struct layer *layer, struct tree_node *scene,
     return status;
 }
 
+/* What it was measured on. */
+static void take_measured(struct scene *scene, const struct tree_node *measured)
+{
+    const struct tree_entry *side = tree_find(measured, "side");
+    const struct tree_entry *altitude = tree_find(measured, "recorded_altitude");
+    const struct tree_entry *share =
+        altitude ? tree_find(&altitude->value, "over_first_return") : NULL;
+    const char *rest;
+    double number;
+    if (side && side->value.kind == TREE_TEXT && side->value.text)
+        snprintf(scene->calibrated_side, sizeof scene->calibrated_side, "%s", side->value.text);
+    if (share && share->value.kind == TREE_TEXT && share->value.text &&
+        text_to_number(share->value.text, &number, &rest) && !*rest)
+        scene->calibrated_altitudes = number;
+}
+
 /* The version, and sections of scenes' keys; the rest goes under the scene's. */
 static sonject_status take_keys(struct layer *layer, const char *file)
 {
@@ -113,6 +131,8 @@ static sonject_status take_keys(struct layer *layer, const char *file)
         bool is_known = false;
         for (size_t k = 0; k < COUNT(sections); k++)
             is_known = is_known || strcmp(entry->key, sections[k]) == 0;
+        if (strcmp(entry->key, "measured") == 0)
+            take_measured(layer->reader->scene, &entry->value);
         if (strcmp(entry->key, "sonject_calibration") == 0 || strcmp(entry->key, "measured") == 0)
             continue;
         if (!is_known || entry->value.kind != TREE_SECTION)

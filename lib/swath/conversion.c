@@ -263,10 +263,10 @@ static sonject_status write_new(struct report *report, const sonject_convert_par
     struct noted_geometry geometry = conversion->geometry;
     const bool is_kept = raster_format_keeps_attributes(params->output);
     if (geometry.altitude_varies && !(params->altitude_m > 0.0) && is_kept) {
-        report_log(report,
-                   "note: the altitude changes along the line, and %s has no place for that: "
-                   "it is left out, and sonar.altitude: from_file works with %s alone",
-                   params->output, params->input);
+        report_note(report,
+                    "the altitude changes along the line, and %s has no place for that: "
+                    "it is left out, and sonar.altitude: from_file works with %s alone",
+                    params->output, params->input);
         geometry.altitude_m = NAN;
     }
     geometry_notes_make(&notes, &geometry);

@@ -14,7 +14,8 @@
 
 #define PI 3.14159265358979323846
 /* Tallies of a launch: more are mapped and cleared anew by each, fewer leave a GPU idle. */
-#define TALLY_BYTES ((size_t)16 << 20)
+#define TALLY_BYTES   ((size_t)16 << 20)
+#define GROUPS_WANTED 4096
 
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 58 * 4 ? 1 : -1];
@@ -150,13 +151,13 @@ static sonject_status add_outcomes(struct tracer *tracer, const struct outcome_r
                           faults & FAULT_OUTSIDE_TILE ? " shadow outside its bounds;" : "");
 }
 
-/* A CPU's work-item does a whole strip; a GPU wants tens of thousands of work-items. */
+/* A CPU's work-item does a whole strip; a GPU wants thousands of groups. */
 static int32_t segments_for(const struct tracer *tracer, const struct fan_record *fan)
 {
-    if (tracer->device->is_cpu)
+    if (tracer->device->group_items == 1)
         return 1;
-    const int32_t wanted = 262144 / (fan->strips > 0 ? fan->strips : 1);
-    const int32_t limit = (int32_t)(fan->rays < 4096 ? fan->rays : 4096);
+    const int32_t wanted = GROUPS_WANTED / (fan->strips > 0 ? fan->strips : 1);
+    const int32_t limit = (int32_t)(fan->rays / tracer->device->group_items) + 1;
     return wanted < 1 ? 1 : wanted > limit ? limit : wanted;
 }
 
@@ -182,11 +183,12 @@ static sonject_status run_turns(struct launch *launch, struct tracer *tracer, st
     struct report *report = tracer->report;
     struct device *device = tracer->device;
     struct fan_record *fan = &launch->fan;
-    const size_t items = (size_t)turns.count * (size_t)fan->segments;
+    const size_t groups = (size_t)turns.count * (size_t)fan->segments;
+    const size_t items = groups * device->group_items;
     const size_t last = launch->buffer_count + 2;
     device_buffer buffers[LAUNCH_BUFFERS_MAX + 3] = {NULL};
     struct kernel_argument arguments[LAUNCH_BUFFERS_MAX + 3];
-    struct outcome_record *outcomes = allocate_array(items, sizeof *outcomes);
+    struct outcome_record *outcomes = allocate_array(groups, sizeof *outcomes);
     CHECK_MEMORY(report, outcomes, "trace counts");
     fan->first_turn = turns.first;
     memcpy(buffers + 2, launch->buffers, launch->buffer_count * sizeof *buffers);
@@ -195,10 +197,11 @@ static sonject_status run_turns(struct launch *launch, struct tracer *tracer, st
     sonject_status status = buffer_create(report, device, sizeof *fan, fan, &buffers[0]);
     THEN(status, buffer_create(report, device, launch->rays.count * sizeof *launch->rays.pieces,
                                launch->rays.pieces, &buffers[1]));
-    THEN(status, buffer_create(report, device, items * sizeof *outcomes, NULL, &buffers[last]));
+    THEN(status, buffer_create(report, device, groups * sizeof *outcomes, NULL, &buffers[last]));
     THEN(status, kernel_run(report, device, launch->kernel, arguments, last + 1, 1, &items));
-    THEN(status, buffer_read(report, device, buffers[last], 0, items * sizeof *outcomes, outcomes));
-    THEN(status, add_outcomes(tracer, outcomes, items));
+    THEN(status,
+         buffer_read(report, device, buffers[last], 0, groups * sizeof *outcomes, outcomes));
+    THEN(status, add_outcomes(tracer, outcomes, groups));
     buffer_release(device, &buffers[0]);
     buffer_release(device, &buffers[1]);
     buffer_release(device, &buffers[last]);

@@ -75,8 +75,8 @@ struct ray_table {
 
 #define LAUNCH_BUFFERS_MAX 5
 
-/* A kernel and its arguments: the fan and its rays first, then the buffers, then what the
- * work-items report. All that it holds is its own. */
+/* A kernel and its arguments: the fan and its rays first, then the buffers, then what the groups
+ * of work-items report. All that it holds is its own. */
 struct launch {
     struct device *device; /* the tracer's */
     device_kernel kernel;  /* NULL where checkpoints are added up and nothing is traced */
@@ -102,7 +102,7 @@ sonject_status launch_add_tallies(struct launch *launch, struct tracer *tracer, 
                                   size_t elements, int32_t *chunk);
 
 /* Runs the kernel over the fan's strips, or those of them that are the checkpoint's, and adds up
- * what the work-items report. Sets the fan's segments and turns. Errors: DEVICE (also faults that
+ * what the groups report. Sets the fan's segments and turns. Errors: DEVICE (also faults that
  * the kernel reports), MEMORY. */
 sonject_status launch_run(struct launch *launch, struct tracer *tracer);
 

@@ -60,6 +60,15 @@ static void check_errors(const sonject::context &context)
     } catch (const sonject::error &) {
     }
     expect(sonject::keys(context).find("sonar.altitude") != std::string::npos, "keys are listed");
+    expect(sonject::keys(context, SONJECT_KEYS_OF_CAMPAIGNS).find("chip.spread") !=
+               std::string::npos,
+           "those of campaigns, too");
+    try {
+        sonject::keys(context, static_cast<sonject_keys_of>(2));
+        expect(false, "files of other kinds have none");
+    } catch (const sonject::error &error) {
+        expect(error.status() == SONJECT_ERROR_ARGUMENT, "which is a wrong argument");
+    }
 }
 
 static void check_transfers(const sonject::context &context)
@@ -312,8 +321,12 @@ static void check_campaigns(const sonject::context &context)
 int main()
 {
     std::vector<std::string> lines;
+    std::size_t notes = 0;
     sonject::context_options options;
-    options.log = [&](const char *line) { lines.push_back(line); };
+    options.log = [&](sonject_log_level level, const char *line) {
+        lines.push_back(line);
+        notes += level == SONJECT_LOG_NOTE;
+    };
     sonject::context made(options);
     sonject::context context = std::move(made);
     expect(!context.devices().empty(), "there are devices");
@@ -329,7 +342,8 @@ int main()
     check_transfer(context);
     check_progress(context);
     check_campaigns(context);
-    expect(!lines.empty(), "news reach the log, also after the context has moved");
+    expect(lines.size() > notes, "news reach the log, also after the context has moved");
+    expect(notes > 0, "and notes as such");
     if (failures == 0)
         std::puts("all right");
     return failures != 0;

@@ -80,7 +80,7 @@ SIZES = {
     "sonject_measure_params": 136,
     "sonject_measurement": 112,
     "sonject_merge_params": 24,
-    "sonject_object_truth": 368,
+    "sonject_object_truth": 376,
     "sonject_pixels": 48,
     "sonject_quicklook_params": 80,
     "sonject_run_params": 48,

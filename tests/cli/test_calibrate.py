@@ -1,6 +1,7 @@
 """sonject calibrate: what a swath tells of itself."""
 
 import json
+import re
 
 import numpy
 import pytest
@@ -9,6 +10,7 @@ from conftest import assert_refused
 from images import png_bytes
 from made_swaths import COLUMNS, KINDS, ROWS, Made, deviations, sidescan, speckle
 from measured_images import measured, read_png, read_xtf
+from recordings import xtf_bytes
 
 
 def calibrated(sonject, *arguments):
@@ -179,6 +181,54 @@ def test_yaml_says_what_json_says(sonject, tmp_path):
     assert f"  noise_floor: {found['injection']['noise_floor']}" in lines
     assert "      fits: true" in lines and f"      shadows: {found['measured']['noise_floor']['shadows']}"[2:] in lines
     assert (tmp_path / "made.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def water_line(folder, share):
+    """A line whose recorded altitudes are that share of its first returns."""
+    first = numpy.linspace(100, 140, ROWS)
+    made = Made("amplitude", water=first).numbers
+    (folder / "line.xtf").write_bytes(xtf_bytes(made, made, altitudes=share * first * 30 / COLUMNS, slant_range=30.0))
+
+
+@pytest.mark.parametrize("share, told", [(0.85, "1[456] % below the first return"), (1.15, "1[456] % above the first return"), (1.0, None)])
+def test_altitudes_that_first_returns_deny_are_told(sonject, tmp_path, share, told):
+    water_line(tmp_path, share)
+    answer = sonject.done("calibrate", "line.xtf", "--channel", "port", "-o", "port.yaml")
+    (tmp_path / "scene.yaml").write_text(
+        "sonject: 1\ninput: {path: line.xtf, channel: port, calibration: port.yaml, geometry: from_file}\n"
+        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: from_file}\n"
+        "objects: [{shape: sphere, diameter: 0.4 m}]\n")
+    texts = [answer.stderr, sonject.done("check", "scene.yaml").stdout]
+    assert [text.count("first return") > 0 for text in texts] == [told is not None] * 2
+    if told is None:
+        return
+    assert all(re.search(told, text) for text in texts)
+    factor = float(re.search(r"divide altitudes by (\S+) ", texts[0])[1])
+    assert factor == pytest.approx(share, rel=0.01)  # a column of 100
+    right = re.search(r"write (sonar.altitude): (\S+ m)", texts[1])
+    assert float(right[2][:-2]) == pytest.approx(120 * 30 / COLUMNS, rel=0.02)  # the ball is in the middle
+    assert "first return" not in sonject.done("check", "scene.yaml", "--set", f"{right[1]}={right[2]}").stdout
+
+
+def test_the_other_sides_calibration_is_told(sonject, tmp_path):
+    water_line(tmp_path, 1.0)
+    for side in ("port", "starboard"):
+        sonject.done("calibrate", "line.xtf", "--channel", side, "-o", f"{side}.yaml")
+    (tmp_path / "scene.yaml").write_text(
+        "sonject: 1\ninput: {path: line.xtf, channel: port, geometry: from_file}\n"
+        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: from_file}\nobjects: []\n")
+    for side, note in ("port", ""), ("starboard", "starboard.yaml was measured on the starboard side, and this is port"):
+        for verb in ["check"], ["run", "-o", side]:
+            answer = sonject.done(verb[0], "scene.yaml", *verb[1:], "--set", f"input.calibration={side}.yaml")
+            assert note in answer.stdout + answer.stderr and ("was measured on" in answer.stdout + answer.stderr) == bool(note)
+    (tmp_path / "campaign.yaml").write_text(
+        "sonject_campaign: 1\nscene: scene.yaml\nimages: 2\nchip: {rows: 64, columns: 64}\nempty: 1\nsplits: {all: 1}\n"
+        "swaths: [{path: line.xtf}, {path: line.xtf, set: {input.channel: starboard}}]\n"
+        "targets: [{class: ball, object: {shape: sphere, diameter: 40 cm}}]\n")
+    (tmp_path / "scene.yaml").write_text((tmp_path / "scene.yaml").read_text().replace(
+        "geometry", "calibration: port.yaml, geometry"))
+    notes = [line for line in sonject.done("campaign", "campaign.yaml", "-o", "set").stderr.splitlines() if "note" in line]
+    assert len(notes) == 1 and "port.yaml was measured on the port side, and this is starboard" in notes[0]
 
 
 def test_bad_input_is_refused(sonject, tmp_path):

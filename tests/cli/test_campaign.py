@@ -1054,6 +1054,7 @@ def test_the_sides_of_a_line_are_two_swaths(ground, command, lines, name, one, o
     channels = {split: {text for record in records(ground / folder) if record["split"] == split
                         for text in record["set"] if text.startswith("input.channel=")} for split in ("train", "test")}
     assert sorted(map(sorted, channels.values())) == [[f"input.channel={one}"], [f"input.channel={other}"]]
+    assert [swath["side"] for swath in page_data(ground / folder)["swaths"]] == ["port", "starboard"]
 
 
 @pytest.mark.parametrize("name, one, other", [

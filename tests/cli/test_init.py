@@ -1,10 +1,13 @@
 """sonject init: a scene to begin with, from an image and a few answers."""
 
+import json
+import re
+
 import numpy
 import pytest
 
 import recordings
-from made_swaths import Made
+from made_swaths import KINDS, LEVEL_DB, ROWS, Made
 
 ANSWERS = ["5 cm", "2.5 cm", "44 m", "10 m", "100 kHz", "30 kHz", ""]
 
@@ -72,10 +75,44 @@ def test_what_the_file_tells_is_not_asked_for(sonject, image):
     assert "geometry: from_file" in scene and "altitude: 10 m" in scene
 
 
-def test_a_recording_tells_the_geometry(sonject, tmp_path):
+@pytest.mark.parametrize("typed", ["", "from_file"])
+def test_a_recording_tells_the_geometry(sonject, tmp_path, typed):
     sides = [numpy.random.default_rng(7).rayleigh(2000.0, (120, 400)).astype(numpy.uint16) for _ in range(2)]
     (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=numpy.linspace(5.0, 9.0, 120)))
-    answer = init(sonject, "line.xtf", "--channel", "port", answers=["600 kHz", "10 kHz", "0.5 m"])
+    answer = init(sonject, "line.xtf", "--channel", "port", answers=[typed, "600 kHz", "", "0.5 m"])
     assert answer.returncode == 0, answer.stderr
+    assert "the file's mean is 7 m [from_file]: " in answer.stderr
     scene = (tmp_path / "line.yaml").read_text()
+    assert "bandwidth: 10 kHz # c / 2 over the column spacing" in scene  # of 400 columns to 30 m
     assert "channel: port" in scene and "geometry: from_file" in scene and "altitude: from_file" in scene
+
+
+def test_an_answer_from_a_file_that_does_not_tell_it_is_asked_for_again(sonject, image):
+    answer = init(sonject, "swath.npy", answers=[*ANSWERS[:3], "from_file", *ANSWERS[3:5], "", ""])
+    assert answer.returncode == 0, answer.stderr
+    assert "does not say the sonar's altitude: give it instead of from_file" in answer.stderr
+    assert "bandwidth: 30 kHz # c / 2 over the column spacing" in image.with_suffix(".yaml").read_text()  # 2.5 cm
+
+
+@pytest.mark.parametrize("kind, level", [("gamma", 15), ("intensity", None)])
+def test_the_level_leaves_room_below_the_ceiling(sonject, tmp_path, kind, level):
+    """By the calibration, 3 dB and what a whole number takes."""
+    made = Made(kind)
+    numpy.save(tmp_path / "swath.npy", made.numbers)
+    answer = init(sonject, "swath.npy", answers=ANSWERS)
+    assert answer.returncode == 0, answer.stderr
+    found = json.loads(sonject.done("calibrate", "swath.npy", "--json").stdout)["measured"]["ceiling_over_seabed"]
+    mean = 10 * numpy.log10(KINDS[kind][1] ** 2)  # of the seabed's level, over full scale
+    assert found["value"] == pytest.approx(-mean, abs=4 * found["standard_error"] + LEVEL_DB / 4)
+    told = float(re.search(r"level: {over_seabed: (\d+) dB}", (tmp_path / "swath.yaml").read_text())[1])
+    assert told == (level or numpy.floor(found["value"] - 3)) <= 15
+
+
+def test_altitude_by_first_returns_is_what_enter_takes(sonject, tmp_path):
+    numpy.save(tmp_path / "swath.npy", Made("amplitude", water=numpy.full(ROWS, 120)).numbers)
+    sonject.done("convert", "swath.npy", "swath.tif", "--row-spacing", "0.025", "--column-spacing", "0.025",
+                 "--first-range", "0")
+    answer = init(sonject, "swath.tif", answers=["", "100 kHz", "", ""])
+    assert answer.returncode == 0, answer.stderr
+    told = re.search(r"altitude: (\S+) m", (tmp_path / "swath.yaml").read_text())[1]
+    assert float(told) == pytest.approx(120 * 0.025, rel=0.02) and f"as first returns show it [{told} m]" in answer.stderr

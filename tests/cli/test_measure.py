@@ -1,6 +1,7 @@
 """sonject measure: an image's statistics as JSON."""
 
 import json
+import re
 
 import numpy
 import pytest
@@ -304,6 +305,18 @@ def test_highlights_at_the_ceiling_are_told(sonject, tmp_path, level, ceiling, s
     share = (image[highlight] == (ceiling or numpy.inf)).mean()
     assert ball["highlight_clipped"] == pytest.approx(share, abs=1e-9)
     assert (share > 0.1) == (level == 24 and ceiling is not None) == ("at the image's ceiling" in notes)
+    room = ball["level"]["ceiling_over_seabed_db"]
+    if ceiling is None:
+        assert room is None
+        return
+    if ceiling == 255:  # 1600 squares of speckle: 0.5 dB are 5 standard errors
+        around = (numpy.minimum(swath, 255)[60:100, 60:100] ** 2).mean()
+        assert room == pytest.approx(10 * numpy.log10(255**2 / around), abs=0.5)
+    if share > 0.1:
+        told = float(re.search(r"{over_seabed: (-?\d+) dB} would leave room", notes)[1])
+        assert room - 4 < told <= room - 3
+        lower = sonject.done("run", "scene.yaml", "-o", "lower", "--set", f"objects[0].level={{over_seabed: {told} dB}}")
+        assert "at the image's ceiling" not in lower.stderr
 
 
 def test_the_water_column_is_nobodys_seabed(sonject, tmp_path):

@@ -68,6 +68,16 @@ def test_help_of_a_section_is_all_its_keys(sonject):
     assert "words: plane, sphere," in words and words == sonject("help", "objects.shape").stdout
 
 
+def test_help_of_a_word_is_every_key_that_ends_in_it(sonject):
+    reference = [(SOURCE / "tools" / folder / "KEYS.md").read_text(encoding="utf-8")
+                 for folder in ("scenes", "campaigns")]
+    assert sonject.done("help", "altitude").stdout == sonject.done("help", "sonar.altitude").stdout
+    for word in ("kind", "level.over_seabed", "draw", "spread"):
+        rows = [key for text in reference for key in re.findall(r"^\| `([^`]*)`", text, flags=re.M)]
+        wanted = [key for key in rows if f".{key}".endswith(f".{word}") or key.startswith((f"{word}.", f"{word}["))]
+        assert re.findall(r"^(\S+)", sonject.done("help", word).stdout, flags=re.M) == wanted and wanted
+
+
 def test_nothing_asked_is_a_usage_error(sonject):
     answer = sonject()
     assert answer.returncode == 2 and not answer.stdout and "sonject run" in answer.stderr
@@ -86,6 +96,7 @@ def test_nothing_asked_is_a_usage_error(sonject):
         (["blend", "x"], ['no verb "blend"']),
         (["help", "rnu"], ["did you mean run?"]),
         (["help", "sonar.altitud"], ['key "sonar.altitud"', "did you mean sonar.altitude?"]),
+        (["help", "altitdue"], ["did you mean altitude?"]),
         (["help", ""], ["sonject --help"]),
         (["help", "xylophone[0]"], ["sonject --help"]),
         (["run"], ["SCENE.yaml is missing"]),

@@ -26,7 +26,7 @@ enum scene_flag {
     BRUTE_FORCE = 512,
     /* what is compared */
     ROUGH = 1024,
-    ROUGH_AT_ALL = 4096, /* widths: programs take long to compile */
+    AT_ALL = 4096, /* widths: programs take long to compile */
     GLINTS = 8192,
     IMAGES = 16384,
     CHAINS = 32768,
@@ -50,21 +50,21 @@ static const struct scene_case {
     double source_side; /* m; not 0: visibility is tested */
     uint32_t interactions;
 } scenes[] = {
-    {"plain", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL | GLINTS | IMAGES | TILES, 0.0, 1},
-    {"wide source", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL, 0.2, 1},
-    {"map", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL | WITH_MAP, 0.2, 1},
-    {"seabed alone", NO_OBJECTS, ROUGH | ROUGH_AT_ALL, 0.0, 1},
-    {"more shapes", MORE_SHAPES, ROUGH | ROUGH_AT_ALL | GLINTS, 0.2, 1},
-    {"layers", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL | GLINTS | IMAGES | TILES | IN_LAYERS, 0.0, 1},
-    {"relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL | GLINTS | IMAGES | TILES | ON_RELIEF, 0.0, 1},
+    {"plain", FOUR_OBJECTS, ROUGH | AT_ALL | GLINTS | IMAGES | TILES, 0.0, 1},
+    {"wide source", FOUR_OBJECTS, ROUGH | AT_ALL, 0.2, 1},
+    {"map", FOUR_OBJECTS, ROUGH | AT_ALL | WITH_MAP, 0.2, 1},
+    {"seabed alone", NO_OBJECTS, ROUGH | AT_ALL, 0.0, 1},
+    {"more shapes", MORE_SHAPES, ROUGH | AT_ALL | GLINTS, 0.2, 1},
+    {"layers", FOUR_OBJECTS, ROUGH | AT_ALL | GLINTS | IMAGES | TILES | IN_LAYERS, 0.0, 1},
+    {"relief", FOUR_OBJECTS, ROUGH | AT_ALL | GLINTS | IMAGES | TILES | ON_RELIEF, 0.0, 1},
     {"crowd over relief", CROWD, TILES | ON_RELIEF, 0.0, 1},
-    {"wide source over relief", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL | ON_RELIEF | WITH_MAP, 0.2, 1},
+    {"wide source over relief", FOUR_OBJECTS, ROUGH | AT_ALL | ON_RELIEF | WITH_MAP, 0.2, 1},
     {"aspects", FOUR_OBJECTS, ROUGH | WITH_ASPECTS, 0.0, 1},
-    {"aspects over relief", FOUR_OBJECTS,
-     ROUGH | ROUGH_AT_ALL | WITH_ASPECTS | ON_RELIEF | WITH_MAP, 0.2, 1},
+    {"aspects over relief", FOUR_OBJECTS, ROUGH | AT_ALL | WITH_ASPECTS | ON_RELIEF | WITH_MAP, 0.2,
+     1},
     {"beam", FOUR_OBJECTS, ROUGH | WITH_BEAM, 0.0, 1},
-    {"fouling", FOUR_OBJECTS, ROUGH | ROUGH_AT_ALL | TILES | FOULED, 0.2, 1},
-    {"chains", TWO_OBJECTS, CHAINS, 0.0, 3},
+    {"fouling", FOUR_OBJECTS, ROUGH | AT_ALL | TILES | FOULED, 0.2, 1},
+    {"chains", TWO_OBJECTS, CHAINS | AT_ALL, 0.0, 3},
     {"chains off what is fouled", TWO_OBJECTS, CHAINS | FOULED | UNDER_SURFACE, 0.0, 3},
     {"chains, paper's columns, map", TWO_OBJECTS, CHAINS | PAPER_COLUMNS | WITH_MAP, 0.0, 3},
     {"chains, wide source", TWO_OBJECTS, CHAINS | SMOOTH_SEABED, 4.0, 4},
@@ -422,7 +422,8 @@ static struct outcome_record strip_as_c(const struct trace *trace, const struct 
                                  buffers[ROUGH_EDGES], tallies->sums, tallies->tiles, strip, 0);
     if (subject->part == CHAINS)
         return trace_chains_strip(fan, rays, buffers[CHAIN_RECORD], buffers[CHAIN_OBJECTS],
-                                  buffers[CHAIN_SPHERES], subject->map, tallies->sums, strip, 0);
+                                  buffers[CHAIN_SPHERES], subject->map, tallies->sums,
+                                  (float[1]){0.0f}, strip, 0);
     if (!subject->pair)
         return trace_smooth_strip(fan, rays, buffers[SMOOTH_OBJECTS], tallies->sums, strip, 0);
     return trace_smooth_images_strip(fan, rays, buffers[SMOOTH_SOURCES], buffers[SMOOTH_OBJECTS],
@@ -475,13 +476,13 @@ static struct device *devices[BENCH_WIDTHS];
 static size_t width_count;
 
 /* Programs take long to compile, and all are of the same vectors: only some are compared at all
- * widths, all at the most lanes, chains at the device's own. */
+ * widths, all at the most lanes. */
 static bool is_compared(const struct bench *bench, const struct subject *subject, size_t w)
 {
     if (w == width_count - 1)
         return true;
-    if (subject->part == ROUGH)
-        return (subject->scene->flags & ROUGH_AT_ALL) != 0;
+    if (subject->part == ROUGH || subject->part == CHAINS)
+        return (subject->scene->flags & AT_ALL) != 0;
     return subject->part == GLINTS && w == 0 && !bench->tracer.relief;
 }
 
@@ -496,7 +497,7 @@ static bool compare_bits(struct bench *bench, const struct subject *subject)
     for (size_t w = 0; w < width_count; w++) {
         if (!is_compared(bench, subject, w))
             continue;
-        bench->tracer.device = subject->part == CHAINS ? own : devices[w];
+        bench->tracer.device = w == width_count - 1 && subject->part == CHAINS ? own : devices[w];
         print_message("%s, width %u\n", subject->scene->name,
                       (unsigned)bench->tracer.device->width);
         /* at the lower end each takes longest; a strip alone would be traced again for each of its
@@ -523,8 +524,7 @@ static void on_scenes_with(unsigned flags, body *run)
     width_count = bench_widths(widths);
     bench_open(&bench, ROWS, COLUMNS, 18.0);
     for (size_t w = 0; w < width_count; w++) {
-        devices[w] = bench_open_device(&bench);
-        devices[w]->width = widths[w];
+        devices[w] = bench_open_width(&bench, widths[w]);
     }
     for (size_t i = 0; i < COUNT(scenes); i++)
         if (scenes[i].flags & flags &&

@@ -75,8 +75,8 @@ static void test_closed_sphere(void **state)
     lay_sphere(&fan, &chains, &sphere, lambert);
     int64_t *tallies = calloc((size_t)ORDERS * BINS, sizeof *tallies);
     assert_non_null(tallies);
-    const struct outcome_record outcome =
-        trace_chains_strip(&fan, NULL, &chains, &sphere, NULL, NULL, tallies, 0, 0);
+    const struct outcome_record outcome = trace_chains_strip(&fan, NULL, &chains, &sphere, NULL,
+                                                             NULL, tallies, (float[1]){0.0f}, 0, 0);
     assert_int_equal(outcome.faults, 0);
     double energy[ORDERS];
     raw_energies(&fan, tallies, energy);

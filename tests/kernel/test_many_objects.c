@@ -308,7 +308,7 @@ static void compare_chains(struct bench *bench)
         trace.launch.fan.segments = 1;
         for (int strip = 0; is_new && strip < strips.count; strip++)
             assert_int_equal(trace_chains_strip(&trace.launch.fan, NULL, chains, objects, spheres,
-                                                NULL, expected, strip, 0)
+                                                NULL, expected, (float[1]){0.0f}, strip, 0)
                                  .faults,
                              0);
     }

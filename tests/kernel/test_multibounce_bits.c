@@ -178,8 +178,7 @@ static void test_multibounce_tallies(void **state)
     device_count = bench_widths(widths);
     bench_open(&bench, ROWS, COLUMNS, 18.0);
     for (size_t d = 0; d < device_count; d++) {
-        devices[d] = bench_open_device(&bench);
-        devices[d]->width = widths[d];
+        devices[d] = bench_open_width(&bench, widths[d]);
     }
     for (size_t i = 0; i < COUNT(variants); i++) {
         scene_clear(&bench.scene);

@@ -28,6 +28,17 @@ struct device *bench_open_device(struct bench *bench)
     return device;
 }
 
+struct device *bench_open_width(struct bench *bench, uint32_t width)
+{
+    struct device *device = bench_open_device(bench);
+    device->width = width;
+    if (width == 1 && device->is_pocl) {
+        device->is_cpu = false;
+        device->group_items = 64;
+    }
+    return device;
+}
+
 static void take_device(struct bench *bench)
 {
     if (free_device) {
@@ -83,8 +94,7 @@ void bench_set_width(struct bench *bench, uint32_t width)
         take_device(bench);
         return;
     }
-    bench->tracer.device = bench_open_device(bench);
-    bench->tracer.device->width = width;
+    bench->tracer.device = bench_open_width(bench, width);
 }
 
 void bench_move(struct bench *bench, double middle_range_m)

@@ -34,6 +34,10 @@ void bench_close(struct bench *bench);
 /* The bench's device once more, without programs, to be closed by device_close. */
 struct device *bench_open_device(struct bench *bench);
 
+/* The same with kernels of a number of lanes. With one lane PoCL works as a GPU does, in groups of
+ * work-items that share what they count. */
+struct device *bench_open_width(struct bench *bench, uint32_t width);
+
 /* Gives the bench's device another number of lanes, and none of the programs of before. */
 void bench_set_width(struct bench *bench, uint32_t width);
 

@@ -101,6 +101,22 @@ CLAIM(a_point_widens_with_range)
     }
 }
 
+/* The integral of sinc(z)^4 is 2/3. */
+CLAIM(the_resolution_that_is_told_is_the_beam_s)
+{
+    float *pixels = claim_memory(ROWS * COLUMNS, sizeof *pixels);
+    for (size_t i = 0; i < ROWS * COLUMNS; i++)
+        pixels[i] = 1.0f;
+    for (int i = 0; i < 3; i++) {
+        struct sea *sea = open_sidescan(ROWS, COLUMNS, ranges[i]);
+        hang_ball(sea, ranges[i], 0.1);
+        const double expected = 2.0 / 3.0 * ranges[i] * WAVELENGTH / ARRAY;
+        expect_close("energy width of the beam, m",
+                     sea_inject(sea, pixels, false)->statistics.along_track_resolution_m, expected,
+                     0.01 * expected);
+    }
+}
+
 /* A turned array's, from the ball's own place: the cosine between its long side, ahead in the
  * image's rows, and the way. side: +-1, the way along which rows run. */
 static double complex turned_beam(const struct sea *sea, double x, double side)

@@ -165,12 +165,22 @@ static void test_campaign_files_tell_all(void **state)
         ":7:5: swaths[0].path: missing; add it (image file)",
         ":9:5: targets[0].object: missing; add it (keys of an object that are not drawn)",
         ":9:40: targets[0].draw.hedding: scenes have no such key; did you mean 'heading'?",
-        ":10:8: draw.sonar.frequncy: scenes have no such key; did you mean 'frequency'?"};
+        ":9:52: targets[0].draw.sonar.altitude: is of scenes: write it in the scene's file or the "
+        "campaign's draw",
+        ":10:8: draw.sonar.frequncy: scenes have no such key; did you mean 'frequency'?",
+        ":11:3: draw.level: is of objects: write objects[].level in draw, or level in "
+        "targets[].draw",
+        ":12:3: draw.objects[1].pitch: is of objects: write objects[].pitch in draw, or pitch in "
+        "targets[].draw",
+        ":13:11: draw.seabed: is a section: draw its keys, such as seabed.lambert: {uniform: ...}",
+        ":14:3: draw.class: scenes have no such key; there are sonject, band, bands, input, patch, "
+        "sonar, seabed, surface, medium, injection, elements, objects"};
     static const char text[] =
         "sonject_campaign: 1\nscene: s.yaml\nimages: 0\nchip: {rows: 4, columns: 64}\n"
         "labels: [\"yoolo\"]\nswaths:\n  - {split: all}\ntargets:\n"
-        "  - {class: ball, weight: 1,    draw: {hedding: 3}}\n"
-        "draw: {sonar.frequncy: 3}\n";
+        "  - {class: ball, weight: 1,    draw: {hedding: 3, sonar.altitude: 3}}\n"
+        "draw: {sonar.frequncy: 3,\n  level: {over_seabed: 3 dB},\n  \"objects[1].pitch\": 0,\n"
+        "  seabed: {lambert: {uniform: [-30 dB, -20 dB]}},\n  class: 3}\n";
     write_file(folder, "campaign.yaml", text, strlen(text));
     strcpy(path, file_in(folder, "campaign.yaml"));
     assert_int_equal(campaign_read(&folder->report, path, NULL, NULL, 0, &campaign),

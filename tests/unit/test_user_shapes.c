@@ -104,8 +104,9 @@ static void append(struct user_shapes *shapes, const char *name, const char *cod
     EXPECT_OK(&report, user_shapes_append(shapes, &report, &params));
 }
 
-static void count_line(void *count, const char *line)
+static void count_line(void *count, uint32_t level, const char *line)
 {
+    assert_int_equal(level, SONJECT_LOG_NEWS);
     assert_null(strchr(line, '\n'));
     ++*(int *)count;
 }

@@ -18,14 +18,6 @@
 namespace sonject
 {
 
-/* All keys that campaign files have, as JSON; see sonject_campaign_keys. */
-inline std::string campaign_keys(const context &context)
-{
-    detail::text text;
-    context.check(sonject_campaign_keys(context.get(), text.out()));
-    return text.copy();
-}
-
 /* Many injections, drawn from distributions that a campaign file names. */
 class campaign
 {

@@ -19,8 +19,8 @@
 namespace sonject
 {
 
-/* Called with a line of news. Must not throw. */
-using log = std::function<void(const char *line)>;
+/* Called with a line of the log. Must not throw. */
+using log = std::function<void(sonject_log_level level, const char *line)>;
 
 /* What a context is made from; empty texts and null handles: the defaults. */
 struct context_options {
@@ -111,9 +111,9 @@ class context
     }
 
   private:
-    static void tell(void *user, const char *line) noexcept
+    static void tell(void *user, std::uint32_t level, const char *line) noexcept
     {
-        (*static_cast<sonject::log *>(user))(line);
+        (*static_cast<sonject::log *>(user))(static_cast<sonject_log_level>(level), line);
     }
     sonject::log *log_; /* owned, apart, so that moving keeps its place */
     sonject_context *handle_;

@@ -236,11 +236,11 @@ inline scene scene_of_text(const context &context, const std::string &text,
     return scene(context, name, std::vector<std::string>(), params);
 }
 
-/* All keys that scenes have, as JSON; see sonject_keys. */
-inline std::string keys(const context &context)
+/* All keys that files of a kind have, as JSON; see sonject_keys. */
+inline std::string keys(const context &context, sonject_keys_of of = SONJECT_KEYS_OF_SCENES)
 {
     detail::text text;
-    context.check(sonject_keys(context.get(), text.out()));
+    context.check(sonject_keys(context.get(), of, text.out()));
     return text.copy();
 }
 

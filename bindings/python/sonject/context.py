@@ -76,28 +76,16 @@ class ProgressBridge:
 class LogBridge:
     """Calls a log function. Does not refer to the context, which would then live for ever."""
 
-    def __init__(self, log: Callable[[str], Any]) -> None:
+    def __init__(self, log: Callable[[int, str], Any]) -> None:
         self.error: Optional[BaseException] = None
         self._log = log
         self.callback = s.sonject_log_function(self._called)
 
-    def _called(self, _user: Optional[int], line: Optional[bytes]) -> None:
+    def _called(self, _user: Optional[int], level: int, line: Optional[bytes]) -> None:
         try:
-            self._log(text(line))
+            self._log(logging.WARNING if level else logging.INFO, text(line))
         except BaseException as error:  # goes on to the caller of the library
             self.error = error
-
-
-_logger = logging.getLogger("sonject")
-
-
-def _log_by_logging(line: str) -> None:
-    """What a user must see comes as a note, and is shown even where nobody set up logging."""
-    start, note, rest = line.partition("note: ")
-    if note and not start:
-        _logger.warning("%s", rest)
-    else:
-        _logger.info("%s", line)
 
 
 def counted(number: int, word: str) -> str:
@@ -159,9 +147,9 @@ class Context:
     """Works with one device.
 
     device: part of the device's name, None for the one that SONJECT_DEVICE names, else a GPU, else
-    native, this processor; log: called with lines of news, None for the logger "sonject" of
-    logging, where notes that a user must see are warnings and other lines are info; opencl_context,
-    opencl_device: addresses of a host's cl_context and cl_device_id to work in; decodes_in_process:
+    native, this processor; log: called with a level of logging, WARNING for notes that a user must
+    see and else INFO, and a line, as a logger's log is; None for that of the logger "sonject";
+    opencl_context, opencl_device: addresses of a host's cl_context and cl_device_id to work in; decodes_in_process:
     read images and HDF5 here, not in a child (a damaged file may end this); threads: of a launch on
     native, 0 for one a processor.
 
@@ -173,7 +161,7 @@ class Context:
     def __init__(
         self,
         device: Optional[str] = None,
-        log: Optional[Callable[[str], Any]] = None,
+        log: Optional[Callable[[int, str], Any]] = None,
         opencl_context: Optional[int] = None,
         opencl_device: Optional[int] = None,
         decodes_in_process: bool = False,
@@ -185,7 +173,7 @@ class Context:
         self._owner: Optional[int] = None
         self._waiting: collections.deque[Any] = collections.deque()
         self._handles: weakref.WeakValueDictionary[int, Handle] = weakref.WeakValueDictionary()
-        self._log = LogBridge(_log_by_logging if log is None else log)
+        self._log = LogBridge(logging.getLogger("sonject").log if log is None else log)
         params = filled(
             s.sonject_context_params,
             device_name=optional_file_name("device", device),

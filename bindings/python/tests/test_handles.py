@@ -124,7 +124,7 @@ def test_overrides_are_texts_or_a_mapping(context):
 def test_log_errors_are_raised(amplitude_patch, make_scene):
     lines = []
 
-    def log(line):
+    def log(level, line):
         lines.append(line)
         raise LookupError("from the log")
 
@@ -141,7 +141,7 @@ def test_the_log_tells_device_programs_and_noise_floor():
     # a process of its own, in which no other context has the programs
     answer = run_python(
         "import numpy, sonject\n"
-        "with sonject.Context(device='pthread', log=print) as context:\n"
+        "with sonject.Context(device='pthread', log=lambda level, line: print(line)) as context:\n"
         f"    scene = sonject.Scene(**{KEYS}, context=context)\n"
         "    patch = numpy.random.default_rng(1).rayleigh(size=(64, 64)).astype(numpy.float32)\n"
         "    sonject.inject(patch, scene)\n"
@@ -152,11 +152,13 @@ def test_the_log_tells_device_programs_and_noise_floor():
     assert lines[-1].startswith("noise floor: no shadow")
 
 
-@pytest.mark.parametrize("log, is_printed", [("None", True), ("lambda line: None", False)])
+@pytest.mark.parametrize("log, is_printed", [
+    ("None", True), ("lambda level, line: None", False),
+    ("lambda level, line: level < logging.WARNING or print(line, file=sys.stderr)", True)])
 def test_notes_are_printed_unless_a_log_takes_them(log, is_printed, tmp_path):
     """By inject and run alike, and without the lines that only tell what happens."""
     answer = run_python(
-        "import numpy, sonject\n"
+        "import logging, numpy, sonject, sys\n"
         f"with sonject.Context(log={log}) as context:\n"
         f"    scene = sonject.Scene(**{KEYS}, context=context)\n"
         "    scene['objects[0].level.over_seabed'] = '33 dB'\n"

@@ -10,6 +10,7 @@
 #include "device/opencl/opencl.h"
 
 #define DEVICES_MAX 64
+#define GPU_GROUP   64 /* work-items; two of NVIDIA's warps, one of AMD's wavefronts */
 
 static long process_of_driver; /* 0: no call was made yet; atomic */
 static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
@@ -359,6 +360,7 @@ static sonject_status open_in_driver(struct report *report, const sonject_contex
     device->calls = &opencl_calls;
     device->id = chosen.id;
     device->is_cpu = (chosen.type & CL_DEVICE_TYPE_CPU) != 0;
+    device->group_items = device->is_cpu ? 1 : GPU_GROUP;
     device->is_pocl = strcmp(info.platform, "Portable Computing Language") == 0;
     CHECK(check_abilities(report, device));
     return open_queue(report, device, params->opencl_context);

@@ -73,12 +73,20 @@ static sonject_status opencl_kernel_run(struct report *report, struct device *de
             report, device, "clSetKernelArg",
             clSetKernelArg(kernel, (cl_uint)i, arguments[i].bytes, arguments[i].value)));
     /* on a CPU a work-item is a whole strip: groups of one let the cores share them evenly */
-    static const size_t alone[3] = {1, 1, 1};
+    size_t group[3] = {1, 1, 1};
+    bool has_group = device->is_cpu;
+    if (!device->is_cpu) {
+        CHECK(opencl_answer(report, device, "clGetKernelWorkGroupInfo",
+                            clGetKernelWorkGroupInfo(kernel, device->id,
+                                                     CL_KERNEL_COMPILE_WORK_GROUP_SIZE,
+                                                     sizeof group, group, NULL)));
+        has_group = group[0] > 0;
+    }
     if (device->is_pocl)
         pthread_mutex_lock(&one_launch_of_pocl);
     const char *call = "clEnqueueNDRangeKernel";
     cl_int error = clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, global,
-                                          device->is_cpu ? alone : NULL, 0, NULL, NULL);
+                                          has_group ? group : NULL, 0, NULL, NULL);
     if (error == CL_SUCCESS) {
         call = "clFinish";
         error = clFinish(device->queue);

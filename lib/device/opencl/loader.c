@@ -90,6 +90,10 @@ STATUS(clReleaseProgram, (cl_program program), (program))
 OBJECT(cl_kernel, clCreateKernel, (cl_program program, const char *kernel_name, cl_int *error),
        (program, kernel_name, error))
 STATUS(clReleaseKernel, (cl_kernel kernel), (kernel))
+STATUS(clGetKernelWorkGroupInfo,
+       (cl_kernel kernel, cl_device_id device, cl_kernel_work_group_info what, size_t capacity,
+        void *value, size_t *size),
+       (kernel, device, what, capacity, value, size))
 STATUS(clSetKernelArg, (cl_kernel kernel, cl_uint place, size_t size, const void *value),
        (kernel, place, size, value))
 

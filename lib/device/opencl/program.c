@@ -21,19 +21,14 @@ static size_t language_options(const struct device *device, char options[OPTIONS
                                 : "");
 }
 
-/* On NVIDIA, fewer registers a work-item than its compiler would take: more run at once, which
- * makes paths of two and three interactions 1.4 and 1.3 times as fast on an H100. */
-#define NVIDIA_REGISTERS " -cl-nv-maxrregcount=96"
-
-/* A CPU's work-items own their tallies; a GPU's share them. */
 static void program_options(const struct device *device, enum program_variant variant,
                             bool has_user_code, char options[OPTIONS_CAPACITY])
 {
     const size_t length = language_options(device, options);
-    snprintf(options + length, OPTIONS_CAPACITY - length, " -DWIDTH=%u%s%s%s%s",
-             (unsigned)device->width, variant == PROGRAM_PLAIN ? " -DPLAIN" : "",
-             device->is_cpu ? "" : " -DTALLY_IS_SHARED", has_user_code ? " -DWITH_USER_SHAPES" : "",
-             strstr(device->platform, "NVIDIA") ? NVIDIA_REGISTERS : "");
+    snprintf(options + length, OPTIONS_CAPACITY - length, " -DWIDTH=%u -DGROUP_ITEMS=%u%s%s",
+             (unsigned)device->width, (unsigned)device->group_items,
+             variant == PROGRAM_PLAIN ? " -DPLAIN" : "",
+             has_user_code ? " -DWITH_USER_SHAPES" : "");
 }
 
 /* A program to be built, and what came of it, to be told when the driver is left. */

@@ -1,0 +1,44 @@
+/* Who follows the rays of a strip's segment. On a CPU one work-item does, WIDTH rays at a time. On
+ * a GPU the work-items of a group do, which walk in step: rays side by side are given to items side
+ * by side, so that they take the same turns. */
+#ifndef SONJECT_KERNELS_GROUP_H
+#define SONJECT_KERNELS_GROUP_H
+
+#include "layout.h"
+#include "width.h"
+
+#ifndef GROUP_ITEMS
+#define GROUP_ITEMS 1
+#endif
+
+/* Rays, or blocks of them, that a group takes at once. */
+#define GROUP_WIDTH (GROUP_ITEMS * WIDTH)
+
+#if GROUP_ITEMS > 1
+#define GROUP_KERNEL __kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1)))
+#define GROUP_NUMBER ((int)get_group_id(0))
+#define GROUP_ITEM   ((RECORD_WORD)get_local_id(0))
+#define GROUP_MEMORY __local                      /* that its items share */
+#define GROUP_WAIT() barrier(CLK_LOCAL_MEM_FENCE) /* all of them must come here */
+#else
+#define GROUP_KERNEL __kernel
+#define GROUP_NUMBER ((int)get_global_id(0))
+#define GROUP_ITEM   0u
+#define GROUP_MEMORY
+#define GROUP_WAIT()
+#endif
+
+/* Adds what an item counted to its group's record, which began with zeros. */
+FUNCTION void count_outcome(GLOBAL struct outcome_record *sum, const struct outcome_record *own)
+{
+#if GROUP_ITEMS > 1
+    atomic_add(&sum->queries, own->queries);
+    atomic_add(&sum->impulses, own->impulses);
+    atomic_or(&sum->faults, own->faults);
+    atomic_add(&sum->rays, own->rays);
+#else
+    *sum = *own;
+#endif
+}
+
+#endif

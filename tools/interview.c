@@ -1,0 +1,170 @@
+#include "interview.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "console.h"
+
+#define SOUND_SPEED 1500.0 /* m/s, a scene's without another */
+
+/* What is asked for. Without `usual` there must be an answer. */
+struct question {
+    const char *key, *text, *usual;
+};
+
+static const struct question row_spacing = {
+    "input.geometry.row_spacing", "row spacing, from ping to ping along the track (such as 5 cm)",
+    NULL};
+static const struct question column_spacing = {
+    "input.geometry.column_spacing",
+    "column spacing, from sample to sample in slant range (such as 2.5 cm)", NULL};
+static const struct question first_range = {"input.geometry.first_slant_range",
+                                            "slant range of the first column (such as 30 m)", NULL};
+static const struct question side = {
+    "input.geometry.side", "side of the track to put targets into, port or starboard", "port"};
+static const struct question altitude = {
+    "sonar.altitude", "altitude of the sonar over the seabed (such as 10 m, or from_file)", NULL};
+static const struct question frequency = {"sonar.frequency", "centre frequency (such as 100 kHz)",
+                                          NULL};
+static const struct question bandwidth = {
+    "sonar.bandwidth", "bandwidth; if you don't know it, c / 2 over the column spacing", NULL};
+static const struct question array_length = {"sonar.array.length",
+                                             "length of a sidescan's array, 0.89 wavelengths over "
+                                             "its beam in rad (such as 0.5 m; nothing for "
+                                             "synthetic aperture)",
+                                             ""};
+
+const char *answer_about(const struct interview *interview, const char *key)
+{
+    const size_t length = strlen(key);
+    for (size_t i = 0; i < interview->count; i++)
+        if (strncmp(interview->answers[i], key, length) == 0 &&
+            interview->answers[i][length] == '=')
+            return interview->answers[i] + length + 1;
+    return NULL;
+}
+
+sonject_status read_image_scene(const struct interview *interview, const char *text,
+                                sonject_scene **scene)
+{
+    const struct init_options *options = interview->options;
+    const char *overrides[ANSWERS + 4];
+    char path[NAME], channel[ANSWER], array[NAME];
+    uint32_t count = 0;
+    snprintf(path, sizeof path, "input.path=%s", options->image);
+    snprintf(channel, sizeof channel, "input.channel=%s", options->channel ? options->channel : "");
+    snprintf(array, sizeof array, "input.array=%s", options->array ? options->array : "");
+    overrides[count++] = path;
+    if (options->channel)
+        overrides[count++] = channel;
+    if (options->array)
+        overrides[count++] = array;
+    if (answer_about(interview, array_length.key))
+        overrides[count++] = "sonar.kind=real";
+    for (size_t i = 0; i < interview->count; i++)
+        overrides[count++] = interview->answers[i];
+    const sonject_scene_read_params params = {.struct_size = sizeof params,
+                                              .text = text,
+                                              .overrides = overrides,
+                                              .override_count = count};
+    return sonject_scene_read(interview->context, NULL, &params, scene);
+}
+
+/* Whether a scene with what was answered so far can be read; a message is left if not. */
+static bool is_possible(struct interview *interview)
+{
+    sonject_scene *scene = NULL;
+    char *json = NULL;
+    sonject_status status = read_image_scene(
+        interview,
+        interview->has_geometry
+            ? "sonject: 1\ninput: {geometry: from_file}\n"
+              "sonar: {altitude: 10 m, frequency: 100 kHz, bandwidth: 10 kHz}\n"
+            : "sonject: 1\nsonar: {altitude: 10 m, frequency: 100 kHz, bandwidth: 10 kHz}\n"
+              "input: {geometry: {row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 30 "
+              "m}}\n",
+        &scene);
+    if (status == SONJECT_OK && answer_about(interview, column_spacing.key)) {
+        status = sonject_scene_get(scene, column_spacing.key, &json);
+        interview->column_spacing_m = json ? strtod(json, NULL) : NAN;
+        sonject_text_release(&json);
+    }
+    sonject_scene_release(&scene);
+    return status == SONJECT_OK;
+}
+
+/* Asks until there is an answer that is possible. False after a message: there is none. */
+static bool ask(struct interview *interview, const struct question *question)
+{
+    char line[ANSWER];
+    for (;;) {
+        const bool has_usual = question->usual && *question->usual;
+        fprintf(stderr, "%s%s%s%s: ", question->text, has_usual ? " [" : "",
+                has_usual ? question->usual : "", has_usual ? "]" : "");
+        fflush(stderr);
+        if (!fgets(line, sizeof line, stdin)) {
+            fputc('\n', stderr);
+            message("init: no answer was given for ", question->key);
+            return false;
+        }
+        line[strcspn(line, "\r\n")] = '\0';
+        const char *value = line + strspn(line, " \t");
+        if (!*value && question->usual) {
+            if (!has_usual)
+                return true; /* nothing is an answer, too */
+            value = question->usual;
+        }
+        const int length =
+            snprintf(interview->answers[interview->count++], ANSWER, "%s=%s", question->key, value);
+        if (*value && length < ANSWER && is_possible(interview))
+            return true;
+        interview->count--;
+        if (*value)
+            (void)fail_with(interview->context, SONJECT_ERROR_INPUT);
+    }
+}
+
+/* What the file tells, or else the first returns, is the usual answer. */
+static bool ask_altitude(struct interview *interview)
+{
+    struct question question = altitude;
+    char text[ANSWER], usual[ANSWER];
+    if (interview->has_altitude) {
+        snprintf(text, sizeof text,
+                 "altitude of the sonar over the seabed; the file's mean is %.4g m",
+                 interview->recorded_altitude_m);
+        question.text = text;
+        question.usual = "from_file";
+    } else if (interview->altitude_m > 0.0) {
+        snprintf(usual, sizeof usual, "%.4g m", interview->altitude_m);
+        question.text = "altitude of the sonar over the seabed, as first returns show it";
+        question.usual = usual;
+    }
+    return ask(interview, &question);
+}
+
+/* No file tells it: that of the columns is the usual answer. */
+static bool ask_bandwidth(struct interview *interview)
+{
+    struct question question = bandwidth;
+    char usual[ANSWER];
+    snprintf(usual, sizeof usual, "%.4g kHz", 0.5e-3 * SOUND_SPEED / interview->column_spacing_m);
+    question.usual = usual;
+    if (!ask(interview, &question))
+        return false;
+    interview->assumes_bandwidth = strcmp(answer_about(interview, bandwidth.key), usual) == 0;
+    return true;
+}
+
+bool ask_all(struct interview *interview)
+{
+    struct question range = first_range;
+    range.usual = interview->has_nadir ? "0 m" : NULL;
+    return (interview->has_geometry ||
+            (ask(interview, &row_spacing) && ask(interview, &column_spacing) &&
+             ask(interview, &range))) &&
+           (!interview->has_nadir || ask(interview, &side)) && ask_altitude(interview) &&
+           ask(interview, &frequency) && ask_bandwidth(interview) && ask(interview, &array_length);
+}

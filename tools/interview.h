@@ -1,0 +1,46 @@
+/* The questions of sonject init, which an image leaves open. */
+#ifndef SONJECT_TOOLS_INTERVIEW_H
+#define SONJECT_TOOLS_INTERVIEW_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include <sonject/sonject.h>
+
+enum {
+    ANSWER = 100,
+    ANSWERS = 8,
+    NAME = 1024
+};
+
+struct init_options {
+    const char *image;
+    const char *output;
+    const char *channel;
+    const char *array;
+};
+
+struct interview {
+    sonject_context *context;
+    const struct init_options *options;
+    char answers[ANSWERS][ANSWER]; /* "key=value" */
+    size_t count;
+    char scene[NAME], calibration[NAME]; /* files */
+    bool has_geometry, has_altitude;     /* the image's file */
+    /* The image, as its calibration found; NAN: it did not. */
+    bool has_nadir;
+    double column_spacing_m, altitude_m, recorded_altitude_m, ceiling_over_seabed_db;
+    bool assumes_bandwidth; /* that of the columns */
+};
+
+/* The answer about a key; NULL: it was not asked for, or there was none. */
+const char *answer_about(const struct interview *interview, const char *key);
+
+/* Reads a scene of the image with what was answered so far; text: its other keys. */
+sonject_status read_image_scene(const struct interview *interview, const char *text,
+                                sonject_scene **scene);
+
+/* Asks what the image does not tell. False after a message: there was no answer. */
+bool ask_all(struct interview *interview);
+
+#endif
