@@ -18,8 +18,7 @@
 #include "stage.h"
 #include "verbs.h"
 
-#define USUAL_LEVEL_DB  15.0
-#define CEILING_ROOM_DB 3.0 /* over an echo's peak, so that the ceiling cuts little of it */
+#define USUAL_LEVEL_DB 15.0
 
 #define MEMBER(name) offsetof(struct init_options, name)
 
@@ -122,12 +121,12 @@ static void write_scene(const struct interview *interview, const char *image, FI
           "    material: steel\n"
           "    # measured pictures show 8 to 19 dB; without this line the material decides\n",
           file);
-    const double most_db = floor(interview->ceiling_over_seabed_db - CEILING_ROOM_DB);
+    const double most_db = floor(interview->ceiling_over_seabed_db);
     if (most_db < USUAL_LEVEL_DB)
         fprintf(file,
-                "    level: {over_seabed: %.0f dB} # the image's ceiling cuts what is %.0f dB over "
-                "its seabed\n",
-                most_db, interview->ceiling_over_seabed_db);
+                "    level: {over_seabed: %.0f dB} # up to the image's ceiling, as real highlights "
+                "are\n",
+                most_db);
     else
         fprintf(file, "    level: {over_seabed: %.0f dB}\n", USUAL_LEVEL_DB);
 }

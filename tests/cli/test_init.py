@@ -95,8 +95,8 @@ def test_an_answer_from_a_file_that_does_not_tell_it_is_asked_for_again(sonject,
 
 
 @pytest.mark.parametrize("kind, level", [("gamma", 15), ("intensity", None)])
-def test_the_level_leaves_room_below_the_ceiling(sonject, tmp_path, kind, level):
-    """By the calibration, 3 dB and what a whole number takes."""
+def test_the_level_is_up_to_the_ceiling(sonject, tmp_path, kind, level):
+    """By the calibration, in whole dB."""
     made = Made(kind)
     numpy.save(tmp_path / "swath.npy", made.numbers)
     answer = init(sonject, "swath.npy", answers=ANSWERS)
@@ -105,7 +105,7 @@ def test_the_level_leaves_room_below_the_ceiling(sonject, tmp_path, kind, level)
     mean = 10 * numpy.log10(KINDS[kind][1] ** 2)  # of the seabed's level, over full scale
     assert found["value"] == pytest.approx(-mean, abs=4 * found["standard_error"] + LEVEL_DB / 4)
     told = float(re.search(r"level: {over_seabed: (\d+) dB}", (tmp_path / "swath.yaml").read_text())[1])
-    assert told == (level or numpy.floor(found["value"] - 3)) <= 15
+    assert told == (level or numpy.floor(found["value"])) <= 15
 
 
 def test_altitude_by_first_returns_is_what_enter_takes(sonject, tmp_path):
