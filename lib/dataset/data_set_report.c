@@ -308,10 +308,10 @@ sonject_status write_report_page(const struct data_set *set)
         for (uint64_t k = 0; status == SONJECT_OK && k < set->split_images[i]; k++)
             status = add_image(page, i, set->split_first[i] + k);
     if (page->cut > 0)
-        report_log(set->report,
-                   "%llu of %llu images have an object whose highlight or shadow the image's edge "
-                   "cuts; a lower chip.spread or larger images have fewer",
-                   (unsigned long long)page->cut, (unsigned long long)set->images);
+        report_note(set->report,
+                    "%llu of %llu images have an object whose highlight or shadow the image's edge "
+                    "cuts; a lower chip.spread or larger images have fewer",
+                    (unsigned long long)page->cut, (unsigned long long)set->images);
     THEN(status, path_in(set->report, path, set->folder, REPORT_PAGE));
     THEN(status, report_page_write(set->report, page_document(page), DIGITS, path));
     for (size_t i = 0; i < page->series_count; i++)

@@ -119,12 +119,13 @@ static void tell_altitude(struct report *report, const char *image, const struct
 {
     const double share = found->recorded_share;
     if (share > 0.0 && fabs(share - 1.0) > ALTITUDES_ALIKE)
-        report_note(report,
-                    "%s: the recorded altitude, %.2f m in the mean, is %.0f %% %s the first "
-                    "return, and sonar.altitude: from_file makes shadows too %s: if the first "
-                    "return is right, divide altitudes by %.3g (sonar.altitude, or input.pings)",
-                    path_name(image), found->recorded_altitude_m, 100.0 * fabs(share - 1.0),
-                    share < 1.0 ? "below" : "above", share < 1.0 ? "long" : "short", share);
+        report_note(
+            report,
+            "%s: the recorded altitude, %.2f m in the mean, is %.0f %% %s the first "
+            "return, and sonar.altitude: from_file makes shadows too %s; sonject check tells "
+            "the altitude to write for a scene, if the first return is right",
+            path_name(image), found->recorded_altitude_m, 100.0 * fabs(share - 1.0),
+            share < 1.0 ? "below" : "above", share < 1.0 ? "long" : "short");
 }
 
 static sonject_status write_results(struct report *report, const sonject_calibrate_params *params,

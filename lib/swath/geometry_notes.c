@@ -190,7 +190,57 @@ static sonject_status check_ping_rows(struct report *report, const struct ping_t
     return SONJECT_OK;
 }
 
-/* Means over the patch's rows. */
+/* Of a whole line, the pings that the objects lie at; false where no object lies among the rows. */
+static bool rows_of_objects(const struct scene *scene, uint64_t rows, double row_spacing_m,
+                            uint64_t *first, uint64_t *count)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (uint32_t i = 0; i < scene->object_count; i++) {
+        const sonject_object_params *object = &scene->objects[i];
+        double row = 0.5 * (double)(rows - 1);
+        if (object->position_kind == SONJECT_POSITION_PIXELS)
+            row = object->position_along;
+        else if (object->position_kind == SONJECT_POSITION_METRES)
+            row = (object->position_along - scene->geometry.first_along_track_m) / row_spacing_m;
+        low = fmin(low, row);
+        high = fmax(high, row);
+    }
+    if (!(low >= 0.0 && low <= high && high <= (double)(rows - 1))) /* also where there are none */
+        return false;
+    *first = (uint64_t)low;
+    *count = (uint64_t)ceil(high) - *first + 1;
+    return true;
+}
+
+/* Where no patch is chosen and the altitude changes, that is told. */
+static void keep_altitude(const struct scene *scene, const struct recording_geometry *geometry,
+                          struct wanted *wanted)
+{
+    wanted->altitude_m = geometry->altitude_m;
+    if (scene->patch.rows == 0 && scene->object_count > 0 && recording_altitude_varies(geometry)) {
+        wanted->altitudes_m[0] = geometry->lowest_altitude_m;
+        wanted->altitudes_m[1] = geometry->highest_altitude_m;
+    }
+}
+
+/* The mean altitude over the patch's rows, or where none is chosen over the objects'. */
+static void take_ping_altitude(const struct scene *scene, uint64_t rows, uint64_t first,
+                               uint64_t count, struct wanted *wanted)
+{
+    const struct ping_table *pings = &scene->pings;
+    struct recording_geometry told = {.lowest_altitude_m = INFINITY};
+    if (scene->patch.rows == 0)
+        (void)rows_of_objects(scene, rows, wanted->where.row_spacing_m, &first, &count);
+    for (uint64_t row = first; row < first + count; row++) {
+        const double altitude = ping_table_at(pings, pings->altitudes_m, (double)row);
+        told.altitude_m += altitude / (double)count;
+        told.lowest_altitude_m = fmin(told.lowest_altitude_m, altitude);
+        told.highest_altitude_m = fmax(told.highest_altitude_m, altitude);
+    }
+    keep_altitude(scene, &told, wanted);
+}
+
+/* Altitude, and the mean first range over the patch's rows. */
 static sonject_status take_pings(struct report *report, const struct scene *scene, uint64_t rows,
                                  struct wanted *wanted)
 {
@@ -203,11 +253,10 @@ static sonject_status take_pings(struct report *report, const struct scene *scen
     CHECK(patch_rows(report, scene, rows, &first, &count));
     *wanted->key = "input.pings";
     CHECK(check_ping_rows(report, pings, rows, first, count));
-    wanted->altitude_m = 0.0;
+    take_ping_altitude(scene, rows, first, count, wanted);
     double mean = 0.0;
     for (uint64_t row = first; row < first + count; row++) {
         const double range = ranges ? ping_table_at(pings, ranges, (double)row) : 0.0;
-        wanted->altitude_m += ping_table_at(pings, pings->altitudes_m, (double)row) / (double)count;
         mean += range / (double)count;
         nearest = fmin(nearest, range);
         farthest = fmax(farthest, range);
@@ -231,28 +280,6 @@ static sonject_status take_pings(struct report *report, const struct scene *scen
 static bool takes_altitude(const struct scene *scene, const struct wanted *wanted)
 {
     return wanted->wish.altitude && scene->pings.count == 0;
-}
-
-/* Of a whole line, the pings that the objects lie at; false where no object lies among the rows. */
-static bool rows_of_objects(const struct scene *scene, uint64_t rows, double row_spacing_m,
-                            uint64_t *first, uint64_t *count)
-{
-    double low = INFINITY, high = -INFINITY;
-    for (uint32_t i = 0; i < scene->object_count; i++) {
-        const sonject_object_params *object = &scene->objects[i];
-        double row = 0.5 * (double)(rows - 1);
-        if (object->position_kind == SONJECT_POSITION_PIXELS)
-            row = object->position_along;
-        else if (object->position_kind == SONJECT_POSITION_METRES)
-            row = (object->position_along - scene->geometry.first_along_track_m) / row_spacing_m;
-        low = fmin(low, row);
-        high = fmax(high, row);
-    }
-    if (!(low >= 0.0 && low <= high && high <= (double)(rows - 1))) /* also where there are none */
-        return false;
-    *first = (uint64_t)low;
-    *count = (uint64_t)ceil(high) - *first + 1;
-    return true;
 }
 
 /* The altitude at the objects' pings, where no patch is chosen: one of a whole line may be far off
@@ -302,11 +329,7 @@ static sonject_status take_recording(struct report *report, const struct scene *
     wanted->where.first_slant_range_m = geometry.first_slant_range_m;
     wanted->where.side =
         recording->side == RECORDED_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
-    wanted->altitude_m = geometry.altitude_m;
-    if (scene->patch.rows == 0 && scene->object_count > 0 && recording_altitude_varies(&geometry)) {
-        wanted->altitudes_m[0] = geometry.lowest_altitude_m;
-        wanted->altitudes_m[1] = geometry.highest_altitude_m;
-    }
+    keep_altitude(scene, &geometry, wanted);
     return SONJECT_OK;
 }
 
@@ -353,10 +376,10 @@ static sonject_status check_and_set(struct report *report, const struct wanted *
                              "its %s: give a right one instead of from_file", why.message);
     if (takes_geometry)
         scene->geometry = wanted->where;
-    if (wanted->wish.altitude)
+    if (wanted->wish.altitude) {
         scene->sonar.altitude_m = wanted->altitude_m;
-    if (takes_altitude(scene, wanted))
         memcpy(scene->altitudes_m, wanted->altitudes_m, sizeof scene->altitudes_m);
+    }
     scene->has_recorded_altitude = wanted->wish.altitude;
     return SONJECT_OK;
 }

@@ -33,8 +33,11 @@ sonject_status channel_list_check(struct report *report, const char *path,
     if (*list->text == '\0')
         return input_failure(report, path, "has no sidescan channel");
     if (list->matches != 1)
-        return input_failure(report, path, "has %s such sidescan channel: choose one of %s",
-                             list->matches == 0 ? "no" : "more than one", list->text);
+        return input_failure(
+            report, path,
+            "has %s such sidescan channel: choose one by input.channel or --channel, "
+            "%s",
+            list->matches == 0 ? "no" : "more than one", list->text);
     return SONJECT_OK;
 }
 

@@ -169,8 +169,8 @@ def test_full_scale_is_where_the_recorder_clips(sonject, tmp_path, sides):
 
 
 REFUSALS = {
-    "no channel": (lambda data: data, "", "choose one of 1 (port), 2 (starboard)"),
-    "wrong channel": (lambda data: data, "0", "choose one of 1 (port), 2 (starboard)"),
+    "no channel": (lambda data: data, "", "choose one by input.channel or --channel, 1 (port), 2 (starboard)"),
+    "wrong channel": (lambda data: data, "0", "choose one by input.channel or --channel, 1 (port), 2 (starboard)"),
     "cut short": (lambda data: data[:-100], "port", "cut short"),
     "no packet": (lambda data: data[:1024] + b"\0" * 300, "port", "no packet"),
     "only a header": (lambda data: data[:1024], "port", "has no pings"),

@@ -51,6 +51,18 @@ def test_altitudes_come_from_a_table_of_pings(sonject, tmp_path, line):
     assert truths[0]["box"] == truths[1]["box"]
 
 
+def test_altitudes_of_a_table_are_those_at_the_objects(sonject, tmp_path, line):
+    """Without a patch; one that changes from object to object is told."""
+    (tmp_path / "pings.csv").write_text("row, altitude_m\n0, 6.0\n20, 9.0\n59, 9.0\n")
+    scene = write_scene(tmp_path)
+    scene.write_text(scene.read_text().replace(f"patch: {PATCH}\n", ""))
+    text = sonject.done("check", scene, "--set", "objects[0].position={row: 10, column: 150}").stdout
+    assert "altitude 7.5 m" in text and "note: the altitude" not in text
+    two = "objects=[{shape: sphere, diameter: 0.4 m, position: {row: 5, column: 150}}, " \
+          "{shape: sphere, diameter: 0.4 m, position: {row: 25, column: 150}}]"
+    assert "note: the altitude goes from 6.75 to 9.00 m" in sonject.done("check", scene, "--set", two).stdout
+
+
 def test_first_slant_ranges_come_from_a_table_of_pings(sonject, tmp_path, line):
     """Their mean over the patch, where they stay within a column."""
     geometry = GEOMETRY.replace("0.075 m", "from_file")
