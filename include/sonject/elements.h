@@ -86,9 +86,9 @@ SONJECT_API sonject_status sonject_elements_describe(sonject_context *context,
 
 /* Computes the series: float, pings x hydrophones x samples, in base band pairs of real and
  * imaginary part, into exactly `bytes` bytes of the caller's. pixels, progress: as for
- * sonject_inject; the scene's estimator must be SONJECT_ESTIMATOR_CONNECT, and levels of its objects
- * physical. The time it takes grows with impulses x hydrophones x pings. Errors: ARGUMENT, INPUT,
- * DEVICE, MEMORY, CANCELLED; the buffer's contents are then of no meaning. */
+ * sonject_inject; the scene's estimator must be SONJECT_ESTIMATOR_CONNECT, and levels of its
+ * objects physical. The time it takes grows with impulses x hydrophones x pings. Errors: ARGUMENT,
+ * INPUT, DEVICE, MEMORY, CANCELLED; the buffer's contents are then of no meaning. */
 SONJECT_API sonject_status sonject_element_series(sonject_context *context,
                                                   const sonject_scene *scene,
                                                   const sonject_pixels *pixels,

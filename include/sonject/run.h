@@ -40,9 +40,9 @@ typedef struct sonject_run_params {
  * last checkpoint. A whole run removes the folder work once its results are written. Work of
  * another scene, image or version is refused, that of a whole run is dropped.
  *
- * A scene whose input.calibration is auto is run with the file calibration.yaml of the folder, which
- * the first call makes of the scene's image (sonject_calibrate), with a picture beside it; shards
- * share it.
+ * A scene whose input.calibration is auto is run with the file calibration.yaml of the folder,
+ * which the first call makes of the scene's image (sonject_calibrate), with a picture beside it;
+ * shards share it.
  *
  * Reads the scene's input, injects, and writes the result files into params->folder; run.json is
  * published last, so a folder with run.json is complete; it names each file with size, time and

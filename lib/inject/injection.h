@@ -28,7 +28,7 @@ struct injection_input {
     double ceiling; /* amplitude from which on the image's file stores its largest number; 0: not
                        known */
     struct checkpoint *checkpoint; /* how tracing is cut; NULL: not at all */
-    const struct pilots *pilots; /* that told the number of rays; NULL: none did yet */
+    const struct pilots *pilots;   /* that told the number of rays; NULL: none did yet */
     bool is_whole;              /* all of the patch is traced, whatever objects can change of it */
     const struct scene *traced; /* NULL, or the scene of another response that is traced: its
                                    grids must be fine and wide enough */
@@ -103,8 +103,8 @@ enum injected_plane {
 void injection_result_plane(const struct injection_result *result, enum injected_plane plane,
                             float *out);
 
-/* The first stage of it by the scene's own number of rays, whose impulses go to the sink. Errors: as sonject_inject, and the sink's
- * own. */
+/* The first stage of it by the scene's own number of rays, whose impulses go to the sink. Errors:
+ * as sonject_inject, and the sink's own. */
 sonject_status injection_trace(struct report *report, struct device *device,
                                const struct scene *scene, const struct injection_input *input,
                                const struct impulse_sink *sink, sonject_progress_function progress,

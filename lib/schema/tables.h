@@ -25,8 +25,9 @@ typedef sonject_status table_row_function(void *user, const struct table_row *ro
 
 /* Reads a text file row by row, as far as take returns OK. separators: of which the first one that
  * the first row has separates all fields; a blank stands for any white space; if it has none, a row
- * is one field. Fields may be in quotes, as spreadsheets write them, but where blanks separate. What
- * follows a # outside of such is a comment. Errors: STORAGE, INPUT, MEMORY, or what take returned.
+ * is one field. Fields may be in quotes, as spreadsheets write them, but where blanks separate.
+ * What follows a # outside of such is a comment. Errors: STORAGE, INPUT, MEMORY, or what take
+ * returned.
  */
 sonject_status table_rows_read(struct report *report, const char *path, size_t bytes_max,
                                const char *separators, table_row_function *take, void *user);

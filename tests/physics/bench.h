@@ -78,8 +78,8 @@ void bench_ready(struct bench *bench);
 /* The device that bench_open opens: one whose name contains this; NULL: the default one. */
 extern const char *bench_device;
 
-/* The numbers of lanes to try on bench_device: on native those that were built and that the processor
- * has, else 1 and the device's own. Returns how many there are. */
+/* The numbers of lanes to try on bench_device: on native those that were built and that the
+ * processor has, else 1 and the device's own. Returns how many there are. */
 #define BENCH_WIDTHS 3
 size_t bench_widths(uint32_t widths[BENCH_WIDTHS]);
 
