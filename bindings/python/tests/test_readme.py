@@ -1,6 +1,7 @@
 """The examples of the README and of the package's documentation run as they stand."""
 
 import ast
+import logging
 import re
 
 import numpy
@@ -98,6 +99,9 @@ def test_what_the_text_calls_can_be_called(names, span, tmp_path, monkeypatch):
         "sway": [0.0, 1e-3],
         "folder": tmp_path / "results",
         "path": tmp_path / "scene.yaml",
+        "function": lambda level, line: None,
+        "level": logging.WARNING,
+        "line": "a note",
     }
     if span.startswith("result.order"):
         scene["injection"] = {"interactions": 2, "order_energies": True}
