@@ -13,6 +13,7 @@
 #define SERIES_MAX 64    /* of more names, the later ones are left out of the page */
 #define IMAGES_MAX 20000 /* that are shown; of more, every second, third, ... is taken */
 #define DIGITS     6
+#define CUT_MANY   0.25 /* of the images, from which on that is noted */
 
 /* Values under one name, in one unit. */
 struct series {
@@ -307,7 +308,7 @@ sonject_status write_report_page(const struct data_set *set)
     for (size_t i = 0; status == SONJECT_OK && i < set->split_count; i++)
         for (uint64_t k = 0; status == SONJECT_OK && k < set->split_images[i]; k++)
             status = add_image(page, i, set->split_first[i] + k);
-    if (page->cut > 0)
+    if ((double)page->cut > CUT_MANY * (double)set->images)
         report_note(set->report,
                     "%llu of %llu images have an object whose highlight or shadow the image's edge "
                     "cuts; a lower chip.spread or larger images have fewer",

@@ -262,6 +262,15 @@ def test_a_run_says_once_which_images_validate_without_a_split_of_theirs(ground,
     assert len(notes) == (told is not None) and all(uses in note for note in notes)
 
 
+def test_images_that_cut_what_they_show_are_noted(ground, command):
+    """Of 10 images of 64 columns one cuts its shadow, which `whole` says nothing of; of 16 columns most do."""
+    done = command("campaign", "campaign.yaml", "-o", "narrow", "--set", "empty=0", "--set", "images=4",
+                   "--set", "chip={rows: 64, columns: 16}")
+    assert done.returncode == 0, done.stderr
+    cut = int(re.search(r"note: (\d) of 4 images have an object whose highlight or shadow the image's edge cuts", done.stderr)[1])
+    assert cut > 1
+
+
 def test_croissant_lists_files_and_records(whole):
     """What mlcroissant asks for besides was tried with it: it finds no error, and reads all records."""
     card = json.loads((whole / "croissant.json").read_text())

@@ -193,7 +193,7 @@ def test_a_file_of_several_subsystems_has_numbered_channels(sonject, tmp_path, s
     (tmp_path / "line.jsf").write_bytes(recordings.jsf_bytes(*sides, subsystems=(20, 21)))
     for channel in ("port", 4):
         assert_refused(sonject("check", write_scene(tmp_path, "line.jsf", f"channel: {channel},")), 3,
-                       "choose one of 0 (port, subsystem 20), 1 (starboard, subsystem 20), "
+                       "choose one by input.channel or --channel, 0 (port, subsystem 20), 1 (starboard, subsystem 20), "
                        "2 (port, subsystem 21), 3 (starboard, subsystem 21)")
     sonject.done("convert", "line.jsf", "a.npy", "--channel", "3")
     assert numpy.array_equal(numpy.load(tmp_path / "a.npy"), sides[1] + 1)
