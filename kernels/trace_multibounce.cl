@@ -12,7 +12,7 @@ GROUP_KERNEL void trace_multibounce(__global const struct fan_record *fan_buffer
     const struct fan_record fan = *fan_buffer;
     const int strip = strip_of_group(&fan, GROUP_NUMBER);
     const int segment = GROUP_NUMBER % fan.segments;
-    const struct outcome_record outcome = trace_multibounce_strip(&fan, pieces, pair, multibounce, objects,
-                                                         echoes, listed, strip, segment);
+    const struct outcome_record outcome = trace_multibounce_strip(
+        &fan, pieces, pair, multibounce, objects, echoes, listed, strip, segment);
     count_outcome(&outcomes[GROUP_NUMBER], &outcome);
 }

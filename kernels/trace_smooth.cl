@@ -9,6 +9,7 @@ GROUP_KERNEL void trace_smooth(__global const struct fan_record *fan_buffer,
     const struct fan_record fan = *fan_buffer;
     const int strip = strip_of_group(&fan, GROUP_NUMBER);
     const int segment = GROUP_NUMBER % fan.segments;
-    const struct outcome_record outcome = trace_smooth_strip(&fan, pieces, objects, tally, strip, segment);
+    const struct outcome_record outcome =
+        trace_smooth_strip(&fan, pieces, objects, tally, strip, segment);
     count_outcome(&outcomes[GROUP_NUMBER], &outcome);
 }

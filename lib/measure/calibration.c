@@ -10,7 +10,6 @@
 #include "measure/speckle_law.h"
 
 #define EDGES_LEAST 4
-#define DECIBELS    (10.0 / log(10.0)) /* of one neper of intensity */
 
 /* Looks. */
 #define LOOKS_NO_SPECKLE  32.0 /* as many, of one fit, say that the law is not that of speckle */
@@ -18,7 +17,6 @@
 #define LOOKS_ERROR_MOST  0.35 /* of the logarithm */
 #define LOOKS_ONE         0.1  /* of the logarithm: what differs less from one look is one look */
 #define LOOKS_BIAS        0.01 /* of what levels vary within plain tiles */
-#define CLEARLY           3.0  /* standard errors */
 #define PARAMETER_ONE     0.03 /* of the logarithm, likewise */
 #define PARAMETER_UNKNOWN 0.5
 #define EXPONENT_MOST     4.0

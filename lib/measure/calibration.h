@@ -16,7 +16,9 @@
 #include "measure/first_return.h"
 #include "scene/scene.h"
 
-#define ALTITUDES_ALIKE  0.05 /* recorded ones and first returns, but for slopes */
+#define DECIBELS         4.3429448190325182 /* of one neper of intensity */
+#define CLEARLY          3.0                /* standard errors */
+#define ALTITUDES_ALIKE  0.05               /* recorded ones and first returns, but for slopes */
 #define SIDE_UNKNOWN     UINT32_MAX
 #define CURVE_FAMILIES   3
 #define CALIBRATION_LAGS 12 /* 0...11 pixels */

@@ -13,7 +13,6 @@
 #define DIGITS        4
 #define WHOLE_MOST    1e6 /* whole numbers, such as a ceiling, stay as they are */
 #define LINE_WIDTH    96
-#define CLEARLY       3.0   /* standard errors */
 #define MISFIT_UNSEEN 0.005 /* that levels varying within plain tiles make, as shares */
 #define LOOKS_KEPT    64.0  /* that injection.match.looks takes at most */
 #define RETURNS_MOST                                                                               \

@@ -8,9 +8,6 @@
 #include "image/shadow_floor.h"
 #include "image/statistics.h"
 
-#define DECIBELS 4.3429448190325182 /* of one neper of intensity */
-#define CLEARLY  3.0                /* standard errors */
-
 /* Response. */
 #define FAINTEST_CORRELATION 0.02
 #define FAR_LAG              8   /* from here on speckle is forgotten */
