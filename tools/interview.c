@@ -36,6 +36,11 @@ static const struct question array_length = {"sonar.array.length",
                                              "synthetic aperture)",
                                              ""};
 
+static const struct question unit = {"objects[0].mesh.unit",
+                                     "unit of the mesh's numbers (m, cm or mm)", NULL};
+static const struct question nose = {
+    "objects[0].mesh.nose", "axis of the mesh that points ahead (x, -x, y, -y, z, -z)", "x"};
+
 const char *answer_about(const struct interview *interview, const char *key)
 {
     const size_t length = strlen(key);
@@ -50,7 +55,7 @@ sonject_status read_image_scene(const struct interview *interview, const char *t
                                 sonject_scene **scene)
 {
     const struct init_options *options = interview->options;
-    const char *overrides[ANSWERS + 4];
+    const char *overrides[ANSWERS + 5];
     char path[NAME], channel[ANSWER], array[NAME];
     uint32_t count = 0;
     snprintf(path, sizeof path, "input.path=%s", options->image);
@@ -63,8 +68,12 @@ sonject_status read_image_scene(const struct interview *interview, const char *t
         overrides[count++] = array;
     if (answer_about(interview, array_length.key))
         overrides[count++] = "sonar.kind=real";
+    if (interview->objects && (interview->count == 0 || answer_about(interview, unit.key)))
+        overrides[count++] = interview->objects;
     for (size_t i = 0; i < interview->count; i++)
-        overrides[count++] = interview->answers[i];
+        if (!interview->has_returns ||
+            strcmp(interview->answers[i], "sonar.altitude=first_return") != 0)
+            overrides[count++] = interview->answers[i]; /* else the calibration is not there yet */
     const sonject_scene_read_params params = {.struct_size = sizeof params,
                                               .text = text,
                                               .overrides = overrides,
@@ -126,21 +135,25 @@ static bool ask(struct interview *interview, const struct question *question)
     }
 }
 
-/* What the file tells, or else the first returns, is the usual answer. */
+/* First returns are the usual answer, or else what the file tells. */
 static bool ask_altitude(struct interview *interview)
 {
     struct question question = altitude;
-    char text[ANSWER], usual[ANSWER];
-    if (interview->has_altitude) {
-        snprintf(text, sizeof text,
-                 "altitude of the sonar over the seabed; the file's mean is %.4g m",
-                 interview->recorded_altitude_m);
+    char text[2 * ANSWER];
+    size_t length = (size_t)snprintf(text, sizeof text, "altitude of the sonar over the seabed (");
+    if (interview->has_returns)
+        length += (size_t)snprintf(text + length, sizeof text - length, "first_return");
+    if (interview->has_returns && interview->altitude_m > 0.0)
+        length += (size_t)snprintf(text + length, sizeof text - length,
+                                   " shows %.4g m in the median", interview->altitude_m);
+    if (interview->has_altitude)
+        length += (size_t)snprintf(
+            text + length, sizeof text - length, "%sfrom_file says %.4g m in the mean",
+            interview->has_returns ? ", " : "", interview->recorded_altitude_m);
+    if (interview->has_returns || interview->has_altitude) {
+        snprintf(text + length, sizeof text - length, "; or a number)");
         question.text = text;
-        question.usual = "from_file";
-    } else if (interview->altitude_m > 0.0) {
-        snprintf(usual, sizeof usual, "%.4g m", interview->altitude_m);
-        question.text = "altitude of the sonar over the seabed, as first returns show it";
-        question.usual = usual;
+        question.usual = interview->has_returns ? "first_return" : "from_file";
     }
     return ask(interview, &question);
 }
@@ -160,11 +173,11 @@ static bool ask_bandwidth(struct interview *interview)
 
 bool ask_all(struct interview *interview)
 {
-    struct question range = first_range;
-    range.usual = interview->has_nadir ? "0 m" : NULL;
     return (interview->has_geometry ||
             (ask(interview, &row_spacing) && ask(interview, &column_spacing) &&
-             ask(interview, &range))) &&
+             (interview->has_nadir || ask(interview, &first_range)))) &&
            (!interview->has_nadir || ask(interview, &side)) && ask_altitude(interview) &&
-           ask(interview, &frequency) && ask_bandwidth(interview) && ask(interview, &array_length);
+           ask(interview, &frequency) && ask_bandwidth(interview) &&
+           ask(interview, &array_length) &&
+           (!interview->has_mesh || (ask(interview, &unit) && ask(interview, &nose)));
 }

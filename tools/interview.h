@@ -9,7 +9,7 @@
 
 enum {
     ANSWER = 100,
-    ANSWERS = 8,
+    ANSWERS = 10,
     NAME = 1024
 };
 
@@ -18,6 +18,8 @@ struct init_options {
     const char *output;
     const char *channel;
     const char *array;
+    const char *target; /* file of a mesh or a target; NULL: a cylinder */
+    bool makes_campaign;
 };
 
 struct interview {
@@ -25,10 +27,15 @@ struct interview {
     const struct init_options *options;
     char answers[ANSWERS][ANSWER]; /* "key=value" */
     size_t count;
-    char scene[NAME], calibration[NAME]; /* files */
-    bool has_geometry, has_altitude;     /* the image's file */
+    char scene[NAME], calibration[NAME], campaign[NAME]; /* files */
+    char other_calibration[NAME];                        /* of a recording's other side; "": none */
+    char folder[NAME]; /* that names of other files are meant from; "": the scene's */
+    char *objects;     /* override with the target's file; owned; NULL: there is none */
+    bool has_mesh;     /* it is one of a mesh */
+    bool has_geometry, has_altitude; /* the image's file */
     /* The image, as its calibration found; NAN: it did not. */
     bool has_nadir;
+    bool has_returns; /* first ones, so that they tell the altitude */
     double column_spacing_m, altitude_m, recorded_altitude_m, ceiling_over_seabed_db;
     bool assumes_bandwidth; /* that of the columns */
 };

@@ -166,8 +166,8 @@ struct swath_plan {
     size_t avoid_count;
     struct tree_place place;
     struct raster_layout layout; /* once it is opened */
-    uint32_t side;               /* likewise: enum recorded_side; 0 where it is no recording */
-    struct crop_places room;     /* once it is measured, as all below */
+    uint32_t side; /* likewise: enum recorded_side, also of a picture of both; 0: it has one */
+    struct crop_places room; /* once it is measured, as all below */
     uint64_t chip_rows, chip_columns;
     struct object_columns objects;        /* where these may lie in any image */
     struct object_columns *block_objects; /* and in images that begin in a block of rows, where

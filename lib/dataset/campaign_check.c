@@ -62,6 +62,14 @@ static sonject_status measure_rows(struct sonject_campaign *campaign, uint32_t n
     return status;
 }
 
+/* The side of a picture of both; 0 of one without a nadir column. */
+static uint32_t side_of_nadir(const sonject_geometry_params *geometry)
+{
+    if (!(geometry->nadir_column > 0.0))
+        return 0;
+    return geometry->side == SONJECT_SIDE_PORT ? RECORDED_PORT : RECORDED_STARBOARD;
+}
+
 /* Size and room of a swath, whose scene tells its geometry. */
 static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t number)
 {
@@ -80,7 +88,7 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
                                        trial.scene.array, &file));
     if (status == SONJECT_OK) {
         const struct recording *recording = swath_file_recording(file);
-        swath->side = recording ? recording->side : 0;
+        swath->side = recording ? recording->side : side_of_nadir(&trial.scene.geometry);
         swath_file_layout(file, &swath->layout);
         if (campaign->campaign.format == FORMAT_AS_INPUT)
             swath->jpeg_quality = swath_file_jpeg_quality(file);

@@ -92,7 +92,7 @@ static sonject_status read_image_scene(struct sonject_campaign *campaign, const 
     source.overrides[source.override_count++] = "objects=[]";
     if (tells_geometry)
         source.overrides[source.override_count++] = "input.geometry=from_file";
-    if (tells_altitude)
+    if (tells_altitude && !swath) /* else the campaign's scene tells it, as of injected ones */
         source.overrides[source.override_count++] = "sonar.altitude=from_file";
     if (patch) {
         snprintf(patch_text, sizeof patch_text,

@@ -171,15 +171,15 @@ void tell_calibration_doubts(struct report *report, const struct scene *scene)
                     "%s was measured on the %s side, and this is %s: calibrate that (sonject "
                     "calibrate --channel %s), or write input.calibration: auto",
                     scene->calibration, scene->calibrated_side, side, side);
-    if (share > 0.0 && fabs(share - 1.0) > ALTITUDES_ALIKE && scene->has_recorded_altitude &&
-        scene->pings.count == 0)
+    if (share > 0.0 && fabs(share - 1.0) > ALTITUDES_ALIKE &&
+        scene->altitude_by == ALTITUDE_RECORDED && scene->pings.count == 0)
         report_note(report,
                     "the recorded altitude, %.2f m here, is %.0f %% %s the first return as %s "
                     "has it, and shadows get too %s: if the first return is right, write "
-                    "sonar.altitude: %.2f m",
+                    "sonar.altitude: first_return",
                     scene->sonar.altitude_m, 100.0 * fabs(share - 1.0),
                     share < 1.0 ? "below" : "above", scene->calibration,
-                    share < 1.0 ? "long" : "short", scene->sonar.altitude_m / share);
+                    share < 1.0 ? "long" : "short");
 }
 
 /* ---- Where numbers came from. */
@@ -226,8 +226,10 @@ json_t *sources_document(const struct scene *scene, const sonject_statistics *st
              number_from(statistics->noise_floor_db, statistics->noise_floor_source));
     json_add(&document, "looks", number_from(statistics->looks, statistics->looks_source));
     json_add(&document, "altitude_m",
-             number_from(scene->sonar.altitude_m, scene->has_recorded_altitude
+             number_from(scene->sonar.altitude_m, scene->altitude_by == ALTITUDE_RECORDED
                                                       ? (uint32_t)SONJECT_SOURCE_FILE
+                                                  : scene->altitude_by == ALTITUDE_OF_RETURNS
+                                                      ? (uint32_t)SONJECT_SOURCE_CALIBRATION
                                                       : scene_key_source(scene, "sonar.altitude")));
     const bool is_modelled = !isnan(scene->seabed.grain_size_phi);
     json_add(

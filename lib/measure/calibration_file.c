@@ -122,8 +122,8 @@ static void tell_altitude(struct report *report, const char *image, const struct
         report_note(
             report,
             "%s: the recorded altitude, %.2f m in the mean, is %.0f %% %s the first "
-            "return, and sonar.altitude: from_file makes shadows too %s; sonject check tells "
-            "the altitude to write for a scene, if the first return is right",
+            "return, and sonar.altitude: from_file makes shadows too %s: if the first return is "
+            "right, write sonar.altitude: first_return",
             path_name(image), found->recorded_altitude_m, 100.0 * fabs(share - 1.0),
             share < 1.0 ? "below" : "above", share < 1.0 ? "long" : "short");
 }

@@ -62,6 +62,14 @@ sonject_geometry_params geometry_crop(const sonject_geometry_params *geometry, d
     return crop;
 }
 
+double first_return_range(const struct first_return_list *returns,
+                          const sonject_geometry_params *geometry, uint64_t row)
+{
+    const double columns = returns->columns[row / returns->every];
+    const double to_centre = geometry->nadir_column > 0.0 ? 0.5 : 0.0; /* of the seabed's pixel */
+    return geometry->first_slant_range_m + (columns + to_centre) * geometry->column_spacing_m;
+}
+
 double ping_table_at(const struct ping_table *table, const double *column, double row)
 {
     const size_t i = piece_at(table->rows, table->count, row);

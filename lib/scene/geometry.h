@@ -35,6 +35,24 @@ struct ping_table {
     size_t count;           /* 0, or at least 2 */
 };
 
+/* Where the seabed begins in each `every`th row of a swath, in columns from the nadir, or from the
+ * first column where range does not begin at a nadir. All zeros: it is not known. */
+struct first_return_list {
+    double *columns; /* owned */
+    size_t count, every;
+};
+
+/* Who tells the altitude at a row. */
+enum altitude_source {
+    ALTITUDE_GIVEN,     /* the scene, one for all rows */
+    ALTITUDE_RECORDED,  /* from_file: a table of pings, or else the input file */
+    ALTITUDE_OF_RETURNS /* first_return: the calibration */
+};
+
+/* The slant range of the first return in a row that the list has, m. */
+double first_return_range(const struct first_return_list *returns,
+                          const sonject_geometry_params *geometry, uint64_t row);
+
 /* The column's value at a row within the table's. */
 double ping_table_at(const struct ping_table *table, const double *column, double row);
 

@@ -27,6 +27,7 @@ void scene_clear(struct scene *scene)
     free(scene->array);
     free(scene->calibration);
     free(scene->calibrated);
+    free(scene->first_returns.columns);
     free(scene->band);
     free(scene->bands);
     free(scene->objects);

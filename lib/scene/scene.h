@@ -84,17 +84,18 @@ struct scene {
     char *calibrated;         /* owned; the keys that were taken from it, one a line; NULL: none */
     char calibrated_side[12]; /* that it was measured on, as keys say it; "": it does not tell */
     double calibrated_altitudes; /* recorded ones over first returns, in its median; 0: likewise */
-    bool calibrates_itself;      /* auto: whoever runs the scene makes that file first */
-    bool has_files_geometry;     /* some of which the input file tells, here of the patch's rows */
-    bool has_pings_range;        /* the first slant range is that of `pings`, likewise */
-    bool has_recorded_altitude;  /* that, or else the input file, says it row by row */
-    double altitudes_m[2];       /* of a whole line's pings whose mean is taken, lowest and highest;
-                                    0: all are alike, or a patch is chosen */
-    bool input_is_complex;       /* two channels of the file are real and imaginary part */
-    int32_t channel; /* of a recording: SONJECT_CHANNEL_PORT and the like, or a number */
-    char *array;     /* owned; of several in a file, its name; NULL: the only one */
-    char *band;      /* owned; which of its file's bands it is; NULL: that has none */
-    char *bands;     /* owned; all their names, one a line; NULL likewise */
+    struct first_return_list first_returns; /* of the whole swath, as the calibration has them */
+    bool calibrates_itself;                 /* auto: whoever runs the scene makes that file first */
+    bool has_files_geometry; /* some of which the input file tells, here of the patch's rows */
+    bool has_pings_range;    /* the first slant range is that of `pings`, likewise */
+    enum altitude_source altitude_by;
+    double altitudes_m[2]; /* of a whole line's pings whose mean is taken, lowest and highest;
+                              0: all are alike, or a patch is chosen */
+    bool input_is_complex; /* two channels of the file are real and imaginary part */
+    int32_t channel;       /* of a recording: SONJECT_CHANNEL_PORT and the like, or a number */
+    char *array;           /* owned; of several in a file, its name; NULL: the only one */
+    char *band;            /* owned; which of its file's bands it is; NULL: that has none */
+    char *bands;           /* owned; all their names, one a line; NULL likewise */
     uint32_t uniform_rows, uniform_columns;
     sonject_synthetic_params synthetic;
     sonject_object_params *objects; /* owned */

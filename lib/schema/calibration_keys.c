@@ -1,5 +1,6 @@
 /* A calibration under a scene: the file that input.calibration names has keys of scenes, which
  * count where the scene has none of its own. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,6 +8,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "scene/geometry.h"
 #include "schema/keys.h"
 
 struct layer {
@@ -100,20 +102,56 @@ static sonject_status lay_under(struct layer *layer, struct tree_node *scene,
     return status;
 }
 
-/* What it was measured on. */
-static void take_measured(struct scene *scene, const struct tree_node *measured)
+/* The number of a text; NAN where it is none. */
+static double number_of_text(const struct tree_node *node)
+{
+    const char *rest;
+    double number;
+    return node->kind == TREE_TEXT && node->text && text_to_number(node->text, &number, &rest) &&
+                   !*rest
+               ? number
+               : NAN;
+}
+
+/* First returns of a whole swath; none where the file has not all of them as columns. */
+static sonject_status take_first_returns(struct report *report, const struct tree_node *measured,
+                                         struct first_return_list *returns)
+{
+    const struct tree_entry *every = tree_find(measured, "first_return_every");
+    const struct tree_entry *columns = tree_find(measured, "first_return");
+    const double step = every ? number_of_text(&every->value) : NAN;
+    if (!columns || columns->value.kind != TREE_LIST || columns->value.count == 0 ||
+        !(step >= 1.0 && step <= (double)PING_ROWS_MAX))
+        return SONJECT_OK;
+    double *found = allocate_array(columns->value.count, sizeof *found);
+    CHECK_MEMORY(report, found, "first returns");
+    bool are_columns = true;
+    for (size_t i = 0; i < columns->value.count; i++) {
+        found[i] = number_of_text(&columns->value.entries[i].value);
+        are_columns = are_columns && found[i] >= 0.0 && isfinite(found[i]);
+    }
+    if (!are_columns) {
+        free(found);
+        return SONJECT_OK;
+    }
+    *returns = (struct first_return_list){found, columns->value.count, (size_t)step};
+    return SONJECT_OK;
+}
+
+/* What it was measured on, and where its seabed begins. */
+static sonject_status take_measured(struct report *report, struct scene *scene,
+                                    const struct tree_node *measured)
 {
     const struct tree_entry *side = tree_find(measured, "side");
     const struct tree_entry *altitude = tree_find(measured, "recorded_altitude");
     const struct tree_entry *share =
         altitude ? tree_find(&altitude->value, "over_first_return") : NULL;
-    const char *rest;
-    double number;
+    const double number = share ? number_of_text(&share->value) : NAN;
     if (side && side->value.kind == TREE_TEXT && side->value.text)
         snprintf(scene->calibrated_side, sizeof scene->calibrated_side, "%s", side->value.text);
-    if (share && share->value.kind == TREE_TEXT && share->value.text &&
-        text_to_number(share->value.text, &number, &rest) && !*rest)
+    if (!isnan(number))
         scene->calibrated_altitudes = number;
+    return take_first_returns(report, measured, &scene->first_returns);
 }
 
 /* The version, and sections of scenes' keys; the rest goes under the scene's. */
@@ -132,7 +170,7 @@ static sonject_status take_keys(struct layer *layer, const char *file)
         for (size_t k = 0; k < COUNT(sections); k++)
             is_known = is_known || strcmp(entry->key, sections[k]) == 0;
         if (strcmp(entry->key, "measured") == 0)
-            take_measured(layer->reader->scene, &entry->value);
+            CHECK(take_measured(layer->reader->report, layer->reader->scene, &entry->value));
         if (strcmp(entry->key, "sonject_calibration") == 0 || strcmp(entry->key, "measured") == 0)
             continue;
         if (!is_known || entry->value.kind != TREE_SECTION)

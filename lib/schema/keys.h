@@ -212,7 +212,7 @@ struct reader {
     struct scene *scene;
     bool allows_user_shapes; /* code in files is wanted */
     bool takes_geometry;     /* of the input file, once all is read */
-    bool takes_altitude;
+    enum altitude_source altitude_by;
     bool takes_first_range;
     const char *moved_folder; /* as in struct scene_source */
     size_t moved_overrides;

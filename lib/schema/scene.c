@@ -465,9 +465,10 @@ static void take_recording(struct reader *reader)
     scene->has_pings_range = reader->takes_first_range && scene->pings.first_ranges_m;
     scene->has_files_geometry =
         reader->takes_geometry || (reader->takes_first_range && !scene->has_pings_range);
-    const struct recording_wish wish = {reader->takes_geometry, reader->takes_altitude,
+    const struct recording_wish wish = {reader->takes_geometry, reader->altitude_by,
                                         reader->takes_first_range};
-    if ((wish.geometry || wish.altitude || wish.first_range) && are_sound(reader, "input patch") &&
+    if ((wish.geometry || wish.altitude_by != ALTITUDE_GIVEN || wish.first_range) &&
+        are_sound(reader, "input patch") &&
         recording_describe(&report, &wish, scene, &key) != SONJECT_OK)
         refuse_key(reader, &reader->tree->root, key, "%s", report.message);
 }

@@ -240,8 +240,10 @@ static sonject_status read_altitude(struct reader *reader, const struct tree_nod
                                     void *structure)
 {
     sonject_sonar_params *sonar = structure;
-    reader->takes_altitude = is_word(node, "from_file");
-    return reader->takes_altitude
+    reader->altitude_by = is_word(node, "from_file")      ? ALTITUDE_RECORDED
+                          : is_word(node, "first_return") ? ALTITUDE_OF_RETURNS
+                                                          : ALTITUDE_GIVEN;
+    return reader->altitude_by != ALTITUDE_GIVEN
                ? SONJECT_OK
                : read_quantity(reader, node, QUANTITY_LENGTH, &sonar->altitude_m);
 }
@@ -297,9 +299,10 @@ static const struct field sonar_fields[] = {
      WITHIN(FREQUENCY_MIN_HZ, FREQUENCY_MAX_HZ), .preset = 100e3, REQUIRED},
     {"bandwidth", "sets the range resolution, c / (2 bandwidth)", QUANTITY(bandwidth_hz, FREQUENCY),
      WITHIN(FREQUENCY_MIN_HZ, FREQUENCY_MAX_HZ), .preset = 30e3, REQUIRED},
-    {"altitude", "height of the track over the mean seabed, or from_file",
+    {"altitude",
+     "height of the track over the mean seabed; from_file, or first_return of the calibration",
      QUANTITY(altitude_m, LENGTH), POSITIVE, .preset = 10.0, .read = read_altitude,
-     .unit = "m, km, cm, mm, or from_file", REQUIRED},
+     .unit = "m, km, cm, mm, from_file or first_return", REQUIRED},
     {"resolution", "along-track; by default the row spacing",
      QUANTITY(along_track_resolution_m, LENGTH), POSITIVE, NONE_IF_ZERO},
     {"transducer", "side of the source, 0 for a point", QUANTITY(transducer_side_m, LENGTH),

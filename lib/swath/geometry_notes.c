@@ -223,21 +223,50 @@ static void keep_altitude(const struct scene *scene, const struct recording_geom
     }
 }
 
-/* The mean altitude over the patch's rows, or where none is chosen over the objects'. */
-static void take_ping_altitude(const struct scene *scene, uint64_t rows, uint64_t first,
+/* The mean altitude over the patch's rows, or where none is chosen over the objects': of a table of
+ * pings, or of first returns. */
+static void take_row_altitudes(const struct scene *scene, uint64_t rows, uint64_t first,
                                uint64_t count, struct wanted *wanted)
 {
     const struct ping_table *pings = &scene->pings;
+    const bool by_returns = wanted->wish.altitude_by == ALTITUDE_OF_RETURNS;
     struct recording_geometry told = {.lowest_altitude_m = INFINITY};
     if (scene->patch.rows == 0)
         (void)rows_of_objects(scene, rows, wanted->where.row_spacing_m, &first, &count);
     for (uint64_t row = first; row < first + count; row++) {
-        const double altitude = ping_table_at(pings, pings->altitudes_m, (double)row);
+        const double altitude = by_returns
+                                    ? first_return_range(&scene->first_returns, &wanted->where, row)
+                                    : ping_table_at(pings, pings->altitudes_m, (double)row);
         told.altitude_m += altitude / (double)count;
         told.lowest_altitude_m = fmin(told.lowest_altitude_m, altitude);
         told.highest_altitude_m = fmax(told.highest_altitude_m, altitude);
     }
     keep_altitude(scene, &told, wanted);
+}
+
+static sonject_status take_returns(struct report *report, const struct scene *scene, uint64_t rows,
+                                   struct wanted *wanted)
+{
+    const struct first_return_list *returns = &scene->first_returns;
+    uint64_t first, count;
+    *wanted->key = "sonar.altitude";
+    if (scene->calibrates_itself)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "first_return needs a calibration that is there already: write one "
+                              "(sonject calibrate IMAGE -o FILE), and its name instead of auto");
+    if (returns->count == 0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "first_return needs an input.calibration that saw them "
+                              "(measured.first_return): give a number instead");
+    if ((rows - 1) / returns->every != returns->count - 1)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s has first returns of another image than one of %llu rows: "
+                              "calibrate this one",
+                              scene->calibration, (unsigned long long)rows);
+    *wanted->key = "patch";
+    CHECK(patch_rows(report, scene, rows, &first, &count));
+    take_row_altitudes(scene, rows, first, count, wanted);
+    return SONJECT_OK;
 }
 
 /* Altitude, and the mean first range over the patch's rows. */
@@ -253,7 +282,8 @@ static sonject_status take_pings(struct report *report, const struct scene *scen
     CHECK(patch_rows(report, scene, rows, &first, &count));
     *wanted->key = "input.pings";
     CHECK(check_ping_rows(report, pings, rows, first, count));
-    take_ping_altitude(scene, rows, first, count, wanted);
+    if (wanted->wish.altitude_by == ALTITUDE_RECORDED)
+        take_row_altitudes(scene, rows, first, count, wanted);
     double mean = 0.0;
     for (uint64_t row = first; row < first + count; row++) {
         const double range = ranges ? ping_table_at(pings, ranges, (double)row) : 0.0;
@@ -279,7 +309,7 @@ static sonject_status take_pings(struct report *report, const struct scene *scen
 /* From the file itself. */
 static bool takes_altitude(const struct scene *scene, const struct wanted *wanted)
 {
-    return wanted->wish.altitude && scene->pings.count == 0;
+    return wanted->wish.altitude_by == ALTITUDE_RECORDED && scene->pings.count == 0;
 }
 
 /* The altitude at the objects' pings, where no patch is chosen: one of a whole line may be far off
@@ -329,7 +359,8 @@ static sonject_status take_recording(struct report *report, const struct scene *
     wanted->where.first_slant_range_m = geometry.first_slant_range_m;
     wanted->where.side =
         recording->side == RECORDED_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
-    keep_altitude(scene, &geometry, wanted);
+    if (takes_altitude(scene, wanted))
+        keep_altitude(scene, &geometry, wanted);
     return SONJECT_OK;
 }
 
@@ -369,18 +400,18 @@ static sonject_status check_and_set(struct report *report, const struct wanted *
         check.status = check_told(&wanted->where, &why);
     if (check.status == SONJECT_OK)
         *wanted->key = "sonar.altitude";
-    if (wanted->wish.altitude)
+    if (wanted->wish.altitude_by != ALTITUDE_GIVEN)
         check_positive_length(&check, "altitude", wanted->altitude_m);
     if (check.status != SONJECT_OK)
         return input_failure(report, scene->input_path,
                              "its %s: give a right one instead of from_file", why.message);
     if (takes_geometry)
         scene->geometry = wanted->where;
-    if (wanted->wish.altitude) {
+    if (wanted->wish.altitude_by != ALTITUDE_GIVEN) {
         scene->sonar.altitude_m = wanted->altitude_m;
         memcpy(scene->altitudes_m, wanted->altitudes_m, sizeof scene->altitudes_m);
     }
-    scene->has_recorded_altitude = wanted->wish.altitude;
+    scene->altitude_by = wanted->wish.altitude_by;
     return SONJECT_OK;
 }
 
@@ -408,6 +439,8 @@ sonject_status recording_describe(struct report *report, const struct recording_
                            : take_notes(report, scene, file, &wanted);
     if (status == SONJECT_OK && scene->pings.count > 0)
         status = take_pings(report, scene, layout.rows, &wanted);
+    if (status == SONJECT_OK && wish->altitude_by == ALTITUDE_OF_RETURNS)
+        status = take_returns(report, scene, layout.rows, &wanted);
     THEN(status, check_and_set(report, &wanted, scene));
     swath_file_close(&file);
     return status;
@@ -416,8 +449,10 @@ sonject_status recording_describe(struct report *report, const struct recording_
 double recorded_altitude(const struct scene *scene, const struct recording *recording, uint64_t row)
 {
     const struct ping_table *pings = &scene->pings;
-    if (!scene->has_recorded_altitude)
+    if (scene->altitude_by == ALTITUDE_GIVEN)
         return scene->sonar.altitude_m;
+    if (scene->altitude_by == ALTITUDE_OF_RETURNS)
+        return first_return_range(&scene->first_returns, &scene->geometry, row);
     if (pings->count == 0)
         return recording ? (double)recording->pings[row].altitude_m : scene->sonar.altitude_m;
     const double last = pings->rows[pings->count - 1];

@@ -45,17 +45,18 @@ bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_pa
 
 /* What a scene leaves to its input. */
 struct recording_wish {
-    bool geometry, altitude;
+    bool geometry;
+    enum altitude_source altitude_by;
     bool first_range; /* of a geometry that is given else */
 };
 
 /* Takes that from it: from a recording, of which spacing and altitude are the means over the
  * patch's rows, or from an image whose notes say them. Where the scene has a table of pings,
- * altitude and first range are its means over the patch's rows. Errors: INPUT (it does not say
- * them: says what to give instead; ground range; a table that has not all of the patch's rows, or
- * first ranges that are more than a column apart; as swath_file_open_array), UNSUPPORTED, STORAGE,
- * MEMORY. On failure the scene is unchanged, and *key is the key of the scene that the message is
- * about. */
+ * altitude and first range are its means over the patch's rows; first returns give an altitude
+ * alike. Errors: INPUT (it does not say them: says what to give instead; ground range; a table that
+ * has not all of the patch's rows, or first ranges that are more than a column apart; as
+ * swath_file_open_array), UNSUPPORTED, STORAGE, MEMORY. On failure the scene is unchanged, and *key
+ * is the key of the scene that the message is about. */
 sonject_status recording_describe(struct report *report, const struct recording_wish *wish,
                                   struct scene *scene, const char **key);
 

@@ -203,9 +203,63 @@ def test_altitudes_that_first_returns_deny_are_told(sonject, tmp_path, share, to
     if told is None:
         return
     assert all(re.search(told, text) for text in texts)
-    right = re.search(r"write (sonar.altitude): (\S+ m)", texts[1])
-    assert float(right[2][:-2]) == pytest.approx(120 * 30 / COLUMNS, rel=0.02)  # the ball is in the middle
-    assert "first return" not in sonject.done("check", "scene.yaml", "--set", f"{right[1]}={right[2]}").stdout
+    assert all("write sonar.altitude: first_return" in text for text in texts)
+    by_returns = sonject.done("check", "scene.yaml", "--set", "sonar.altitude=first_return").stdout
+    assert "first return" not in by_returns
+    assert altitude_of(by_returns) == pytest.approx(120 * 30 / COLUMNS, rel=0.02)  # the ball is in the middle
+
+
+def altitude_of(checked):
+    return float(re.search(r"altitude (\S+) m", checked)[1])
+
+
+def test_altitudes_by_first_returns_are_those_at_the_objects(sonject, tmp_path):
+    """100 columns at the first ping, 140 at the last; the recorded ones are far off."""
+    water_line(tmp_path, 0.5)
+    for side in ("port", "starboard"):
+        sonject.done("calibrate", "line.xtf", "--channel", side, "-o", f"{side}.yaml")
+    (tmp_path / "scene.yaml").write_text(
+        "sonject: 1\ninput: {path: line.xtf, channel: port, calibration: port.yaml, geometry: from_file}\n"
+        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: first_return}\n"
+        "objects: [{shape: sphere, diameter: 0.4 m, position: {row: 20, column: 300}}]\n")
+    column = 30 / COLUMNS
+    at = [100 * column, (100 + 40 * 20 / (ROWS - 1)) * column, 120 * column, 140 * column]
+    assert altitude_of(sonject.done("check", "scene.yaml").stdout) == pytest.approx(at[1], rel=0.02)
+    two = "objects=[{shape: sphere, diameter: 0.4 m, position: {row: 0, column: 300}}, " \
+          "{shape: sphere, diameter: 0.4 m, position: {row: 767, column: 300}}]"
+    told = re.search(r"the altitude goes from (\S+) to (\S+) m over the objects' pings",
+                     sonject.done("check", "scene.yaml", "--set", two).stdout)
+    assert [float(number) for number in told.groups()] == pytest.approx([at[0], at[3]], rel=0.02)
+    patch = sonject.done("check", "scene.yaml", "--set", "patch={row: 300, column: 200, rows: 168, columns: 512}", "--set",
+                         "objects=[{shape: sphere, diameter: 0.4 m, position: {row: 310, column: 300}}]").stdout
+    assert altitude_of(patch) == pytest.approx(at[2], rel=0.01)  # mean of rows 300 to 467
+    sonject.done("run", "scene.yaml", "-o", "out")
+    found = json.loads((tmp_path / "out" / "truth.json").read_text())["numbers"]["altitude_m"]
+    assert found == {"value": pytest.approx(at[1], rel=0.02), "from": "calibration"}
+
+
+def test_both_sides_first_returns_begin_at_the_nadir(sonject, tmp_path):
+    made = Made("amplitude", water=numpy.full(ROWS, 120)).numbers
+    numpy.save(tmp_path / "both.npy", numpy.hstack([made[:, ::-1], made]))
+    sonject.done("calibrate", "both.npy", "-o", "both.yaml")
+    (tmp_path / "scene.yaml").write_text(
+        "sonject: 1\ninput: {path: both.npy, calibration: both.yaml, geometry: {row_spacing: 5 cm, column_spacing: "
+        "5 cm, side: port}}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: first_return}\nobjects: []\n")
+    assert altitude_of(sonject.done("check", "scene.yaml").stdout) == pytest.approx(120.5 * 0.05, abs=0.06)
+
+
+@pytest.mark.parametrize("key, why", [
+    ("input.calibration=auto", "first_return needs a calibration that is there already"),
+    ("input.calibration=none.yaml", "first_return needs an input.calibration that saw them"),
+    ("input.calibration=short.yaml", "short.yaml has first returns of another image than one of")])
+def test_altitudes_need_first_returns(sonject, tmp_path, key, why):
+    water_line(tmp_path, 1.0)
+    (tmp_path / "none.yaml").write_text("sonject_calibration: 1\ninput: {transfer: {kind: amplitude}}\n")
+    (tmp_path / "short.yaml").write_text("sonject_calibration: 1\nmeasured: {first_return_every: 1, first_return: [100, 101]}\n")
+    (tmp_path / "scene.yaml").write_text(
+        "sonject: 1\ninput: {path: line.xtf, channel: port, geometry: from_file}\n"
+        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: first_return}\nobjects: []\n")
+    assert_refused(sonject("check", "scene.yaml", "--set", key), 3, why)
 
 
 def test_the_other_sides_calibration_is_told(sonject, tmp_path):

@@ -1,13 +1,16 @@
 """sonject init: a scene to begin with, from an image and a few answers."""
 
 import json
+import os
+import pathlib
 import re
+import shlex
 
 import numpy
 import pytest
 
 import recordings
-from made_swaths import KINDS, LEVEL_DB, ROWS, Made
+from made_swaths import COLUMNS, KINDS, LEVEL_DB, ROWS, Made
 
 ANSWERS = ["5 cm", "2.5 cm", "44 m", "10 m", "100 kHz", "30 kHz", ""]
 
@@ -25,7 +28,7 @@ def init(sonject, *arguments, answers):
 def test_what_it_writes_runs(sonject, image):
     answer = init(sonject, "swath.npy", answers=ANSWERS)
     assert answer.returncode == 0, answer.stderr
-    assert "object 1   target (cylinder)" in answer.stdout
+    assert "object 1   cylinder (cylinder)" in answer.stdout
     scene = image.with_suffix(".yaml").read_text()
     for line in ('path: "swath.npy"', "row_spacing: 5 cm", "column_spacing: 2.5 cm", "first_slant_range: 44 m",
                  "altitude: 10 m", "frequency: 100 kHz", "bandwidth: 30 kHz"):
@@ -81,7 +84,7 @@ def test_a_recording_tells_the_geometry(sonject, tmp_path, typed):
     (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=numpy.linspace(5.0, 9.0, 120)))
     answer = init(sonject, "line.xtf", "--channel", "port", answers=[typed, "600 kHz", "", "0.5 m"])
     assert answer.returncode == 0, answer.stderr
-    assert "the file's mean is 7 m [from_file]: " in answer.stderr
+    assert "(from_file says 7 m in the mean; or a number) [from_file]: " in answer.stderr
     scene = (tmp_path / "line.yaml").read_text()
     assert "bandwidth: 10 kHz # c / 2 over the column spacing" in scene  # of 400 columns to 30 m
     assert "channel: port" in scene and "geometry: from_file" in scene and "altitude: from_file" in scene
@@ -114,5 +117,101 @@ def test_altitude_by_first_returns_is_what_enter_takes(sonject, tmp_path):
                  "--first-range", "0")
     answer = init(sonject, "swath.tif", answers=["", "100 kHz", "", ""])
     assert answer.returncode == 0, answer.stderr
-    told = re.search(r"altitude: (\S+) m", (tmp_path / "swath.yaml").read_text())[1]
-    assert float(told) == pytest.approx(120 * 0.025, rel=0.02) and f"as first returns show it [{told} m]" in answer.stderr
+    shown = float(re.search(r"\(first_return shows (\S+) m in the median; or a number\) \[first_return\]", answer.stderr)[1])
+    assert shown == pytest.approx(120 * 0.025, rel=0.02)
+    assert "altitude: first_return" in (tmp_path / "swath.yaml").read_text()
+    assert float(re.search(r"altitude (\S+) m", answer.stdout)[1]) == pytest.approx(shown, rel=0.01)
+
+
+# ---- Targets of one's own, and campaigns.
+
+def write_mesh(folder, side=400):
+    """A tetrahedron, its numbers in mm."""
+    (folder / "rock.obj").write_text(
+        "".join(f"v {x} {y} {z}\n" for x, y, z in ((0, 0, 0), (side, 0, 0), (0, side, 0), (0, 0, side))) +
+        "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+
+
+def write_line(folder):
+    """Both sides of a recording, a water column before each."""
+    water = numpy.full(ROWS, 100)
+    sides = [Made("amplitude", water=water, seed=seed).numbers for seed in (1, 2)]
+    (folder / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=100 * 30 / COLUMNS * numpy.ones(ROWS)))
+
+
+def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
+    write_mesh(tmp_path)
+    write_line(tmp_path)
+    answer = init(sonject, "line.xtf", "--channel", "starboard", "--target", "rock.obj", "--campaign",
+                  answers=["", "100 kHz", "30 kHz", "", "mm", "y"])
+    assert answer.returncode == 0, answer.stderr
+    assert "object 1   rock (mesh)" in answer.stdout and "0.4 x 0.4 x 0.4 m" in answer.stdout
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "line.xtf", "line.yaml", "line_calibration.yaml", "line_campaign.yaml", "line_port_calibration.yaml", "rock.obj"]
+    text = (tmp_path / "line_campaign.yaml").read_text()
+    assert "set: {input.channel: starboard, input.calibration: line_calibration.yaml}" in text
+    assert "set: {input.channel: port, input.calibration: line_port_calibration.yaml}" in text
+    assert 'mesh: {file: "rock.obj", unit: mm, nose: y}' in text and "splits: {train: 0.5, val: 0.5}" in text
+    for name, side in ("line", "starboard"), ("line_port", "port"):
+        assert f"side: {side}\n" in (tmp_path / f"{name}_calibration.yaml").read_text()
+    sonject.done("campaign", "line_campaign.yaml", "-o", "set", "--set", "images=20")
+    notes = json.loads((tmp_path / "set" / "train" / "coco.json").read_text())
+    assert {category["name"] for category in notes["categories"]} == {"rock"}
+
+
+def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
+    """All but the last, which needs scikit-learn: test_train_detector.py runs that."""
+    page = (pathlib.Path(os.environ["SONJECT_SOURCE"]) / "docs" / "first_detector.md").read_text()
+    begin, run, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
+    write_mesh(tmp_path)
+    (tmp_path / "rock.obj").rename(tmp_path / "my_mine.obj")
+    write_line(tmp_path)
+    begin = [word.replace("my_mine.stl", "my_mine.obj") for word in begin]
+    answer = init(sonject, *begin[2:], answers=["first_return", "600 kHz", "", "0.51 m", "mm", ""])
+    assert answer.returncode == 0, answer.stderr
+    sonject.done(*run[1:])
+    sonject.done(*campaign[1:], "--set", "images=10")
+    for name in "one/report.html", "set/report.html", "set/data.yaml", "set/train/coco.json", "set/val/coco.json", train[2]:
+        assert (tmp_path / name).exists()
+
+
+def test_chips_hold_a_shadow_on_either_side(sonject, tmp_path):
+    """Half as long again as the one in the middle of the image, that check tells."""
+    write_line(tmp_path)
+    answer = init(sonject, "line.xtf", "--channel", "port", "--campaign", answers=["", "100 kHz", "30 kHz", ""])
+    assert answer.returncode == 0, answer.stderr
+    shadow = float(re.search(r"shadow (\S+) m on the ground", answer.stdout)[1])
+    columns = int(re.search(r"columns: (\d+), spread", (tmp_path / "line_campaign.yaml").read_text())[1])
+    assert columns % 32 == 0 and 0 <= columns - 3 * shadow / (30 / COLUMNS) < 33
+
+
+def test_both_sides_of_an_image_are_two_swaths(sonject, tmp_path):
+    made = Made("amplitude", water=numpy.full(ROWS, 120)).numbers
+    numpy.save(tmp_path / "both.npy", numpy.hstack([made[:, ::-1], made]))
+    answer = init(sonject, "both.npy", "--campaign", answers=["5 cm", "5 cm", "starboard", "", "100 kHz", "30 kHz", ""])
+    assert answer.returncode == 0, answer.stderr
+    assert re.search(r"slant range 0\.\d+\.\.\.39\.\d+ m, starboard", answer.stdout), answer.stdout  # 800 columns of 5 cm
+    text = (tmp_path / "both_campaign.yaml").read_text()
+    assert re.findall(r"side: (\w+)", text) == ["starboard", "port"]
+    sonject.done("campaign", "both_campaign.yaml", "-o", "set", "--set", "images=4")
+
+
+def test_one_image_has_no_splits_and_a_target_may_be_a_file(sonject, image):
+    (image.parent / "scenes").mkdir()
+    (image.parent / "ball.yaml").write_text("sonject_target: 1\nshape: sphere\ndiameter: 0.4 m\n")
+    answer = init(sonject, "swath.npy", "--target", "ball.yaml", "--campaign", "-o", "scenes/mine.yaml", answers=ANSWERS)
+    assert answer.returncode == 0, answer.stderr
+    text = (image.parent / "scenes" / "mine_campaign.yaml").read_text()
+    assert "\nsplits" not in text and text.count("- path:") == 1 and 'class: "ball"' in text
+    sonject.done("campaign", "scenes/mine_campaign.yaml", "-o", "set", "--set", "images=4")
+
+
+@pytest.mark.parametrize("name, text, why", [
+    ("rock.stl", None, "there is no file rock.stl"), ("rock.obj", "v 0 0\n", "rock.obj"),
+    ("rock.yaml", "sonject_target: 1\nshape: sphere\n", "rock.yaml")])
+def test_a_target_that_is_none_is_told_before_any_question(sonject, image, name, text, why):
+    if text:
+        (image.parent / name).write_text(text)
+    answer = init(sonject, "swath.npy", "--target", name, answers=ANSWERS)
+    assert answer.returncode == 3 and why in answer.stderr and "calibrating" not in answer.stderr
+    assert {path.name for path in image.parent.iterdir()} <= {"swath.npy", name}

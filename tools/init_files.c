@@ -1,0 +1,304 @@
+#include "init_files.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jansson.h>
+
+#include "base/system/file_system.h"
+#include "base/text.h"
+#include "console.h"
+
+#define USUAL_LEVEL_DB 15.0
+#define FAINTEST_DB    3.0 /* that a campaign draws, where the ceiling leaves room */
+#define LEVELS_DB      8.0 /* from the faintest to the strongest */
+#define CHIP_MOST      512.0
+
+const char *last_part(const char *path)
+{
+    const char *part = path;
+    for (; *path; path++)
+        part = is_divider(*path) ? path + 1 : part;
+    return part;
+}
+
+/* ---- One file. */
+
+/* Opens what becomes a file once it is closed by finish(); NULL after a message. */
+static FILE *begin(const char *path, char part[NAME + 8])
+{
+    char reason[128];
+    snprintf(part, NAME + 8, "%s.part", path);
+    FILE *file = file_open(part, "wb");
+    if (!file) {
+        error_text(errno, reason, sizeof reason);
+        message(path, ": cannot write: ", reason);
+    }
+    return file;
+}
+
+static bool finish(FILE *file, const char *part, const char *path)
+{
+    char reason[128];
+    const bool had_failed = ferror(file) != 0;
+    const bool is_written = fclose(file) == 0 && !had_failed;
+    const int error = is_written ? file_replace(part, path) : errno;
+    if (error == 0)
+        return true;
+    file_discard(part);
+    error_text(error, reason, sizeof reason);
+    message(path, ": cannot write: ", reason);
+    return false;
+}
+
+bool write_calibration(const char *path, const char *text)
+{
+    char part[NAME + 8];
+    FILE *file = begin(path, part);
+    if (!file)
+        return false;
+    fputs(text, file);
+    return finish(file, part, path);
+}
+
+/* ---- Pieces of scenes and campaigns. */
+
+/* A text as YAML, which JSON is, behind a key; nothing when memory is out, which the check of the
+ * file then finds. */
+static void add_text(FILE *file, const char *before, const char *text)
+{
+    json_t *value = json_string(text);
+    char *quoted = value ? json_dumps(value, JSON_ENCODE_ANY) : NULL;
+    fprintf(file, "%s%s", before, quoted ? quoted : "");
+    free(quoted);
+    json_decref(value);
+}
+
+/* "  key: value # comment" in a scene, where there is a value. */
+static void add_key(FILE *file, const char *indent, const char *key, const char *value,
+                    const char *comment)
+{
+    if (value)
+        fprintf(file, "%s%s: %s%s%s\n", indent, key, value, *comment ? " # " : "", comment);
+}
+
+/* The name of a file as the scene has it, whose folder may be another. */
+static void add_path(FILE *file, const char *before, const struct interview *interview,
+                     const char *path)
+{
+    char whole[2 * NAME];
+    const bool is_moved = *interview->folder && !path_is_absolute(path);
+    snprintf(whole, sizeof whole, "%s%s%s", is_moved ? interview->folder : "", is_moved ? "/" : "",
+             path);
+    add_text(file, before, whole);
+}
+
+static bool is_mesh(const struct interview *interview)
+{
+    return answer_about(interview, "objects[0].mesh.unit") != NULL;
+}
+
+/* The keys of the target that tell what it is, with something between them. */
+static void add_target(FILE *file, const struct interview *interview, const char *between)
+{
+    const char *target = interview->options->target;
+    if (!target) {
+        fprintf(file, "shape: cylinder%slength: 1.5 m%sdiameter: 0.5 m%smaterial: steel", between,
+                between, between);
+    } else if (is_mesh(interview)) {
+        fprintf(file, "shape: mesh%s", between);
+        add_path(file, "mesh: {file: ", interview, target);
+        fprintf(file, ", unit: %s, nose: %s}", answer_about(interview, "objects[0].mesh.unit"),
+                answer_about(interview, "objects[0].mesh.nose"));
+    } else {
+        add_path(file, "target: ", interview, target);
+    }
+}
+
+/* The name of the target's file without its extension. */
+static void add_name(FILE *file, const char *before, const struct interview *interview)
+{
+    char name[NAME];
+    const char *target = interview->options->target;
+    snprintf(name, sizeof name, "%s", target ? last_part(target) : "cylinder");
+    name[strcspn(name, ".")] = '\0';
+    add_text(file, before, *name ? name : "target");
+}
+
+static double highest_level_db(const struct interview *interview)
+{
+    return fmin(floor(fmin(INFINITY, interview->ceiling_over_seabed_db)), USUAL_LEVEL_DB);
+}
+
+/* ---- The scene. */
+
+static void add_input(FILE *file, const struct interview *interview)
+{
+    const struct init_options *options = interview->options;
+    add_path(file, "input:\n  path: ", interview, options->image);
+    fputc('\n', file);
+    add_key(file, "  ", "channel", options->channel, "");
+    add_key(file, "  ", "array", options->array, "");
+    fprintf(file, "  calibration: %s # grey-level curve, noise floor and more, as measured\n",
+            last_part(interview->calibration));
+    if (interview->has_geometry) {
+        fputs("  geometry: from_file\n", file);
+        return;
+    }
+    fputs("  geometry:\n", file);
+    add_key(file, "    ", "row_spacing", answer_about(interview, "input.geometry.row_spacing"),
+            "of pings");
+    add_key(file, "    ", "column_spacing",
+            answer_about(interview, "input.geometry.column_spacing"), "of samples, in slant range");
+    add_key(file, "    ", "first_slant_range",
+            answer_about(interview, "input.geometry.first_slant_range"), "of column 0");
+    add_key(file, "    ", "side", answer_about(interview, "input.geometry.side"),
+            "of the nadir column, which the calibration has");
+}
+
+static void add_sonar(FILE *file, const struct interview *interview)
+{
+    const char *array = answer_about(interview, "sonar.array.length");
+    fputs("\nsonar:\n", file);
+    if (array)
+        fprintf(file, "  kind: real\n  array: {length: %s}\n", array);
+    add_key(file, "  ", "frequency", answer_about(interview, "sonar.frequency"),
+            "centre of the band");
+    add_key(file, "  ", "bandwidth", answer_about(interview, "sonar.bandwidth"),
+            interview->assumes_bandwidth
+                ? "c / 2 over the column spacing: write your sonar's, which no file tells"
+                : "range resolution is c / 2B");
+    add_key(file, "  ", "altitude", answer_about(interview, "sonar.altitude"), "over the seabed");
+    if (!array)
+        fputs("  # resolution: 4 cm # along the track; without it, the row spacing\n", file);
+}
+
+bool write_scene(const struct interview *interview)
+{
+    char part[NAME + 8];
+    FILE *file = begin(interview->scene, part);
+    if (!file)
+        return false;
+    fputs("# Check it with sonject check, then run it with sonject run. sonject help KEY explains "
+          "keys.\nsonject: 1\n\n",
+          file);
+    add_input(file, interview);
+    add_sonar(file, interview);
+    fputs("\nseabed:\n"
+          "  lambert: -27 dB # backscatter strength; it decides how far targets stand out\n"
+          "\nobjects: # without a position, in the middle of the image\n",
+          file);
+    add_name(file, "  - name: ", interview);
+    fputs("\n    ", file);
+    add_target(file, interview, "\n    ");
+    const double level_db = highest_level_db(interview);
+    fprintf(file,
+            "\n    heading: 30 deg # from along-track towards range\n"
+            "    # measured pictures show 8 to 19 dB; without this line the material decides\n"
+            "    level: {over_seabed: %.0f dB}%s\n",
+            level_db,
+            level_db < USUAL_LEVEL_DB ? " # up to the image's ceiling, as real highlights are"
+                                      : "");
+    return finish(file, part, interview->scene);
+}
+
+/* ---- The campaign. */
+
+/* What sonject_check tells of the scene. */
+struct checked {
+    double rows, columns, along_m, first_m, last_m, shadow_m;
+};
+
+static void read_checked(struct checked *checked, const char *text)
+{
+    memset(checked, 0, sizeof *checked);
+    for (const char *line = text; *line; line += *line == '\n') {
+        const char *shadow = strstr(line, ", shadow ");
+        sscanf(line, "image %lf x %lf pixels", &checked->rows, &checked->columns);
+        sscanf(line, " %lf m along-track, slant range %lf...%lf m", &checked->along_m,
+               &checked->first_m, &checked->last_m);
+        if (shadow)
+            sscanf(shadow, ", shadow %lf m", &checked->shadow_m);
+        line += strcspn(line, "\n");
+    }
+}
+
+/* As many pixels as a length has, a multiple of step, but neither too few nor too many. */
+static unsigned chip_pixels(double length_m, double image_m, double image_pixels, double step)
+{
+    const double wanted = ceil(length_m / image_m * image_pixels / step) * step;
+    const double most = fmin(CHIP_MOST, floor(image_pixels / step) * step);
+    return (unsigned)fmax(step, fmin(most, fmax(wanted, 2.0 * step)));
+}
+
+/* To either side of the target is room for a shadow half as long again as in the middle of the
+ * image, and as much along the track. */
+static void add_chip(FILE *file, const char *text)
+{
+    struct checked checked;
+    read_checked(&checked, text);
+    const double length_m = 2.0 * 1.5 * checked.shadow_m;
+    fprintf(file, "chip: {rows: %u, columns: %u, spread: 0.2} # %.2g m wide\n",
+            chip_pixels(length_m, checked.along_m, checked.rows, 16.0),
+            chip_pixels(length_m, checked.last_m - checked.first_m, checked.columns, 32.0),
+            length_m);
+}
+
+/* One swath, or both sides. */
+static void add_swaths(FILE *file, const struct interview *interview)
+{
+    const struct init_options *options = interview->options;
+    static const char *const sides[] = {"port", "starboard"};
+    const char *answered = answer_about(interview, "input.geometry.side");
+    const char *first = answered ? answered : options->channel;
+    const bool has_both = *interview->other_calibration || answered;
+    if (has_both)
+        fputs("splits: {train: 0.5, val: 0.5} # no swath is in two splits\n", file);
+    else
+        fputs("# splits: {train: 0.7, val: 0.3} # with more swaths, none of which is in two\n",
+              file);
+    fputs("labels: [yolo]\nswaths:\n", file);
+    for (int i = 0; i < (has_both ? 2 : 1); i++) {
+        const char *side = first && strcmp(first, sides[1]) == 0 ? sides[1 - i] : sides[i];
+        add_path(file, "  - path: ", interview, options->image);
+        fputc('\n', file);
+        if (has_both && answered)
+            fprintf(file, "    set: {input.geometry.side: %s}\n", side);
+        else if (has_both)
+            fprintf(file, "    set: {input.channel: %s, input.calibration: %s}\n", side,
+                    last_part(i == 0 ? interview->calibration : interview->other_calibration));
+    }
+    fputs("    # avoid: [{row: 20, column: 90, rows: 20, columns: 30}] # real contacts in it\n",
+          file);
+}
+
+bool write_campaign(const struct interview *interview, const char *checked)
+{
+    char part[NAME + 8];
+    const double most_db = highest_level_db(interview);
+    FILE *file = begin(interview->campaign, part);
+    if (!file)
+        return false;
+    fprintf(file,
+            "# Make it: sonject campaign %s -o FOLDER. sonject help KEY explains keys.\n"
+            "sonject_campaign: 1\nscene: %s # all that is not drawn\nimages: 500\n",
+            last_part(interview->campaign), last_part(interview->scene));
+    add_chip(file, checked);
+    fputs("empty: 0.5 # this share of the images shows no target\n", file);
+    add_swaths(file, interview);
+    fprintf(file,
+            "draw: # any key of a scene\n"
+            "  objects[].heading: {uniform: [0 deg, 360 deg]}\n"
+            "  objects[].burial.fraction: {uniform: [0, 0.3]}\n"
+            "  objects[].level.over_seabed: {uniform: [%.0f dB, %.0f dB]} # up to the image's "
+            "ceiling, at most %.0f dB\ntargets:\n",
+            fmax(fmin(FAINTEST_DB, most_db - 1.0), most_db - LEVELS_DB), most_db, USUAL_LEVEL_DB);
+    add_name(file, "  - class: ", interview);
+    fputs("\n    object: {", file);
+    add_target(file, interview, ", ");
+    fputs("}\n", file);
+    return finish(file, part, interview->campaign);
+}
