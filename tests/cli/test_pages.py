@@ -384,11 +384,11 @@ FRAGMENTS = {
     "sonar.kind: real": ("", ["sonar.array={length: 1 m}"], []),
     "aperture: none": ("sonar.", [], []),
 }
-# A campaign's, and what ends where a value would begin.
+# A campaign's, what needs a calibration, and what ends where a value would begin.
 OTHER_FRAGMENTS = {
     "labels: [yolo]", "target:", "visible: {highlight: 1.2 dB, shadow: -2.3 dB}", "chip.spread: 1",
     "chip: {rows: all, columns: all}", "draw: {table: bodies.csv}", "{file: bodies.csv, weight: count}", "{of: length, uniform: [0.5, 1]}",
-    "format: as_input"}
+    "format: as_input", "altitude: first_return"}
 
 
 def test_fragments_of_scene_files_are_read(project):
