@@ -43,7 +43,7 @@ def test_help_of_a_key_is_its_row(sonject):
     assert key == "sonar.altitude (must be there)"
     row = f"| `sonar.altitude` * | {meaning.strip()} |"
     assert row in (SOURCE / "tools/scenes/KEYS.md").read_text(encoding="utf-8")
-    assert "    unit: m, km, cm, mm, or from_file" in facts
+    assert "    unit: m, km, cm, mm, from_file or first_return" in facts
 
 
 def test_help_tells_keys_of_campaigns(sonject):
