@@ -172,7 +172,7 @@ static sonject_status calibrate_pixels(struct report *report,
     THEN(status, find_magnitudes(report, &swath, swath.layout.type, swath.stored, &values));
     struct stored_swath stored = {
         values, (size_t)swath.patch.rows, (size_t)swath.patch.columns, 0.0, 0.0, swath.is_complex};
-    THEN(status, calibrate_image(report, params, options, &stored, text));
+    THEN(status, calibrate_image(report, params, options, &stored, false, text));
     free(values);
     swath_close(&swath);
     return status;
@@ -193,7 +193,7 @@ sonject_status sonject_calibrate(sonject_context *context, const sonject_calibra
         return report_failure(report, SONJECT_ERROR_ARGUMENT, "give an image file, or pixels");
     CHECK(image_options_take(report, taken.channel, taken.array, NULL, taken.geometry, &options));
     CHECK(taken.pixels ? calibrate_pixels(report, &taken, &options, &made)
-                       : calibrate_image(report, &taken, &options, NULL, &made));
+                       : calibrate_image(report, &taken, &options, NULL, false, &made));
     if (text)
         *text = made;
     else

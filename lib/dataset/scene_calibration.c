@@ -103,10 +103,7 @@ sonject_status scene_calibrate(struct report *report, const struct scene *scene,
     if (is_it || (file_exists(path) && !replaces))
         return SONJECT_OK;
     CHECK(folder_make(report, folder));
-    const sonject_log_function log = report->log;
-    report->log = NULL; /* the scene's own notes say more */
-    sonject_status status = calibrate_image(report, &params, &options, NULL, &text);
-    report->log = log;
+    sonject_status status = calibrate_image(report, &params, &options, NULL, true, &text);
     THEN(status, made_for_line(report, scene, hash, text, strlen(text), line));
     if (status == SONJECT_OK) {
         growing_text_add(&made, "%s%s", text, line);

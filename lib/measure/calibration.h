@@ -160,11 +160,11 @@ json_t *calibration_document(const struct calibration *calibration, const char *
 sonject_status document_as_yaml(struct report *report, const json_t *document, char **text);
 
 /* Calibrates a file, or pixels in memory (NULL: the file), whose rows, columns, values and
- * is_complex are filled; leaves the files that are asked for; *text is for free(). Errors: INPUT,
- * STORAGE, MEMORY, UNSUPPORTED. */
+ * is_complex are filled; leaves the files that are asked for; *text is for free(). for_scene: whose
+ * own notes tell of its altitude. Errors: INPUT, STORAGE, MEMORY, UNSUPPORTED. */
 sonject_status calibrate_image(struct report *report, const sonject_calibrate_params *params,
                                const struct image_options *options, struct stored_swath *pixels,
-                               char **text);
+                               bool for_scene, char **text);
 
 /* Draws the page that shows why to believe it. Errors: STORAGE, MEMORY, UNSUPPORTED. */
 sonject_status calibration_page_write(struct report *report, const struct calibration *calibration,

@@ -156,19 +156,20 @@ static sonject_status write_results(struct report *report, const sonject_calibra
     return status;
 }
 
-static void tell_misfit(struct report *report, const struct calibration *found)
+static void tell_misfit(struct report *report, const char *image, const struct calibration *found)
 {
     const struct curve_fit *fit = &found->fits[found->family];
     if (!found->transfer_kind.unseen && !curve_fits(fit))
-        report_note(report,
-                    "the curve and law of speckle do not fit the swath's plain tiles: they are off "
-                    "by %.2g of the pixels, with a standard error of %.1g",
-                    fit->misfit, fit->misfit_error);
+        report_note(
+            report,
+            "%s: the curve and law of speckle do not fit the plain tiles: they are off by %.2g "
+            "of the pixels, with a standard error of %.1g",
+            image ? path_name(image) : "the pixels", fit->misfit, fit->misfit_error);
 }
 
 sonject_status calibrate_image(struct report *report, const sonject_calibrate_params *params,
                                const struct image_options *options, struct stored_swath *pixels,
-                               char **text)
+                               bool for_scene, char **text)
 {
     struct stored_swath swath = {NULL, 0, 0, 0.0, 0.0, false};
     struct calibration_geometry geometry = {NAN, NAN, NAN};
@@ -192,13 +193,13 @@ sonject_status calibrate_image(struct report *report, const sonject_calibrate_pa
         find_geometry(file ? &noted : NULL, options, &geometry);
     THEN(status, calibrate_swath(report, &swath, &geometry, &found));
     if (status == SONJECT_OK) {
-        tell_misfit(report, &found);
+        tell_misfit(report, params->image, &found);
         found.side = noted.knows_side ? noted.side : SIDE_UNKNOWN;
         found.recorded_altitude_m = noted.altitude_m;
         if (file)
             status = compare_altitudes(report, swath_file_recording(file), &found);
         THEN(status, write_results(report, params, &swath, &found, text));
-        if (status == SONJECT_OK && params->image)
+        if (status == SONJECT_OK && params->image && !for_scene)
             tell_altitude(report, params->image, &found);
         calibration_clear(&found);
     }

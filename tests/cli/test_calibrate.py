@@ -91,6 +91,11 @@ def test_a_misfit_tells_what_no_law_of_speckle_explains(sonject, tmp_path):
         told.append(calibrated(sonject, "made.npy")["measured"]["transfer"]["misfit"])
     assert told[0]["fits"] and told[0]["value"] < 0.005 and 0 < told[0]["standard_error"] < 0.002
     assert not told[1]["fits"] and told[1]["value"] > 0.05
+    (tmp_path / "scene.yaml").write_text(
+        "sonject: 1\ninput: {path: made.npy, calibration: auto, geometry: {row_spacing: 5 cm, column_spacing: 5 cm, "
+        "first_slant_range: 30 m}}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\nobjects: []\n")
+    for command in ["calibrate", "made.npy"], ["run", "scene.yaml", "-o", "out"]:
+        assert "note: made.npy: the curve and law of speckle do not fit" in sonject.done(*command).stderr
 
 
 def test_complex_pixels_have_no_curve(sonject, tmp_path):
