@@ -205,6 +205,7 @@ static void test_long_numbers(void **state)
     assert_true(folder->scene.sonar.altitude_m == 10.0);
     free(text);
     expect_repeated_saying(state, head, "0", 1000, "e99999}\n", "too large");
+    expect_repeated_saying(state, head, "k", 1000, "}\n", "kkk...' is not one of m, km, cm, mm");
 }
 
 static void test_other_encodings(void **state)

@@ -311,30 +311,9 @@ static void test_large_targets_are_refused(void **state)
     remove_file(folder, "target.yaml");
 }
 
-static void test_the_library_of_targets(void **state)
-{
-    struct report report = {{0}, NULL, NULL};
-    struct scene scene;
-    (void)state;
-    scene_init(&scene);
-    if (read_scene_file(&report, SOURCE_ROOT "/tools/scenes/targets.yaml", NULL, 0, false,
-                        &scene) != SONJECT_OK)
-        fail_msg("%s", report.message);
-    assert_int_equal(scene.object_count, 12);
-    assert_int_equal(scene.mesh_count, 1);
-    for (uint32_t i = 0; i < scene.object_count; i++) {
-        assert_true(scene.objects[i].name[0] != 0);
-        assert_true(strcmp(scene.objects[i].class_name, "mine") == 0 ||
-                    strcmp(scene.objects[i].class_name, "uxo") == 0 ||
-                    strcmp(scene.objects[i].class_name, "clutter") == 0);
-    }
-    scene_clear(&scene);
-}
-
 TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_parts_belong_to_their_objects),
              TEST(test_groups_place_and_turn), TEST(test_surfaces_are_inherited),
              TEST(test_nesting_is_bounded), TEST(test_overrides_reach_parts),
              TEST(test_what_is_refused), TEST(test_too_many_parts), TEST(test_targets_are_files),
              TEST(test_targets_may_have_one_shape), TEST(test_targets_that_are_wrong),
-             TEST(test_scenes_that_name_targets_wrongly), TEST(test_large_targets_are_refused),
-             TEST(test_the_library_of_targets))
+             TEST(test_scenes_that_name_targets_wrongly), TEST(test_large_targets_are_refused))
