@@ -164,9 +164,9 @@ static void test_paths_are_meant_from_where_they_stand(void **state)
     struct scene_folder *folder = *state;
     const char *absolute = "input.path=/data/a #1: b.tif";
     const char *relative = "input.path= data/swath.tif";
-    char expected[SCENE_FOLDER_CAPACITY + 16];
+    char expected[TEMPORARY_CAPACITY + 16];
     expect_scene_taken(folder, file);
-    snprintf(expected, sizeof expected, "%s/swath.tif", folder->folder);
+    snprintf(expected, sizeof expected, "%s/swath.tif", folder->folder.path);
     assert_string_equal(folder->scene.input_path, expected);
     assert_int_equal(folder->scene.input_kind, SONJECT_INPUT_FILE);
     assert_int_equal(read_scene(folder, &absolute, 1), SONJECT_OK);

@@ -22,14 +22,6 @@ static size_t mutations_wanted(void)
     return number > 0 ? (size_t)number : MUTATIONS;
 }
 
-static size_t lines_of(const char *text, size_t bytes)
-{
-    size_t lines = 1;
-    for (size_t i = 0; i < bytes; i++)
-        lines += text[i] == '\n' || text[i] == '\r';
-    return lines;
-}
-
 /* A mutated name may be that of a folder. */
 static bool names_what_cannot_be_read(const struct scene_folder *folder, sonject_status status)
 {

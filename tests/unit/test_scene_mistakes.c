@@ -4,14 +4,6 @@
 #include "claims.h"
 #include "scene_folder.h"
 
-static size_t lines_of(const char *message)
-{
-    size_t lines = *message != 0;
-    for (; *message; message++)
-        lines += *message == '\n';
-    return lines;
-}
-
 /* Each is one mistake, whatever else is wrong. */
 static void test_mistakes_do_not_hide_each_other_nor_add_any(void **state)
 {
@@ -45,7 +37,7 @@ static void test_mistakes_do_not_hide_each_other_nor_add_any(void **state)
         }
         write_scene(folder, text, strlen(text));
         read_scene(folder, NULL, 0);
-        if (lines_of(folder->report.message) != expected)
+        if (lines_of(folder->report.message, strlen(folder->report.message)) != expected)
             fail_msg("%zu mistakes in\n%s\nare told as\n%s", expected, text,
                      folder->report.message);
     }
@@ -54,8 +46,8 @@ static void test_mistakes_do_not_hide_each_other_nor_add_any(void **state)
 static void test_a_targets_mistakes_stand_where_it_is_named(void **state)
 {
     struct scene_folder *folder = *state;
-    char target[SCENE_FOLDER_CAPACITY + 64];
-    char expected[10 * SCENE_FOLDER_CAPACITY];
+    char target[TEMPORARY_CAPACITY + 64];
+    char expected[10 * TEMPORARY_CAPACITY];
     static const char text[] = BASE "objects:\n"
                                     "  - {target: t.yaml, heading: north}\n"
                                     "  - {target: t.yaml}\n"
@@ -76,7 +68,7 @@ static void test_a_targets_mistakes_stand_where_it_is_named(void **state)
             "%s:5:31: objects[0].heading: 'north' is not a number with a unit of deg, rad\n"
             "%s:7:14: objects[2].target: there is no file %s/absent.yaml; check its name\n"
             "%s:8:19: seabed.lambert: 'loud' is not a number with a unit of dB",
-            target, target, target, shape_words(), folder->file, folder->file, folder->folder,
+            target, target, target, shape_words(), folder->file, folder->file, folder->folder.path,
             folder->file);
     assert_string_equal(folder->report.message, expected);
 }
@@ -91,7 +83,7 @@ static void test_lines_beyond_fifty_are_counted(void **state)
     assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
     /* fifty, or, where the folder's name is long, as many as there is room for */
     const char *message = folder->report.message;
-    const int told = (int)lines_of(message) - 1;
+    const int told = (int)lines_of(message, strlen(message)) - 1;
     char rest[32];
     sprintf(rest, "\nand %d more", 60 - told);
     assert_string_equal(strrchr(message, '\n'), rest);
@@ -104,7 +96,7 @@ static void test_broken_yaml_ends_the_reading(void **state)
     static const char text[] = "sonject: 5\nsonar: {frequency: 1 m}\ninput: [\n";
     write_scene(folder, text, strlen(text));
     assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-    assert_int_equal(lines_of(folder->report.message), 1);
+    assert_int_equal(lines_of(folder->report.message, strlen(folder->report.message)), 1);
 }
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder,

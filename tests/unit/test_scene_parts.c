@@ -179,7 +179,7 @@ static void test_too_many_parts(void **state)
     free(text);
 }
 
-static void write_target(const struct scene_folder *folder, const char *text)
+static void write_target(struct scene_folder *folder, const char *text)
 {
     write_file(folder, "target.yaml", text, strlen(text));
 }
@@ -270,10 +270,10 @@ static void test_targets_that_are_wrong(void **state)
 static void test_scenes_that_name_targets_wrongly(void **state)
 {
     struct scene_folder *folder = *state;
-    char message[SCENE_FOLDER_CAPACITY + 100];
+    char message[TEMPORARY_CAPACITY + 100];
     snprintf(message, sizeof message,
              ":5:13: objects[0].target: there is no file %s/absent.yaml; check its name",
-             folder->folder);
+             folder->folder.path);
     expect_scene_refused(folder, OBJECT "target: absent.yaml\n", message);
     expect_scene_refused(folder, OBJECT "target:\n",
                          ":5:12: objects[0].target: has no value; write one or remove the key");
