@@ -27,6 +27,14 @@
         return cmocka_run_group_tests(tests, before, after);                                       \
     }
 
+/* Knuth's numbers of 64 bits, whose upper ones are random: the next, the same for the same state.
+ */
+static inline uint64_t next_random(uint64_t *state)
+{
+    *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return *state;
+}
+
 /* The call must succeed; otherwise the test fails with the message of its report. */
 #define EXPECT_OK(report, call)                                                                    \
     do {                                                                                           \

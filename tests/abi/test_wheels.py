@@ -183,7 +183,7 @@ def test_windows_takes_any_name_and_replaces_files(command, tmp_path):
 def test_python_passes_its_tests_with_it(wheel, tmp_path):
     subprocess.run([sys.executable, "-m", "venv", tmp_path / "env"], check=True)
     python = tmp_path / "env" / "bin" / "python"
-    subprocess.run([python, "-m", "pip", "-q", "install", wheel, "pytest"], check=True)
+    subprocess.run([python, "-m", "pip", "-q", "install", wheel, "pytest", "pillow"], check=True)
     (library,) = (tmp_path / "env").rglob("libsonject.so")
     variables = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "SONJECT_READERS")}
     tests = SOURCE / "bindings" / "python" / "tests"

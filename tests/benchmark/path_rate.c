@@ -1,7 +1,5 @@
 /* Rates of the tracing kernels on the device native beside OpenCL's, on the same scenes (those of
- * the paper's Figures 6 and 7) in the same run; fails only if two disagree in a single bit. And the
- * noise of the two-interaction energy around the target, at equal time, of the ways to find its
- * paths. */
+ * the paper's Figures 6 and 7) in the same run; fails only if two disagree in a single bit. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,10 +13,7 @@
 #include "trace/glints.h"
 #include "trace/rough.h"
 
-#define COSINE_RAYS_PER_BIN 4.0
-#define REPEATS             5
-#define SEEDS               12
-#define CELL                8 /* bins of a resolution cell */
+#define REPEATS 5
 
 static void *read_back(struct benchmark_scene *set, device_buffer buffer, size_t bytes)
 {
@@ -164,157 +159,12 @@ static int compare(const char *other)
     return differs;
 }
 
-/* How paths are looked for. */
-enum search {
-    SEARCH_LED,        /* from the seabed to the target on purpose, one way for both */
-    SEARCH_COSINE,     /* plain cosine sampling, every hit connected to the source */
-    SEARCH_BRUTE_FORCE /* the paper's */
-};
-
-struct noise {
-    double relative_variance; /* of a cell's energy over the square of its mean, on average */
-    double seconds;           /* a trace */
-    double energy;            /* all of it, m^2 */
-};
-
-/* Turns what the library would do into plain cosine sampling. */
-static void make_plain(struct benchmark_scene *set, struct chain_trace *trace)
-{
-    const device_buffer buffer = trace->launch.buffers[CHAIN_RECORD];
-    struct chain_record *chains = read_back(set, buffer, sizeof *chains);
-    chains->spheres = 0;
-    chains->is_reciprocal = 0;
-    chains->seabed_share = 0.0f;
-    benchmark_expect(&set->report, buffer_write(&set->report, set->tracer.device, buffer, 0,
-                                                sizeof *chains, chains));
-    free(chains);
-}
-
-static double trace_once(struct benchmark_scene *set, enum search search, float *energy,
-                         struct line_grid *grid)
-{
-    struct chain_trace trace;
-    struct tracer *tracer = &set->tracer;
-    double seconds = 0.0;
-    benchmark_expect(&set->report, chain_trace_begin(&trace, tracer, NULL));
-    if (search == SEARCH_COSINE)
-        make_plain(set, &trace);
-    *grid = trace.grid;
-    const uint32_t fans = search == SEARCH_LED ? chain_fan_count(tracer) : 1;
-    for (uint32_t i = 0; i < fans; i++) {
-        struct chain_fan fan;
-        benchmark_expect(&set->report, chain_fan_init(&fan, tracer, &trace.grid, false, i));
-        if (search == SEARCH_COSINE) { /* one fan for all, as the paper's */
-            benchmark_expect(&set->report, patch_fan_init(&fan.record, tracer, &trace.grid, false,
-                                                          COSINE_RAYS_PER_BIN));
-            fan.strips = trace.grid.strips;
-            fan.record.only_object = -2;
-        }
-        seconds += trace_fan(set, &trace, &fan);
-    }
-    /* the plane of two interactions; brute force counts one interaction too */
-    benchmark_expect(&set->report, chain_trace_read(&trace, tracer,
-                                                    search == SEARCH_BRUTE_FORCE ? 1 : 0, energy));
-    chain_trace_end(&trace);
-    return seconds;
-}
-
-/* Adds a trace's energies to sums over resolution cells. */
-static void add_cells(const struct line_grid *grid, const float *energy, double *sum,
-                      double *square)
-{
-    for (size_t cell = 0; cell < line_grid_cells(grid) / CELL; cell++) {
-        double value = 0.0;
-        for (size_t k = 0; k < CELL; k++)
-            value += (double)energy[cell * CELL + k];
-        sum[cell] += value;
-        square[cell] += value * value;
-    }
-}
-
-/* Cells around the target that matter: where the led search finds at least a thousandth of its
- * brightest cell. The noise is that of each cell against its mean by that search, which is left in
- * `reference` (0: does not matter). */
-static struct noise measure(struct benchmark_scene *set, enum search search, double *reference)
-{
-    struct noise noise = {0.0, 0.0, 0.0};
-    struct line_grid grid;
-    line_grid_for_patch(&grid, &set->tracer.view, &set->tracer.response);
-    const size_t cells = line_grid_cells(&grid) / CELL;
-    float *energy = benchmark_array(line_grid_cells(&grid), sizeof *energy);
-    double *sum = benchmark_array(cells, sizeof *sum);
-    double *square = benchmark_array(cells, sizeof *square);
-    for (uint64_t seed = 0; seed < SEEDS; seed++) {
-        set->scene.injection.seed = 1 + seed;
-        noise.seconds += trace_once(set, search, energy, &grid) / SEEDS;
-        add_cells(&grid, energy, sum, square);
-    }
-    double most = 0.0;
-    for (size_t i = 0; i < cells; i++)
-        most = fmax(most, sum[i]);
-    size_t counted = 0;
-    for (size_t i = 0; i < cells; i++) {
-        const double mean = sum[i] / SEEDS;
-        if (search == SEARCH_LED)
-            reference[i] = sum[i] > 0.001 * most ? mean : 0.0;
-        noise.energy += mean;
-        if (reference[i] == 0.0)
-            continue;
-        noise.relative_variance +=
-            (square[i] / SEEDS - mean * mean) / (reference[i] * reference[i]) * SEEDS / (SEEDS - 1);
-        counted++;
-    }
-    noise.relative_variance /= (double)counted;
-    free(energy);
-    free(sum);
-    free(square);
-    return noise;
-}
-
-static void print_gain(const char *what, const struct noise *slow, const struct noise *fast)
-{
-    printf(
-        "%s: %.3g times the variance at equal time (rms %.1f %% in %.3f s against %.1f %% in %.3f "
-        "s; energies %.4g and %.4g m2)\n",
-        what, slow->relative_variance * slow->seconds / (fast->relative_variance * fast->seconds),
-        100.0 * sqrt(slow->relative_variance), slow->seconds, 100.0 * sqrt(fast->relative_variance),
-        fast->seconds, slow->energy, fast->energy);
-}
-
-static void compare_searches(struct benchmark_scene *set)
-{
-    struct line_grid grid;
-    sonject_injection_params *injection = &set->scene.injection;
-    line_grid_for_patch(&grid, &set->tracer.view, &set->tracer.response);
-    double *reference = benchmark_array(line_grid_cells(&grid) / CELL, sizeof *reference);
-    injection->interactions = 2;
-    set->scene.objects[0].material.reflection = 0.0; /* Lambert's law, as the paper's */
-    injection->ray_scale = 1.0;
-    const struct noise led = measure(set, SEARCH_LED, reference);
-    const struct noise cosine = measure(set, SEARCH_COSINE, reference);
-    print_gain("plain cosine sampling", &cosine, &led);
-    set->scene.sonar.transducer_side_m = 8.0;
-    injection->column_rule = SONJECT_COLUMNS_PAPER;
-    const struct noise connected = measure(set, SEARCH_LED, reference);
-    injection->estimator = SONJECT_ESTIMATOR_BRUTE_FORCE;
-    injection->mode = SONJECT_MODE_RESYNTHESISE;
-    injection->order_energies = 1;
-    const struct noise brute = measure(set, SEARCH_BRUTE_FORCE, reference);
-    print_gain("brute force into a source of 8 m x 8 m", &brute, &connected);
-    free(reference);
-}
-
 int main(void)
 {
-    static struct benchmark_scene set;
     static char names[BENCHMARK_DEVICES][128];
     const size_t count = benchmark_opencl_devices(names);
     int differs = 0;
     for (size_t i = 0; i < count; i++)
         differs |= compare(names[i]);
-    benchmark_set_up(&set, NULL, 256);
-    set.scene.injection.ray_scale = 8.0;
-    compare_searches(&set);
-    benchmark_clear(&set);
     return differs;
 }

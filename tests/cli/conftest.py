@@ -87,6 +87,13 @@ def swath():
     return make_swath()
 
 
+@pytest.fixture
+def sides(request):
+    """Samples of port and starboard, of the size that the module says."""
+    random, size = numpy.random.default_rng(7), (request.module.ROWS, request.module.COLUMNS)
+    return [random.rayleigh(2000.0, size).astype(numpy.uint16) for _ in range(2)]
+
+
 def write_scene(folder, swath):
     """A scene file with a sphere on a float32 swath."""
     (folder / "swath.tif").write_bytes(images.tiff_bytes(swath))

@@ -8,8 +8,8 @@ import numpy
 _FORMATS = {"u": 1, "f": 3}  # TIFF's SampleFormat
 
 
-def tiff_bytes(pixels, width=None, height=None):
-    """An uncompressed little-endian TIFF of (rows, columns) or (rows, columns, channels).
+def tiff_bytes(pixels, width=None, height=None, deflated=False):
+    """A little-endian TIFF of (rows, columns) or (rows, columns, channels).
 
     width, height: what the header says instead of the truth.
     """
@@ -17,6 +17,7 @@ def tiff_bytes(pixels, width=None, height=None):
     rows, columns = pixels.shape[:2]
     channels = pixels.shape[2] if pixels.ndim == 3 else 1
     data = pixels.astype(pixels.dtype.newbyteorder("<")).tobytes()
+    data = zlib.compress(data) if deflated else data
     shorts = {
         258: [8 * pixels.dtype.itemsize] * channels,  # BitsPerSample
         339: [_FORMATS[pixels.dtype.kind]] * channels,  # SampleFormat
@@ -25,7 +26,7 @@ def tiff_bytes(pixels, width=None, height=None):
     single = {
         256: width or columns,
         257: height or rows,
-        259: 1,  # no compression
+        259: 8 if deflated else 1,  # compression
         262: 1,  # black is zero
         273: 8,  # the only strip's place
         277: channels,

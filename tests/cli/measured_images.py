@@ -3,10 +3,10 @@
 import os
 import pathlib
 import struct
-import zlib
 
 import numpy
 import pytest
+from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = pathlib.Path(os.environ.get("SONJECT_MEASURED_IMAGES", ROOT.parent / "shared" / "data"))
@@ -21,47 +21,11 @@ def measured(name):
     return path
 
 
-def _unfiltered(lines, columns, step):
-    """The rows of a PNG, in bytes, step of them a pixel (RFC 2083, filters 0 to 4)."""
-    rows = numpy.zeros((len(lines) // (columns + 1), columns), numpy.uint8)
-    above = numpy.zeros(columns, numpy.uint8)
-    for number, row in enumerate(rows):
-        start = number * (columns + 1)
-        kind, line = lines[start], lines[start + 1 : start + 1 + columns]
-        if kind == 0:
-            row[:] = numpy.frombuffer(line, numpy.uint8)
-        elif kind == 2:
-            row[:] = numpy.frombuffer(line, numpy.uint8) + above
-        else:
-            for i, value in enumerate(line):
-                left, corner = (int(row[i - step]), int(above[i - step])) if i >= step else (0, 0)
-                up = int(above[i])
-                if kind == 1:
-                    guess = left
-                elif kind == 3:
-                    guess = (left + up) // 2
-                else:
-                    distances = [abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)]
-                    guess = (left, up, corner)[distances.index(min(distances))]
-                row[i] = (value + guess) & 255
-        above = row
-    return rows
-
-
 def read_png(path):
     """Pixels of an 8 bit PNG: grey, numbers of colours, or (rows, columns, 3)."""
-    content = path.read_bytes()
-    columns, rows, depth, colour = struct.unpack(">IIBB", content[16:26])
-    assert depth == 8 and colour in (0, 2, 3)
-    step = 3 if colour == 2 else 1
-    position, data = 8, b""
-    while position < len(content):
-        size, name = struct.unpack(">I4s", content[position : position + 8])
-        if name == b"IDAT":
-            data += content[position + 8 : position + 8 + size]
-        position += 12 + size
-    pixels = _unfiltered(zlib.decompress(data), step * columns, step)[:rows]
-    return pixels.reshape(rows, columns, 3) if step == 3 else pixels
+    image = Image.open(path)
+    assert image.mode in ("L", "P", "RGB")
+    return numpy.array(image)
 
 
 def read_xtf(path):

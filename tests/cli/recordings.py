@@ -1,10 +1,26 @@
-"""A small writer of XTF files, after Triton's published description of the format."""
+"""Small writers of XTF and JSF files, after the published descriptions of the formats, and of scenes of such files."""
 
 import struct
 
 import numpy
 
 PORT, STARBOARD, SUBBOTTOM = 1, 2, 0
+SCENE = """\
+sonject: 1
+input: {{path: {name}, {more} geometry: {geometry}}}
+patch: {{row: 10, column: 60, rows: 40, columns: 120}}
+sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: {altitude}, resolution: 0.1 m}}
+objects: [{{name: can, shape: cylinder, length: 1 m, diameter: 0.4 m, heading: 30 deg}}]
+"""
+EXPLICIT = "{row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.075 m}"
+
+
+def write_scene(folder, name, channel="", more="", geometry="from_file", altitude="from_file"):
+    """Of the folder's file of that name."""
+    path = folder / f"{name}.yaml"
+    more += f"channel: {channel}," if channel != "" else ""
+    path.write_text(SCENE.format(name=name, more=more, geometry=geometry, altitude=altitude))
+    return path
 
 
 def _put(block, place, layout, *values):

@@ -1082,9 +1082,14 @@ images: -3
 chip: {rows: 15, columns: 64}
 empty: 1.5
 outputs: [shadows]
+labels: [yoolo]
 splits: {../evil: 1}
-swaths: [{path: swath0.png}]
+swaths: [{path: swath0.png}, {split: train}]
 draw:
+  level: {over_seabed: 3 dB}
+  "objects[1].pitch": 0
+  seabed: {lambert: {uniform: [-30 dB, -20 dB]}}
+  class: 3
   sonar.frequncy: 3
   objects[].headnig: 3
   patch.rows: 3
@@ -1094,18 +1099,24 @@ draw:
   sonar.bandwidth: {log_uniform: [-30 dB, -3 dB]}
   sonar.resolution: {unifrom: [3 cm, 4 cm]}
   injection.rays: {choice: [1, 2], weights: [0, 0]}
-targets: [{class: '', object: {shape: sphere, diamter: 1 m}}]
+targets:
+  - {class: '', object: {shape: sphere, diamter: 1 m}}
+  - {class: ball, weight: 1, draw: {sonar.altitude: 3}}
 clutter: {number: 51, objects: [{class: stone, object: {shape: sphere, diameter: 20 cm}}]}
 """
 # In the order of their lines.
 TOLD = [
     ("sonject_campaign", "must be 1"), ("images", "whole number"), ("chip.rows", "16...8192"),
-    ("empty", "0...1"), ("outputs", "did you mean 'shadow'?"), ("splits", "names a folder"),
+    ("empty", "0...1"), ("outputs", "did you mean 'shadow'?"),
+    ("labels[0]", "did you mean 'yolo'?"), ("splits", "names a folder"), ("swaths[1].path", "missing"),
+    ("draw.level", "is of objects: write objects[].level"), ("draw.objects[1].pitch", "is of objects"),
+    ("draw.seabed", "is a section"), ("draw.class", "scenes have no such key; there are sonject, band"),
     ("sonar.frequncy", "did you mean 'frequency'?"), ("headnig", "did you mean 'heading'?"),
     ("patch.rows", "the campaign itself"), ("seabed.lambert", "swap them"),
     ("sonar.altitude", "not a finite number"), ("sonar.frequency", "same unit"),
     ("sonar.bandwidth", "above 0"), ("sonar.resolution", "'uniform'"), ("weights", "all 0"),
     ("targets[0].class", "1 to"), ("diamter", "did you mean 'diameter'?"),
+    ("targets[1].object", "missing"), ("targets[1].draw.sonar.altitude", "is of scenes"),
     ("clutter.number", "0 to 50"),
 ]
 

@@ -16,12 +16,6 @@ ALTITUDE, SPACING = 6.0, 30.0 / COLUMNS
 
 
 @pytest.fixture
-def sides():
-    random = numpy.random.default_rng(7)
-    return [random.rayleigh(2000.0, (ROWS, COLUMNS)).astype(numpy.uint16) for _ in range(2)]
-
-
-@pytest.fixture
 def line(tmp_path, sides):
     """line.xtf: port and starboard of 30 m, 10 cm a ping, 6 m up."""
     (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides))

@@ -55,7 +55,6 @@ def test_series_of_other_inputs_are_refused_and_lost_ones_made_again(sonject, sc
 def test_what_is_wrong_leaves_nothing(sonject, scene, tmp_path):
     scene.write_text(SCENE + ARRAY)
     for setting, words in (
-            ("elements.sampling_rate=20 kHz", "elements.sampling_rate: must be at least 30000 Hz"),
             ("sonar.resolution=3.7 mm", "no aperture on a straight track resolves 0.0037 m"),
             ("sonar.motion={random: {rms: 1 mm, correlation: 1 m}}", "sonar.motion moves images alone"),
             ("objects[0].level={over_seabed: 14 dB}", "objects[0].level sets an image's levels alone")):

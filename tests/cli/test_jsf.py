@@ -12,22 +12,9 @@ import pytest
 import images
 import recordings
 from conftest import assert_refused
+from recordings import EXPLICIT, write_scene
 
 ROWS, COLUMNS = 60, 200
-INSIDE = (slice(10, 50), slice(60, 180))
-SCENE = """\
-sonject: 1
-input: {{path: {path}, {more} geometry: {geometry}}}
-patch: {{row: 10, column: 60, rows: 40, columns: 120}}
-sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: {altitude}, resolution: 0.1 m}}
-objects: [{{name: can, shape: cylinder, length: 1 m, diameter: 0.4 m, heading: 30 deg}}]
-"""
-
-
-def write_scene(folder, path, more="", geometry="from_file", altitude="from_file"):
-    scene = folder / (path + ".yaml")
-    scene.write_text(SCENE.format(path=path, more=more, geometry=geometry, altitude=altitude))
-    return scene
 
 
 def messages(data):
@@ -62,19 +49,13 @@ def changed_samples(before, after, side, pair=1):
     return rows, columns
 
 
-@pytest.fixture
-def sides():
-    random = numpy.random.default_rng(7)
-    return [random.rayleigh(2000.0, (ROWS, COLUMNS)).astype(numpy.uint16) for _ in range(2)]
-
-
 @pytest.mark.parametrize("number, side", enumerate(("port", "starboard")))
 def test_a_channel_is_as_its_pixels_in_a_tiff(sonject, tmp_path, sides, number, side):
     (tmp_path / "line.jsf").write_bytes(recordings.jsf_bytes(*sides))
     (tmp_path / "line.tif").write_bytes(images.tiff_bytes(sides[number]))
-    explicit = f"{{row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.075 m, side: {side}}}"
-    sonject.done("run", write_scene(tmp_path, "line.jsf", f"channel: {side},"), "-o", "jsf")
-    sonject.done("run", write_scene(tmp_path, "line.tif", "", explicit, "6 m"), "-o", "tif")
+    explicit = EXPLICIT.replace("}", f", side: {side}}}")
+    sonject.done("run", write_scene(tmp_path, "line.jsf", side), "-o", "jsf")
+    sonject.done("run", write_scene(tmp_path, "line.tif", geometry=explicit, altitude="6 m"), "-o", "tif")
     before = (tmp_path / "line.jsf").read_bytes()
     after = (tmp_path / "jsf" / "image.jsf").read_bytes()
     injected, _ = samples_of(after, number)
@@ -94,9 +75,8 @@ def test_analytic_signals_are_complex_pixels(sonject, tmp_path):
     port, starboard = analytic(random, 1500.0), analytic(random, 1500.0)
     (tmp_path / "line.jsf").write_bytes(recordings.jsf_bytes(port, starboard))
     (tmp_path / "line.tif").write_bytes(images.tiff_bytes(port.astype("<f4")))
-    explicit = "{row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.075 m}"
-    sonject.done("run", write_scene(tmp_path, "line.jsf", "channel: port, complex: true,"), "-o", "jsf")
-    sonject.done("run", write_scene(tmp_path, "line.tif", "complex: true,", explicit, "6 m"), "-o", "tif")
+    sonject.done("run", write_scene(tmp_path, "line.jsf", "port", "complex: true,"), "-o", "jsf")
+    sonject.done("run", write_scene(tmp_path, "line.tif", "", "complex: true,", EXPLICIT, "6 m"), "-o", "tif")
     before = (tmp_path / "line.jsf").read_bytes()
     after = (tmp_path / "jsf" / "image.jsf").read_bytes()
     injected, _ = samples_of(after, 0)
@@ -105,7 +85,7 @@ def test_analytic_signals_are_complex_pixels(sonject, tmp_path):
     rows, columns = changed_samples(before, after, 0, 2)
     assert len(set(zip(rows, columns))) > 50
     assert rows.min() >= 10 and rows.max() < 50 and columns.min() >= 60 and columns.max() < 180
-    assert_refused(sonject("run", write_scene(tmp_path, "line.jsf", "channel: port,"), "-o", "out"), 3,
+    assert_refused(sonject("run", write_scene(tmp_path, "line.jsf", "port"), "-o", "out"), 3,
                    "has 2 channels: say complex: true")
 
 
@@ -162,7 +142,7 @@ def test_geometry_is_the_pings(sonject, tmp_path, sides):
 def test_headings_place_targets(sonject, tmp_path, sides):
     """Abeam to port of a sonar that looks east while it moves north east."""
     (tmp_path / "line.jsf").write_bytes(recordings.jsf_bytes(*sides, heading=90.0))
-    sonject.done("run", write_scene(tmp_path, "line.jsf", "channel: port,"), "-o", "out")
+    sonject.done("run", write_scene(tmp_path, "line.jsf", "port"), "-o", "out")
     found = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"][0]
     row, place = found["row"], found["position"]
     assert place["easting_m"] == pytest.approx(1000.0 + 0.06 * row, abs=0.01)
@@ -173,9 +153,9 @@ def test_what_is_not_valid_is_not_there(sonject, tmp_path, sides):
     """By the pings' own flags."""
     for valid, words in ((0x48, "fewer than two of its pings have a position"), (0x09, "has no altitudes")):
         (tmp_path / "line.jsf").write_bytes(recordings.jsf_bytes(*sides, valid=valid))
-        assert_refused(sonject("check", write_scene(tmp_path, "line.jsf", "channel: port,")), 3, words)
+        assert_refused(sonject("check", write_scene(tmp_path, "line.jsf", "port")), 3, words)
     (tmp_path / "line.jsf").write_bytes(recordings.jsf_bytes(*sides, heading=90.0, valid=0x41))
-    sonject.done("run", write_scene(tmp_path, "line.jsf", "channel: port,"), "-o", "out")
+    sonject.done("run", write_scene(tmp_path, "line.jsf", "port"), "-o", "out")
     found = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"][0]
     # by the track's course, which has 3 to the east for 4 to the north
     assert found["position"]["easting_m"] == pytest.approx(
@@ -192,7 +172,7 @@ def test_long_pings_have_more_bits(sonject, tmp_path):
 def test_a_file_of_several_subsystems_has_numbered_channels(sonject, tmp_path, sides):
     (tmp_path / "line.jsf").write_bytes(recordings.jsf_bytes(*sides, subsystems=(20, 21)))
     for channel in ("port", 4):
-        assert_refused(sonject("check", write_scene(tmp_path, "line.jsf", f"channel: {channel},")), 3,
+        assert_refused(sonject("check", write_scene(tmp_path, "line.jsf", channel)), 3,
                        "choose one by input.channel or --channel, 0 (port, subsystem 20), 1 (starboard, subsystem 20), "
                        "2 (port, subsystem 21), 3 (starboard, subsystem 21)")
     sonject.done("convert", "line.jsf", "a.npy", "--channel", "3")
@@ -229,7 +209,7 @@ REFUSALS = {
 def test_damaged_and_other_files_are_refused(sonject, tmp_path, sides, case):
     make, words = REFUSALS[case]
     (tmp_path / "line.jsf").write_bytes(make(recordings.jsf_bytes(*sides), sides[0][0]))
-    answer = sonject("run", write_scene(tmp_path, "line.jsf", "channel: port,"), "-o", "out")
+    answer = sonject("run", write_scene(tmp_path, "line.jsf", "port"), "-o", "out")
     assert_refused(answer, 3, "line.jsf: ", words)
     assert not (tmp_path / "out").exists()
 
@@ -258,7 +238,7 @@ def test_others_read_what_we_write(sonject, tmp_path):
     random = numpy.random.default_rng(3)
     port, starboard = analytic(random, 1500.0), analytic(random, 1500.0)
     (tmp_path / "line.jsf").write_bytes(recordings.jsf_bytes(port, starboard, heading=12.5))
-    sonject.done("run", write_scene(tmp_path, "line.jsf", "channel: port, complex: true,"), "-o", "out")
+    sonject.done("run", write_scene(tmp_path, "line.jsf", "port", "complex: true,"), "-o", "out")
     subprocess.run([reader, "-c", READER, tmp_path / "line.jsf", tmp_path / "out" / "image.jsf"], check=True,
                    env={**os.environ, "PYTHONPATH": ""}, stdout=subprocess.DEVNULL)
     before, after = (numpy.load(f"{tmp_path / path}.port.npz") for path in ("line.jsf", "out/image.jsf"))

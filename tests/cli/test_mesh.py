@@ -61,18 +61,3 @@ def test_the_content_of_a_mesh_counts(sonject, scene, mesh, tmp_path):
     assert_refused(sonject("run", scene, "-o", "out"), 2, "differs in objects[].mesh:")
     other, said = run("--overwrite")
     assert other != first and "already holds" not in said
-
-
-def test_bad_meshes_are_told_in_one_line(sonject, scene, mesh):
-    for content, words in (("v 0 0 nan\n", ["line 1", "finite coordinate"]),
-                           ("nothing of the kind\n", ["no triangles"]), (None, ["there is no file"])):
-        mesh.write_text(content) if content else mesh.unlink()
-        answer = sonject("run", scene, "-o", "out")
-        assert_refused(answer, 3, "scene.yaml:13:", "objects[0].mesh.file", "rock.obj", *words,
-                       mistakes=1 if content else 2)  # each key that names a missing file
-
-
-def test_a_folder_is_no_mesh(sonject, scene, mesh):
-    mesh.unlink()
-    mesh.mkdir()
-    assert_refused(sonject("check", scene), 5, "scene.yaml:13:", "rock.obj", "s a directory")

@@ -12,33 +12,10 @@ import images
 import recordings
 from conftest import assert_refused
 from measured_images import measured, read_png
+from recordings import EXPLICIT, write_scene
 
 ROWS, COLUMNS = 60, 200
 LINE = "sidescan/scotsman-iver2.xtf"
-SCENE = """\
-sonject: 1
-input: {{path: {path}, {channel} geometry: {geometry}}}
-patch: {{row: 10, column: 60, rows: 40, columns: 120}}
-sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: {altitude}, resolution: 0.1 m}}
-objects: [{{name: can, shape: cylinder, length: 1 m, diameter: 0.4 m, heading: 30 deg}}]
-"""
-
-
-@pytest.fixture
-def sides():
-    """Samples of port and starboard."""
-    random = numpy.random.default_rng(7)
-    return [random.rayleigh(2000.0, (ROWS, COLUMNS)).astype(numpy.uint16) for _ in range(2)]
-
-
-EXPLICIT = "{row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.075 m}"
-
-
-def write_scene(folder, name, channel="", geometry="from_file", altitude="from_file"):
-    path = folder / f"{name}.yaml"
-    path.write_text(SCENE.format(path=name, channel=channel and f"channel: {channel},",
-                                 geometry=geometry, altitude=altitude))
-    return path
 
 
 @pytest.mark.parametrize("side", ["port", "starboard"])

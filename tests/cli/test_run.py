@@ -240,17 +240,6 @@ def test_only_the_driver_keeps_programs_and_a_run_needs_no_home(sonject, scene, 
     assert not files_below(tmp_path / "caches") + files_below(tmp_path / "home")
 
 
-def test_without_opencl_there_is_the_processor(sonject, scene, tmp_path):
-    (tmp_path / "vendors").mkdir()
-    empty = {"OCL_ICD_VENDORS": str(tmp_path / "vendors")}
-    pocl = {**empty, "SONJECT_DEVICE": "pthread"}
-    assert_refused(sonject("run", scene, "-o", "result", changes=pocl), 4, "no OpenCL device", "native")
-    assert not files_below(tmp_path / "result")
-    sonject.done("check", scene, changes=empty)
-    assert sonject.done("devices", changes=empty).stdout.count("\n") == 2
-    sonject.done("run", scene, "-o", "result", changes=empty)
-
-
 def test_an_unknown_device_is_named(sonject, scene, tmp_path):
     answer = sonject("run", scene, "-o", "result", "--device", "abacus")
     assert_refused(answer, 4, "abacus")
@@ -276,11 +265,6 @@ def test_a_limit_on_file_sizes_leaves_nothing_half(sonject, scene, tmp_path):
     assert {path.name for path in files_below(tmp_path / "result")} <= RESULTS
     sonject.done("run", scene, "-o", "result")
     assert contents(tmp_path / "result") == contents(tmp_path / "first")
-
-
-def test_a_folder_that_cannot_be_made(sonject, scene):
-    answer = sonject("run", scene, "-o", scene / "result")
-    assert_refused(answer, 5, "scene.yaml")
 
 
 def start_and_wait_for_the_bar(arguments, folder, variables):
@@ -366,19 +350,6 @@ def test_signals_stop_a_run(scene, tmp_path, environment, number, code, words):
     assert not (tmp_path / "result" / "run.json").exists()
     (kept,) = files_below(tmp_path / "result")  # what was traced
     assert kept.parent.name == "work" and kept.suffix == ".sums"
-
-
-def test_a_killed_run_is_completed_by_the_next(sonject, scene, tmp_path, environment):
-    arguments = ["run", scene, "-o", "result", "--set", "injection.rays=64"]
-    result = tmp_path / "result"
-    code, _ = stop_at_the_bar(arguments, result, tmp_path, environment, signal.SIGKILL)
-    assert code == -signal.SIGKILL
-    assert not (tmp_path / "result" / "run.json").exists()
-    sonject.done(*arguments)
-    assert {path.name for path in files_below(tmp_path / "result")} == RESULTS
-    arguments[3] = "fresh"
-    sonject.done(*arguments)
-    assert contents(tmp_path / "result") == contents(tmp_path / "fresh")
 
 
 def test_seabed_and_quicklook_belong_together(sonject, tmp_path):

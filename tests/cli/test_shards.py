@@ -3,14 +3,13 @@
 import json
 import random
 import shutil
-import signal
 import subprocess
 import time
 
 import pytest
 
 from conftest import COMMAND, assert_refused, files_below, make_swath, write_scene
-from test_run import RESULTS, contents, read_rest, start_and_wait_for_the_bar
+from test_run import RESULTS, contents
 from test_stages import command
 
 # So many that a launch is cut in slices, between which a run stops.
@@ -146,16 +145,6 @@ def test_what_a_run_of_another_scene_left_is_dropped(sonject, scene, tmp_path, w
                    "1e-9").returncode == 85
     command(sonject, "run", scene, "-o", "result")
     assert contents(tmp_path / "result") == whole
-
-
-def test_a_stopped_run_goes_on(sonject, scene, tmp_path, environment, wholes):
-    arguments = ["run", scene, "-o", "result", *MANY_RAYS]
-    process, terminal = start_and_wait_for_the_bar(arguments, tmp_path, environment)
-    process.send_signal(signal.SIGTERM)
-    read_rest(terminal)
-    assert process.wait(60) in (0, 85)
-    command(sonject, *arguments)
-    assert contents(tmp_path / "result") == wholes[1]
 
 
 def test_killed_shards_go_on_with_what_they_had_kept(scene, tmp_path, environment, sonject, wholes):

@@ -41,27 +41,11 @@ def user_scene(scene):
     return path
 
 
-def assert_our_line(answer, code, *words):
-    """Our one line; the compiler of a driver may tell how many errors it found besides."""
-    assert answer.returncode == code, answer.stderr
-    lines = [line for line in answer.stderr.splitlines() if line.startswith("sonject: ")]
-    assert len(lines) == 1, answer.stderr
-    for word in words:
-        assert word in lines[0], (word, lines[0])
-    assert not answer.stdout
-
-
 def test_code_needs_consent(sonject, user_scene):
     before = files_below(user_scene.parent)
     for arguments in (["check", user_scene], ["run", user_scene, "-o", "result"]):
         assert_refused(sonject(*arguments), 3, "user.yaml:15:11: objects[0].user: ", ALLOW)
     assert files_below(user_scene.parent) == before
-
-
-def test_code_within_the_scene_needs_consent_too(sonject, user_scene):
-    user_scene.write_text(user_scene.read_text().replace("file: ball.cl", "code: whatever"))
-    assert_refused(sonject("check", user_scene), 3, "objects[0].user: ", ALLOW)
-    assert_refused(sonject("check", ALLOW, user_scene), 3, "user.yaml:15: ", "shape_distance")
 
 
 def test_a_sphere_by_code_is_the_sphere(sonject, scene, user_scene, tmp_path):
@@ -99,25 +83,11 @@ def test_check_tells_what_it_tried(sonject, user_scene):
 def test_compilers_errors_have_the_users_line(sonject, user_scene):
     code = user_scene.parent / "ball.cl"
     code.write_text(SPHERE.replace("sqrt(square)", "root(square)"))
-    before = files_below(user_scene.parent)
-    for arguments in (["check", user_scene], ["run", user_scene, "-o", "result"]):
-        assert_our_line(sonject(*arguments, ALLOW), 3, "ball.cl:7: ", "root")
-    assert files_below(user_scene.parent) == before
-
-
-@pytest.mark.parametrize(
-    "old, new, words",
-    [
-        ("return p;", "return p + (float3)(0.02f, 0.0f, 0.0f);", "shape_normal is not the normal"),
-        ("return p;", "return -p;", "point away from the ray"),
-        ("a[0] * a[0] -", "2.0f * a[0] * a[0] -", "beyond the bounding_radius"),
-    ],
-)
-def test_check_refuses_wrong_shapes(sonject, user_scene, old, new, words):
-    code = user_scene.parent / "ball.cl"
-    assert code.read_text().count(old) == 1
-    code.write_text(code.read_text().replace(old, new))
-    assert_our_line(sonject("check", user_scene, ALLOW), 3, "ball.cl: ", words)
+    answer = sonject("check", user_scene, ALLOW)
+    assert answer.returncode == 3 and not answer.stdout
+    # a driver's compiler may tell how many errors it found besides
+    (line,) = [line for line in answer.stderr.splitlines() if line.startswith("sonject: ")]
+    assert "ball.cl:7: " in line and "root" in line
 
 
 def test_code_that_impulses_name_needs_consent(sonject, scene, tmp_path):

@@ -1,10 +1,18 @@
 """Makes the inputs of the frozen scenes, the same bytes everywhere."""
 
-import array
 import math
+import pathlib
 import random
-import struct
-import zlib
+import sys
+
+import numpy
+from PIL import Image
+
+TESTS = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS / "cli"), str(TESTS / "fuzz")]
+from corpora import MAT_HEAD, mat_array  # noqa: E402
+from images import png_bytes, tiff_bytes  # noqa: E402
+from recordings import xtf_bytes  # noqa: E402
 
 PLAIN = """\
 sonject: 1
@@ -39,138 +47,16 @@ objects: [{name: ball, shape: sphere, diameter: 1 m, position: {row: 80, column:
 
 
 def seabed(rows, columns, seed):
-    """Rayleigh amplitudes on ripples, rms 0.1."""
+    """Rayleigh amplitudes on ripples, rms 0.1; by Python's functions, which are the same in all versions of NumPy."""
     draw = random.Random(seed).random
-    return [
-        0.1 * (1 + 0.4 * math.sin(0.21 * column + 0.05 * row)) * math.sqrt(-math.log(1 - draw()))
-        for row in range(rows)
-        for column in range(columns)
-    ]
+    return numpy.array([
+        [0.1 * (1 + 0.4 * math.sin(0.21 * column + 0.05 * row)) * math.sqrt(-math.log(1 - draw()))
+         for column in range(columns)]
+        for row in range(rows)])
 
 
-def grey(amplitudes, most):
-    return [min(most, round(most * amplitude)) for amplitude in amplitudes]
-
-
-def tiff(samples, columns, channels=1, compress=False):
-    """samples: an array of B, H or f."""
-    rows = len(samples) // columns // channels
-    data = samples.tobytes()
-    data = zlib.compress(data) if compress else data
-    data += bytes(len(data) % 2)
-    shorts = {258: [8 * samples.itemsize] * channels, 338: [0] * (channels - 1)}
-    shorts[339] = [3 if samples.typecode == "f" else 1] * channels
-    longs = {256: columns, 257: rows, 259: 8 if compress else 1, 262: 1, 273: 8, 277: channels}
-    longs |= {278: rows, 279: len(data), 284: 1}
-    entries = [struct.pack("<HHII", tag, 4, 1, value) for tag, value in longs.items()]
-    for tag, values in shorts.items():
-        if values:
-            packed = struct.pack(f"<{len(values)}H", *values)
-            entries.append(struct.pack("<HHI4s", tag, 3, len(values), packed))
-    entries.sort(key=lambda entry: struct.unpack_from("<H", entry))
-    directory = struct.pack("<H", len(entries)) + b"".join(entries) + bytes(4)
-    return struct.pack("<2sHI", b"II", 42, 8 + len(data)) + data + directory
-
-
-def png(pixels, columns):
-    def chunk(name, content):
-        return (
-            struct.pack(">I", len(content))
-            + name
-            + content
-            + struct.pack(">I", zlib.crc32(name + content))
-        )
-
-    lines = b"".join(
-        b"\0" + bytes(pixels[start : start + columns]) for start in range(0, len(pixels), columns)
-    )
-    head = struct.pack(">IIBBBBB", columns, len(pixels) // columns, 8, 0, 0, 0, 0)
-    return (
-        b"\x89PNG\r\n\x1a\n"
-        + chunk(b"IHDR", head)
-        + chunk(b"IDAT", zlib.compress(lines))
-        + chunk(b"IEND", b"")
-    )
-
-
-def npy(samples, shape, kind="<f4"):
-    head = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
-    return b"\x93NUMPY\1\0" + struct.pack("<H", len(head)) + head.encode() + samples.tobytes()
-
-
-def mat(samples, rows):
-    """MATLAB's version 5, one single array named swath; samples column by column."""
-
-    def element(kind, content):
-        return struct.pack("<II", kind, len(content)) + content + bytes(-len(content) % 8)
-
-    body = (
-        element(6, struct.pack("<II", 7, 0))
-        + element(5, struct.pack("<ii", rows, len(samples) // rows))
-        + element(1, b"swath")
-        + element(7, samples.tobytes())
-    )
-    return b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H2s", 0x100, b"IM") + element(14, body)
-
-
-def bmp(pixels, columns):
-    """Grey, of 8 bits; columns: a multiple of 4."""
-    rows = len(pixels) // columns
-    palette = b"".join(bytes([level] * 3 + [0]) for level in range(256))
-    upwards = [bytes(pixels[row * columns : (row + 1) * columns]) for row in reversed(range(rows))]
-    return (
-        struct.pack(
-            "<2sIHHIIiiHHIIiiII",
-            b"BM",
-            1078 + len(pixels),
-            0,
-            0,
-            1078,
-            40,
-            columns,
-            rows,
-            1,
-            8,
-            0,
-            len(pixels),
-            2835,
-            2835,
-            256,
-            256,
-        )
-        + palette
-        + b"".join(upwards)
-    )
-
-
-def xtf(rows, samples, slant_range_m):
-    """Both sides in 16 bits with position and altitude, after Triton's description."""
-    head = bytearray(1024)
-    struct.pack_into("<BB", head, 0, 0x7B, 1)
-    struct.pack_into("<HH", head, 164, 0, 2)
-    for number in range(2):
-        struct.pack_into("<BBHHH", head, 256 + 128 * number, 1 + number, number, 0, 1, 2)
-    draw = random.Random(9)
-    data = bytes(head)
-    for row in range(rows):
-        ping = bytearray(256)
-        size = 256 + 2 * (64 + 2 * samples)
-        padding = -size % 64
-        struct.pack_into("<HBBHHHI", ping, 0, 0xFACE, 0, 0, 2, 0, 0, size + padding)
-        struct.pack_into("<HBBBBBBHHI", ping, 14, 2024, 5, 2, 12, 0, row % 60, 0, 123, 0, row)
-        struct.pack_into("<dd", ping, 160, 2000 + 0.08 * row, 1000 + 0.06 * row)
-        struct.pack_into("<f", ping, 196, 6)
-        data += bytes(ping)
-        for number in range(2):
-            channel = bytearray(64)
-            struct.pack_into(
-                "<HHfffff", channel, 0, number, 2, slant_range_m, 0, 0, slant_range_m / 750, 0.1
-            )
-            struct.pack_into("<I", channel, 42, samples)
-            line = [int(3000 * math.sqrt(-math.log(1 - draw.random()))) for _ in range(samples)]
-            data += bytes(channel) + struct.pack(f"<{samples}H", *line)
-        data += bytes(padding)
-    return data
+def grey(amplitudes, most, kind):
+    return numpy.minimum(most, numpy.rint(most * amplitudes)).astype(kind)
 
 
 def write_inputs(folder):
@@ -178,34 +64,25 @@ def write_inputs(folder):
         (folder / name).write_text(text)
     rows, columns = 240, 320
     amplitudes = seabed(rows, columns, 1)
-    floats, bytes8 = array.array("f", amplitudes), array.array("B", grey(amplitudes, 255))
-    turned = array.array(
-        "f", [floats[row * columns + c] for c in range(columns) for row in range(rows)]
-    )
-    pairs = array.array(
-        "f",
-        [
-            value
-            for number, amplitude in enumerate(amplitudes)
-            for value in (amplitude * math.cos(2.4 * number), amplitude * math.sin(2.4 * number))
-        ],
-    )
-    heights = [
-        0.1 * math.sin(0.2 * row) * math.cos(0.1 * c) for row in range(60) for c in range(80)
-    ]
+    floats, bytes8 = amplitudes.astype("<f4"), grey(amplitudes, 255, "u1")
+    phases = [2.4 * number for number in range(rows * columns)]
+    turns = [[math.cos(phase), math.sin(phase)] for phase in phases]
+    pairs = (amplitudes[..., None] * numpy.reshape(turns, (rows, columns, 2))).astype("<f4")
+    heights = [[0.1 * math.sin(0.2 * row) * math.cos(0.1 * c) for c in range(80)] for row in range(60)]
+    sides = [3000 * 10 * seabed(160, 200, seed) for seed in (9, 10)]
     files = {
-        "swath.tif": tiff(floats, columns),
-        "swath16.tif": tiff(array.array("H", grey(amplitudes, 65535)), columns, compress=True),
-        "complex.tif": tiff(pairs, columns, channels=2),
-        "swath.npy": npy(pairs, (rows, columns), "<c8"),
-        "swath.mat": mat(turned, rows),
-        "swath.bmp": bmp(bytes8, columns),
+        "swath.tif": tiff_bytes(floats),
+        "swath16.tif": tiff_bytes(grey(amplitudes, 65535, "<u2"), deflated=True),
+        "complex.tif": tiff_bytes(pairs),
+        "swath.mat": MAT_HEAD + mat_array(b"swath", 7, floats),
         "swath.pgm": b"P5\n%d %d\n255\n" % (columns, rows) + bytes8.tobytes(),
-        "figure.png": png(grey(seabed(472, 512, 2), 255), 512),
-        "heights.npy": npy(array.array("f", heights), (60, 80)),
-        "line.xtf": xtf(160, 200, 30.0),
+        "figure.png": png_bytes(grey(seabed(472, 512, 2), 255, "u1")),
+        "line.xtf": xtf_bytes(*(side.astype("<u2") for side in sides)),
     }
     for number in (1, 2, 3):
-        files[f"seabed_{number}.tif"] = tiff(array.array("f", seabed(300, 340, 2 + number)), 340)
+        files[f"seabed_{number}.tif"] = tiff_bytes(seabed(300, 340, 2 + number).astype("<f4"))
     for name, content in files.items():
         (folder / name).write_bytes(content)
+    numpy.save(folder / "swath.npy", pairs.view("<c8")[..., 0])
+    numpy.save(folder / "heights.npy", numpy.array(heights, "<f4"))
+    Image.fromarray(bytes8).save(folder / "swath.bmp")

@@ -16,6 +16,7 @@ import argparse
 import ast
 import concurrent.futures
 import hashlib
+import io
 import json
 import pathlib
 import re
@@ -26,6 +27,8 @@ import subprocess
 import sys
 import tempfile
 import zlib
+
+from PIL import Image
 
 from inputs import write_inputs
 
@@ -56,42 +59,8 @@ def json_forms(text):
 
 
 def png_pixels(content):
-    chunks, place = {}, 8
-    while place < len(content):
-        size, name = struct.unpack_from(">I4s", content, place)
-        chunks[name] = chunks.get(name, b"") + content[place + 8 : place + 8 + size]
-        place += 12 + size
-    columns, rows, bits, colour = struct.unpack_from(">IIBB", chunks[b"IHDR"])
-    pixel_bits = bits * {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[colour]
-    step, length = max(1, pixel_bits // 8), (columns * pixel_bits + 7) // 8
-    data = zlib.decompress(chunks[b"IDAT"])
-    above, lines = bytes(length), []
-    for row in range(rows):
-        start = row * (length + 1)
-        line = unfiltered(data[start], data[start + 1 : start + 1 + length], above, step)
-        lines.append(line)
-        above = line
-    return chunks[b"IHDR"][:10] + chunks.get(b"PLTE", b"") + b"".join(lines)
-
-
-def unfiltered(kind, line, above, step):
-    if kind == 0:
-        return line
-    if kind == 2:
-        return bytes((a + b) & 255 for a, b in zip(line, above))
-    out = bytearray(step) + line  # what lies left of the first pixel is 0
-    corner = bytes(step) + above
-    for index in range(step, len(out)):
-        left, up, diagonal = out[index - step], corner[index], corner[index - step]
-        if kind == 1:
-            guess = left
-        elif kind == 3:
-            guess = (left + up) // 2
-        else:
-            slope = left + up - diagonal
-            guess = min(left, up, diagonal, key=lambda value: abs(slope - value))
-        out[index] = (out[index] + guess) & 255
-    return bytes(out[step:])
+    image = Image.open(io.BytesIO(content))
+    return repr((image.mode, image.size, image.getpalette())).encode() + image.tobytes()
 
 
 def tiff_pixels(content):
@@ -156,7 +125,7 @@ def checksums(path, name, place):
     if path.suffix in CONTENTS:
         try:
             lines.append((name + ":content", digest(CONTENTS[path.suffix](content))))
-        except (ValueError, KeyError, struct.error, zlib.error):
+        except (ValueError, KeyError, OSError, struct.error, zlib.error):
             lines.append((name + ":content", "unread-" + digest(content)))
     return lines
 

@@ -90,7 +90,7 @@ def _mat_element(kind, data):
     return struct.pack("<II", kind, len(data)) + data + bytes(-len(data) % 8)
 
 
-def _mat_array(name, kind, numbers, imaginary=None, kept=None):
+def mat_array(name, kind, numbers, imaginary=None, kept=None):
     """kind: MATLAB's class; the type of the numbers goes with it. kept: bytes of the array."""
     stored = {6: (9, "<f8"), 7: (7, "<f4"), 9: (2, "u1"), 10: (3, "<i2"), 11: (4, "<u2")}[kind]
     flags = struct.pack("<II", kind | (0x800 if imaginary is not None else 0), 0)
@@ -102,18 +102,21 @@ def _mat_array(name, kind, numbers, imaginary=None, kept=None):
     return struct.pack("<II", 14, len(body)) + body
 
 
+MAT_HEAD = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM"
+
+
 def matlab(_):
-    head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM"
+    head = MAT_HEAD
     numbers = numpy.arange(6).reshape(2, 3)
-    arrays = {kind: _mat_array(b"swath", kind, numbers) for kind in (6, 7, 9, 10, 11)}
+    arrays = {kind: mat_array(b"swath", kind, numbers) for kind in (6, 7, 9, 10, 11)}
     packed = zlib.compress(arrays[7])
     return {
         **{f"class{kind}": head + array for kind, array in arrays.items()},
-        "complex": head + _mat_array(b"swath", 7, numbers, numbers),
-        "two": head + arrays[7] + _mat_array(b"other", 6, numbers),
+        "complex": head + mat_array(b"swath", 7, numbers, numbers),
+        "two": head + arrays[7] + mat_array(b"other", 6, numbers),
         "compressed": head + struct.pack("<II", 15, len(packed)) + packed,
-        "name": head + _mat_array(b"n" * 100, 9, numbers),
-        "liar": head + _mat_array(b"swath", 9, numpy.ones((20, 30)), kept=100),
+        "name": head + mat_array(b"n" * 100, 9, numbers),
+        "liar": head + mat_array(b"swath", 9, numpy.ones((20, 30)), kept=100),
     }
 
 

@@ -9,8 +9,7 @@ static uint64_t generator = 0x9e3779b97f4a7c15u;
 
 static uint32_t random_word(void)
 {
-    generator = generator * 6364136223846793005u + 1442695040888963407u;
-    return (uint32_t)(generator >> 32);
+    return (uint32_t)(next_random(&generator) >> 32);
 }
 
 static double random_fraction(void)

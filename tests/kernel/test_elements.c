@@ -19,8 +19,7 @@
 /* Uniform in -1...1. */
 static float random_number(uint64_t *state)
 {
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return (float)((double)(*state >> 40) / 8388608.0 - 1.0);
+    return (float)((double)(next_random(state) >> 40) / 8388608.0 - 1.0);
 }
 
 /* Everything that the two kernels take. */

@@ -36,8 +36,7 @@ static uint64_t generator = 0x9e3779b97f4a7c15u;
 /* In 0...1 without the ends, exact in single precision. */
 static double random_fraction(void)
 {
-    generator = generator * 6364136223846793005u + 1442695040888963407u;
-    return ((double)(generator >> 41) + 0.5) / 8388608.0;
+    return ((double)(next_random(&generator) >> 41) + 0.5) / 8388608.0;
 }
 
 static float random_deviate(void)

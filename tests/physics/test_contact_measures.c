@@ -32,8 +32,7 @@ static uint64_t random_state;
 
 static double draw(double low, double high)
 {
-    random_state = random_state * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * (double)(random_state >> 11) * 0x1p-53;
+    return low + (high - low) * (double)(next_random(&random_state) >> 11) * 0x1p-53;
 }
 
 /* Puts corners, given along the body's own axes, where the pose puts them: the lowest one so deep

@@ -10,9 +10,9 @@
 
 #include "base/byte_order.h"
 #include "claims.h"
+#include "clean_folder.h"
 #include "swath/raster_file.h"
 #include "swath/swath_file.h"
-#include "temporary_folder.h"
 
 #define ROWS       53
 #define COLUMNS    71
@@ -24,13 +24,6 @@ static const struct raster_layout real32 = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
 static const struct raster_layout complex32 = {ROWS, COLUMNS, 2, PIXEL_FLOAT32};
 static const struct region patch_region = {17, 23, 20, 31};
 
-static struct temporary_folder *folder;
-
-/* One decoder for all, as a context has it. */
-static struct decoder decoder;
-static const struct report_host host = {.decoder = &decoder};
-static struct report report = {{0}, NULL, &host};
-
 /* Memory that is valid while thirty others are asked for. */
 static inline unsigned char *scratch(void)
 {
@@ -39,11 +32,6 @@ static inline unsigned char *scratch(void)
     unsigned char *bytes = all[turn++ % COUNT(all)];
     memset(bytes, 0, BYTES_MOST);
     return bytes;
-}
-
-static inline const char *file_in(const char *name)
-{
-    return strcpy((char *)scratch(), temporary_file(folder, name));
 }
 
 static inline unsigned char *load(const char *path, size_t *count)
@@ -163,15 +151,6 @@ static inline void expect_no_open(const char *path, const char *part)
     assert_null(file);
     expect_message(path, part);
 }
-
-static inline int begin(void **state)
-{
-    const int result = make_temporary_folder(state);
-    folder = *state;
-    return result;
-}
-
-#define CLEAN(test) cmocka_unit_test_setup_teardown(test, begin, remove_temporary_folder)
 
 #define TIFF_PRIVATE_TAG  65000
 #define TIFF_PRIVATE_TEXT "what only the maker of this file knows"

@@ -3,14 +3,9 @@
 #ifndef SCENE_FOLDER_H
 #define SCENE_FOLDER_H
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include "new_file.h"
 #include "schema/scene_file.h"
 #include "swath/decoder.h"
+#include "temporary_folder.h"
 
 /* Reads a scene file as the library's calls do. */
 static inline sonject_status read_scene_file(struct report *report, const char *path,
@@ -31,8 +26,6 @@ static inline sonject_status read_scene_file(struct report *report, const char *
     return status;
 }
 
-#define SCENE_FOLDER_CAPACITY 1024
-
 #ifndef SOURCE_ROOT
 #define SOURCE_ROOT "."
 #endif
@@ -46,8 +39,8 @@ static inline sonject_status read_scene_file(struct report *report, const char *
 #define BASE  START INPUT SONAR
 
 struct scene_folder {
-    char folder[SCENE_FOLDER_CAPACITY];
-    char file[SCENE_FOLDER_CAPACITY + 16]; /* folder/scene.yaml, the name of every scene here */
+    struct temporary_folder folder;
+    char file[TEMPORARY_CAPACITY + 16]; /* the folder's scene.yaml, the name of every scene here */
     struct report report;
     struct report_host host; /* the report's, with the decoder below: one for all readings */
     struct decoder decoder;
@@ -58,16 +51,9 @@ struct scene_folder {
 static inline int make_scene_folder(void **state)
 {
     struct scene_folder *folder = calloc(1, sizeof *folder);
-    const char *temporary = getenv("TMPDIR");
-    if (!folder)
+    if (!folder || !open_temporary_folder(&folder->folder))
         return 1;
-    snprintf(folder->folder, sizeof folder->folder, "%s/sonject-scene-XXXXXX",
-             temporary ? temporary : "/tmp");
-    if (!mkdtemp(folder->folder)) {
-        free(folder);
-        return 1;
-    }
-    snprintf(folder->file, sizeof folder->file, "%s/scene.yaml", folder->folder);
+    snprintf(folder->file, sizeof folder->file, "%s/scene.yaml", folder->folder.path);
     folder->host.decoder = &folder->decoder;
     folder->report.host = &folder->host;
     scene_init(&folder->scene);
@@ -80,30 +66,24 @@ static inline int remove_scene_folder(void **state)
     struct scene_folder *folder = *state;
     scene_clear(&folder->scene);
     decoder_stop(&folder->decoder);
-    (void)unlink(folder->file);
-    const int result = rmdir(folder->folder);
+    const int result = close_temporary_folder(&folder->folder);
     free(folder);
     return result;
 }
 
 /* The path of a file of the folder; valid until the next one. */
-static inline const char *file_in(const struct scene_folder *folder, const char *name)
+static inline const char *file_in(struct scene_folder *folder, const char *name)
 {
-    static char path[SCENE_FOLDER_CAPACITY + 64];
-    snprintf(path, sizeof path, "%s/%s", folder->folder, name);
-    return path;
+    return temporary_file(&folder->folder, name);
 }
 
-static inline void write_file(const struct scene_folder *folder, const char *name,
-                              const void *bytes, size_t count)
+static inline void write_file(struct scene_folder *folder, const char *name, const void *bytes,
+                              size_t count)
 {
-    FILE *file = open_new_file(file_in(folder, name));
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, count, file), count);
-    assert_int_equal(fclose(file), 0);
+    write_bytes(file_in(folder, name), bytes, count);
 }
 
-static inline void remove_file(const struct scene_folder *folder, const char *name)
+static inline void remove_file(struct scene_folder *folder, const char *name)
 {
     assert_int_equal(unlink(file_in(folder, name)), 0);
 }
@@ -136,6 +116,15 @@ static inline void expect_scene_taken(struct scene_folder *folder, const char *t
     write_scene(folder, text, strlen(text));
     if (read_scene(folder, NULL, 0) != SONJECT_OK)
         fail_msg("refused: %s", folder->report.message);
+}
+
+/* Whatever ends them. */
+static inline size_t lines_of(const char *text, size_t bytes)
+{
+    size_t lines = bytes > 0;
+    for (size_t i = 0; i < bytes; i++)
+        lines += text[i] == '\n' || text[i] == '\r';
+    return lines;
 }
 
 /* Stands for all shapes' words in messages that are expected. */
@@ -171,7 +160,7 @@ static inline void expect_scene_refused(struct scene_folder *folder, const char 
 /* The text of an example scene, its end marked by a 0, for free(). name: "demo". */
 static inline char *example_scene(const char *name, size_t *bytes)
 {
-    char path[SCENE_FOLDER_CAPACITY];
+    char path[TEMPORARY_CAPACITY];
     snprintf(path, sizeof path, SOURCE_ROOT "/tools/scenes/%s.yaml", name);
     FILE *file = fopen(path, "rb");
     if (!file)

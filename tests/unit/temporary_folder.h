@@ -19,21 +19,13 @@ struct temporary_folder {
     char file[TEMPORARY_CAPACITY + 300]; /* what temporary_file() made last */
 };
 
-/* Set-up and tear-down of a cmocka test; *state is the struct temporary_folder. */
-static inline int make_temporary_folder(void **state)
+/* Whether it was made. */
+static inline bool open_temporary_folder(struct temporary_folder *folder)
 {
-    struct temporary_folder *folder = calloc(1, sizeof *folder);
     const char *temporary = getenv("TMPDIR");
-    if (!folder)
-        return 1;
     snprintf(folder->path, sizeof folder->path, "%s/sonject-test-XXXXXX",
              temporary ? temporary : "/tmp");
-    if (!mkdtemp(folder->path)) {
-        free(folder);
-        return 1;
-    }
-    *state = folder;
-    return 0;
+    return mkdtemp(folder->path) != NULL;
 }
 
 static inline bool is_entry(const struct dirent *entry)
@@ -53,10 +45,9 @@ static inline int count_entries(const char *path)
     return count;
 }
 
-/* Removes the files in the folder and the folder; fails if a folder is left in it. */
-static inline int remove_temporary_folder(void **state)
+/* Removes the files in the folder and the folder; 0, or else if a folder is left in it. */
+static inline int close_temporary_folder(const struct temporary_folder *folder)
 {
-    struct temporary_folder *folder = *state;
     DIR *list = opendir(folder->path);
     char path[TEMPORARY_CAPACITY + 300];
     if (!list)
@@ -67,8 +58,21 @@ static inline int remove_temporary_folder(void **state)
             (void)unlink(path);
     }
     closedir(list);
-    const int result = rmdir(folder->path);
-    free(folder);
+    return rmdir(folder->path);
+}
+
+/* Set-up and tear-down of a cmocka test; *state is the struct temporary_folder. */
+static inline int make_temporary_folder(void **state)
+{
+    struct temporary_folder *folder = calloc(1, sizeof *folder);
+    *state = folder;
+    return !folder || !open_temporary_folder(folder);
+}
+
+static inline int remove_temporary_folder(void **state)
+{
+    const int result = close_temporary_folder(*state);
+    free(*state);
     return result;
 }
 

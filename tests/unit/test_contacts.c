@@ -13,8 +13,7 @@ static uint64_t random_state;
 
 static double draw(void)
 {
-    random_state = random_state * 6364136223846793005u + 1442695040888963407u;
-    return ((double)(random_state >> 11) + 0.5) * 0x1p-53;
+    return ((double)(next_random(&random_state) >> 11) + 0.5) * 0x1p-53;
 }
 
 /* Mean of n exponential values of mean 1. */

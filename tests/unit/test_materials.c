@@ -24,62 +24,6 @@ static void expect_same(const sonject_material_params *a, const sonject_material
     assert_true(a->loss == b->loss);
 }
 
-static void test_blanks_in_names(void **state)
-{
-    static const char *const spellings[][3] = {
-        {"coarse sand", "coarse_sand", "coarse-sand"},
-        {"medium sand", "medium_sand", "medium-sand"},
-        {"fine sand", "fine_sand", "fine-sand"},
-    };
-    for (size_t i = 0; i < COUNT(spellings); i++) {
-        const sonject_material_params plain = take(spellings[i][0]);
-        for (size_t k = 1; k < 3; k++) {
-            const sonject_material_params other = take(spellings[i][k]);
-            expect_same(&plain, &other);
-        }
-    }
-}
-
-static void test_unknown_names(void **state)
-{
-    static const char *const unknown[] = {"",
-                                          " ",
-                                          "Steel",
-                                          "stee",
-                                          "steel ",
-                                          " steel",
-                                          "sand",
-                                          "coarse  sand",
-                                          "coarse",
-                                          "coarse sand ",
-                                          "coarse.sand",
-                                          "coarsesand",
-                                          "_",
-                                          "silt_",
-                                          "clay\n",
-                                          "unobtainium"};
-    sonject_material_params untouched;
-    memset(&untouched, 0x55, sizeof untouched);
-    for (size_t i = 0; i < COUNT(unknown); i++) {
-        sonject_material_params material = untouched;
-        if (material_named(unknown[i], &material))
-            fail_msg("'%s' was taken", unknown[i]);
-        assert_memory_equal(&material, &untouched, sizeof material);
-    }
-}
-
-static void test_no_name_is_listed_twice(void **state)
-{
-    const char *name;
-    uint32_t count = 0;
-    for (; (name = material_name(count)); count++)
-        for (uint32_t k = 0; k < count; k++)
-            assert_string_not_equal(name, material_name(k));
-    assert_true(count >= 11);
-    assert_null(material_name(count + 1));
-    assert_null(material_name(UINT32_MAX));
-}
-
 /* As keys that say the same would be taken. */
 static void expect_sound(const char *name, const struct section *section,
                          const sonject_material_params *material)
@@ -160,6 +104,5 @@ static void test_the_sea_surfaces_rough_part(void **state)
     assert_true(surface_material(surface).glossy_albedo == 1.0);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_the_sea_surfaces_rough_part), TEST(test_blanks_in_names),
-             TEST(test_unknown_names), TEST(test_no_name_is_listed_twice),
-             TEST(test_values_are_allowed), TEST(test_order_of_values))
+TEST_PROGRAM(NULL, NULL, TEST(test_the_sea_surfaces_rough_part), TEST(test_values_are_allowed),
+             TEST(test_order_of_values))

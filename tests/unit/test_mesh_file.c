@@ -1,4 +1,4 @@
-/* Reading meshes: files written here, whole, damaged and spoilt on purpose. Every one is read or
+/* Reading meshes: files written here, whole and spoilt on purpose. Every one is read or
  * refused in one line that names it, takes memory in proportion to its size, and leaves nothing
  * behind (run under sanitizers and valgrind). */
 #define _POSIX_C_SOURCE 200809L
@@ -8,12 +8,6 @@
 #include "kernel/mesh_samples.h"
 #include "mesh_arrays.h"
 #include "temporary_folder.h"
-
-#ifndef MUTATIONS
-#define MUTATIONS 2000
-#endif
-
-#define BYTES_MAX 65536
 
 static struct report report;
 
@@ -526,64 +520,6 @@ static sonject_status expect_taken_or_explained(struct temporary_folder *folder,
     return status;
 }
 
-/* Other bytes, a piece taken out, other numbers in a text, or words of binary files: all ones, not
- * a number, infinite, the largest and the smallest. */
-static size_t damage(char *text, size_t bytes)
-{
-    static const uint64_t words[] = {UINT64_MAX,
-                                     UINT64_C(0x7FC000007FC00000),
-                                     UINT64_C(0x7FF000007F800000),
-                                     UINT64_C(0x7FFFFFFF7FFFFFFF),
-                                     UINT64_C(0x8000000080000000),
-                                     0,
-                                     UINT64_C(0x0000000100000001)};
-    static const char numbers[][5] = {"4294", "-1 1", "1e99", "nan ",
-                                      "inf ", "0x10", "1/2 ", "//# "};
-    /* the number of triangles of binary STL stands there */
-    const size_t at = throw(8) == 0 && bytes > 84 ? 80 : throw(bytes);
-    const size_t length = 1 + throw(bytes - at < 64 ? bytes - at : 64);
-    switch (throw(6)) {
-    case 0:
-        return at; /* cut short */
-    case 1:
-        text[at] = (char) throw(256);
-        return bytes;
-    case 2:
-        memmove(text + at, text + at + length, bytes - at - length);
-        return bytes - length;
-    case 3:
-        memcpy(text + at, &words[throw(COUNT(words))], length < 8 ? length : throw(2) ? 4 : 8);
-        return bytes;
-    default:
-        memcpy(text + at, numbers[throw(COUNT(numbers))], length < 4 ? length : 4);
-        return bytes;
-    }
-}
-
-static void test_mutated_files(void **state)
-{
-    static char text[BYTES_MAX];
-    struct mesh_sample sample;
-    sample_sphere(&sample, 1); /* 32 triangles */
-    for (int format = 0; format < FORMATS; format++) {
-        struct draft draft = write_format((enum format)format, &sample);
-        size_t refused = 0;
-        assert_true(draft.count < BYTES_MAX);
-        for (int i = 0; i < MUTATIONS; i++) {
-            size_t bytes = draft.count;
-            memcpy(text, draft.bytes, bytes);
-            for (size_t changes = 1 + throw(4); changes > 0 && bytes > 0; changes--)
-                bytes = damage(text, bytes);
-            refused +=
-                expect_taken_or_explained(*state, draft_names[format], text, bytes) != SONJECT_OK;
-        }
-        print_message("%s: %zu of %d refused\n", draft_names[format], refused, MUTATIONS);
-        assert_true(refused > MUTATIONS / 4 && refused < MUTATIONS);
-        clear_draft(&draft);
-    }
-    sample_clear(&sample);
-}
-
 /* The most triangles that few bytes can make, all alike, in a row or strewn. */
 static void test_dense_files(void **state)
 {
@@ -630,5 +566,4 @@ static void test_promises(void **state)
 
 TEST_PROGRAM(make_temporary_folder, remove_temporary_folder, TEST(test_formats),
              TEST(test_cut_short), TEST(test_wrong_binary_files), TEST(test_bad_content),
-             TEST(test_units_and_axes), TEST(test_mutated_files), TEST(test_dense_files),
-             TEST(test_promises))
+             TEST(test_units_and_axes), TEST(test_dense_files), TEST(test_promises))

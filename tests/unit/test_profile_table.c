@@ -198,43 +198,6 @@ static void test_files_that_cannot_be_read(void **state)
     assert_null(table.positions_m);
 }
 
-static void expect_answer(void **state, const unsigned char *bytes, size_t count)
-{
-    struct temporary_folder *folder = *state;
-    struct report report;
-    struct profile_table table;
-    const sonject_status status = read_bytes(state, bytes, count, &report, &table);
-    if (status == SONJECT_OK) {
-        assert_true(table.count >= 2 && table.count <= PROFILE_SAMPLES_MAX);
-        for (size_t i = 0; i < table.count; i++)
-            assert_true(isfinite(table.positions_m[i]) && table.speeds_mps[i] >= 100.0 &&
-                        table.speeds_mps[i] <= 10000.0);
-        profile_table_clear(&table);
-    } else {
-        assert_int_equal(status, SONJECT_ERROR_INPUT);
-        assert_int_equal(strncmp(report.message, folder->file, strlen(folder->file)), 0);
-        assert_null(strchr(report.message, '\n'));
-    }
-}
-
-static void test_damaged_files_get_an_answer(void **state)
-{
-    static const char good[] = "\xEF\xBB\xBF# cast\ntime;depth_m;sound_speed_mps\r\n"
-                               "1;0.5;1520.25\r\n2;1e1;1519\r\n3;+12.5;1490.5 # cold\r\n";
-    unsigned char bytes[sizeof good];
-    uint64_t random = 20240601;
-    for (size_t cut = 0; cut < sizeof good; cut++)
-        expect_answer(state, (const unsigned char *)good, cut);
-    for (int i = 0; i < 3000; i++) {
-        memcpy(bytes, good, sizeof good);
-        for (int j = 0; j <= i % 4; j++) {
-            random = random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-            bytes[(random >> 33) % (sizeof good - 1)] = (unsigned char)(random >> 56);
-        }
-        expect_answer(state, bytes, sizeof good - 1);
-    }
-}
-
 /* ---- What becomes of good ones. */
 
 #define STEP (1.0 / 20000.0) /* of the sound speed between layers, at most */
@@ -322,5 +285,4 @@ static void test_steep_profiles_keep_rising(void **state)
 TEST_PROGRAM(make_temporary_folder, remove_temporary_folder, TEST(test_every_way_to_write_a_table),
              TEST(test_heights_rise_however_the_table_runs), TEST(test_tables_that_are_wrong),
              TEST(test_limits), TEST(test_files_that_cannot_be_read),
-             TEST(test_profiles_become_thin_layers), TEST(test_steep_profiles_keep_rising),
-             TEST(test_damaged_files_get_an_answer))
+             TEST(test_profiles_become_thin_layers), TEST(test_steep_profiles_keep_rising))

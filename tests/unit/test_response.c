@@ -16,27 +16,15 @@
     "  bandwidth: 30e3\n"                                                                          \
     "  altitude: 10\n"
 
-/* The table of a file next to the scene's; gives its path. */
-static void write_table(struct scene_folder *folder, const char *text, char *path, size_t capacity)
-{
-    snprintf(path, capacity, "%s/table.csv", folder->folder);
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
-    assert_int_equal(fclose(file), 0);
-}
-
 static void expect_refused_table(struct scene_folder *folder, const char *key, const char *table,
                                  const char *message)
 {
-    char scene[1200], path[SCENE_FOLDER_CAPACITY + 16], expected[SCENE_FOLDER_CAPACITY + 300];
-    write_table(folder, table, path, sizeof path);
+    char scene[1200], expected[TEMPORARY_CAPACITY + 300];
+    write_file(folder, "table.csv", table, strlen(table));
     snprintf(scene, sizeof scene, RESPONSE "  %s\n", key);
     write_scene(folder, scene, strlen(scene));
-    const sonject_status status = read_scene(folder, NULL, 0);
-    (void)unlink(path);
-    assert_int_equal(status, SONJECT_ERROR_INPUT);
-    snprintf(expected, sizeof expected, "%s%s", path, message);
+    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    snprintf(expected, sizeof expected, "%s%s", file_in(folder, "table.csv"), message);
     assert_string_equal(folder->report.message, expected);
 }
 

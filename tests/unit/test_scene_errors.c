@@ -76,6 +76,11 @@ static void test_wrong_values(void **state)
     static const struct wrong wrong[] = {
         {BASE "medium:\n  sound_speed: 1500 knots\n",
          ":5:16: medium.sound_speed: unit 'knots' is not one of m/s, km/s"},
+        {BASE "medium: {sound_speed: 1.5 Km/s}\n",
+         ":4:23: medium.sound_speed: unit 'Km/s' is not one of m/s, km/s"},
+        {BASE "seabed: {lambert: 4000 dB}\n", ":4:19: seabed.lambert: '4000 dB' is too large"},
+        {BASE "injection: {rays: 3 m}\n",
+         ":4:19: injection.rays: 'm' follows the number, but this has no unit"},
         {BASE "medium: {sound_speed: fast}\n",
          ":4:23: medium.sound_speed: 'fast' is not a number with a unit of m/s, km/s"},
         {BASE "medium: {sound_speed: 15}\n",

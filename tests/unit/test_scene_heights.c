@@ -133,7 +133,7 @@ static void test_what_is_refused(void **state)
 /* One line that names scene file, line, key and what is wrong with the file. */
 static void expect_bad_file(struct scene_folder *folder, const char *keys, const char *what)
 {
-    char text[1000], place[SCENE_FOLDER_CAPACITY + 64];
+    char text[1000], place[TEMPORARY_CAPACITY + 64];
     snprintf(text, sizeof text, HEIGHTS("%s"), keys);
     snprintf(place, sizeof place, "%s:6:21: seabed.relief[0].heights.file: ", folder->file);
     write_scene(folder, text, strlen(text));

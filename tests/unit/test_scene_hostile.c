@@ -13,25 +13,13 @@
 static const char *const examples[] = {"demo",    "elements", "figure4", "figure5",
                                        "figure6", "figure7",  "layers",  "relief",
                                        "shapes",  "surface",  "targets", "user_shape"};
-static const char *const targets[] = {
-    "anchor",        "bomb",      "boulder", "boulder_relief",       "crab_pot_frame",
-    "cylinder_mine", "oil_drum",  "rock",    "tethered_sphere_mine", "truncated_cone_mine",
-    "tyre",          "wedge_mine"};
 
-/* How many are tried of each example; of targets, which are read through a scene, a tenth. */
+/* How many are tried of each example. */
 static size_t mutations_wanted(void)
 {
     const char *text = getenv("SONJECT_MUTATIONS");
     const long number = text ? strtol(text, NULL, 10) : 0;
     return number > 0 ? (size_t)number : MUTATIONS;
-}
-
-static size_t lines_of(const char *text, size_t bytes)
-{
-    size_t lines = 1;
-    for (size_t i = 0; i < bytes; i++)
-        lines += text[i] == '\n' || text[i] == '\r';
-    return lines;
 }
 
 /* A mutated name may be that of a folder. */
@@ -209,6 +197,7 @@ static void test_long_numbers(void **state)
     assert_true(folder->scene.sonar.altitude_m == 10.0);
     free(text);
     expect_repeated_saying(state, head, "0", 1000, "e99999}\n", "too large");
+    expect_repeated_saying(state, head, "k", 1000, "}\n", "kkk...' is not one of m, km, cm, mm");
 }
 
 static void test_other_encodings(void **state)
@@ -327,50 +316,8 @@ static void test_mutated_examples(void **state)
     }
 }
 
-/* A target is a scene, or a message that leads to a line of its file. */
-static sonject_status expect_target_taken_or_explained(struct scene_folder *folder,
-                                                       const char *text, size_t bytes)
-{
-    write_file(folder, "target.yaml", text, bytes);
-    const sonject_status status = read_scene_with(folder, NULL, 0, true);
-    if (status == SONJECT_OK || names_what_cannot_be_read(folder, status))
-        return status;
-    if (status != SONJECT_ERROR_INPUT || !folder->report.message[0])
-        fail_msg("status %d: %s", (int)status, folder->report.message);
-    expect_places(folder->report.message, file_in(folder, "target.yaml"), text, bytes);
-    assert_int_equal(folder->scene.object_count + folder->scene.part_count, 0);
-    return status;
-}
-
-static void test_mutated_targets(void **state)
-{
-    static const char scene[] = BASE "objects: [{target: target.yaml}]\n";
-    struct scene_folder *folder = *state;
-    struct dice dice = {UINT64_C(0xD1B54A32D192ED03)};
-    const size_t wanted = mutations_wanted() / 10;
-    size_t refused = 0;
-    write_scene(folder, scene, strlen(scene));
-    for (size_t i = 0; i < COUNT(targets); i++) {
-        char name[64];
-        size_t bytes;
-        snprintf(name, sizeof name, "../targets/%s", targets[i]);
-        char *text = example_scene(name, &bytes);
-        assert_true(bytes > 100 && bytes < TEXT_CAPACITY);
-        for (size_t j = 0; j < wanted; j++) {
-            char mutated[TEXT_CAPACITY];
-            const size_t length = mutate_some(&dice, mutated, text, bytes);
-            refused += expect_target_taken_or_explained(folder, mutated, length) != SONJECT_OK;
-        }
-        free(text);
-    }
-    /* the change may be in a comment or a number, or not */
-    print_message("targets: %zu of %zu refused\n", refused, COUNT(targets) * wanted);
-    assert_true(refused > 0 && refused < COUNT(targets) * wanted);
-    remove_file(folder, "target.yaml");
-}
-
 TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_alias_bomb), TEST(test_deep_nesting),
              TEST(test_too_many_values), TEST(test_too_many_keys), TEST(test_too_many_objects),
              TEST(test_too_large_a_file), TEST(test_long_words), TEST(test_long_numbers),
              TEST(test_other_encodings), TEST(test_an_example_cut_at_every_length),
-             TEST(test_mutated_examples), TEST(test_mutated_targets))
+             TEST(test_mutated_examples))

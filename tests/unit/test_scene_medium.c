@@ -73,7 +73,7 @@ static void test_files_are_looked_for_beside_the_scene(void **state)
     struct scene_folder *folder = *state;
     static const char warm[] = "height_m sound_speed_mps\n1 1500\n2 warm\n";
     static const char good[] = "height_m sound_speed_mps\n1 1500\n2 1500\n";
-    char beside[SCENE_FOLDER_CAPACITY + 64];
+    char beside[TEMPORARY_CAPACITY + 64];
     const char *absent = "medium.profile.file=cast-of-nobody.csv";
     const char *there = "medium.profile.file=" CAST;
     static const char text[] = HEAD "medium: {profile: {file: cast.csv}}\n" SONAR;
@@ -89,7 +89,7 @@ static void test_files_are_looked_for_beside_the_scene(void **state)
     assert_string_equal(folder->report.message + strlen(beside),
                         ":3: sound_speed_mps: 'warm' is not a number");
     assert_int_equal(unlink(beside), 0);
-    char message[2 * SCENE_FOLDER_CAPACITY];
+    char message[2 * TEMPORARY_CAPACITY];
     snprintf(message, sizeof message,
              ":4:26: medium.profile.file: there is no file %s; check its name", beside);
     expect_scene_refused(folder, text, message);

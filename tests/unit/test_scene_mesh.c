@@ -205,7 +205,7 @@ static void expect_bad_mesh(struct scene_folder *folder, const char *name, sonje
                             const char *what)
 {
     char text[1000];
-    char place[SCENE_FOLDER_CAPACITY + 64];
+    char place[TEMPORARY_CAPACITY + 64];
     snprintf(text, sizeof text, SCENE "  - shape: mesh\n    mesh: {file: %s}\n", name);
     snprintf(place, sizeof place, "%s:6:18: objects[0].mesh.file: ", folder->file);
     write_scene(folder, text, strlen(text));

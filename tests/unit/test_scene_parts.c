@@ -179,7 +179,7 @@ static void test_too_many_parts(void **state)
     free(text);
 }
 
-static void write_target(const struct scene_folder *folder, const char *text)
+static void write_target(struct scene_folder *folder, const char *text)
 {
     write_file(folder, "target.yaml", text, strlen(text));
 }
@@ -270,10 +270,10 @@ static void test_targets_that_are_wrong(void **state)
 static void test_scenes_that_name_targets_wrongly(void **state)
 {
     struct scene_folder *folder = *state;
-    char message[SCENE_FOLDER_CAPACITY + 100];
+    char message[TEMPORARY_CAPACITY + 100];
     snprintf(message, sizeof message,
              ":5:13: objects[0].target: there is no file %s/absent.yaml; check its name",
-             folder->folder);
+             folder->folder.path);
     expect_scene_refused(folder, OBJECT "target: absent.yaml\n", message);
     expect_scene_refused(folder, OBJECT "target:\n",
                          ":5:12: objects[0].target: has no value; write one or remove the key");
@@ -311,30 +311,9 @@ static void test_large_targets_are_refused(void **state)
     remove_file(folder, "target.yaml");
 }
 
-static void test_the_library_of_targets(void **state)
-{
-    struct report report = {{0}, NULL, NULL};
-    struct scene scene;
-    (void)state;
-    scene_init(&scene);
-    if (read_scene_file(&report, SOURCE_ROOT "/tools/scenes/targets.yaml", NULL, 0, false,
-                        &scene) != SONJECT_OK)
-        fail_msg("%s", report.message);
-    assert_int_equal(scene.object_count, 12);
-    assert_int_equal(scene.mesh_count, 1);
-    for (uint32_t i = 0; i < scene.object_count; i++) {
-        assert_true(scene.objects[i].name[0] != 0);
-        assert_true(strcmp(scene.objects[i].class_name, "mine") == 0 ||
-                    strcmp(scene.objects[i].class_name, "uxo") == 0 ||
-                    strcmp(scene.objects[i].class_name, "clutter") == 0);
-    }
-    scene_clear(&scene);
-}
-
 TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_parts_belong_to_their_objects),
              TEST(test_groups_place_and_turn), TEST(test_surfaces_are_inherited),
              TEST(test_nesting_is_bounded), TEST(test_overrides_reach_parts),
              TEST(test_what_is_refused), TEST(test_too_many_parts), TEST(test_targets_are_files),
              TEST(test_targets_may_have_one_shape), TEST(test_targets_that_are_wrong),
-             TEST(test_scenes_that_name_targets_wrongly), TEST(test_large_targets_are_refused),
-             TEST(test_the_library_of_targets))
+             TEST(test_scenes_that_name_targets_wrongly), TEST(test_large_targets_are_refused))

@@ -6,6 +6,7 @@
 
 #include "inject/scene_hash.h"
 #include "scene_context.h"
+#include "temporary_folder.h"
 
 #define CODE                                                                                       \
     "float shape_distance(float3 p, float3 d, float n, const float *k) {return INFINITY;}\\n"      \
@@ -213,10 +214,11 @@ static void a_table_in_memory_is_that_of_a_file(void **state)
          "{path: a.tif, geometry: {row_spacing: 1, column_spacing: 1, first_slant_range: 40}}"},
     };
     sonject_context *context = *state;
+    struct temporary_folder folder;
+    assert_true(open_temporary_folder(&folder));
     for (size_t i = 0; i < COUNT(cases); i++) {
-        char path[] = "/tmp/sonject-table-XXXXXX";
-        const int descriptor = mkstemp(path);
-        FILE *file = fdopen(descriptor, "w");
+        const char *path = temporary_file(&folder, "table.csv");
+        FILE *file = open_new_file(path);
         assert_non_null(file);
         fprintf(file, "%s\n", cases[i].columns);
         for (size_t j = 0; j < cases[i].count; j++)
@@ -238,8 +240,8 @@ static void a_table_in_memory_is_that_of_a_file(void **state)
                                           cases[i].values, cases[i].count / cases[i].columns_count,
                                           cases[i].columns_count));
         expect_same(context, scenes[0], scenes[1]);
-        assert_int_equal(remove(path), 0);
     }
+    assert_int_equal(close_temporary_folder(&folder), 0);
 }
 
 static void heights_in_memory_are_a_relief(void **state)

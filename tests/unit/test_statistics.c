@@ -29,8 +29,7 @@ static float *make_map(size_t rows, size_t columns, float value)
 /* 0...1, the same sequence for the same state. */
 static double uniform(uint64_t *state)
 {
-    *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return ((double)(*state >> 11) + 0.5) / 9007199254740992.0;
+    return ((double)(next_random(state) >> 11) + 0.5) / 9007199254740992.0;
 }
 
 /* Intensity of speckle with mean 1. */

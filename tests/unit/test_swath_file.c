@@ -3,29 +3,14 @@
  * many damaged ones of HDF5 are tried. */
 #include "file_drafts.h"
 
+#include "clean_folder.h"
+
 #include <errno.h>
 #include <sys/wait.h>
 
 #ifndef MUTATIONS
 #define MUTATIONS 300
 #endif
-
-static struct temporary_folder *folder;
-
-/* One for all, as a context has it. */
-static struct decoder decoder;
-static const struct report_host host = {.decoder = &decoder};
-static struct report report = {{0}, NULL, &host};
-
-/* The path of a file, valid while eight others are asked for. */
-static const char *file_in(const char *name)
-{
-    static char paths[9][TEMPORARY_CAPACITY + 64];
-    static unsigned turn;
-    char *path = paths[turn++ % COUNT(paths)];
-    snprintf(path, sizeof paths[0], "%s/%s", folder->path, name);
-    return path;
-}
 
 static void write_draft(const char *path, const struct draft *draft, size_t count)
 {
@@ -302,8 +287,7 @@ static sonject_status use_file(const char *path, const struct kind *kind, const 
 
 static uint32_t draw(uint64_t *state)
 {
-    *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (uint32_t)(*state >> 33);
+    return (uint32_t)(next_random(state) >> 33);
 }
 
 /* Some bytes of it, most where structure is, or numbers of eight bytes; now and then its end is
@@ -490,24 +474,9 @@ static void test_files_that_are_not_for_sonject(void **state)
     expect_refused(".", NULL, NULL, 0, "directory");
 }
 
-static int begin(void **state)
-{
-    const int result = make_temporary_folder(state);
-    folder = *state;
-    return result;
-}
-
-#define CLEAN(test) cmocka_unit_test_setup_teardown(test, begin, remove_temporary_folder)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {CLEAN(a_patch_is_all_that_changes_here_and_in_a_child),
-                                       CLEAN(a_cut_file_is_never_taken),
-                                       CLEAN(a_damaged_head_never_gives_other_samples),
-                                       CLEAN(arrays_are_told_by_their_names),
-                                       CLEAN(test_headers_of_numpy_that_lie_or_end_early),
-                                       CLEAN(test_sizes_of_matlab_that_lie),
-                                       CLEAN(test_files_that_are_not_for_sonject),
-                                       CLEAN(damaged_files_end_no_host)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, CLEAN(a_patch_is_all_that_changes_here_and_in_a_child),
+             CLEAN(a_cut_file_is_never_taken), CLEAN(a_damaged_head_never_gives_other_samples),
+             CLEAN(arrays_are_told_by_their_names),
+             CLEAN(test_headers_of_numpy_that_lie_or_end_early),
+             CLEAN(test_sizes_of_matlab_that_lie), CLEAN(test_files_that_are_not_for_sonject),
+             CLEAN(damaged_files_end_no_host))

@@ -134,7 +134,7 @@ static void expect_round_trips(int count)
     for (int i = 0; i < count; i++) {
         char text[40];
         double value;
-        random = random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+        next_random(&random);
         const uint64_t bits = random ^ (random >> 29);
         memcpy(&value, &bits, sizeof value);
         if (!isfinite(value))

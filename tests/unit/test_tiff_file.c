@@ -48,6 +48,7 @@ static void expect_copy_of_build(const struct tiff_build *build)
         assert_true(count_changes(source + directory, count - directory, copy + directory) <=
                     2 * 18 + 2 * 16 * blocks);
     }
+    assert_string_equal(copy + tiff_place(copy, TIFF_PRIVATE_TAG, true), TIFF_PRIVATE_TEXT);
 }
 
 static void tiff_of_every_build_is_patched_in_place(void **state)

@@ -4,7 +4,6 @@ import os
 import subprocess
 import sys
 
-import numpy
 import pytest
 
 import sonject
@@ -38,62 +37,6 @@ def test_closing_the_context_closes_what_it_made(amplitude_patch):
         scene.object_count
     with pytest.raises(ValueError, match="context was closed"):
         context.devices()
-
-
-def exit_code_of_fork(work):
-    child = os.fork()
-    if child == 0:
-        code = 1
-        try:
-            work()
-            code = 0
-        finally:  # whatever is raised must not go on as a second run of the tests
-            os._exit(code)
-    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-
-
-def test_a_child_of_a_process_that_used_opencl_is_told_so(context, amplitude_patch, make_scene):
-    def work():
-        assert [device.name for device in context.devices()] == ["native"]
-        with sonject.Context(device="pthread") as its_own:
-            with pytest.raises(sonject.SonjectError, match="in use when this process was forked"):
-                sonject.inject(amplitude_patch, make_scene(context=its_own))
-
-    assert len(context.devices()) > 1
-    assert exit_code_of_fork(work) == 0
-    assert len(context.devices()) > 1
-
-
-def test_children_inject_as_their_parent_does(amplitude_patch, make_scene):
-    with sonject.Context(device="native") as ours:
-        expected = sonject.inject(amplitude_patch, make_scene(context=ours)).image
-
-        def work():
-            assert numpy.array_equal(sonject.inject(amplitude_patch, make_scene(context=ours)).image, expected)
-            with sonject.Context(device="native", threads=1) as its_own:
-                found = sonject.inject(amplitude_patch, make_scene(context=its_own)).image
-                assert numpy.array_equal(found, expected)
-
-        for _ in range(3):
-            assert exit_code_of_fork(work) == 0
-
-
-INJECTION = (
-    "import numpy, os, sonject\n"
-    f"scene = sonject.Scene(**{KEYS})\n"
-    "patch = numpy.ones((64, 64), numpy.float32)\n"
-)
-
-
-def test_a_child_may_inject_where_its_parent_has_not_yet():
-    answer = run_python(
-        INJECTION + "child = os.fork()\n"
-        "sonject.inject(patch, scene)\n"
-        "if child == 0:\n"
-        "    os._exit(0)\n"
-        "assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0\n"
-    )
-    assert (answer.returncode, answer.stderr) == (0, "")
 
 
 def test_scene_files_report_their_line(tmp_path, context):
@@ -201,7 +144,9 @@ def test_the_module_is_the_command_of_a_wheel():
 
 def test_an_interpreter_ends_quietly_with_everything_alive():
     answer = run_python(
-        INJECTION + "result = sonject.inject(patch, scene)\n"
+        "import numpy, sonject\n"
+        f"scene = sonject.Scene(**{KEYS})\n"
+        "result = sonject.inject(numpy.ones((64, 64), numpy.float32), scene)\n"
         "result.image, result.objects, result.statistics\n"
     )
     assert (answer.returncode, answer.stderr) == (0, "")

@@ -258,23 +258,6 @@ def test_the_file_of_a_scene_is_for_runs(make_scene, tmp_path):
     assert "\n" not in str(caught.value)
 
 
-def test_other_threads_run_meanwhile(amplitude_patch, make_scene):
-    expected = sonject.inject(amplitude_patch, make_scene()).image.tobytes()
-    images = []
-
-    def work():
-        with sonject.Context() as context:
-            scene = make_scene(context=context)
-            images.append(sonject.inject(amplitude_patch, scene).image.tobytes())
-
-    threads = [threading.Thread(target=work) for _ in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert images == [expected, expected]
-
-
 def test_calls_release_the_global_lock():
     library = _library.load()  # ctypes holds the lock during calls of a PyDLL alone
     assert isinstance(library, ctypes.CDLL) and not isinstance(library, ctypes.PyDLL)

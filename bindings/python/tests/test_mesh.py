@@ -39,11 +39,3 @@ def test_what_is_no_mesh_is_refused(vertices, faces, name, message, tmp_path):
     with pytest.raises(ValueError, match=message):
         sonject.write_mesh(tmp_path / name, vertices, faces)
     assert not list(tmp_path.iterdir())
-
-
-def test_a_mesh_with_a_hole_is_told(amplitude_patch, make_scene, tmp_path):
-    scene = make_scene()
-    scene["objects[0]"] = {"shape": "mesh",
-                           "mesh": sonject.write_mesh(tmp_path / "box.ply", VERTICES, FACES[1:])}
-    with pytest.raises(sonject.SonjectError, match="does not enclose a volume"):
-        sonject.inject(amplitude_patch, scene)

@@ -3,7 +3,6 @@
 import copy
 import math
 import os
-import pathlib
 import pickle
 
 import numpy
@@ -13,7 +12,6 @@ import sonject
 from conftest import COLUMNS, GEOMETRY, KEYS, ROWS
 from sonject import keys
 
-CELL = 1500.0 / (2.0 * 30e3)  # range resolution, m
 TETRAHEDRON = "v 0 0 0\nv 600 0 0\nv 0 600 0\nv 0 0 400\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
 SPHERE = """
 float shape_distance(float3 p, float3 d, float nearest, const float *a)
@@ -69,22 +67,12 @@ def test_keys_are_set_one_by_one(make_scene, amplitude_patch):
 
 def test_unknown_keys_are_refused_at_once_and_values_when_used(make_scene, amplitude_patch):
     scene = make_scene()
-    for key, value, match in (
-        ("sonar.altitud", 3, "did you mean 'altitude'"),
-        ("sonar", {"altitud": 3}, "did you mean 'altitude'"),
-        ("objects[7]", {}, r"\[1\] would add one"),
-    ):
-        with pytest.raises(sonject.SonjectError, match=match) as caught:
-            scene[key] = value
-        assert caught.value.status is sonject.Status.ERROR_INPUT
+    with pytest.raises(sonject.SonjectError, match="did you mean 'altitude'") as caught:
+        scene["sonar.altitud"] = 3
+    assert caught.value.status is sonject.Status.ERROR_INPUT
     scene["objects[0].diameter"] = -1
-    scene["sonar.kind"] = "towed"
-    with pytest.raises(sonject.SonjectError) as caught:
+    with pytest.raises(sonject.SonjectError, match="diameter"):
         sonject.inject(amplitude_patch, scene)
-    told = str(caught.value).splitlines()
-    assert len(told) == 2 and "diameter" in told[0] + told[1] and "synthetic, real" in told[0] + told[1]
-    with pytest.raises(sonject.SonjectError, match="frequency: missing"):
-        sonject.Scene(input={"geometry": GEOMETRY}, sonar={"bandwidth": 30e3, "altitude": 10})
 
 
 @pytest.mark.parametrize("value", [b"10 m", None, 1j, object(), [{"row": {1, 2}, "column": 1j}]])
@@ -108,43 +96,27 @@ def test_layers_and_profiles_are_lists_or_arrays(make_scene, amplitude_patch):
         profile={"heights": list(heights), "sound_speeds": speeds})
 
 
-def gaussian(ranges_m):
-    return numpy.exp(-2.0 * numpy.log(2.0) * (ranges_m / CELL) ** 2)
+RELIEF = {"unit": "m", "row_spacing": 0.025, "column_spacing": 0.025, "first_ground_range": 22.9}
 
 
-def test_a_table_of_the_default_pulse_changes_nothing_much(make_scene, amplitude_patch):
-    ranges_m = numpy.arange(-40, 41) * CELL / 8.0
-    injection = {"match": {"response": "nominal"}}  # tables are taken as they are
-    expected = sonject.inject(amplitude_patch, make_scene(injection=injection)).field
-    fields = []
-    for columns in ({"range_m": ranges_m, "real": 0 * ranges_m, "imaginary": 3 * gaussian(ranges_m)},
-                    {"time_s": ranges_m / 750.0, "real": gaussian(ranges_m)}):
-        scene = make_scene(injection=injection)
-        scene["sonar.pulse.kind"] = "table"
-        scene.set_table("sonar.pulse.file", **columns)
-        fields.append(sonject.inject(amplitude_patch, scene).field)
-    by_range, by_time = fields
-    changed = (expected != 0) & (by_range != 0) & (by_time != 0)
-    assert changed.sum() > 0.95 * (expected != 0).sum() > 100
-    # the cubic between eight samples a cell errs by 1e-4 of the brightest pixel
-    largest = numpy.abs(expected).max()
-    assert numpy.abs(by_range - expected)[changed].max() < 2e-3 * largest
-    assert numpy.abs(by_time - by_range)[changed].max() < 1e-5 * largest
-
-
-@pytest.mark.parametrize("key, columns", [
+@pytest.mark.parametrize("key, table", [
     ("sonar.motion.file", {"along_track_m": [-10, 0, 10], "sway_m": [0, 2e-3, 0]}),
     ("sonar.motion.yaw.file", {"along_track_m": [-10, 10], "yaw_rad": [2e-3, 2e-3]}),
     ("sonar.measured_response", {"along_track_m": numpy.arange(-20, 21) * 0.01,
                                  "real": numpy.exp(-0.5 * (numpy.arange(-20, 21) / 3) ** 2)}),
+    ("seabed.relief[0].heights.file", numpy.full((97, 150), -0.1)),
 ])
-def test_tables_change_the_target(make_scene, amplitude_patch, key, columns):
+def test_tables_change_the_target(make_scene, amplitude_patch, key, table):
     scene = make_scene()
     plain = image(amplitude_patch, scene)
     if "yaw" in key:
         scene["sonar.motion.yaw.advance"] = 0.4
         assert image(amplitude_patch, scene) == plain
-    scene.set_table(key, **columns)
+    if isinstance(table, dict):
+        scene.set_table(key, **table)
+    else:
+        scene["seabed.relief"] = [{"heights": RELIEF}]
+        scene.set_table(key, table)
     assert image(amplitude_patch, scene) != plain
 
 
@@ -162,55 +134,6 @@ def test_tables_that_are_none_are_refused(make_scene):
         scene.set_table("seabed.relief[0].heights.file", numpy.zeros((4, 4), complex))
     with pytest.raises(sonject.SonjectError, match="takes no array"):
         scene.set_table("sonar.altitude", x=[1])
-
-
-RELIEF = {"unit": "m", "row_spacing": 0.025, "column_spacing": 0.025, "first_ground_range": 22.9}
-
-
-def test_heights_change_the_image_where_they_are(make_scene, amplitude_patch):
-    along, out = numpy.meshgrid(numpy.arange(96) * 0.025, 22.9 + numpy.arange(150) * 0.025, indexing="ij")
-    distance = numpy.hypot(along - 1.2, out - 24.5) / 0.5
-    mound = numpy.where(distance < 1, 0.1 * (1 + numpy.cos(numpy.pi * distance)), 0)
-    scene = make_scene(objects=[])
-    scene["seabed.relief"] = [{"heights": RELIEF}]
-    scene.set_table("seabed.relief[0].heights.file", mound)
-    result = sonject.inject(amplitude_patch, scene)
-    assert result.visibility.max() > 1.5 and result.visibility.min() < 0.5
-    untouched = result.influence == 0
-    assert untouched.sum() > 2000
-    assert numpy.array_equal(result.image[untouched], amplitude_patch[untouched])
-    scene["objects"] = KEYS["objects"]
-    level = sonject.inject(amplitude_patch, make_scene()).objects[0]
-    scene.set_table("seabed.relief[0].heights.file", numpy.full((97, 150), -0.1))
-    lowered = sonject.inject(amplitude_patch, scene).objects[0]
-    assert lowered.height_m == pytest.approx(level.height_m - 0.1, abs=1e-4)
-    scene.set_table("seabed.relief[0].heights.file", 20 * mound)
-    with pytest.raises(sonject.SonjectError, match="rises by"):
-        sonject.inject(amplitude_patch, scene)
-
-
-def test_meshes_are_files_and_may_be_cut(make_scene, amplitude_patch, tmp_path):
-    path = tmp_path / "tetrahedron.obj"
-    path.write_text(TETRAHEDRON)
-    mesh = {"shape": "mesh", "mesh": {"file": path, "unit": "mm", "nose": "y"}}
-    truth = sonject.inject(amplitude_patch, make_scene(objects=[mesh])).objects[0]
-    assert truth.highlight_pixels > 0
-    assert abs(truth.height_m - 0.2) < 1e-6  # it rests on the seabed
-    cut = mesh | {"cuts": [{"elevation": 90, "distance": 0}], "burial": {"fraction": 0.5}}
-    truth = sonject.inject(amplitude_patch, make_scene(objects=[cut])).objects[0]
-    # the centre, that of the whole, lies over the lowest point by 0.2 m, which is all that is left
-    assert abs(truth.height_m - 0.1) < 1e-6
-
-
-def test_shapes_by_code_need_consent(make_scene, amplitude_patch):
-    shape = {"shape": "user", "user": {"code": SPHERE, "bounding_radius": 0.25, "parameters": [0.25]}}
-    with pytest.raises(sonject.SonjectError, match="code that would run with your rights"):
-        make_scene(objects=[shape])
-    scene = make_scene(objects=[shape], allows_user_shapes=True)
-    ours, theirs = (sonject.inject(amplitude_patch, each).objects[0] for each in (scene, make_scene()))
-    # the same rough part, but glints of the sphere have wider cells
-    assert abs(ours.target_strength_db - theirs.target_strength_db) < 0.01
-    assert ours.highlight_pixels == pytest.approx(theirs.highlight_pixels, rel=0.02)
 
 
 def test_the_types_of_keys_know_all_sections():
@@ -282,6 +205,8 @@ def test_contexts_close_scenes_that_are_equal():
 def test_a_copy_is_a_scene_of_its_own(make_scene, amplitude_patch, duplicate):
     shape = {"shape": "user", "user": {"code": SPHERE, "bounding_radius": 0.25, "parameters": [0.25]},
              "heading": "0.35 rad"}
+    with pytest.raises(sonject.SonjectError, match="code that would run with your rights"):
+        make_scene(objects=[shape])
     scene = make_scene(objects=[shape], allows_user_shapes=True)
     before = image(amplitude_patch, scene)
     other = duplicate(scene)
