@@ -161,6 +161,18 @@ static double measured(const char *calibration, const char *key)
     return found && text_to_number(found + strlen(sought), &number, &rest) ? number : NAN;
 }
 
+/* Of the plain place whose ceiling is told, likewise. */
+static double placed(const char *calibration, const char *axis)
+{
+    char sought[ANSWER];
+    const char *rest;
+    double number;
+    const char *ceiling = strstr(calibration, "\n  ceiling_over_seabed:\n    value: ");
+    snprintf(sought, sizeof sought, "\n    %s: ", axis);
+    const char *found = ceiling ? strstr(ceiling, sought) : NULL;
+    return found && text_to_number(found + strlen(sought), &number, &rest) ? number : NAN;
+}
+
 static sonject_status calibrate(const struct interview *interview, sonject_context *context,
                                 const char *channel, char **text)
 {
@@ -187,6 +199,8 @@ static sonject_status learn(struct interview *interview, char **text)
     interview->altitude_m = measured(*text, "altitude");
     interview->recorded_altitude_m = measured(*text, "recorded_altitude");
     interview->ceiling_over_seabed_db = measured(*text, "ceiling_over_seabed");
+    interview->plain_row = placed(*text, "row");
+    interview->plain_column = placed(*text, "column");
     interview->has_geometry =
         file_tells(interview, "sonject: 1\ninput: {geometry: from_file}\n"
                               "sonar: {altitude: 1 mm, frequency: 1 kHz, bandwidth: 1 Hz}\n");

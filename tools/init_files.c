@@ -12,10 +12,10 @@
 #include "base/text.h"
 #include "console.h"
 
-#define USUAL_LEVEL_DB 15.0
-#define FAINTEST_DB    3.0 /* that a campaign draws, where the ceiling leaves room */
-#define LEVELS_DB      8.0 /* from the faintest to the strongest */
-#define CHIP_MOST      512.0
+#define USUAL_LEVEL_DB  15.0
+#define OVER_CEILING_DB 4.0 /* of a peak, the rest of a highlight being fainter */
+#define FAINTEST_DB     8.0 /* of a campaign's peaks; measured ones have 8 to 19 dB */
+#define CHIP_MOST       512.0
 
 const char *last_part(const char *path)
 {
@@ -130,7 +130,8 @@ static void add_name(FILE *file, const char *before, const struct interview *int
 
 static double highest_level_db(const struct interview *interview)
 {
-    return fmin(floor(fmin(INFINITY, interview->ceiling_over_seabed_db)), USUAL_LEVEL_DB);
+    return fmin(floor(fmin(INFINITY, interview->ceiling_over_seabed_db + OVER_CEILING_DB)),
+                USUAL_LEVEL_DB);
 }
 
 /* ---- The scene. */
@@ -189,19 +190,24 @@ bool write_scene(const struct interview *interview)
     add_sonar(file, interview);
     fputs("\nseabed:\n"
           "  lambert: -27 dB # backscatter strength; it decides how far targets stand out\n"
-          "\nobjects: # without a position, in the middle of the image\n",
+          "\nobjects:\n",
           file);
     add_name(file, "  - name: ", interview);
     fputs("\n    ", file);
     add_target(file, interview, "\n    ");
+    if (interview->has_nadir || isnan(interview->plain_row))
+        fputs("\n    # position: {row: 100, column: 200} # without it, the middle of the image",
+              file);
+    else
+        fprintf(file, "\n    position: {row: %.0f, column: %.0f} # a plain place of the seabed",
+                interview->plain_row, interview->plain_column);
     const double level_db = highest_level_db(interview);
-    fprintf(file,
-            "\n    heading: 30 deg # from along-track towards range\n"
-            "    # measured pictures show 8 to 19 dB; without this line the material decides\n"
-            "    level: {over_seabed: %.0f dB}%s\n",
-            level_db,
-            level_db < USUAL_LEVEL_DB ? " # up to the image's ceiling, as real highlights are"
-                                      : "");
+    fprintf(
+        file,
+        "\n    heading: 30 deg # from along-track towards range\n"
+        "    # of the peak; measured ones have 8 to 19 dB. Without this line the material decides\n"
+        "    level: {over_seabed: %.0f dB}%s\n",
+        level_db, level_db < USUAL_LEVEL_DB ? " # a little over the image's ceiling" : "");
     return finish(file, part, interview->scene);
 }
 
@@ -209,19 +215,22 @@ bool write_scene(const struct interview *interview)
 
 /* What sonject_check tells of the scene. */
 struct checked {
-    double rows, columns, along_m, first_m, last_m, shadow_m;
+    double rows, columns, along_m, first_m, last_m, altitude_m, top_m;
 };
 
 static void read_checked(struct checked *checked, const char *text)
 {
     memset(checked, 0, sizeof *checked);
     for (const char *line = text; *line; line += *line == '\n') {
-        const char *shadow = strstr(line, ", shadow ");
+        const char *top = strstr(line, ", top ");
+        const char *altitude = strstr(line, ", altitude ");
         sscanf(line, "image %lf x %lf pixels", &checked->rows, &checked->columns);
         sscanf(line, " %lf m along-track, slant range %lf...%lf m", &checked->along_m,
                &checked->first_m, &checked->last_m);
-        if (shadow)
-            sscanf(shadow, ", shadow %lf m", &checked->shadow_m);
+        if (altitude)
+            sscanf(altitude, ", altitude %lf m", &checked->altitude_m);
+        if (top)
+            sscanf(top, ", top %lf m", &checked->top_m);
         line += strcspn(line, "\n");
     }
 }
@@ -234,13 +243,17 @@ static unsigned chip_pixels(double length_m, double image_m, double image_pixels
     return (unsigned)fmax(step, fmin(most, fmax(wanted, 2.0 * step)));
 }
 
-/* To either side of the target is room for a shadow half as long again as in the middle of the
- * image, and as much along the track. */
-static void add_chip(FILE *file, const char *text)
+/* To either side of the target is room for a shadow half as long again as the one at three quarters
+ * of the range and the median altitude, and as much along the track. */
+static void add_chip(FILE *file, const struct interview *interview, const char *text)
 {
     struct checked checked;
     read_checked(&checked, text);
-    const double length_m = 2.0 * 1.5 * checked.shadow_m;
+    const double range_m = checked.first_m + 0.75 * (checked.last_m - checked.first_m);
+    const double altitude_m =
+        interview->altitude_m > 0.0 ? interview->altitude_m : checked.altitude_m;
+    const double below_m = fmax(altitude_m - checked.top_m, 0.1 * altitude_m);
+    const double length_m = 2.0 * 1.5 * range_m * checked.top_m / below_m;
     fprintf(file, "chip: {rows: %u, columns: %u, spread: 0.2} # %.2g m wide\n",
             chip_pixels(length_m, checked.along_m, checked.rows, 16.0),
             chip_pixels(length_m, checked.last_m - checked.first_m, checked.columns, 32.0),
@@ -278,7 +291,6 @@ static void add_swaths(FILE *file, const struct interview *interview)
 bool write_campaign(const struct interview *interview, const char *checked)
 {
     char part[NAME + 8];
-    const double most_db = highest_level_db(interview);
     FILE *file = begin(interview->campaign, part);
     if (!file)
         return false;
@@ -286,16 +298,18 @@ bool write_campaign(const struct interview *interview, const char *checked)
             "# Make it: sonject campaign %s -o FOLDER. sonject help KEY explains keys.\n"
             "sonject_campaign: 1\nscene: %s # all that is not drawn\nimages: 500\n",
             last_part(interview->campaign), last_part(interview->scene));
-    add_chip(file, checked);
-    fputs("empty: 0.5 # this share of the images shows no target\n", file);
+    add_chip(file, interview, checked);
+    fputs("empty: 0.5 # this share of the images shows no target\n"
+          "visible: {highlight: 1.2 dB, shadow: -2.3 dB} # what nobody would see is drawn again\n",
+          file);
     add_swaths(file, interview);
-    fprintf(file,
-            "draw: # any key of a scene\n"
-            "  objects[].heading: {uniform: [0 deg, 360 deg]}\n"
-            "  objects[].burial.fraction: {uniform: [0, 0.3]}\n"
-            "  objects[].level.over_seabed: {uniform: [%.0f dB, %.0f dB]} # up to the image's "
-            "ceiling, at most %.0f dB\ntargets:\n",
-            fmax(fmin(FAINTEST_DB, most_db - 1.0), most_db - LEVELS_DB), most_db, USUAL_LEVEL_DB);
+    fprintf(
+        file,
+        "draw: # any key of a scene\n"
+        "  objects[].heading: {uniform: [0 deg, 360 deg]}\n"
+        "  objects[].burial.fraction: {uniform: [0, 0.3]}\n"
+        "  objects[].level.over_seabed: {uniform: [%.0f dB, %.0f dB]} # of the peak\ntargets:\n",
+        FAINTEST_DB, USUAL_LEVEL_DB);
     add_name(file, "  - class: ", interview);
     fputs("\n    object: {", file);
     add_target(file, interview, ", ");

@@ -139,17 +139,19 @@ static bool ask(struct interview *interview, const struct question *question)
 static bool ask_altitude(struct interview *interview)
 {
     struct question question = altitude;
-    char text[2 * ANSWER];
+    char text[3 * ANSWER];
+    const char *average = interview->has_returns ? "median" : "mean";
     size_t length = (size_t)snprintf(text, sizeof text, "altitude of the sonar over the seabed (");
     if (interview->has_returns)
-        length += (size_t)snprintf(text + length, sizeof text - length, "first_return");
-    if (interview->has_returns && interview->altitude_m > 0.0)
         length += (size_t)snprintf(text + length, sizeof text - length,
-                                   " shows %.4g m in the median", interview->altitude_m);
+                                   "first_return: where it begins in each ping");
+    if (interview->has_returns && interview->altitude_m > 0.0)
+        length += (size_t)snprintf(text + length, sizeof text - length, ", %.4g m in the median",
+                                   interview->altitude_m);
     if (interview->has_altitude)
         length += (size_t)snprintf(
-            text + length, sizeof text - length, "%sfrom_file says %.4g m in the mean",
-            interview->has_returns ? ", " : "", interview->recorded_altitude_m);
+            text + length, sizeof text - length, "%sfrom_file: as recorded, %.4g m in the %s",
+            interview->has_returns ? "; " : "", interview->recorded_altitude_m, average);
     if (interview->has_returns || interview->has_altitude) {
         snprintf(text + length, sizeof text - length, "; or a number)");
         question.text = text;

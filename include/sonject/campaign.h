@@ -38,7 +38,7 @@ typedef struct sonject_campaign_image {
     uint32_t struct_size;
     uint32_t object_count;
     uint64_t id;
-    uint64_t first_row; /* of the image in its swath */
+    uint64_t first_row; /* of the image in its swath, unless it is drawn anew many times */
     uint64_t first_column;
     uint64_t rows;
     uint64_t columns;

@@ -341,7 +341,8 @@ struct image_plan {
     size_t key_count;
 };
 
-#define ATTEMPTS_MAX 64 /* to draw what goes together */
+#define ATTEMPTS_MAX     64 /* to draw what goes together */
+#define ATTEMPTS_OF_CHIP 8  /* in one place: what is dark itself shows no shadow */
 
 /* Draws that were given up: of all values and places, and of single targets besides. */
 struct attempts {
@@ -354,8 +355,8 @@ struct attempts {
 void attempts_next(struct attempts *attempts);
 
 /* The plan of image id, below campaign->images. Where draws were given up values and places of
- * objects are others; all else of it stays. plan: for image_plan_clear, also on failure. Errors:
- * INPUT (no place is left for an object), MEMORY. */
+ * objects are others, and after ATTEMPTS_OF_CHIP the chip's; all else of it stays. plan: for
+ * image_plan_clear, also on failure. Errors: INPUT (no place is left for an object), MEMORY. */
 sonject_status image_plan_make(struct report *report, const struct campaign *campaign, uint64_t id,
                                const struct attempts *attempts, struct image_plan *plan);
 

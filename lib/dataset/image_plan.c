@@ -21,7 +21,8 @@ enum {
     STREAM_CHIP_COLUMN = 0x33000000 /* likewise */
 };
 
-#define NO_TRIAL UINT32_MAX
+#define NO_TRIAL       UINT32_MAX
+#define ATTEMPT_STRIDE UINT64_C(0xD1342543DE82EF95) /* from a seed to that of the next attempt */
 
 /* What a plan is drawn with. */
 struct drawing {
@@ -86,7 +87,7 @@ static uint64_t category_seed(const struct campaign *campaign, uint32_t category
 /* Of what is drawn anew the numbers are others. */
 static uint64_t attempt_seed(const struct drawing *drawing, uint64_t seed)
 {
-    return seed ^ (UINT64_C(0xD1342543DE82EF95) * drawing->attempt);
+    return seed ^ (ATTEMPT_STRIDE * drawing->attempt);
 }
 
 /* Adds a key to the plan; text is given up, and NULL counts as memory that was out. table: as of
@@ -222,9 +223,13 @@ static void choose_place(struct drawing *drawing, uint64_t within)
     const uint64_t number = within * swaths / split->images;
     const uint64_t first = (number * split->images + swaths - 1) / swaths;
     const uint64_t end = ((number + 1) * split->images + swaths - 1) / swaths;
+    const uint64_t moves = drawing->attempts.of_all / ATTEMPTS_OF_CHIP;
     double u, v;
     set_swath(drawing, split->swaths[number]);
-    if (campaign->design == DESIGN_STRATIFIED) {
+    if (moves > 0) {
+        u = uniform_number(campaign->seed ^ (ATTEMPT_STRIDE * moves), STREAM_CHIP_ROW, plan->id);
+        v = uniform_number(campaign->seed ^ (ATTEMPT_STRIDE * moves), STREAM_CHIP_COLUMN, plan->id);
+    } else if (campaign->design == DESIGN_STRATIFIED) {
         u = stratified_number(campaign->seed, STREAM_CHIP_ROW + plan->swath, within - first,
                               end - first);
         v = stratified_number(campaign->seed, STREAM_CHIP_COLUMN + plan->swath, within - first,

@@ -110,6 +110,11 @@ static void tell_seen(struct report *report, const struct scene *scene,
                         "'%s' drowns in the seabed: neither its highlight nor its shadow "
                         "stands out; see objects[].level and seabed.lambert",
                         scene->objects[i].name);
+        else if (highlight_db < 0.0)
+            report_note(report,
+                        "the highlight of '%s' does not stand out from the seabed: raise "
+                        "objects[].level, or choose a darker place",
+                        scene->objects[i].name);
         if (truth->highlight_clipped > CLIPPED_MUCH)
             report_note(
                 report,

@@ -85,8 +85,8 @@ static void amplitude_of(const float *pixels, size_t count, bool is_complex, flo
 }
 
 /* What the page needs to show each panel by itself, and to tell what a pixel of it is. */
-static json_t *quicklook_document(const struct plot_frame *frame, const struct plot_place *places,
-                                  uint32_t height, uint32_t width)
+static json_t *quicklook_document(const struct plot_frame *frame, const struct region *window,
+                                  const struct plot_place *places, uint32_t height, uint32_t width)
 {
     json_t *panels = json_array();
     for (int i = 0; i < QUICKLOOK_PANELS; i++)
@@ -94,9 +94,45 @@ static json_t *quicklook_document(const struct plot_frame *frame, const struct p
                     JSON_OBJECT(JSON_COUNT(places + i, left), JSON_COUNT(places + i, top),
                                 JSON_COUNT(places + i, width), JSON_COUNT(places + i, height)));
     return JSON_OBJECT({"height", json_count(height)}, {"width", json_count(width)},
-                       {"panels", panels}, JSON_NUMBER(frame, first_along_track_m),
+                       {"panels", panels}, {"row", json_count(window->first_row)},
+                       {"column", json_count(window->first_column)}, JSON_COUNT(window, rows),
+                       JSON_COUNT(window, columns), JSON_NUMBER(frame, first_along_track_m),
                        JSON_NUMBER(frame, row_spacing_m), JSON_NUMBER(frame, first_range_m),
                        JSON_NUMBER(frame, column_spacing_m));
+}
+
+/* Widens what an axis changed, in pixels, by a margin; within the patch. */
+static void widen(uint64_t *first, uint64_t *count, double margin, uint64_t all)
+{
+    const double end = fmin((double)all, ceil((double)(*first + *count) + margin));
+    *first = (uint64_t)fmax(0.0, floor((double)*first - margin));
+    *count = (uint64_t)end - *first;
+}
+
+/* The part of the patch that is changed, with as much around it: targets of a whole line would be
+ * specks. All of the patch, where that is not much more, or nothing changed. */
+static struct region changed_part(const struct injection_result *result,
+                                  const sonject_geometry_params *geometry)
+{
+    const struct region all = {.rows = result->rows, .columns = result->columns};
+    size_t top = result->rows, bottom = 0, left = result->columns, right = 0;
+    for (size_t row = 0; row < result->rows; row++)
+        for (size_t column = 0; column < result->columns; column++)
+            if (result->influence[row * result->columns + column]) {
+                top = row < top ? row : top;
+                bottom = row + 1;
+                left = column < left ? column : left;
+                right = column + 1 > right ? column + 1 : right;
+            }
+    if (bottom == 0)
+        return all;
+    struct region part = {top, left, bottom - top, right - left};
+    const double margin_m = fmax((double)part.rows * geometry->row_spacing_m,
+                                 (double)part.columns * geometry->column_spacing_m);
+    widen(&part.first_row, &part.rows, margin_m / geometry->row_spacing_m, result->rows);
+    widen(&part.first_column, &part.columns, margin_m / geometry->column_spacing_m,
+          result->columns);
+    return 2 * part.rows * part.columns < all.rows * all.columns ? part : all;
 }
 
 /* Amplitudes before and after, and 20 log10 of their ratio, 0 where nothing changed. */
@@ -104,28 +140,39 @@ static sonject_status write_quicklook(struct report *report, struct run_facts *f
                                       const char *path)
 {
     const struct injection_result *result = facts->result;
-    const size_t count = result->rows * result->columns;
     const sonject_geometry_params *geometry = &facts->scene->geometry;
-    const struct region *patch = &facts->swath->patch;
+    const struct region part = changed_part(result, geometry);
+    const size_t count = (size_t)(part.rows * part.columns);
+    const size_t channels = result->is_complex ? 2 : 1;
     float *before = allocate_array(count, 3 * sizeof *before);
     CHECK_MEMORY(report, before, "the quicklook");
     float *after = before + count;
     float *difference = after + count;
-    amplitude_of(facts->swath->pixels, count, result->is_complex, before);
-    amplitude_of(result->image, count, result->is_complex, after);
-    for (size_t i = 0; i < count; i++)
-        difference[i] = result->influence[i] && before[i] > 0.0f && after[i] > 0.0f
-                            ? 20.0f * log10f(after[i] / before[i])
-                            : 0.0f;
+    for (uint64_t row = 0; row < part.rows; row++) {
+        const size_t from = (size_t)((part.first_row + row) * result->columns + part.first_column);
+        const size_t to = (size_t)(row * part.columns);
+        const size_t columns = (size_t)part.columns;
+        amplitude_of(facts->swath->pixels + channels * from, columns, result->is_complex,
+                     before + to);
+        amplitude_of(result->image + channels * from, columns, result->is_complex, after + to);
+        for (size_t i = 0; i < columns; i++)
+            difference[to + i] =
+                result->influence[from + i] && before[to + i] > 0.0f && after[to + i] > 0.0f
+                    ? 20.0f * log10f(after[to + i] / before[to + i])
+                    : 0.0f;
+    }
     const struct plot_panel panels[QUICKLOOK_PANELS] = {
         {"before", before, false}, {"after", after, false}, {"difference, dB", difference, true}};
+    const struct region window = {facts->swath->patch.first_row + part.first_row,
+                                  facts->swath->patch.first_column + part.first_column, part.rows,
+                                  part.columns};
     const struct plot_frame frame = {
-        .rows = patch->rows,
-        .columns = patch->columns,
+        .rows = window.rows,
+        .columns = window.columns,
         .first_along_track_m =
-            geometry->first_along_track_m + (double)patch->first_row * geometry->row_spacing_m,
+            geometry->first_along_track_m + (double)window.first_row * geometry->row_spacing_m,
         .row_spacing_m = geometry->row_spacing_m,
-        .first_range_m = geometry_range(geometry, (double)patch->first_column),
+        .first_range_m = geometry_range(geometry, (double)window.first_column),
         .column_spacing_m = geometry_is_reversed(geometry) ? -geometry->column_spacing_m
                                                            : geometry->column_spacing_m,
         .range_label = "slant range, m",
@@ -138,7 +185,8 @@ static sonject_status write_quicklook(struct report *report, struct run_facts *f
     if (status == SONJECT_OK) {
         const struct raster_layout layout = {height, width, 3, PIXEL_UINT8};
         status = raster_file_write(report, path, &layout, NULL, NULL, 0, picture);
-        json_add(&facts->page, "quicklook", quicklook_document(&frame, places, height, width));
+        json_add(&facts->page, "quicklook",
+                 quicklook_document(&frame, &window, places, height, width));
     }
     free(picture);
     free(before);

@@ -384,8 +384,9 @@ static sonject_status find_from_tiles(struct report *report, struct calibration 
 static void find_room(struct calibration *found, const struct stored_swath *swath)
 {
     const double *levels = found->fits[found->family].levels;
-    double count = 0.0, sum = 0.0, squares = 0.0;
-    found->room_db.how = "the ceiling over plain tiles in the middle third of the columns";
+    double count = 0.0, sum = 0.0, squares = 0.0, least = INFINITY;
+    found->room_db.how = "the ceiling over plain tiles in the middle third of the columns, as at "
+                         "this row and column";
     found->room_db.unseen = found->full_scale.unseen;
     if (found->room_db.unseen)
         return;
@@ -406,6 +407,15 @@ static void find_room(struct calibration *found, const struct stored_swath *swat
     found->room_db.value =
         DECIBELS * pixel_log_intensity(found, swath, found->full_scale.value) - mean;
     found->room_db.error = sqrt(fmax(0.0, squares / count - mean * mean) / count);
+    for (size_t i = 0; i < found->tiles.count; i++) {
+        const size_t middle = found->tiles.columns[i] + found->tiles.side / 2;
+        const double off = fabs(DECIBELS * levels[i] - mean);
+        if (middle < found->columns / 3 || middle >= 2 * found->columns / 3 || off >= least)
+            continue;
+        least = off;
+        found->plain_row = found->tiles.rows[i] + found->tiles.side / 2;
+        found->plain_column = middle;
+    }
 }
 
 sonject_status calibrate_swath(struct report *report, const struct stored_swath *swath,

@@ -114,7 +114,8 @@ struct calibration {
     enum curve_family family;
     struct plain_tiles tiles;
     struct estimate full_scale, clipped, looks, shape;
-    struct estimate room_db; /* of the ceiling over the seabed in the middle columns */
+    struct estimate room_db;        /* of the ceiling over the seabed in the middle columns */
+    size_t plain_row, plain_column; /* middle of a plain tile there, of about that level */
     struct estimate along_rows, range_columns; /* half-power widths of the response, pixels */
     struct estimate noise_floor_db;            /* over the seabed about shadows */
     size_t shadows;                            /* that tell it */
@@ -122,7 +123,7 @@ struct calibration {
     struct first_returns returns;
     double row_spacing_m, column_spacing_m, first_slant_range_m; /* NAN: unknown */
     uint32_t side;              /* SONJECT_SIDE_... that the file tells; SIDE_UNKNOWN */
-    double recorded_altitude_m; /* that the file tells, in the mean; 0: it does not */
+    double recorded_altitude_m; /* that the file tells, in the median or mean; 0: it does not */
     double recorded_share;      /* median of what pings tell over their first returns; 0: unknown */
     /* For the page. */
     double correlation[2][CALIBRATION_LAGS]; /* of intensity, along rows' axis and columns' */

@@ -99,17 +99,22 @@ static sonject_status compare_altitudes(struct report *report, const struct reco
     size_t count = 0;
     if (!recording || !returns->columns || returns->sides == WATER_BETWEEN)
         return SONJECT_OK;
-    double *shares = allocate_array(found->rows, sizeof *shares);
+    double *shares = allocate_array(found->rows, 2 * sizeof *shares);
     CHECK_MEMORY(report, shares, "a calibration");
+    double *altitudes = shares + found->rows;
     for (size_t row = 0; row < found->rows; row++) {
         const double recorded = (double)recording->pings[row].altitude_m;
         const double first =
             found->first_slant_range_m + returns->columns[row] * found->column_spacing_m;
-        if (recorded > 0.0 && first > 0.0)
+        if (recorded > 0.0 && first > 0.0) {
+            altitudes[count] = recorded;
             shares[count++] = recorded / first;
+        }
     }
-    if (count > 0)
+    if (count > 0) {
         found->recorded_share = median_of(shares, count);
+        found->recorded_altitude_m = median_of(altitudes, count); /* as first returns are told */
+    }
     free(shares);
     return SONJECT_OK;
 }
@@ -121,7 +126,7 @@ static void tell_altitude(struct report *report, const char *image, const struct
     if (share > 0.0 && fabs(share - 1.0) > ALTITUDES_ALIKE)
         report_note(
             report,
-            "%s: the recorded altitude, %.2f m in the mean, is %.0f %% %s the first "
+            "%s: the recorded altitude, %.2f m in the median, is %.0f %% %s the first "
             "return, and sonar.altitude: from_file makes shadows too %s: if the first return is "
             "right, write sonar.altitude: first_return",
             path_name(image), found->recorded_altitude_m, 100.0 * fabs(share - 1.0),

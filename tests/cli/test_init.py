@@ -84,7 +84,7 @@ def test_a_recording_tells_the_geometry(sonject, tmp_path, typed):
     (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=numpy.linspace(5.0, 9.0, 120)))
     answer = init(sonject, "line.xtf", "--channel", "port", answers=[typed, "600 kHz", "", "0.5 m"])
     assert answer.returncode == 0, answer.stderr
-    assert "(from_file says 7 m in the mean; or a number) [from_file]: " in answer.stderr
+    assert "(from_file: as recorded, 7 m in the mean; or a number) [from_file]: " in answer.stderr
     scene = (tmp_path / "line.yaml").read_text()
     assert "bandwidth: 10 kHz # c / 2 over the column spacing" in scene  # of 400 columns to 30 m
     assert "channel: port" in scene and "geometry: from_file" in scene and "altitude: from_file" in scene
@@ -97,18 +97,18 @@ def test_an_answer_from_a_file_that_does_not_tell_it_is_asked_for_again(sonject,
     assert "bandwidth: 30 kHz # c / 2 over the column spacing" in image.with_suffix(".yaml").read_text()  # 2.5 cm
 
 
-@pytest.mark.parametrize("kind, level", [("gamma", 15), ("intensity", None)])
-def test_the_level_is_up_to_the_ceiling(sonject, tmp_path, kind, level):
-    """By the calibration, in whole dB."""
-    made = Made(kind)
-    numpy.save(tmp_path / "swath.npy", made.numbers)
+@pytest.mark.parametrize("share, level", [(1, 15), (0.35, None)])
+def test_the_level_is_a_little_over_the_ceiling(sonject, tmp_path, share, level):
+    """By the calibration, in whole dB: 4 dB, which the peak alone reaches."""
+    made = Made("amplitude")
+    numpy.save(tmp_path / "swath.npy", numpy.minimum(made.numbers, round(share * made.ceiling)))
     answer = init(sonject, "swath.npy", answers=ANSWERS)
     assert answer.returncode == 0, answer.stderr
     found = json.loads(sonject.done("calibrate", "swath.npy", "--json").stdout)["measured"]["ceiling_over_seabed"]
-    mean = 10 * numpy.log10(KINDS[kind][1] ** 2)  # of the seabed's level, over full scale
+    mean = 20 * numpy.log10(KINDS["amplitude"][1] / share)  # of the seabed's level, over full scale
     assert found["value"] == pytest.approx(-mean, abs=4 * found["standard_error"] + LEVEL_DB / 4)
     told = float(re.search(r"level: {over_seabed: (\d+) dB}", (tmp_path / "swath.yaml").read_text())[1])
-    assert told == (level or numpy.floor(found["value"])) <= 15
+    assert told == (level or numpy.floor(found["value"] + 4)) <= 15
 
 
 def test_altitude_by_first_returns_is_what_enter_takes(sonject, tmp_path):
@@ -117,7 +117,7 @@ def test_altitude_by_first_returns_is_what_enter_takes(sonject, tmp_path):
                  "--first-range", "0")
     answer = init(sonject, "swath.tif", answers=["", "100 kHz", "", ""])
     assert answer.returncode == 0, answer.stderr
-    shown = float(re.search(r"\(first_return shows (\S+) m in the median; or a number\) \[first_return\]", answer.stderr)[1])
+    shown = float(re.search(r"\(first_return: where it begins in each ping, (\S+) m in the median; or a number\) \[first_return\]", answer.stderr)[1])
     assert shown == pytest.approx(120 * 0.025, rel=0.02)
     assert "altitude: first_return" in (tmp_path / "swath.yaml").read_text()
     assert float(re.search(r"altitude (\S+) m", answer.stdout)[1]) == pytest.approx(shown, rel=0.01)
@@ -176,13 +176,25 @@ def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
 
 
 def test_chips_hold_a_shadow_on_either_side(sonject, tmp_path):
-    """Half as long again as the one in the middle of the image, that check tells."""
+    """Half as long again as a cylinder's of 0.5 m at three quarters of the range."""
     write_line(tmp_path)
     answer = init(sonject, "line.xtf", "--channel", "port", "--campaign", answers=["", "100 kHz", "30 kHz", ""])
     assert answer.returncode == 0, answer.stderr
-    shadow = float(re.search(r"shadow (\S+) m on the ground", answer.stdout)[1])
+    shadow = 0.75 * COLUMNS * 0.5 / (100 * 30 / COLUMNS - 0.5)  # in columns
     columns = int(re.search(r"columns: (\d+), spread", (tmp_path / "line_campaign.yaml").read_text())[1])
-    assert columns % 32 == 0 and 0 <= columns - 3 * shadow / (30 / COLUMNS) < 33
+    assert columns % 32 == 0 and -2 <= columns - 3 * shadow < 34
+
+
+def test_the_target_lies_where_the_seabed_is_plain(sonject, image):
+    """The calibration's place, whose level is that of the ceiling that it tells."""
+    assert init(sonject, "swath.npy", answers=ANSWERS).returncode == 0
+    row, column = map(int, re.search(r"position: {row: (\d+), column: (\d+)}", image.with_suffix(".yaml").read_text()).groups())
+    assert COLUMNS / 3 <= column < 2 * COLUMNS / 3
+    text = (image.parent / "swath_calibration.yaml").read_text()
+    ceiling = float(re.search(r"ceiling_over_seabed:\n    value: (\S+)", text)[1])
+    amplitude = (numpy.load(image) / Made("gamma").ceiling) ** KINDS["gamma"][0]
+    mean = numpy.mean(amplitude[row - 16 : row + 16, column - 16 : column + 16] ** 2)
+    assert -10 * numpy.log10(mean) == pytest.approx(ceiling, abs=1)
 
 
 def test_both_sides_of_an_image_are_two_swaths(sonject, tmp_path):

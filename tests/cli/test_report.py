@@ -83,16 +83,36 @@ def test_the_page_knows_the_panels_of_the_quicklook(sonject, scene, tmp_path, sw
     before, after, difference = [picture[each["top"] : each["top"] + each["height"], each["left"] : each["left"] + each["width"]]
                                  for each in look["panels"]]
     assert before.shape == after.shape == difference.shape
-    up = before.shape[0] // swath.shape[0]
+    window = slice(look["row"], look["row"] + look["rows"]), slice(look["column"], look["column"] + look["columns"])
+    swath = swath[window]
+    up = before.shape[0] // look["rows"]
     assert before.shape[:2] == tuple(up * side for side in swath.shape) and look["row_spacing_m"] == 0.025
     # grey rises with the amplitude, on the same scale before and after; what did not change is white
     small = before[up // 2 :: up, up // 2 :: up, 0]
     order = numpy.argsort(swath, axis=None)
     assert (numpy.diff(small.ravel()[order]) >= 0).all() and small.min() == 0 and small.max() == 255
-    same = read_png(tmp_path / "result" / "influence.png") == 0
+    same = read_png(tmp_path / "result" / "influence.png")[window] == 0
     same = numpy.kron(same, numpy.ones((up, up), bool))
     assert (before == after)[same].all() and not (before == after)[~same].all()
     assert (difference[same] == 247).all()
+
+
+def test_the_quicklook_shows_what_changed_and_as_much_around_it(sonject, tmp_path):
+    (tmp_path / "wide.yaml").write_text(
+        "sonject: 1\ninput: {synthetic: {rows: 300, columns: 500}, geometry: {row_spacing: 5 cm, column_spacing: 5 cm, "
+        "first_slant_range: 40 m}}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
+        "objects: [{shape: sphere, diameter: 0.4 m, position: {row: 40, column: 300}}]\n")
+    sonject.done("run", "wide.yaml", "-o", "wide")
+    rows, columns = numpy.nonzero(read_png(tmp_path / "wide" / "influence.png"))
+    look = page_data(tmp_path / "wide")["quicklook"]
+    margin = max(numpy.ptp(rows), numpy.ptp(columns)) + 1
+    first = [max(0, rows.min() - margin), max(0, columns.min() - margin)]
+    assert [look["row"], look["column"]] == first
+    assert [look["row"] + look["rows"], look["column"] + look["columns"]] == [
+        min(300, rows.max() + 1 + margin), min(500, columns.max() + 1 + margin)]
+    assert look["first_along_track_m"] == pytest.approx(0.05 * first[0]) and look["first_range_m"] == pytest.approx(40 + 0.05 * first[1])
+    sonject.done("run", "wide.yaml", "-o", "none", "--set", "objects=[]")
+    assert page_data(tmp_path / "none")["quicklook"]["rows"] == 300
 
 
 def test_notes_of_a_run_are_on_its_page(sonject, scene, tmp_path, swath):
