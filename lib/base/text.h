@@ -42,4 +42,16 @@ void text_make_printable(char *text);
  * "...". capacity: at least 4. Returns excerpt. */
 const char *text_excerpt(char *excerpt, size_t capacity, const char *text);
 
+/* ---- What a mistyped word was perhaps meant to be. */
+
+struct nearest {
+    const char *word;
+    const char *best; /* NULL: nothing is near */
+    size_t distance;
+};
+
+/* A third of the letters may be wrong, and one at least. */
+void nearest_begin(struct nearest *nearest, const char *word);
+void nearest_consider(struct nearest *nearest, const char *candidate);
+
 #endif
