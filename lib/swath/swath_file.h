@@ -59,6 +59,11 @@ bool swath_file_attribute(const struct swath_file *file, const char *name, char 
 sonject_status swath_file_read(struct report *report, struct swath_file *file,
                                const struct region *region, void *pixels);
 
+/* All of them, and how they lie. On success *pixels is for free(), on failure NULL. Errors as of
+ * swath_file_read; INPUT for more than 2^31 pixels. */
+sonject_status swath_file_read_all(struct report *report, struct swath_file *file,
+                                   struct raster_layout *layout, void **pixels);
+
 /* Writes at path a copy of the file with region replaced by pixels, everything else as it was, or
  * a new image (swath_file_new_extension). Published whole or not at all. progress may be NULL.
  * Errors: INPUT, STORAGE, MEMORY, CANCELLED.
