@@ -18,7 +18,7 @@
 #define SIDE_MAX ((uint64_t)1 << 31)
 
 struct grey_image {
-    char *name; /* in messages; owned */
+    const char *name; /* in messages */
     FILE *file;
     struct raster_layout layout;
     uint64_t place, row_bytes; /* of the first row in the file, and from one to the next */
@@ -127,7 +127,6 @@ static sonject_status close_image(struct report *report, void *opened)
     (void)report;
     if (image->file)
         fclose(image->file);
-    free(image->name);
     free(image);
     return SONJECT_OK;
 }
@@ -150,19 +149,13 @@ static sonject_status open_image(struct report *report, const char *name, const 
                                  const char *array, bool writes, void **opened,
                                  struct image_facts *facts)
 {
-    struct grey_image *image = allocate_array(1, sizeof *image);
+    struct grey_image *image = *opened = allocate_array(1, sizeof *image);
     (void)array, (void)writes;
     CHECK_MEMORY(report, image, name);
-    image->name = copy_text(name);
-    const sonject_status status =
-        image->name ? read_head(report, path, image) : report_out_of_memory(report, name);
-    if (status != SONJECT_OK) {
-        (void)close_image(report, image);
-        return status;
-    }
+    image->name = name;
+    const sonject_status status = read_head(report, path, image);
     facts->layout = image->layout;
-    *opened = image;
-    return SONJECT_OK;
+    return status;
 }
 
 static sonject_status read_pixels(struct report *report, void *opened, const struct region *region,

@@ -4,6 +4,8 @@
 #ifndef SONJECT_SWATH_IMAGE_LIBRARY_H
 #define SONJECT_SWATH_IMAGE_LIBRARY_H
 
+#include <stdio.h>
+
 #include "image/raster.h"
 #include "swath/image_head.h"
 
@@ -25,8 +27,9 @@ struct image_facts {
 };
 
 struct image_library {
-    /* path: the file; name: of it in messages; array: NULL for the only one; writes: it is a copy
-     * to be changed. On success *image is the caller's, for close. */
+    /* path: the file; name: of it in messages; both stay until it is closed; array: NULL for the
+     * only one; writes: it is a copy to be changed. *image, unless it stays NULL, and
+     * facts->description are the caller's, on failure too. */
     sonject_status (*open)(struct report *report, const char *name, const char *path,
                            const char *array, bool writes, void **image, struct image_facts *facts);
     /* brings what was changed to the file; *image is gone, whatever is returned */
@@ -75,6 +78,12 @@ sonject_status encode_rows(struct report *report, const struct image_encoding *e
 /* The status of a library's fault: STORAGE or MEMORY. */
 sonject_status encoding_failure(struct report *report, const struct image_encoding *encoding,
                                 const struct library_fault *fault);
+
+/* Closes a file that a library wrote, NULL where it could not be opened, and tells what failed.
+ * status: of the rows. */
+sonject_status encoding_end(struct report *report, const struct image_encoding *encoding,
+                            FILE *file, struct library_fault *fault, bool is_written,
+                            sonject_status status);
 
 /* Stream in strips of at most about 64 MB. What failed is left to the caller to remove. Errors:
  * STORAGE, MEMORY, UNSUPPORTED (a description that is too long), those of give_rows. */

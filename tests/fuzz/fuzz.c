@@ -201,8 +201,9 @@ static void fuzz_image(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t
         uint8_t *pixels = allocate_array((size_t)whole.rows, (size_t)whole.columns);
         status = bmp_pgm_library.read(&report, image, &whole, pixels);
         free(pixels);
-        (void)bmp_pgm_library.close(&report, image);
     }
+    if (image)
+        (void)bmp_pgm_library.close(&report, image);
     expect(status, &report, false);
 }
 
