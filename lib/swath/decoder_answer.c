@@ -71,11 +71,7 @@ static sonject_status find_library(const struct question *question,
                                    const struct image_library **library)
 {
     static const struct image_library *const libraries[IMAGE_KINDS] = {
-        [IMAGE_TIFF] = &tiff_library,
-        [IMAGE_PNG] = &png_library,
-        [IMAGE_JPEG] = &jpeg_library,
-        [IMAGE_BMP] = &bmp_pgm_library,
-        [IMAGE_PGM] = &bmp_pgm_library};
+        [IMAGE_TIFF] = &tiff_library, [IMAGE_PNG] = &png_library, [IMAGE_JPEG] = &jpeg_library};
     enum image_kind kind;
     if (!*question->texts[2] && is_raster(question->texts[1], &kind)) {
         *library = libraries[kind];

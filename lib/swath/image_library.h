@@ -1,6 +1,5 @@
 /* Libraries of others that read, change and write images, as the decoder (swath/decoder.h) and
- * those that write new images use them: libtiff, libpng, libjpeg and HDF5; and plain grey images.
- */
+ * those that write new images use them: libtiff, libpng, libjpeg and HDF5. */
 #ifndef SONJECT_SWATH_IMAGE_LIBRARY_H
 #define SONJECT_SWATH_IMAGE_LIBRARY_H
 
@@ -46,13 +45,13 @@ struct image_library {
 /* Data sets of HDF5 files (swath/hdf5_array.c). Calls come between hdf5_enter and hdf5_leave. */
 extern const struct image_library hdf5_library;
 
-/* Images by the files swath/<name>_file.c and swath/bmp_pgm.c. TIFF alone is changed; copies of
+/* Images by the files swath/<name>_file.c. TIFF alone is changed; copies of
  * others are new images. All refuse (INPUT) what they cannot read, files that are cut short,
  * palettes but for those of numbers, more than one channel (TIFF: two), and of others than TIFF
  * what is not of 8 or 16 bits. Of TIFF, pixels are not decoded then; changed tiles or strips that
  * no longer fit in their place go behind the end of the file, and all tags, other pages and
  * untouched blocks stay. */
-extern const struct image_library tiff_library, png_library, jpeg_library, bmp_pgm_library;
+extern const struct image_library tiff_library, png_library, jpeg_library;
 
 /* A file that is to be written. */
 struct image_encoding {

@@ -107,9 +107,7 @@ void swath_file_layout(const struct swath_file *file, struct raster_layout *layo
 
 const char *swath_file_new_extension(const struct swath_file *file)
 {
-    if (file->format != &image_format || file->image == IMAGE_TIFF)
-        return NULL;
-    return file->image == IMAGE_PNG || file->image == IMAGE_JPEG ? ".png" : ".tif";
+    return file->format == &image_format && file->image != IMAGE_TIFF ? ".png" : NULL;
 }
 
 int swath_file_jpeg_quality(const struct swath_file *file)

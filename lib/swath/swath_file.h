@@ -27,7 +27,7 @@ void swath_file_close(struct swath_file **file);
 void swath_file_layout(const struct swath_file *file, struct raster_layout *layout);
 
 /* NULL: copies keep the file's format and all else that it says. Else they are new images, of which
- * this is the extension (".png" or ".tif"). */
+ * this is the extension. */
 const char *swath_file_new_extension(const struct swath_file *file);
 
 /* The quality, 1...100 as libjpeg scales it, whose table for luminance is a JPEG's or close to it;

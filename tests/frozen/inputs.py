@@ -113,36 +113,6 @@ def mat(samples, rows):
     return b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H2s", 0x100, b"IM") + element(14, body)
 
 
-def bmp(pixels, columns):
-    """Grey, of 8 bits; columns: a multiple of 4."""
-    rows = len(pixels) // columns
-    palette = b"".join(bytes([level] * 3 + [0]) for level in range(256))
-    upwards = [bytes(pixels[row * columns : (row + 1) * columns]) for row in reversed(range(rows))]
-    return (
-        struct.pack(
-            "<2sIHHIIiiHHIIiiII",
-            b"BM",
-            1078 + len(pixels),
-            0,
-            0,
-            1078,
-            40,
-            columns,
-            rows,
-            1,
-            8,
-            0,
-            len(pixels),
-            2835,
-            2835,
-            256,
-            256,
-        )
-        + palette
-        + b"".join(upwards)
-    )
-
-
 def xtf(rows, samples, slant_range_m):
     """Both sides in 16 bits with position and altitude, after Triton's description."""
     head = bytearray(1024)
@@ -178,7 +148,7 @@ def write_inputs(folder):
         (folder / name).write_text(text)
     rows, columns = 240, 320
     amplitudes = seabed(rows, columns, 1)
-    floats, bytes8 = array.array("f", amplitudes), array.array("B", grey(amplitudes, 255))
+    floats = array.array("f", amplitudes)
     turned = array.array(
         "f", [floats[row * columns + c] for c in range(columns) for row in range(rows)]
     )
@@ -199,8 +169,6 @@ def write_inputs(folder):
         "complex.tif": tiff(pairs, columns, channels=2),
         "swath.npy": npy(pairs, (rows, columns), "<c8"),
         "swath.mat": mat(turned, rows),
-        "swath.bmp": bmp(bytes8, columns),
-        "swath.pgm": b"P5\n%d %d\n255\n" % (columns, rows) + bytes8.tobytes(),
         "figure.png": png(grey(seabed(472, 512, 2), 255), 512),
         "heights.npy": npy(array.array("f", heights), (60, 80)),
         "line.xtf": xtf(160, 200, 30.0),

@@ -157,13 +157,6 @@ def ply(_):
     return files
 
 
-def images(_):
-    samples = numpy.arange(12)
-    return {"bmp": b"BM" + struct.pack("<IIIIiiHHIIiiII", 0, 0, 1078, 40, 4, 3, 1, 8, *[0] * 6)
-                    + bytes(1024) + samples.astype("u1").tobytes(),
-            "pgm": b"P5\n# name=a\n4 3\n255\n" + samples.astype("u1").tobytes()}
-
-
 def tables(_):
     return {
         "commas": b"depth,speed\n0,1500\n10,1490.5\n",
@@ -201,7 +194,7 @@ def labels(_):
 
 
 MAKERS = {"scene": scenes, "target": targets, "xtf": recordings, "jsf": jsf_recordings, "npy": arrays, "mat": matlab,
-          "stl": stl, "obj": obj, "ply": ply, "image": images, "table": tables,
+          "stl": stl, "obj": obj, "ply": ply, "table": tables,
           "snippet": snippets, "labels": labels}
 TEXTS = {"scene", "target", "npy", "stl", "obj", "ply", "table", "snippet", "labels"}
 

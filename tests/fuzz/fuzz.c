@@ -14,7 +14,6 @@
 #include "mesh/mesh_reader.h"
 #include "schema/scene_file.h"
 #include "schema/tables.h"
-#include "swath/image_library.h"
 #include "swath/swath_format.h"
 #include "user/snippet.h"
 
@@ -184,29 +183,6 @@ static void fuzz_labels(const struct fuzzer *fuzzer, const uint8_t *bytes, size_
     }
 }
 
-/* What sonject itself reads of images, BMP and PGM: heads, and the pixels of what is taken. */
-static void fuzz_image(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
-{
-    struct report report = {{0}, NULL, NULL};
-    struct image_facts facts = {.description = NULL};
-    void *image = NULL;
-    (void)fuzzer;
-    put_file("fuzz.image", bytes, count);
-    if (count < 2 || (bytes[0] != 'B' && bytes[0] != 'P'))
-        return;
-    sonject_status status =
-        bmp_pgm_library.open(&report, "fuzz.image", "fuzz.image", NULL, false, &image, &facts);
-    if (status == SONJECT_OK) {
-        const struct region whole = {0, 0, facts.layout.rows, facts.layout.columns};
-        uint8_t *pixels = allocate_array((size_t)whole.rows, (size_t)whole.columns);
-        status = bmp_pgm_library.read(&report, image, &whole, pixels);
-        free(pixels);
-    }
-    if (image)
-        (void)bmp_pgm_library.close(&report, image);
-    expect(status, &report, false);
-}
-
 /* From a file's bytes to a hierarchy. */
 static void fuzz_mesh(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
 {
@@ -301,9 +277,8 @@ static const struct fuzzer fuzzers[] = {
     {"xtf", fuzz_swath, &xtf_format, NULL}, {"jsf", fuzz_swath, &jsf_format, NULL},
     {"npy", fuzz_swath, &npy_format, NULL}, {"mat", fuzz_swath, &mat_format, NULL},
     {"stl", fuzz_mesh, NULL, stl_read},     {"obj", fuzz_mesh, NULL, obj_read},
-    {"ply", fuzz_mesh, NULL, ply_read},     {"image", fuzz_image, NULL, NULL},
-    {"table", fuzz_table, NULL, NULL},      {"snippet", fuzz_snippet, NULL, NULL},
-    {"labels", fuzz_labels, NULL, NULL}};
+    {"ply", fuzz_mesh, NULL, ply_read},     {"table", fuzz_table, NULL, NULL},
+    {"snippet", fuzz_snippet, NULL, NULL},  {"labels", fuzz_labels, NULL, NULL}};
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
