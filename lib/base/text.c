@@ -152,14 +152,6 @@ bool contains_ignoring_case(const char *text, const char *needle)
     return needle[0] == '\0';
 }
 
-unsigned long text_count_lines(const char *text)
-{
-    unsigned long lines = 0;
-    for (; *text != '\0'; text++)
-        lines += *text == '\n';
-    return lines;
-}
-
 /* Bytes of the well-formed UTF-8 character that text starts with, 0 if it is not one (or the end).
  * Shortest form only, no surrogates, nothing above U+10FFFF. */
 static size_t character_length(const unsigned char *text)

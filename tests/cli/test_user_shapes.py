@@ -101,7 +101,7 @@ def test_compilers_errors_have_the_users_line(sonject, user_scene):
     code.write_text(SPHERE.replace("sqrt(square)", "root(square)"))
     before = files_below(user_scene.parent)
     for arguments in (["check", user_scene], ["run", user_scene, "-o", "result"]):
-        assert_our_line(sonject(*arguments, ALLOW), 3, "ball.cl:7: ", "root")
+        assert_our_line(sonject(*arguments, ALLOW), 3, "ball.cl:7:", "root")
     assert files_below(user_scene.parent) == before
 
 

@@ -167,13 +167,6 @@ def tables(_):
     }
 
 
-def snippets(source):
-    code = (source / "tools" / "targets" / "boulder_relief.cl").read_bytes()
-    short = (b"#define R 1.0f\nreal shape_distance(real3 o, real3 d)\n{\n    /* a */ return R;\n}\n"
-             b"real3 shape_normal(real3 p)\n{\n    return p; // b\n}\n")
-    return {"boulder": code, "short": short, "deep": b"(" * 300}
-
-
 def labels(_):
     """Of an image of 2 rows and 3 columns."""
     coco = {"images": [{"id": 1, "file_name": "a.npy", "width": 3, "height": 2}],
@@ -194,9 +187,8 @@ def labels(_):
 
 
 MAKERS = {"scene": scenes, "target": targets, "xtf": recordings, "jsf": jsf_recordings, "npy": arrays, "mat": matlab,
-          "stl": stl, "obj": obj, "ply": ply, "table": tables,
-          "snippet": snippets, "labels": labels}
-TEXTS = {"scene", "target", "npy", "stl", "obj", "ply", "table", "snippet", "labels"}
+          "stl": stl, "obj": obj, "ply": ply, "table": tables, "labels": labels}
+TEXTS = {"scene", "target", "npy", "stl", "obj", "ply", "table", "labels"}
 
 
 def make(kind, folder, source):

@@ -15,7 +15,6 @@
 #include "schema/scene_file.h"
 #include "schema/tables.h"
 #include "swath/swath_format.h"
-#include "user/snippet.h"
 
 /* More than that and it is not read: compressed files may hold a thousand times their size. */
 #define BYTES_READ_MAX ((size_t)1 << 24)
@@ -102,20 +101,6 @@ static void fuzz_target(const struct fuzzer *fuzzer, const uint8_t *bytes, size_
     (void)fuzzer;
     put_file("targets/fuzz.yaml", bytes, count);
     read_scene(text);
-}
-
-/* Shapes that users write: what is refused before a compiler sees it. */
-static void fuzz_snippet(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
-{
-    struct report report = {{0}, NULL, NULL};
-    struct user_snippet snippet;
-    char *code = text_of(bytes, count);
-    (void)fuzzer;
-    const sonject_status status = snippet_make(&report, "fuzz.cl", 1, code, &snippet);
-    expect(status, &report, false);
-    if (status == SONJECT_OK)
-        snippet_clear(&snippet);
-    free(code);
 }
 
 /* The same file as a campaign's table of bodies. */
@@ -278,7 +263,7 @@ static const struct fuzzer fuzzers[] = {
     {"npy", fuzz_swath, &npy_format, NULL}, {"mat", fuzz_swath, &mat_format, NULL},
     {"stl", fuzz_mesh, NULL, stl_read},     {"obj", fuzz_mesh, NULL, obj_read},
     {"ply", fuzz_mesh, NULL, ply_read},     {"table", fuzz_table, NULL, NULL},
-    {"snippet", fuzz_snippet, NULL, NULL},  {"labels", fuzz_labels, NULL, NULL}};
+    {"labels", fuzz_labels, NULL, NULL}};
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
