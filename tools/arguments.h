@@ -66,15 +66,4 @@ void arguments_help(const struct verb *verb, FILE *file);
 /* A whole text that is a finite decimal number, such as "-2.5e3", in every locale. */
 bool number_parse(const char *text, double *value);
 
-/* ---- What a mistyped word was perhaps meant to be. */
-
-struct nearest {
-    const char *word;
-    const char *best; /* NULL: nothing is near */
-    size_t distance;
-};
-
-void nearest_begin(struct nearest *nearest, const char *word);
-void nearest_consider(struct nearest *nearest, const char *candidate);
-
 #endif

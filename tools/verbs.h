@@ -4,6 +4,7 @@
 #define SONJECT_TOOLS_VERBS_H
 
 #include "arguments.h"
+#include "base/text.h"
 
 #define VERBS(ROW)                                                                                 \
     ROW(init)                                                                                      \

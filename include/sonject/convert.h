@@ -32,7 +32,7 @@ typedef struct sonject_convert_params {
     const char *output; /* .tif, .png, .npy, .h5; with `into` any */
     const char *into;   /* NULL, or a file of the output's size and type: the output is a copy of it
                            with the input's samples, all else untouched; not of
-                           PGM and BMP, whose copies are TIFF */
+                           PNG and JPEG, whose copies are new */
     const char *channel; /* as of sonject_quicklook_params, like the other two */
     const char *array;
     const char *geometry; /* of slant range; NULL: the input's own. Refused where that is of ground

@@ -27,9 +27,9 @@
  *
  * The code may hold further functions, types, `constant` tables and macros; their names meet
  * neither those of the program nor of other shapes, with a compiler other than clang where
- * functions and tables are `static`. #include, #pragma, #undef and #line are refused. sonject_check
- * tries a shape with some thousand rays. A device whose driver links no programs takes no such
- * shapes.
+ * functions and tables are `static`. All of it must be in one file: #include is refused. Errors
+ * have the line that the compiler tells. sonject_check tries a shape with some thousand rays. A
+ * device whose driver links no programs takes no such shapes.
  *
  * The code is a program: it runs with the rights of the process (on a CPU it can do what the
  * process can), and one that does not come to an end cannot be stopped, it holds the device until

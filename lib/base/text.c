@@ -152,14 +152,6 @@ bool contains_ignoring_case(const char *text, const char *needle)
     return needle[0] == '\0';
 }
 
-unsigned long text_count_lines(const char *text)
-{
-    unsigned long lines = 0;
-    for (; *text != '\0'; text++)
-        lines += *text == '\n';
-    return lines;
-}
-
 /* Bytes of the well-formed UTF-8 character that text starts with, 0 if it is not one (or the end).
  * Shortest form only, no surrogates, nothing above U+10FFFF. */
 static size_t character_length(const unsigned char *text)
@@ -247,4 +239,58 @@ const char *text_excerpt(char *excerpt, size_t capacity, const char *text)
     memcpy(excerpt, text, kept);
     memcpy(excerpt + kept, "...", 4);
     return excerpt;
+}
+
+/* ---- "Did you mean". */
+
+#define WORD_MAX 64 /* letters; longer words are near to none */
+
+static size_t least(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Insertions, deletions, replacements and swaps of neighbours that turn a into b: the optimal
+ * string alignment distance. */
+static size_t edit_distance(const char *a, const char *b)
+{
+    size_t rows[3][WORD_MAX + 1];
+    size_t *before = rows[0];
+    size_t *last = rows[1];
+    size_t *now = rows[2];
+    const size_t columns = strlen(b);
+    if (columns > WORD_MAX || strlen(a) > WORD_MAX)
+        return SIZE_MAX;
+    for (size_t j = 0; j <= columns; j++)
+        last[j] = j;
+    for (size_t i = 1; a[i - 1]; i++) {
+        now[0] = i;
+        for (size_t j = 1; j <= columns; j++) {
+            const size_t changed = last[j - 1] + (a[i - 1] != b[j - 1]);
+            now[j] = least(changed, least(last[j], now[j - 1]) + 1);
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                now[j] = least(now[j], before[j - 2] + 1);
+        }
+        size_t *spare = before;
+        before = last;
+        last = now;
+        now = spare;
+    }
+    return last[columns];
+}
+
+void nearest_begin(struct nearest *nearest, const char *word)
+{
+    nearest->word = word;
+    nearest->best = NULL;
+    nearest->distance = strlen(word) / 3 + 2; /* what is near is nearer than this */
+}
+
+void nearest_consider(struct nearest *nearest, const char *candidate)
+{
+    const size_t distance = edit_distance(nearest->word, candidate);
+    if (distance < nearest->distance && distance < strlen(candidate)) {
+        nearest->best = candidate;
+        nearest->distance = distance;
+    }
 }

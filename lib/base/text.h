@@ -25,9 +25,6 @@ const char *text_of_number(char *text, size_t capacity, double number, int digit
 /* Whether a needle, empty or not, is in the text, whatever the case of its letters. */
 bool contains_ignoring_case(const char *text, const char *needle);
 
-/* How many lines end in the text. */
-unsigned long text_count_lines(const char *text);
-
 /* True if the text is well-formed UTF-8 without control characters (U+0000 to U+001F, U+007F to
  * U+009F), line and paragraph separators (U+2028, U+2029) and those that set the direction of text
  * (U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069). Names in scenes and campaigns must
@@ -41,5 +38,17 @@ void text_make_printable(char *text);
 /* Copies text for use in a message; where it does not fit it is cut between characters and ends in
  * "...". capacity: at least 4. Returns excerpt. */
 const char *text_excerpt(char *excerpt, size_t capacity, const char *text);
+
+/* ---- What a mistyped word was perhaps meant to be. */
+
+struct nearest {
+    const char *word;
+    const char *best; /* NULL: nothing is near */
+    size_t distance;
+};
+
+/* A third of the letters may be wrong, and one at least. */
+void nearest_begin(struct nearest *nearest, const char *word);
+void nearest_consider(struct nearest *nearest, const char *candidate);
 
 #endif

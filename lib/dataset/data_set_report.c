@@ -9,7 +9,6 @@
 #include "dataset/data_set.h"
 #include "dataset/run.h"
 
-#define BINS       24
 #define SERIES_MAX 64    /* of more names, the later ones are left out of the page */
 #define IMAGES_MAX 20000 /* that are shown; of more, every second, third, ... is taken */
 #define DIGITS     6
@@ -42,23 +41,18 @@ struct statistics_page {
     json_t *rows;                                          /* of the images that are taken; owned */
 };
 
-/* How often values come in each of BINS parts of their range. */
+/* How often values come in each part of their range. */
 static json_t *histogram_document(const struct series *series)
 {
-    uint64_t bins[BINS] = {0};
     double low = series->values[0];
     double high = series->values[0];
     for (size_t i = 1; i < series->count; i++) {
         low = fmin(low, series->values[i]);
         high = fmax(high, series->values[i]);
     }
-    for (size_t i = 0; i < series->count; i++) {
-        const double place = high > low ? (series->values[i] - low) / (high - low) * BINS : 0.0;
-        bins[place < BINS ? (size_t)place : BINS - 1]++;
-    }
     return JSON_OBJECT({"name", json_string(series->name)}, {"unit", json_string(series->unit)},
                        {"low", json_number(low)}, {"high", json_number(high)},
-                       {"bins", json_counts(bins, BINS)});
+                       {"bins", histogram_counts(series->values, series->count, low, high)});
 }
 
 static sonject_status add_value(struct statistics_page *page, const char *name, const char *unit,

@@ -5,22 +5,18 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/json_document.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "dataset/data_set.h"
 #include "dataset/fit.h"
+#include "dataset/run.h"
 #include "image/canvas.h"
 #include "measure/contacts.h"
 #include "swath/raster_file.h"
 
-#define BINS       20
-#define BAR        12 /* pixels of the page, as all below */
-#define LEFT       12
-#define WIDTH      (2 * LEFT + BINS * BAR)
-#define HEIGHT     176
-#define BOTTOM     140
-#define TOP        30
-#define CELL_SIDE  150 /* of the picture */
+#define DIGITS     6   /* of the page's numbers */
+#define CELL_SIDE  150 /* pixels of the picture, as the gap */
 #define CELL_GAP   6
 #define ACROSS     10
 #define FAR_ERRORS 3.0 /* standard errors between quantiles that do not agree */
@@ -39,15 +35,6 @@ static const char *const extent_names[EXTENT_KINDS] = {
     [EXTENT_SHADOW_SLANT] = "shadow in slant range, m",
     [EXTENT_HIGHLIGHT_LEVEL] = "highlight over the seabed, dB",
     [EXTENT_SHADOW_LEVEL] = "shadow over the seabed, dB"};
-
-static void add_escaped(struct growing_text *text, const char *raw)
-{
-    for (; *raw; raw++)
-        if (strchr("<>&\"'", *raw))
-            growing_text_add(text, "&#%d;", *raw);
-        else
-            growing_text_add(text, "%c", *raw);
-}
 
 /* Whose contacts. */
 enum series {
@@ -74,41 +61,13 @@ static size_t list_values(const struct fit *fit, size_t extent, enum series seri
     return kept;
 }
 
-/* The share of each bin: bars for real contacts, steps for injected ones. */
-static void write_series(struct growing_text *text, const double *values, size_t count, double low,
-                         double high, enum series series)
-{
-    static const char *const styles[SERIES_KINDS] = {
-        [SERIES_BEFORE] = "fill=\"none\" stroke=\"#b06020\" stroke-dasharray=\"4 3\"",
-        [SERIES_AFTER] = "fill=\"none\" stroke=\"#103060\" stroke-width=\"2\""};
-    double bins[BINS] = {0.0};
-    for (size_t i = 0; i < count; i++) {
-        const double place = (values[i] - low) / (high - low) * BINS;
-        bins[(int)fmin(fmax(place, 0.0), BINS - 1)] += 1.0 / (double)count;
-    }
-    if (series != SERIES_REAL)
-        growing_text_add(text, "<path %s d=\"M%d %d", styles[series], LEFT, BOTTOM);
-    for (int i = 0; i < BINS; i++) {
-        /* a third of all in one bin fills the height */
-        const int height = (int)lround((BOTTOM - TOP) * fmin(1.0, 3.0 * bins[i]));
-        if (series == SERIES_REAL)
-            growing_text_add(
-                text, "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"#a8c4e0\"/>",
-                LEFT + i * BAR, BOTTOM - height, BAR - 1, height);
-        else
-            growing_text_add(text, "V%dH%d", BOTTOM - height, LEFT + (i + 1) * BAR);
-    }
-    if (series != SERIES_REAL)
-        growing_text_add(text, "V%d\"/>", BOTTOM);
-}
-
-/* values: room for all of a series. */
-static void write_histogram(const struct fit *fit, size_t extent, double *values,
-                            struct growing_text *text)
+/* How often what real and injected contacts show comes in each part of its range; null where all
+ * show the same. values: room for all of a series. */
+static json_t *histogram_document(const struct fit *fit, size_t extent, double *values)
 {
     double low = INFINITY;
     double high = -INFINITY;
-    char ends[2][40];
+    json_t *bins[SERIES_KINDS];
     for (int series = 0; series < SERIES_KINDS; series++) {
         const size_t n = list_values(fit, extent, (enum series)series, values);
         if (n == 0)
@@ -118,148 +77,131 @@ static void write_histogram(const struct fit *fit, size_t extent, double *values
         high = fmax(high, sorted_quantile(values, n, 0.98));
     }
     if (!(high > low))
-        return;
-    growing_text_add(text,
-                     "<svg width=\"%d\" height=\"%d\" font-size=\"12\"><text x=\"%d\" "
-                     "y=\"16\">%s</text>",
-                     WIDTH, HEIGHT, LEFT, extent_names[extent]);
+        return json_null();
     for (int series = 0; series < SERIES_KINDS; series++) {
         const size_t n = list_values(fit, extent, (enum series)series, values);
-        if (n > 0)
-            write_series(text, values, n, low, high, (enum series)series);
+        bins[series] = histogram_counts(values, n, low, high);
     }
-    growing_text_add(text,
-                     "<path d=\"M%d %dH%d\" stroke=\"#000\"/><text x=\"%d\" y=\"%d\">%s</text>"
-                     "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">%s</text></svg>\n",
-                     LEFT, BOTTOM, WIDTH - LEFT, LEFT, BOTTOM + 16,
-                     text_of_number(ends[0], sizeof ends[0], low, 3), WIDTH - LEFT, BOTTOM + 16,
-                     text_of_number(ends[1], sizeof ends[1], high, 3));
+    return JSON_OBJECT({"name", json_string(extent_names[extent])}, {"unit", json_string("")},
+                       {"low", json_number(low)}, {"high", json_number(high)},
+                       {"bins", bins[SERIES_REAL]}, {"before", bins[SERIES_BEFORE]},
+                       {"after", bins[SERIES_AFTER]});
+}
+
+static json_t *histograms_document(const struct fit *fit, double *values)
+{
+    json_t *histograms = json_array();
+    for (size_t k = 0; k < EXTENT_KINDS; k++)
+        if (fit->goals[k].levels > 0)
+            json_append(&histograms, histogram_document(fit, k, values));
+    return histograms;
+}
+
+/* By how many standard errors quantiles of injected contacts are off those of real ones at most; 0
+ * where nobody knows. */
+static double farthest_quantile(const struct fit *fit, size_t extent, double *values)
+{
+    const struct quantile_goal *goal = &fit->goals[extent];
+    const size_t n = list_values(fit, extent, SERIES_AFTER, values);
+    const bool is_length = extent < EXTENT_LENGTHS;
+    double farthest = 0.0;
+    if (n == 0)
+        return 0.0;
+    qsort(values, n, sizeof *values, compare_doubles);
+    const double half = sorted_quantile(values, n, 0.75) - sorted_quantile(values, n, 0.25);
+    const double middle = sorted_quantile(values, n, 0.5);
+    for (size_t i = 0; i < goal->levels; i++) {
+        const double value = sorted_quantile(values, n, goal->level[i]);
+        const double own =
+            quantile_error(goal->level[i], is_length ? half / middle : half, (double)n);
+        farthest = fmax(farthest, fabs((is_length ? log(value) : value) - goal->value[i]) /
+                                      hypot(goal->error[i], own));
+    }
+    return farthest;
 }
 
 /* Extents whose quantiles injected contacts do not reach. */
-static void write_unmatched(const struct fit *fit, double *values, struct growing_text *text)
+static json_t *unmatched_document(const struct fit *fit, double *values)
 {
-    bool has_some = false;
+    json_t *unmatched = json_object();
     for (size_t k = 0; k < EXTENT_KINDS; k++) {
-        const struct quantile_goal *goal = &fit->goals[k];
-        const size_t n = list_values(fit, k, SERIES_AFTER, values);
-        double farthest = 0.0;
-        if (goal->levels == 0 || n == 0)
-            continue;
-        qsort(values, n, sizeof *values, compare_doubles);
-        const double half = sorted_quantile(values, n, 0.75) - sorted_quantile(values, n, 0.25);
-        const double middle = sorted_quantile(values, n, 0.5);
-        for (size_t i = 0; i < goal->levels; i++) {
-            const double value = sorted_quantile(values, n, goal->level[i]);
-            const bool is_length = k < EXTENT_LENGTHS;
-            const double own =
-                quantile_error(goal->level[i], is_length ? half / middle : half, (double)n);
-            farthest = fmax(farthest, fabs((is_length ? log(value) : value) - goal->value[i]) /
-                                          hypot(goal->error[i], own));
-        }
+        const double farthest = farthest_quantile(fit, k, values);
         if (farthest > FAR_ERRORS)
-            growing_text_add(
-                text, "%s<li>%s: quantiles differ by up to %.1f standard errors</li>\n",
-                has_some ? "" : "<h2>Not matched</h2>\n<ul>", extent_names[k], farthest);
-        has_some = has_some || farthest > FAR_ERRORS;
+            json_add(&unmatched, extent_names[k], json_number(farthest));
     }
-    growing_text_add(text, "%s", has_some ? "</ul>\n" : "");
+    return unmatched;
 }
 
-static void write_row(struct growing_text *text, const char *key, const char *before,
-                      const char *after)
+static json_t *quantity(double value, const char *unit)
 {
-    growing_text_add(text, "<tr><td>%s</td><td>%s</td><td>%s</td></tr>\n", key, before, after);
+    char digits[32], text[64];
+    snprintf(text, sizeof text, "%s%s", text_of_number(digits, sizeof digits, value, 3), unit);
+    return json_string(text);
+}
+
+/* A key with what stood there before, and one or two numbers that stand there now. */
+static void add_row(json_t **rows, const char *key, const char *before, double first, double second,
+                    const char *unit)
+{
+    json_t *after = json_array();
+    if (!isfinite(first))
+        return;
+    json_append(&after, quantity(first, unit));
+    if (isfinite(second))
+        json_append(&after, quantity(second, unit));
+    json_append(rows, JSON_OBJECT({"key", json_string(key)}, {"before", json_pack("[s]", before)},
+                                  {"after", after}));
 }
 
 /* Numbers before and after, in the order in which a key has them. */
-static void write_moves(const struct fit *fit, struct growing_text *text)
+static json_t *draws_document(const struct fit *fit)
 {
     const struct fit_draws *draws = &fit->draws;
     const struct fitted_selection *selection = &fit->selection;
-    char value[80];
-    growing_text_add(text, "<h2>Draws</h2>\n<table><tr><th>key</th><th>before</th><th>fitted</th>"
-                           "</tr>\n");
+    json_t *rows = json_array();
     for (size_t i = 0, end; i < draws->count; i = end) {
-        struct growing_text before = {NULL, 0, 0, false};
-        struct growing_text after = {NULL, 0, 0, false};
-        for (end = i;
-             end < draws->count && strcmp(draws->numbers[end].key, draws->numbers[i].key) == 0;
-             end++) {
+        const char *key = draws->numbers[i].key;
+        json_t *before = json_array();
+        json_t *after = json_array();
+        for (end = i; end < draws->count && strcmp(draws->numbers[end].key, key) == 0; end++) {
             const struct fitted_number *number = &draws->numbers[end];
-            char digits[32];
-            growing_text_add(&before, "%s%s%s", end > i ? ", " : "",
-                             text_of_number(digits, sizeof digits, number->start, 3), number->unit);
-            growing_text_add(&after, "%s%s%s", end > i ? ", " : "",
-                             text_of_number(digits, sizeof digits, number->value, 3), number->unit);
+            json_append(&before, quantity(number->start, number->unit));
+            json_append(&after, quantity(number->value, number->unit));
         }
-        char *was = growing_text_end(&before);
-        char *is = growing_text_end(&after);
-        write_row(text, draws->numbers[i].key, was ? was : "", is ? is : "");
-        free(was);
-        free(is);
+        json_append(&rows,
+                    JSON_OBJECT({"key", json_string(key)}, {"before", before}, {"after", after}));
     }
     for (uint32_t i = 0; draws->has_added && i < draws->campaign->target_count; i++) {
         char key[64];
-        if (!draws->lacks_level[i])
-            continue;
         snprintf(key, sizeof key, "targets[%u].draw.level.over_seabed", (unsigned)i);
-        snprintf(value, sizeof value, "%.1f dB, %.1f dB", draws->level_db[0], draws->level_db[1]);
-        write_row(text, key, "by shape and material", value);
+        if (draws->lacks_level[i])
+            add_row(&rows, key, "by shape and material", draws->level_db[0], draws->level_db[1],
+                    " dB");
     }
-    if (draws->has_added && draws->lacks_floor) {
-        snprintf(value, sizeof value, "%.1f dB", draws->floor_db);
-        write_row(text, "draw.injection.noise_floor", "the scene's", value);
-    }
-    if (isfinite(selection->highlight_db)) {
-        snprintf(value, sizeof value, "%.1f dB", selection->highlight_db);
-        write_row(text, "visible.highlight", "", value);
-    }
-    if (isfinite(selection->shadow_db)) {
-        snprintf(value, sizeof value, "%.1f dB", selection->shadow_db);
-        write_row(text, "visible.shadow", "", value);
-    }
-    if (isfinite(selection->nearest_range_m)) {
-        snprintf(value, sizeof value, "%.3g m, %.3g m", selection->nearest_range_m,
-                 selection->farthest_range_m);
-        write_row(text, "chip.slant_range", "", value);
-    }
-    growing_text_add(text, "</table>\n");
-    if (fit->has_no_such_ranges)
-        growing_text_add(text, "<p>The campaign's swaths do not reach the slant ranges of the "
-                               "contacts; its chips lie where they lay.</p>\n");
-    if (draws->unchanged.characters)
-        growing_text_add(text, "<p>Not observed in contacts, and unchanged:</p>\n<pre>%s</pre>\n",
-                         draws->unchanged.characters);
+    if (draws->has_added && draws->lacks_floor)
+        add_row(&rows, "draw.injection.noise_floor", "the scene's", draws->floor_db, NAN, " dB");
+    add_row(&rows, "visible.highlight", "", selection->highlight_db, NAN, " dB");
+    add_row(&rows, "visible.shadow", "", selection->shadow_db, NAN, " dB");
+    add_row(&rows, "chip.slant_range", "", selection->nearest_range_m, selection->farthest_range_m,
+            " m");
+    return rows;
 }
 
 static sonject_status write_page(const struct fit *fit, const char *picture, const char *path)
 {
     const size_t most = fit->real_count > fit->made_count ? fit->real_count : fit->made_count;
+    const char *unchanged = fit->draws.unchanged.characters;
     double *values = allocate_array(most + 1, sizeof *values);
-    struct growing_text text = {NULL, 0, 0, false};
     CHECK_MEMORY(fit->report, values, "the page");
-    growing_text_add(
-        &text,
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Fit</title>"
-        "<style>body{font-family:sans-serif;margin:2em;max-width:1100px}"
-        "table{border-collapse:collapse;margin:1em 0}svg{margin:.5em}"
-        "td,th{border:1px solid #999;padding:.2em .6em;text-align:left}</style></head><body>\n"
-        "<h1>A campaign fitted to %zu contacts</h1>\n"
-        "<p>Bars: real contacts. Dashed: injected, before. Line: injected, after. All are measured "
-        "by the same ruler.</p>\n",
-        fit->real_count > 0 ? fit->set.count : (size_t)fit->set.quantiles.contacts);
-    for (size_t k = 0; k < EXTENT_KINDS; k++)
-        if (fit->goals[k].levels > 0)
-            write_histogram(fit, k, values, &text);
-    write_unmatched(fit, values, &text);
-    write_moves(fit, &text);
-    growing_text_add(&text, "<h2>Chips</h2>\n<p>Real contacts above, injected ones below.</p>\n"
-                            "<p><img src=\"");
-    add_escaped(&text, picture);
-    growing_text_add(&text, "\" alt=\"chips\"></p>\n</body></html>\n");
+    json_t *page = JSON_OBJECT(
+        {"sonject", json_string(sonject_version())},
+        {"contacts",
+         json_count(fit->real_count > 0 ? fit->set.count : (uint64_t)fit->set.quantiles.contacts)},
+        {"fit", histograms_document(fit, values)}, {"unmatched", unmatched_document(fit, values)},
+        {"draws", draws_document(fit)}, {"unchanged", json_string(unchanged ? unchanged : "")},
+        {"lacks_ranges", json_boolean(fit->has_no_such_ranges)}, {"picture", json_text(picture)});
     free(values);
-    return growing_text_write(fit->report, &text, path);
+    return report_page_write(fit->report, page, DIGITS, path);
 }
 
 /* ---- The picture. */

@@ -1,5 +1,6 @@
 /* report.html: a page to look at, of a run or of a data set. It is one file, which needs no server:
  * what it shows is one JSON document in it, and its script makes tables and pictures of that. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,6 +26,16 @@ sonject_status report_page_write(struct report *report, json_t *data, size_t dig
     growing_text_add(&text, "%s", place + strlen(mark));
     free(json);
     return growing_text_write(report, &text, path);
+}
+
+json_t *histogram_counts(const double *values, size_t count, double low, double high)
+{
+    uint64_t bins[HISTOGRAM_BINS] = {0};
+    for (size_t i = 0; i < count; i++) {
+        const double place = high > low ? (values[i] - low) / (high - low) * HISTOGRAM_BINS : 0.0;
+        bins[(size_t)fmin(fmax(place, 0.0), HISTOGRAM_BINS - 1)]++;
+    }
+    return json_counts(bins, HISTOGRAM_BINS);
 }
 
 /* The name of a material, or null: it is one of its own numbers. */

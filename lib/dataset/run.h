@@ -100,6 +100,11 @@ extern const char report_page[];
 sonject_status report_page_write(struct report *report, json_t *data, size_t digits,
                                  const char *path);
 
+/* For such data: how many values lie in each of HISTOGRAM_BINS equal parts of low...high, in the
+ * outermost ones those beyond. */
+#define HISTOGRAM_BINS 24
+json_t *histogram_counts(const double *values, size_t count, double low, double high);
+
 /* What of a result is a file of its own: masks are images of the swath's size, all else of its
  * patch. */
 enum layer {

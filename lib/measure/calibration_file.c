@@ -43,19 +43,13 @@ static sonject_status read_swath(struct report *report, const char *path, struct
                                  struct stored_swath *swath, float **values)
 {
     struct raster_layout layout;
-    size_t bytes = 0;
-    swath_file_layout(file, &layout);
-    const struct region whole = {0, 0, layout.rows, layout.columns};
-    void *stored =
-        layout.rows * layout.columns <= (uint64_t)1 << 31 && region_bytes(&layout, &whole, &bytes)
-            ? allocate_array(bytes, 1)
-            : NULL;
+    void *stored;
+    CHECK(swath_file_read_all(report, file, &layout, &stored));
     swath->rows = (size_t)layout.rows;
     swath->columns = (size_t)layout.columns;
     swath->is_complex = layout.channels == 2;
-    *values = stored ? allocate_array(swath->rows, swath->columns * sizeof **values) : NULL;
-    sonject_status status = *values ? swath_file_read(report, file, &whole, stored)
-                                    : report_out_of_memory(report, path);
+    *values = allocate_array(swath->rows, swath->columns * sizeof **values);
+    sonject_status status = *values ? SONJECT_OK : report_out_of_memory(report, path);
     const size_t count = swath->rows * swath->columns;
     for (size_t i = 0; status == SONJECT_OK && i < count; i++) {
         const size_t at = i * layout.channels;

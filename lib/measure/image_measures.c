@@ -105,18 +105,12 @@ static sonject_status read_stored(struct report *report, const struct measured_i
                                   struct measured *measured)
 {
     struct swath_file *file = NULL;
-    size_t bytes = 0;
     *stored = NULL;
     CHECK(swath_file_open_beside(report, image->path, image->other, image->channel, image->array,
                                  &file));
-    swath_file_layout(file, layout);
     if (measured)
         take_spacings(file, measured);
-    const struct region whole = {0, 0, layout->rows, layout->columns};
-    if (layout->rows * layout->columns <= (uint64_t)1 << 31 && region_bytes(layout, &whole, &bytes))
-        *stored = allocate_array(bytes, 1);
-    sonject_status status = *stored ? swath_file_read(report, file, &whole, *stored)
-                                    : report_out_of_memory(report, image->path);
+    const sonject_status status = swath_file_read_all(report, file, layout, stored);
     swath_file_close(&file);
     return status;
 }

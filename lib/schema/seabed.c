@@ -151,15 +151,14 @@ static sonject_status take_heights(struct scene *scene, struct report *report,
                              "most 2^24 points: cut out or thin out",
                              (unsigned long long)layout.rows, (unsigned long long)layout.columns,
                              RELIEF_GRID_SIDE_MAX);
-    const struct region all = {0, 0, layout.rows, layout.columns};
     const size_t count = (size_t)(layout.rows * layout.columns);
-    void *pixels = array ? NULL : allocate_array(count, pixel_bytes(layout.type));
+    void *pixels = NULL;
+    if (!array)
+        CHECK(swath_file_read_all(report, file, &layout, &pixels));
     float *heights = allocate_array(count, sizeof *heights);
     text->grid.rows = (uint32_t)layout.rows;
     text->grid.columns = (uint32_t)layout.columns;
-    sonject_status status =
-        (array || pixels) && heights ? SONJECT_OK : report_out_of_memory(report, text->path);
-    THEN(status, array ? SONJECT_OK : swath_file_read(report, file, &all, pixels));
+    sonject_status status = heights ? SONJECT_OK : report_out_of_memory(report, text->path);
     for (size_t i = 0; status == SONJECT_OK && i < count; i++) {
         heights[i] =
             height_of(text, array ? array->values[i] : pixel_number(layout.type, pixels, i));

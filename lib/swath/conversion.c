@@ -9,7 +9,6 @@
 #include "swath/raster_file.h"
 
 #define COLUMNS_MAX 1e8
-#define PIXELS_MAX  ((uint64_t)1 << 31)
 
 /* The image on its way. */
 struct conversion {
@@ -114,76 +113,85 @@ static sonject_status to_type(struct report *report, struct conversion *conversi
     return SONJECT_OK;
 }
 
-static sonject_status check_axis(struct report *report, const struct noted_geometry *geometry,
-                                 const sonject_convert_params *params)
+static sonject_status check_axis(struct report *report, const char *path, enum range_axis axis,
+                                 double altitude, const struct range_columns *columns)
 {
-    const bool to_ground = params->range_axis == SONJECT_CONVERT_AXIS_GROUND;
-    if (geometry->axis == RANGE_UNKNOWN || isnan(geometry->first_range_m) ||
-        !(geometry->column_spacing_m > 0.0))
-        return input_failure(report, params->input,
+    const bool is_ground = columns->axis == RANGE_GROUND;
+    if (columns->axis == RANGE_UNKNOWN || isnan(columns->first_m) || isnan(columns->spacing_m))
+        return input_failure(report, path,
                              "does not say where its columns lie: give row spacing, column spacing "
                              "and first slant range");
-    if ((geometry->axis == RANGE_GROUND) == to_ground)
-        return input_failure(report, params->input,
-                             "is in %s range already: take the range axis out",
-                             to_ground ? "ground" : "slant");
-    if (geometry->nadir_column > 0.0)
-        return input_failure(report, params->input,
-                             "has a nadir column; range axes are changed where range grows from "
-                             "column 0 on");
-    if (!(geometry->altitude_m > 0.0))
+    if (columns->axis == axis)
+        return input_failure(report, path, "is in %s range already: take the range axis out",
+                             is_ground ? "ground" : "slant");
+    if (columns->has_nadir)
+        return input_failure(report, path,
+                             "has columns to the left of its nadir; range axes are changed where "
+                             "range grows from column 0 on");
+    if (!(altitude > 0.0))
         return input_failure(
-            report, params->input,
-            "does not say the sonar's altitude, which ground range needs: give it");
+            report, path, "does not say the sonar's altitude, which ground range needs: give it");
+    if (!is_ground &&
+        columns->first_m + columns->spacing_m * (double)(columns->count - 1) <= altitude)
+        return input_failure(report, path, "no column lies beyond the altitude of %g m", altitude);
     return SONJECT_OK;
 }
 
 /* Slant range over a level seabed of a ground range, or the other way round. */
-static double other_range(double altitude, bool to_slant, double range)
+static double other_range(double altitude, enum range_axis axis, double range)
 {
-    return to_slant ? hypot(range, altitude)
-                    : sqrt(fmax(0.0, (range - altitude) * (range + altitude)));
+    return axis == RANGE_SLANT ? hypot(range, altitude)
+                               : sqrt(fmax(0.0, (range - altitude) * (range + altitude)));
 }
 
-/* Columns at equal steps of the other range axis, each from the nearest one. */
+sonject_status range_axis_change(struct report *report, const char *path, enum range_axis axis,
+                                 double altitude_m, double step_m, size_t rows, size_t bytes,
+                                 struct range_columns *columns, void **pixels)
+{
+    CHECK(check_axis(report, path, axis, altitude_m, columns));
+    const size_t before = columns->count;
+    const double last = columns->first_m + columns->spacing_m * (double)(before - 1);
+    const double start = other_range(altitude_m, axis, columns->first_m);
+    const double width = floor((other_range(altitude_m, axis, last) - start) / step_m) + 1.0;
+    if (!(width >= 1.0 && width <= COLUMNS_MAX))
+        return input_failure(report, path, "%g columns would come of it: correct the geometry",
+                             width);
+    const size_t count = (size_t)width;
+    unsigned char *fresh = count <= SIZE_MAX / bytes ? allocate_array(rows, count * bytes) : NULL;
+    CHECK_MEMORY(report, fresh, "the columns");
+    for (size_t column = 0; column < count; column++) {
+        const double range =
+            other_range(altitude_m, columns->axis, start + step_m * (double)column);
+        const double nearest = floor((range - columns->first_m) / columns->spacing_m + 0.5);
+        const size_t from = (size_t)fmin(fmax(nearest, 0.0), (double)(before - 1));
+        for (size_t row = 0; row < rows; row++)
+            memcpy(fresh + (row * count + column) * bytes,
+                   (const unsigned char *)*pixels + (row * before + from) * bytes, bytes);
+    }
+    free(*pixels);
+    *pixels = fresh;
+    *columns = (struct range_columns){axis, start, step_m, false, count};
+    return SONJECT_OK;
+}
+
+/* Columns as far apart as they were. */
 static sonject_status resample(struct report *report, struct conversion *conversion,
                                const sonject_convert_params *params)
 {
     struct raster_layout *layout = &conversion->layout;
-    const bool to_slant = params->range_axis == SONJECT_CONVERT_AXIS_SLANT;
     struct noted_geometry *geometry = &conversion->geometry;
-    CHECK(check_axis(report, geometry, params));
     const double spacing = geometry->column_spacing_m;
-    const double last = geometry->first_range_m + spacing * (double)(layout->columns - 1);
-    if (!to_slant && last <= geometry->altitude_m)
-        return input_failure(report, params->input, "no column lies beyond the altitude of %g m",
-                             geometry->altitude_m);
-    const double start = other_range(geometry->altitude_m, to_slant, geometry->first_range_m);
-    const double width =
-        floor((other_range(geometry->altitude_m, to_slant, last) - start) / spacing) + 1.0;
-    if (!(width >= 1.0 && width <= COLUMNS_MAX))
-        return input_failure(report, params->input,
-                             "%g columns would come of it: correct the geometry", width);
-    const size_t pixel = layout->channels * pixel_bytes(layout->type);
-    const size_t columns = (size_t)width;
-    const size_t before = (size_t)layout->columns;
-    unsigned char *fresh =
-        columns <= SIZE_MAX / pixel ? allocate_array((size_t)layout->rows, columns * pixel) : NULL;
-    CHECK_MEMORY(report, fresh, "the columns");
-    for (size_t column = 0; column < columns; column++) {
-        const double range =
-            other_range(geometry->altitude_m, !to_slant, start + spacing * (double)column);
-        const double nearest = floor((range - geometry->first_range_m) / spacing + 0.5);
-        const size_t from = (size_t)fmin(fmax(nearest, 0.0), (double)(before - 1));
-        for (size_t row = 0; row < layout->rows; row++)
-            memcpy(fresh + (row * columns + column) * pixel,
-                   (const unsigned char *)conversion->pixels + (row * before + from) * pixel,
-                   pixel);
-    }
-    replace(conversion, fresh);
-    layout->columns = columns;
-    geometry->first_range_m = start;
-    geometry->axis = to_slant ? RANGE_SLANT : RANGE_GROUND;
+    struct range_columns columns = {geometry->axis, geometry->first_range_m,
+                                    spacing > 0.0 ? spacing : NAN, geometry->nadir_column > 0.0,
+                                    (size_t)layout->columns};
+    CHECK(range_axis_change(
+        report, params->input,
+        params->range_axis == SONJECT_CONVERT_AXIS_SLANT ? RANGE_SLANT : RANGE_GROUND,
+        geometry->altitude_m, spacing, (size_t)layout->rows,
+        layout->channels * pixel_bytes(layout->type), &columns, &conversion->pixels));
+    layout->columns = columns.count;
+    geometry->first_range_m = columns.first_m;
+    geometry->axis = columns.axis;
     conversion->is_resampled = true;
     return SONJECT_OK;
 }
@@ -204,21 +212,10 @@ static sonject_status read_input(struct report *report, const sonject_convert_pa
                                  const struct image_options *options, struct conversion *conversion)
 {
     struct swath_file *file = NULL;
-    size_t bytes = 0;
-    sonject_status status;
     CHECK(swath_file_open_beside(report, params->input, params->into, options->channel,
                                  options->array, &file));
-    struct raster_layout *layout = &conversion->layout;
-    swath_file_layout(file, layout);
-    const struct region whole = {0, 0, layout->rows, layout->columns};
-    if (layout->rows > PIXELS_MAX / layout->columns || !region_bytes(layout, &whole, &bytes))
-        status = input_failure(
-            report, params->input, "%llu x %llu pixels are more than the 2^31 that are converted",
-            (unsigned long long)layout->rows, (unsigned long long)layout->columns);
-    else if (!(conversion->pixels = allocate_array(bytes, 1)))
-        status = report_out_of_memory(report, params->input);
-    else
-        status = swath_file_read(report, file, &whole, conversion->pixels);
+    sonject_status status =
+        swath_file_read_all(report, file, &conversion->layout, &conversion->pixels);
     THEN(status, take_geometry(report, conversion, file, params, options));
     swath_file_close(&file);
     return status;

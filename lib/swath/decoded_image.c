@@ -276,9 +276,8 @@ static sonject_status copy_with_patch(struct report *report, const struct swath_
 static sonject_status copy_image(struct report *report, const struct swath_file *file,
                                  const struct swath_copy *copy)
 {
-    return file->image == IMAGE_TIFF
-               ? copy_with_patch(report, file, copy)
-               : raster_file_copy_with_patch(report, file->decoded, file->image, copy);
+    return file->image == IMAGE_TIFF ? copy_with_patch(report, file, copy)
+                                     : raster_file_copy_with_patch(report, file->decoded, copy);
 }
 
 static sonject_status open_decoded(struct report *report, struct swath_file *file, int32_t channel,

@@ -17,7 +17,8 @@ void decoder_stamp(char stamp[64])
 }
 
 struct opened {
-    char *path; /* in messages; NULL: none is open */
+    char *name;  /* in messages; NULL: none is open */
+    char *place; /* of the file */
     const struct image_library *library;
     void *image; /* of the library's */
     struct raster_layout layout;
@@ -48,7 +49,8 @@ static sonject_status close_file(struct report *report, struct opened *file)
 {
     const sonject_status status =
         file->image ? file->library->close(report, file->image) : SONJECT_OK;
-    free(file->path);
+    free(file->name);
+    free(file->place);
     memset(file, 0, sizeof *file);
     return status;
 }
@@ -69,11 +71,7 @@ static sonject_status find_library(const struct question *question,
                                    const struct image_library **library)
 {
     static const struct image_library *const libraries[IMAGE_KINDS] = {
-        [IMAGE_TIFF] = &tiff_library,
-        [IMAGE_PNG] = &png_library,
-        [IMAGE_JPEG] = &jpeg_library,
-        [IMAGE_BMP] = &bmp_pgm_library,
-        [IMAGE_PGM] = &bmp_pgm_library};
+        [IMAGE_TIFF] = &tiff_library, [IMAGE_PNG] = &png_library, [IMAGE_JPEG] = &jpeg_library};
     enum image_kind kind;
     if (!*question->texts[2] && is_raster(question->texts[1], &kind)) {
         *library = libraries[kind];
@@ -95,19 +93,23 @@ static sonject_status open_image(struct question *question)
     const char *name = question->texts[0];
     const char *array = *question->texts[2] ? question->texts[2] : NULL;
     struct image_facts facts = {.description = NULL};
+    struct report unheard = {{0}, NULL, NULL};
     uint32_t place = 0;
-    while (place < DECODER_FILES_MAX && question->state->files[place].path)
+    while (place < DECODER_FILES_MAX && question->state->files[place].name)
         place++;
     if (place == DECODER_FILES_MAX)
         return report_failure(question->report, SONJECT_ERROR_STORAGE, "%s: %d files are open",
                               name, DECODER_FILES_MAX);
     struct opened *file = question->file = &question->state->files[place];
     CHECK(find_library(question, &file->library));
-    file->path = copy_text(name);
-    CHECK_MEMORY(question->report, file->path, name);
+    file->name = copy_text(name);
+    file->place = copy_text(question->texts[1]);
     const sonject_status status =
-        file->library->open(question->report, name, question->texts[1], array,
-                            question->request->function == DECODER_OPEN_COPY, &file->image, &facts);
+        file->name && file->place
+            ? file->library->open(question->report, file->name, file->place, array,
+                                  question->request->function == DECODER_OPEN_COPY, &file->image,
+                                  &facts)
+            : report_out_of_memory(question->report, name);
     file->layout = question->reply->layout = facts.layout;
     question->reply->handle = place + 1;
     question->reply->largest = facts.largest;
@@ -118,7 +120,7 @@ static sonject_status open_image(struct question *question)
         question->reply->bytes = strlen(facts.description) + 1;
     question->out = facts.description;
     if (status != SONJECT_OK)
-        (void)close_file(question->report, file);
+        (void)close_file(&unheard, file);
     return status;
 }
 
@@ -158,7 +160,7 @@ static sonject_status give_answer(struct question *question)
 static sonject_status tell_disk(struct question *question, sonject_status status)
 {
     const char *path =
-        question->file && question->file->path ? question->file->path : question->texts[0];
+        question->file && question->file->name ? question->file->name : question->texts[0];
     if ((status != SONJECT_OK && status != SONJECT_ERROR_INPUT) ||
         file_check_disk(question->report, path, SONJECT_ERROR_INPUT) == SONJECT_ERROR_INPUT)
         return status;

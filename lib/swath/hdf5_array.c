@@ -32,7 +32,7 @@ struct data_set {
 };
 
 struct hdf5_array {
-    char *path; /* in messages */
+    const char *path; /* in messages */
     struct data_set set;
     struct raster_layout layout;
     hid_t file, dataset;
@@ -237,16 +237,20 @@ static herr_t add_attribute(hid_t dataset, const char *name, const H5A_info_t *i
     return 0;
 }
 
-static sonject_status open_array(struct report *report, struct hdf5_array *array, const char *place,
-                                 const char *name, struct image_facts *facts)
+static sonject_status open_image(struct report *report, const char *name, const char *path,
+                                 const char *wanted, bool writes, void **image,
+                                 struct image_facts *facts)
 {
+    struct hdf5_array *array = *image = allocate_array(1, sizeof *array);
     struct growing_text text = {0};
-    array->file = H5Fopen(place, array->writes ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT);
+    CHECK_MEMORY(report, array, "a file");
+    *array = (struct hdf5_array){.path = name, .writes = writes, .file = -1, .dataset = -1};
+    array->file = H5Fopen(path, writes ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT);
     if (array->file < 0)
         return input_failure(report, array->path,
                              "HDF5 cannot open it: it is damaged or cut short (copy it again), or "
                              "open for writing elsewhere");
-    CHECK(choose_set(report, array, name));
+    CHECK(choose_set(report, array, wanted));
     const struct data_set *set = &array->set;
     array->dataset = H5Dopen2(array->file, set->name, H5P_DEFAULT);
     if (array->dataset < 0)
@@ -280,28 +284,8 @@ static sonject_status close_image(struct report *report, void *image)
     release(array->dataset);
     is_done = (array->file < 0 || H5Fclose(array->file) >= 0) && is_done;
     const sonject_status status = is_done ? SONJECT_OK : cannot_move(report, array);
-    free(array->path);
     free(array);
     errno = is_done ? before : errno;
-    return status;
-}
-
-static sonject_status open_image(struct report *report, const char *name, const char *path,
-                                 const char *array, bool writes, void **image,
-                                 struct image_facts *facts)
-{
-    struct report unheard = {{0}, NULL, NULL};
-    struct hdf5_array *opened = allocate_array(1, sizeof *opened);
-    CHECK_MEMORY(report, opened, "a file");
-    opened->path = copy_text(name);
-    opened->file = opened->dataset = -1;
-    opened->writes = writes;
-    const sonject_status status = opened->path ? open_array(report, opened, path, array, facts)
-                                               : report_out_of_memory(report, "a file");
-    if (status == SONJECT_OK)
-        *image = opened;
-    else
-        (void)close_image(&unheard, opened);
     return status;
 }
 

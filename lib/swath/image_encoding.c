@@ -37,3 +37,14 @@ sonject_status encoding_failure(struct report *report, const struct image_encodi
                              : report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot write: %s",
                                               encoding->name, fault->message);
 }
+
+sonject_status encoding_end(struct report *report, const struct image_encoding *encoding,
+                            FILE *file, struct library_fault *fault, bool is_written,
+                            sonject_status status)
+{
+    if (file && fclose(file) != 0 && is_written) {
+        is_written = false;
+        fault->error = errno;
+    }
+    return status != SONJECT_OK || is_written ? status : encoding_failure(report, encoding, fault);
+}

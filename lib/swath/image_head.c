@@ -13,8 +13,7 @@ struct beginning {
 
 static const struct beginning beginnings[] = {
     {IMAGE_TIFF, "II\x2A\0", 4}, {IMAGE_TIFF, "MM\0\x2A", 4}, {IMAGE_TIFF, "II\x2B\0", 4},
-    {IMAGE_TIFF, "MM\0\x2B", 4}, {IMAGE_PNG, "\x89PNG", 4},   {IMAGE_JPEG, "\xFF\xD8\xFF", 3},
-    {IMAGE_BMP, "BM", 2},        {IMAGE_PGM, "P5", 2}};
+    {IMAGE_TIFF, "MM\0\x2B", 4}, {IMAGE_PNG, "\x89PNG", 4},   {IMAGE_JPEG, "\xFF\xD8\xFF", 3}};
 
 /* What users may have at hand that sonject does not read. */
 static const struct {
@@ -30,7 +29,9 @@ static const struct {
     {"a PFM", "PF", 2},
     {"a PBM", "P4", 2},
     {"a PPM", "P6", 2},
-    {"a PGM in ASCII (P2)", "P2", 2},
+    {"a PGM", "P2", 2},
+    {"a PGM", "P5", 2},
+    {"a BMP", "BM", 2},
     {"a JPEG 2000", "\xFF\x4F\xFF\x51", 4},
     {"a JPEG 2000", "\0\0\0\x0CjP  ", 8},
     {"a FITS", "SIMPLE  =", 9},
@@ -52,9 +53,10 @@ sonject_status image_kind_refuse(struct report *report, const char *path, const 
             memcmp(head, foreign_kinds[i].bytes, foreign_kinds[i].count) == 0)
             return input_failure(report, path,
                                  "is %s file, which sonject does not read; it reads %s: convert it "
-                                 "to one of these",
+                                 "to one of these, such as TIFF or PNG",
                                  foreign_kinds[i].name, readable);
-    return input_failure(report, path, "is %s; sonject reads %s: convert it to one of these",
+    return input_failure(report, path,
+                         "is %s; sonject reads %s: convert it to one of these, such as TIFF or PNG",
                          count == 0 ? "empty" : "of no format that sonject knows", readable);
 }
 

@@ -12,8 +12,6 @@ enum image_kind {
     IMAGE_TIFF,
     IMAGE_PNG,
     IMAGE_JPEG,
-    IMAGE_BMP,
-    IMAGE_PGM,
     IMAGE_KINDS
 };
 

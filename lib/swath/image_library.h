@@ -1,8 +1,9 @@
 /* Libraries of others that read, change and write images, as the decoder (swath/decoder.h) and
- * those that write new images use them: libtiff, libpng, libjpeg and HDF5; and plain grey images.
- */
+ * those that write new images use them: libtiff, libpng, libjpeg and HDF5. */
 #ifndef SONJECT_SWATH_IMAGE_LIBRARY_H
 #define SONJECT_SWATH_IMAGE_LIBRARY_H
+
+#include <stdio.h>
 
 #include "image/raster.h"
 #include "swath/image_head.h"
@@ -25,8 +26,9 @@ struct image_facts {
 };
 
 struct image_library {
-    /* path: the file; name: of it in messages; array: NULL for the only one; writes: it is a copy
-     * to be changed. On success *image is the caller's, for close. */
+    /* path: the file; name: of it in messages; both stay until it is closed; array: NULL for the
+     * only one; writes: it is a copy to be changed. *image, unless it stays NULL, and
+     * facts->description are the caller's, on failure too. */
     sonject_status (*open)(struct report *report, const char *name, const char *path,
                            const char *array, bool writes, void **image, struct image_facts *facts);
     /* brings what was changed to the file; *image is gone, whatever is returned */
@@ -43,13 +45,13 @@ struct image_library {
 /* Data sets of HDF5 files (swath/hdf5_array.c). Calls come between hdf5_enter and hdf5_leave. */
 extern const struct image_library hdf5_library;
 
-/* Images by the files swath/<name>_file.c and swath/bmp_pgm.c. TIFF alone is changed; copies of
+/* Images by the files swath/<name>_file.c. TIFF alone is changed; copies of
  * others are new images. All refuse (INPUT) what they cannot read, files that are cut short,
  * palettes but for those of numbers, more than one channel (TIFF: two), and of others than TIFF
  * what is not of 8 or 16 bits. Of TIFF, pixels are not decoded then; changed tiles or strips that
  * no longer fit in their place go behind the end of the file, and all tags, other pages and
  * untouched blocks stay. */
-extern const struct image_library tiff_library, png_library, jpeg_library, bmp_pgm_library;
+extern const struct image_library tiff_library, png_library, jpeg_library;
 
 /* A file that is to be written. */
 struct image_encoding {
@@ -75,6 +77,12 @@ sonject_status encode_rows(struct report *report, const struct image_encoding *e
 /* The status of a library's fault: STORAGE or MEMORY. */
 sonject_status encoding_failure(struct report *report, const struct image_encoding *encoding,
                                 const struct library_fault *fault);
+
+/* Closes a file that a library wrote, NULL where it could not be opened, and tells what failed.
+ * status: of the rows. */
+sonject_status encoding_end(struct report *report, const struct image_encoding *encoding,
+                            FILE *file, struct library_fault *fault, bool is_written,
+                            sonject_status status);
 
 /* Stream in strips of at most about 64 MB. What failed is left to the caller to remove. Errors:
  * STORAGE, MEMORY, UNSUPPORTED (a description that is too long), those of give_rows. */

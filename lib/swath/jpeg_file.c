@@ -30,7 +30,7 @@ struct listener {
 };
 
 struct jpeg_image {
-    char *name, *path; /* name: in messages; owned */
+    const char *name, *path; /* name: in messages */
     struct raster_layout layout;
     struct listener listener;
     struct jpeg_decompress_struct jpeg; /* all 0: not there */
@@ -190,8 +190,6 @@ static sonject_status close_image(struct report *report, void *opened)
     (void)report;
     end_decoding(image);
     jpeg_destroy_compress(&image->scaled);
-    free(image->name);
-    free(image->path);
     free(image->row);
     free(image);
     return SONJECT_OK;
@@ -202,30 +200,19 @@ static sonject_status open_image(struct report *report, const char *name, const 
                                  const char *array, bool writes, void **opened,
                                  struct image_facts *facts)
 {
-    struct jpeg_image *image = allocate_array(1, sizeof *image);
+    struct jpeg_image *image = *opened = allocate_array(1, sizeof *image);
     (void)array, (void)writes;
     CHECK_MEMORY(report, image, name);
-    image->name = copy_text(name);
-    image->path = copy_text(path);
-    sonject_status status = image->name && image->path ? begin_decoding(report, image)
-                                                       : report_out_of_memory(report, name);
-    THEN(status, take_layout(report, image));
-    THEN(status, take_description(report, image, &facts->description));
-    if (status == SONJECT_OK) {
-        const struct region whole = {0, 0, image->layout.rows, image->layout.columns};
-        status = take_quality(image, &facts->jpeg_quality) && decode_region(image, &whole, NULL)
-                     ? SONJECT_OK
-                     : tell_fault(report, image);
-    }
-    if (status != SONJECT_OK) {
-        free(facts->description);
-        facts->description = NULL;
-        (void)close_image(report, image);
-        return status;
-    }
+    image->name = name;
+    image->path = path;
+    CHECK(begin_decoding(report, image));
+    CHECK(take_layout(report, image));
+    CHECK(take_description(report, image, &facts->description));
     facts->layout = image->layout;
-    *opened = image;
-    return SONJECT_OK;
+    const struct region whole = {0, 0, image->layout.rows, image->layout.columns};
+    return take_quality(image, &facts->jpeg_quality) && decode_region(image, &whole, NULL)
+               ? SONJECT_OK
+               : tell_fault(report, image);
 }
 
 static sonject_status read_pixels(struct report *report, void *opened, const struct region *region,
@@ -306,11 +293,5 @@ sonject_status jpeg_encode(struct report *report, const struct image_encoding *e
         status = encode_rows(report, encoding, write_rows, &output, &is_written);
     is_written = is_written && status == SONJECT_OK && write_end(&output);
     jpeg_destroy_compress(&output.jpeg);
-    if (file && fclose(file) != 0 && is_written) {
-        is_written = false;
-        output.listener.fault.error = errno;
-    }
-    return status != SONJECT_OK || is_written
-               ? status
-               : encoding_failure(report, encoding, &output.listener.fault);
+    return encoding_end(report, encoding, file, &output.listener.fault, is_written, status);
 }

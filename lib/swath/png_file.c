@@ -19,7 +19,7 @@
 #define NUMBERS_CHUNK "soNu"
 
 struct png_image {
-    char *name, *path; /* name: in messages; owned */
+    const char *name, *path; /* name: in messages */
     struct raster_layout layout;
     struct library_fault fault;
     FILE *file;
@@ -207,8 +207,6 @@ static sonject_status png_close(struct report *report, void *opened)
     struct png_image *image = opened;
     (void)report;
     end_decoding(image);
-    free(image->name);
-    free(image->path);
     free(image->row);
     free(image->all);
     free(image);
@@ -219,23 +217,16 @@ static sonject_status png_open(struct report *report, const char *name, const ch
                                const char *array, bool writes, void **opened,
                                struct image_facts *facts)
 {
-    struct png_image *image = allocate_array(1, sizeof *image);
+    struct png_image *image = *opened = allocate_array(1, sizeof *image);
     (void)array, (void)writes;
     CHECK_MEMORY(report, image, name);
-    image->name = copy_text(name);
-    image->path = copy_text(path);
-    sonject_status status = image->name && image->path ? begin_decoding(report, image)
-                                                       : report_out_of_memory(report, name);
-    THEN(status, take_layout(report, image));
-    THEN(status, try_all_rows(report, image));
-    THEN(status, take_description(report, image, &facts->description));
-    if (status != SONJECT_OK) {
-        (void)png_close(report, image);
-        return status;
-    }
+    image->name = name;
+    image->path = path;
+    CHECK(begin_decoding(report, image));
+    CHECK(take_layout(report, image));
+    CHECK(try_all_rows(report, image));
     facts->layout = image->layout;
-    *opened = image;
-    return SONJECT_OK;
+    return take_description(report, image, &facts->description);
 }
 
 static sonject_status png_read(struct report *report, void *opened, const struct region *region,
@@ -339,10 +330,5 @@ sonject_status png_encode(struct report *report, const struct image_encoding *en
     is_written = is_written && status == SONJECT_OK && write_end(&output);
     if (output.png)
         png_destroy_write_struct(&output.png, &output.info);
-    if (output.file && fclose(output.file) != 0 && is_written) {
-        is_written = false;
-        output.fault.error = errno;
-    }
-    return status != SONJECT_OK || is_written ? status
-                                              : encoding_failure(report, encoding, &output.fault);
+    return encoding_end(report, encoding, output.file, &output.fault, is_written, status);
 }

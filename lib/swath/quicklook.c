@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "image/plot.h"
 #include "image/raster.h"
+#include "swath/conversion.h"
 #include "swath/geometry_notes.h"
 #include "swath/raster_file.h"
 #include "swath/swath_file.h"
@@ -89,53 +90,24 @@ static sonject_status read_reduced(struct report *report, const char *path, stru
     return status;
 }
 
-/* Resamples slant range columns at equal steps of ground range, nearest pixel. axis: that they are
- * of. */
+/* Steps are of a column's width, longer where the drawn image would get too wide of that. */
 static sonject_status to_ground_range(struct report *report, const char *path, enum range_axis axis,
-                                      struct view_image *image, struct plot_frame *frame,
-                                      double altitude)
+                                      double altitude, struct view_image *image,
+                                      struct plot_frame *frame)
 {
-    if (axis == RANGE_GROUND)
-        return input_failure(report, path, "is in ground range already: take the range axis out");
-    if (axis == RANGE_UNKNOWN)
-        return input_failure(report, path,
-                             "does not say where its columns lie: give row spacing, column spacing "
-                             "and first slant range");
-    if (frame->column_spacing_m < 0.0 || frame->first_range_m < 0.0)
-        return input_failure(
-            report, path,
-            "has columns to the left of its nadir, of which only a slant range axis "
-            "can be drawn");
-    if (!(altitude > 0.0))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "a ground range axis needs the altitude: give --altitude");
-    const double last =
-        frame->first_range_m + frame->column_spacing_m * (double)(image->columns - 1);
-    if (last <= altitude)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "no column lies beyond the altitude of %g m", altitude);
-    const double start =
-        sqrt(fmax(0.0, frame->first_range_m * frame->first_range_m - altitude * altitude));
-    const double end = sqrt(last * last - altitude * altitude);
-    const size_t columns = (size_t)fmax(
-        1.0, fmin(floor((end - start) / frame->column_spacing_m) + 1.0, 4.0 * SIDE_LIMIT));
-    const double step =
-        columns > 1 ? (end - start) / (double)(columns - 1) : frame->column_spacing_m;
-    float *ground = allocate_array(image->rows * columns, sizeof *ground);
-    CHECK_MEMORY(report, ground, "the ground range image");
-    for (size_t column = 0; column < columns; column++) {
-        const double range = hypot(start + step * (double)column, altitude);
-        const double at = (range - frame->first_range_m) / frame->column_spacing_m + 0.5;
-        const size_t from = (size_t)fmin(fmax(at, 0.0), (double)(image->columns - 1));
-        for (size_t row = 0; row < image->rows; row++)
-            ground[row * columns + column] = image->amplitude[row * image->columns + from];
-    }
-    free(image->amplitude);
-    image->amplitude = ground;
-    image->columns = columns;
-    frame->columns = columns;
-    frame->first_range_m = start;
-    frame->column_spacing_m = step;
+    const double spacing = frame->column_spacing_m;
+    const double last = frame->first_range_m + spacing * (double)(image->columns - 1);
+    struct range_columns columns = {axis, frame->first_range_m, spacing,
+                                    spacing < 0.0 || frame->first_range_m < 0.0, image->columns};
+    void *pixels = image->amplitude;
+    CHECK(range_axis_change(report, path, RANGE_GROUND, altitude,
+                            fmax(spacing, last / (4.0 * SIDE_LIMIT)), image->rows, sizeof(float),
+                            &columns, &pixels));
+    image->amplitude = pixels;
+    image->columns = columns.count;
+    frame->columns = columns.count;
+    frame->first_range_m = columns.first_m;
+    frame->column_spacing_m = columns.spacing_m;
     frame->range_label = "ground range, m";
     return SONJECT_OK;
 }
@@ -199,7 +171,7 @@ sonject_status draw_quicklook(struct report *report, const sonject_quicklook_par
     if (status == SONJECT_OK) {
         const enum range_axis axis = fill_frame(&frame, params, options, file, &image, &altitude);
         if (params->range_axis == SONJECT_AXIS_GROUND)
-            status = to_ground_range(report, params->image, axis, &image, &frame, altitude);
+            status = to_ground_range(report, params->image, axis, altitude, &image, &frame);
     }
     THEN(status, draw(report, &frame, &image, params->picture));
     swath_file_close(&file);

@@ -66,13 +66,11 @@ static sonject_status encode(struct patched_rows *rows, const char *part, const 
 }
 
 sonject_status raster_file_copy_with_patch(struct report *report, struct decoded_image *source,
-                                           enum image_kind kind, const struct swath_copy *copy)
+                                           const struct swath_copy *copy)
 {
     struct patched_rows rows = {report,       source,         source->layout, copy->region,
                                 copy->pixels, copy->progress, copy->user,     0};
-    const bool is_png = kind == IMAGE_PNG || kind == IMAGE_JPEG;
-    return encode(&rows, copy->part, copy->path, is_png ? IMAGE_PNG : IMAGE_TIFF,
-                  source->description, false, NULL);
+    return encode(&rows, copy->part, copy->path, IMAGE_PNG, source->description, false, NULL);
 }
 
 static sonject_status write_npy(struct report *report, const char *path,

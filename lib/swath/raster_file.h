@@ -17,11 +17,10 @@ struct raster_attribute {
 
 struct swath_copy;
 
-/* Writes a new image as the copy of source, a file of that kind: its samples, patched, and its
- * description; PNG where the source is PNG or JPEG, else TIFF. Streams in strips of at most about
- * 64 MB. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
+/* Writes a PNG as the copy of source: its samples, patched, and its description. Streams in strips
+ * of at most about 64 MB. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
 sonject_status raster_file_copy_with_patch(struct report *report, struct decoded_image *source,
-                                           enum image_kind kind, const struct swath_copy *copy);
+                                           const struct swath_copy *copy);
 
 /* Writes a whole raster at path; the extension chooses the format. channel_names: layout->channels
  * names, or NULL. Published whole or not at all. Errors: STORAGE, UNSUPPORTED (format), MEMORY. */

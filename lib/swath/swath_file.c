@@ -9,6 +9,7 @@
 #include "swath/swath_format.h"
 
 #define COPIED_AT_ONCE ((uint64_t)8 << 20)
+#define PIXELS_MAX     ((uint64_t)1 << 31) /* that are read at once */
 
 #define FORMAT_ADDRESS(name, files) &name##_format,
 static const struct swath_format *const formats[] = {SWATH_FORMATS(FORMAT_ADDRESS)};
@@ -106,9 +107,7 @@ void swath_file_layout(const struct swath_file *file, struct raster_layout *layo
 
 const char *swath_file_new_extension(const struct swath_file *file)
 {
-    if (file->format != &image_format || file->image == IMAGE_TIFF)
-        return NULL;
-    return file->image == IMAGE_PNG || file->image == IMAGE_JPEG ? ".png" : ".tif";
+    return file->format == &image_format && file->image != IMAGE_TIFF ? ".png" : NULL;
 }
 
 int swath_file_jpeg_quality(const struct swath_file *file)
@@ -171,6 +170,27 @@ sonject_status swath_file_read(struct report *report, struct swath_file *file,
     CHECK(check_region(report, file, region));
     errno = 0;
     return file_check_disk(report, file->path, file->format->read(report, file, region, pixels));
+}
+
+sonject_status swath_file_read_all(struct report *report, struct swath_file *file,
+                                   struct raster_layout *layout, void **pixels)
+{
+    size_t bytes = 0;
+    *pixels = NULL;
+    swath_file_layout(file, layout);
+    const struct region whole = {0, 0, layout->rows, layout->columns};
+    if (layout->rows > PIXELS_MAX / layout->columns || !region_bytes(layout, &whole, &bytes))
+        return input_failure(report, file->path,
+                             "%llu x %llu pixels are more than the 2^31 that are read at once",
+                             (unsigned long long)layout->rows, (unsigned long long)layout->columns);
+    *pixels = allocate_array(bytes, 1);
+    CHECK_MEMORY(report, *pixels, file->path);
+    const sonject_status status = swath_file_read(report, file, &whole, *pixels);
+    if (status != SONJECT_OK) {
+        free(*pixels);
+        *pixels = NULL;
+    }
+    return status;
 }
 
 sonject_status swath_file_copy_with_patch(struct report *report, const struct swath_file *file,

@@ -27,7 +27,7 @@ void swath_file_close(struct swath_file **file);
 void swath_file_layout(const struct swath_file *file, struct raster_layout *layout);
 
 /* NULL: copies keep the file's format and all else that it says. Else they are new images, of which
- * this is the extension (".png" or ".tif"). */
+ * this is the extension. */
 const char *swath_file_new_extension(const struct swath_file *file);
 
 /* The quality, 1...100 as libjpeg scales it, whose table for luminance is a JPEG's or close to it;
@@ -58,6 +58,11 @@ bool swath_file_attribute(const struct swath_file *file, const char *name, char 
  * damaged), STORAGE, MEMORY. */
 sonject_status swath_file_read(struct report *report, struct swath_file *file,
                                const struct region *region, void *pixels);
+
+/* All of them, and how they lie. On success *pixels is for free(), on failure NULL. Errors as of
+ * swath_file_read; INPUT for more than 2^31 pixels. */
+sonject_status swath_file_read_all(struct report *report, struct swath_file *file,
+                                   struct raster_layout *layout, void **pixels);
 
 /* Writes at path a copy of the file with region replaced by pixels, everything else as it was, or
  * a new image (swath_file_new_extension). Published whole or not at all. progress may be NULL.

@@ -124,7 +124,7 @@ struct swath_format {
     ROW(jsf, "JSF")                                                                                \
     ROW(npy, "NumPy (.npy)")                                                                       \
     ROW(mat, "MATLAB (.mat)")                                                                      \
-    ROW(image, "TIFF, PNG, JPEG, PGM (P5), BMP")                                                   \
+    ROW(image, "TIFF, PNG, JPEG")                                                                  \
     ROW(hdf5, "HDF5")
 
 #define FORMAT_DECLARATION(name, files) extern const struct swath_format name##_format;

@@ -22,7 +22,7 @@ struct kept_block {
 
 /* Blocks are tiles or strips; strips are as wide as the image, and the last one may be short. */
 struct tiff_image {
-    char *name, *path; /* name: in messages; owned */
+    const char *name, *path; /* name: in messages */
     TIFF *file;
     struct library_fault fault;
     uint32_t rows, columns; /* of the image */
@@ -246,20 +246,21 @@ static sonject_status close_image(struct report *report, void *opened)
         TIFFClose(image->file);
     for (int i = 0; i < 2; i++)
         free(image->kept[i].pixels);
-    free(image->name);
-    free(image->path);
     free(image);
     return SONJECT_OK;
 }
 
-static sonject_status open_file(struct report *report, struct tiff_image *image, const char *name,
-                                const char *path, struct image_facts *facts)
+static sonject_status open_image(struct report *report, const char *name, const char *path,
+                                 const char *array, bool writes, void **opened,
+                                 struct image_facts *facts)
 {
+    struct tiff_image *image = *opened = allocate_array(1, sizeof *image);
     struct path_facts identity;
     const char *description = NULL;
-    image->name = copy_text(name);
-    image->path = copy_text(path);
-    CHECK_MEMORY(report, image->name && image->path, name);
+    (void)array, (void)writes;
+    CHECK_MEMORY(report, image, name);
+    image->name = name;
+    image->path = path;
     CHECK(file_identify(report, path, &identity));
     image->file = tiff_open(path, "rm", &image->fault);
     if (!image->file)
@@ -280,21 +281,6 @@ static sonject_status open_file(struct report *report, struct tiff_image *image,
         CHECK_MEMORY(report, facts->description, name);
     }
     return SONJECT_OK;
-}
-
-static sonject_status open_image(struct report *report, const char *name, const char *path,
-                                 const char *array, bool writes, void **opened,
-                                 struct image_facts *facts)
-{
-    struct tiff_image *image = allocate_array(1, sizeof *image);
-    (void)array, (void)writes;
-    CHECK_MEMORY(report, image, name);
-    const sonject_status status = open_file(report, image, name, path, facts);
-    if (status == SONJECT_OK)
-        *opened = image;
-    else
-        (void)close_image(report, image);
-    return status;
 }
 
 /* Moves what a block of a plane shares with the region between the two. */

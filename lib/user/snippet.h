@@ -35,14 +35,16 @@ struct user_snippet {
     "#endif\n"
 #define SNIPPET_NAMES_END "#pragma clang attribute pop\n#pragma clang attribute pop\n"
 
-/* What stands before and behind a snippet, with its number, twice, as %lu. A kernel calls the
- * functions here, which are written before any macro of the snippet's. */
+/* What stands before and behind a snippet: the functions that it must hold, which are missed at its
+ * first line; with its number, twice, as %lu, those that a kernel calls, which are written before
+ * any macro of the snippet's. */
 #define SNIPPET_BEFORE                                                                             \
     "#pragma OPENCL FP_CONTRACT OFF\n"                                                             \
     "#ifdef __clang__\n"                                                                           \
     "#pragma clang diagnostic ignored \"-Wpragma-clang-attribute\"\n"                              \
-    "#pragma clang diagnostic error \"-Wundefined-internal\"\n" SNIPPET_OWN_NAMES "#endif\n"       \
-    "static float shape_distance(float3, float3, float, const float *);\n"                         \
+    "#pragma clang diagnostic error \"-Wundefined-internal\"\n" SNIPPET_OWN_NAMES "#endif\n"
+#define SNIPPET_FUNCTIONS                                                                          \
+    "static float shape_distance(float3, float3, float, const float *); "                          \
     "static float3 shape_normal(float3, const float *);\n"                                         \
     "#ifdef __clang__\n" SNIPPET_NAMES_END "#endif\n"                                              \
     "float user_%lu_distance(float3 p, float3 d, float t, const float *a)\n"                       \
@@ -51,19 +53,12 @@ struct user_snippet {
     "#ifdef __clang__\n" SNIPPET_OWN_NAMES "#endif\n"
 #define SNIPPET_BEHIND "\n\n#ifdef __clang__\n" SNIPPET_NAMES_END "#endif\n"
 
-/* Copies name and code. Refuses what reaches beyond the snippet: directives other than #define,
- * #error and conditions, _Pragma, trigraphs, a # in disguise, control characters, and code without
- * a function shape_distance or shape_normal. What is left for the compiler to refuse. On failure
- * nothing is held. Errors: INPUT ("name:line: what"), MEMORY. */
+/* Copies name and code. Refuses an #include at a line's beginning, and code without a word
+ * shape_distance or shape_normal; what else is wrong the compiler says. On failure nothing is held.
+ * Errors: INPUT ("name:line: what"), MEMORY. */
 sonject_status snippet_make(struct report *report, const char *name, uint32_t first_line,
                             const char *code, struct user_snippet *snippet);
 void snippet_clear(struct user_snippet *snippet);
-
-/* Makes "name:line: what" of the first error in the log of a snippet's unit. Known are the forms
- * "error: file:line:column: what" and "file:line:column: error: what"; else the error itself is
- * told. The log's lines go to report's log. Returns INPUT. */
-sonject_status explain_build_log(struct report *report, const struct user_snippet *snippet,
-                                 const char *device_name, const char *log);
 
 /* What the kernels know of a shape. */
 struct user_record user_record_of(const struct user_shape *shape);

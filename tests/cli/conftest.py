@@ -112,9 +112,9 @@ def files_below(folder):
     return sorted(pathlib.Path(place, name) for place, _, names in os.walk(folder) for name in names)
 
 
-def page_data(folder):
-    """What the folder's report.html shows."""
-    page = (folder / "report.html").read_text(encoding="utf-8")
+def page_data(folder, name="report.html"):
+    """What the folder's page shows."""
+    page = (folder / name).read_text(encoding="utf-8")
     return json.loads(page.split('<script type="application/json" id="data">')[1].split("</script>")[0])
 
 

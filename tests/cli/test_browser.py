@@ -16,6 +16,8 @@ import pytest
 
 from conftest import page_data
 from documents import SOURCE
+import fitting
+from test_fit import ROUGH, folder  # noqa: F401, a fixture
 from test_report import HOSTILE, data_set  # noqa: F401, a fixture
 from test_run import DEMO
 
@@ -172,6 +174,24 @@ def test_images_that_no_browser_shows_are_those_of_the_contact_sheet(sonject, tm
     assert found["counts"] == [[60, first, True, False], [10, last, False, True], [60, first, True, False]]
     ((sheet, width),) = found["sizes"]
     assert sheet == "contact_sheet.png" and width > 1000
+
+
+def test_the_page_of_a_fit(sonject, folder, look):  # noqa: F811
+    (folder / "hidden.yaml").write_text(fitting.campaign(fitting.HIDDEN, 40, 11, 64, 96, more=ROUGH))
+    sonject.done("campaign", "hidden.yaml", "-o", "contacts", "--quiet")
+    sonject.done("fit", "start.yaml", "contacts/all/coco.json", "-o", "fitted.yaml", "--quiet")
+    data = page_data(folder, "fitted.html")
+    found = look(folder / "fitted.html", """
+        return {sizes: await sizes(), bars: find("svg.bars").length, lines: find("svg.bars path").length, heads: find("h1, h2").map(head => head.textContent),
+                rows: find("tbody tr").map(row => [...row.cells].map(cell => cell.textContent)), kept: find("li").map(item => item.textContent)};
+    """, "fit", (1300, 2200))
+    ((chips, width),) = found["sizes"]
+    assert chips == "fitted.png" and width > 1000
+    assert found["heads"][0] == "A campaign fitted to 40 contacts" and found["heads"][-2:] == ["Draws", "Chips"]
+    shown = [extent for extent in data["fit"] if extent]
+    assert found["bars"] == len(shown) > 5 and found["lines"] == 2 * len(shown)
+    assert found["rows"] == [[draw["key"], ", ".join(draw["before"]), ", ".join(draw["after"])] for draw in data["draws"]]
+    assert found["kept"][-2:] == ["draw.objects[].heading", "draw.objects[].burial.fraction"]
 
 
 def test_the_site_has_no_dead_links_and_is_shown(look):

@@ -156,13 +156,13 @@ def check_injection(sonject, folder, name, before, extension):
     return answer
 
 
-def test_pgm_goes_out_as_tiff(sonject, tmp_path, sides):
+def test_png_goes_out_as_a_new_png(sonject, tmp_path, sides):
     before = (sides[0] // 64).astype("u1")
-    (tmp_path / "line.pgm").write_bytes(b"P5 %d %d 255\n" % (COLUMNS, ROWS) + before.tobytes())
-    answer = check_injection(sonject, tmp_path, "line.pgm", before, ".tif")
-    assert "note: image.tif is written anew" in answer.stderr
+    (tmp_path / "line.png").write_bytes(images.png_bytes(before))
+    answer = check_injection(sonject, tmp_path, "line.png", before, ".png")
+    assert "note: image.png is written anew" in answer.stderr
     assert sonject.done("run", "scene.yaml", "-o", "again", "--quiet").stderr == ""
-    assert_refused(sonject("convert", "line.pgm", "b.pgm", "--into", "line.pgm"), 3,
+    assert_refused(sonject("convert", "line.png", "b.png", "--into", "line.png"), 3,
                    "not changed in place: write a new .tif")
 
 

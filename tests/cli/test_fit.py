@@ -1,9 +1,8 @@
 """sonject fit: a campaign moves towards the contacts that it is given, and says what it did."""
 
-import re
-
 import pytest
 
+from conftest import page_data
 import fitting
 
 
@@ -39,11 +38,14 @@ def test_a_fit_comes_nearer_to_its_contacts(sonject, folder):
     # 30 contacts tell sizes to some 15 %, levels to 2 dB: no such median was off by more
     assert all(abs(after[:3] / hidden[:3] - 1) < 0.3)
     assert all(abs(after[3:] - hidden[3:]) < 3)
-    page = (folder / "fitted.html").read_text()
-    assert 'src="fitted.png"' in page and (folder / "fitted.png").read_bytes().startswith(b"\x89PNG")
-    assert "draw.objects[].heading\ndraw.objects[].burial.fraction" in page
-    shown = re.search(r"targets\[0\]\.draw\.length</td><td>1.4 m, 3.2 m</td><td>([^<]*)<", page).group(1)
-    assert f"length: {{log_uniform: [{shown}]}}" in text
+    page = page_data(folder, "fitted.html")
+    assert page["picture"] == "fitted.png" and (folder / "fitted.png").read_bytes().startswith(b"\x89PNG")
+    assert "draw.objects[].heading\ndraw.objects[].burial.fraction" in page["unchanged"]
+    (length,) = (draw for draw in page["draws"] if draw["key"] == "targets[0].draw.length")
+    assert length["before"] == ["1.4 m", "3.2 m"]
+    assert f"length: {{log_uniform: [{', '.join(length['after'])}]}}" in text
+    for extent in page["fit"]:
+        assert sum(extent["bins"]) > 0 and sum(extent["before"]) > 0 and sum(extent["after"]) > 0
 
 
 @pytest.mark.parametrize("contacts, output, message", [

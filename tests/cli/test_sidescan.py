@@ -290,7 +290,8 @@ sonject:range_axis=slant"""))
     sonject.done("quicklook", "whole.png", "-o", "a.png")
     assert_refused(sonject("quicklook", "whole.png", "-o", "b.png", "--range-axis", "ground"), 3,
                    "has columns to the left of its nadir")
-    assert_refused(sonject("convert", "both/energy.tif", "b.tif", "--range-axis", "ground"), 3, "has a nadir column")
+    assert_refused(sonject("convert", "both/energy.tif", "b.tif", "--range-axis", "ground"), 3,
+                   "has columns to the left of its nadir")
     sonject.done("convert", "both/energy.tif", "b.tif", "--row-spacing", 0.1, "--column-spacing", 0.15,
                  "--first-range", 9.075)
     assert b"nadir_column" not in (tmp_path / "b.tif").read_bytes()

@@ -87,7 +87,7 @@ def test_compilers_errors_have_the_users_line(sonject, user_scene):
     assert answer.returncode == 3 and not answer.stdout
     # a driver's compiler may tell how many errors it found besides
     (line,) = [line for line in answer.stderr.splitlines() if line.startswith("sonject: ")]
-    assert "ball.cl:7: " in line and "root" in line
+    assert "ball.cl:7:" in line and "root" in line
 
 
 def test_code_that_impulses_name_needs_consent(sonject, scene, tmp_path):

@@ -75,7 +75,6 @@ def write_inputs(folder):
         "swath16.tif": tiff_bytes(grey(amplitudes, 65535, "<u2"), deflated=True),
         "complex.tif": tiff_bytes(pairs),
         "swath.mat": MAT_HEAD + mat_array(b"swath", 7, floats),
-        "swath.pgm": b"P5\n%d %d\n255\n" % (columns, rows) + bytes8.tobytes(),
         "figure.png": png_bytes(grey(seabed(472, 512, 2), 255, "u1")),
         "line.xtf": xtf_bytes(*(side.astype("<u2") for side in sides)),
     }
@@ -85,4 +84,3 @@ def write_inputs(folder):
         (folder / name).write_bytes(content)
     numpy.save(folder / "swath.npy", pairs.view("<c8")[..., 0])
     numpy.save(folder / "heights.npy", numpy.array(heights, "<f4"))
-    Image.fromarray(bytes8).save(folder / "swath.bmp")

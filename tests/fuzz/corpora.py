@@ -160,13 +160,6 @@ def ply(_):
     return files
 
 
-def images(_):
-    samples = numpy.arange(12)
-    return {"bmp": b"BM" + struct.pack("<IIIIiiHHIIiiII", 0, 0, 1078, 40, 4, 3, 1, 8, *[0] * 6)
-                    + bytes(1024) + samples.astype("u1").tobytes(),
-            "pgm": b"P5\n# name=a\n4 3\n255\n" + samples.astype("u1").tobytes()}
-
-
 def tables(_):
     return {
         "commas": b"depth,speed\n0,1500\n10,1490.5\n",
@@ -175,13 +168,6 @@ def tables(_):
         "bodies": b"shape,length [m],width\nbox,0.6,40 cm\nsphere,,\n",
         "many": b"depth,speed\n" + b"0,1\n" * 101,
     }
-
-
-def snippets(source):
-    code = (source / "tools" / "targets" / "boulder_relief.cl").read_bytes()
-    short = (b"#define R 1.0f\nreal shape_distance(real3 o, real3 d)\n{\n    /* a */ return R;\n}\n"
-             b"real3 shape_normal(real3 p)\n{\n    return p; // b\n}\n")
-    return {"boulder": code, "short": short, "deep": b"(" * 300}
 
 
 def labels(_):
@@ -204,9 +190,8 @@ def labels(_):
 
 
 MAKERS = {"scene": scenes, "target": targets, "xtf": recordings, "jsf": jsf_recordings, "npy": arrays, "mat": matlab,
-          "stl": stl, "obj": obj, "ply": ply, "image": images, "table": tables,
-          "snippet": snippets, "labels": labels}
-TEXTS = {"scene", "target", "npy", "stl", "obj", "ply", "table", "snippet", "labels"}
+          "stl": stl, "obj": obj, "ply": ply, "table": tables, "labels": labels}
+TEXTS = {"scene", "target", "npy", "stl", "obj", "ply", "table", "labels"}
 
 
 def make(kind, folder, source):

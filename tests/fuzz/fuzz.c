@@ -14,9 +14,7 @@
 #include "mesh/mesh_reader.h"
 #include "schema/scene_file.h"
 #include "schema/tables.h"
-#include "swath/image_library.h"
 #include "swath/swath_format.h"
-#include "user/snippet.h"
 
 /* More than that and it is not read: compressed files may hold a thousand times their size. */
 #define BYTES_READ_MAX ((size_t)1 << 24)
@@ -105,20 +103,6 @@ static void fuzz_target(const struct fuzzer *fuzzer, const uint8_t *bytes, size_
     read_scene(text);
 }
 
-/* Shapes that users write: what is refused before a compiler sees it. */
-static void fuzz_snippet(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
-{
-    struct report report = {{0}, NULL, NULL};
-    struct user_snippet snippet;
-    char *code = text_of(bytes, count);
-    (void)fuzzer;
-    const sonject_status status = snippet_make(&report, "fuzz.cl", 1, code, &snippet);
-    expect(status, &report, false);
-    if (status == SONJECT_OK)
-        snippet_clear(&snippet);
-    free(code);
-}
-
 /* The same file as a campaign's table of bodies. */
 static void read_bodies(void)
 {
@@ -182,28 +166,6 @@ static void fuzz_labels(const struct fuzzer *fuzzer, const uint8_t *bytes, size_
         }
         contact_set_clear(&set);
     }
-}
-
-/* What sonject itself reads of images, BMP and PGM: heads, and the pixels of what is taken. */
-static void fuzz_image(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
-{
-    struct report report = {{0}, NULL, NULL};
-    struct image_facts facts = {.description = NULL};
-    void *image = NULL;
-    (void)fuzzer;
-    put_file("fuzz.image", bytes, count);
-    if (count < 2 || (bytes[0] != 'B' && bytes[0] != 'P'))
-        return;
-    sonject_status status =
-        bmp_pgm_library.open(&report, "fuzz.image", "fuzz.image", NULL, false, &image, &facts);
-    if (status == SONJECT_OK) {
-        const struct region whole = {0, 0, facts.layout.rows, facts.layout.columns};
-        uint8_t *pixels = allocate_array((size_t)whole.rows, (size_t)whole.columns);
-        status = bmp_pgm_library.read(&report, image, &whole, pixels);
-        free(pixels);
-        (void)bmp_pgm_library.close(&report, image);
-    }
-    expect(status, &report, false);
 }
 
 /* From a file's bytes to a hierarchy. */
@@ -300,8 +262,7 @@ static const struct fuzzer fuzzers[] = {
     {"xtf", fuzz_swath, &xtf_format, NULL}, {"jsf", fuzz_swath, &jsf_format, NULL},
     {"npy", fuzz_swath, &npy_format, NULL}, {"mat", fuzz_swath, &mat_format, NULL},
     {"stl", fuzz_mesh, NULL, stl_read},     {"obj", fuzz_mesh, NULL, obj_read},
-    {"ply", fuzz_mesh, NULL, ply_read},     {"image", fuzz_image, NULL, NULL},
-    {"table", fuzz_table, NULL, NULL},      {"snippet", fuzz_snippet, NULL, NULL},
+    {"ply", fuzz_mesh, NULL, ply_read},     {"table", fuzz_table, NULL, NULL},
     {"labels", fuzz_labels, NULL, NULL}};
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)

@@ -16,7 +16,7 @@ import corpora
 ROCK = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
 # Readers of the files that scenes are made of.
 MINUTE = {"scene", "xtf", "jsf", "npy", "stl", "obj", "ply"}
-LONGEST = {"scene": 8192, "target": 8192, "xtf": 4096, "jsf": 4096, "snippet": 4096, "image": 6144}
+LONGEST = {"scene": 8192, "target": 8192, "xtf": 4096, "jsf": 4096}
 
 
 def fill(folder, kind, source):

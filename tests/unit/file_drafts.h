@@ -290,46 +290,4 @@ static inline void write_hdf5(const char *path, int how, bool is_full)
 }
 #endif
 
-static inline void make_pgm(struct draft *draft, int how)
-{
-    static const char head[] = "P5\n# a note\n4 3 # width, height\n255\n";
-    (void)how;
-    draft->count = 0;
-    add(draft, head, sizeof head - 1);
-    for (size_t i = 0; i < SAMPLES; i++)
-        add_number(draft, (uint64_t)sample_at(true, i / COLUMNS, i % COLUMNS), 1);
-}
-
-#define NEGATIVE 64 /* of a BMP: dark for bright, as the palette says, and the first row first */
-
-/* From the last row up. */
-static inline void make_bmp(struct draft *draft, int how)
-{
-    const struct {
-        uint32_t number;
-        size_t bytes;
-    } head[] = {{54 + 1024 + SAMPLES, 4},
-                {0, 4},
-                {54 + 1024, 4},
-                {40, 4},
-                {COLUMNS, 4},
-                {how & NEGATIVE ? (uint32_t)-ROWS : ROWS, 4},
-                {1, 2},
-                {8, 2},
-                {0, 8},
-                {0, 8},
-                {0, 8}};
-    const unsigned turn = how & NEGATIVE ? 255 : 0;
-    draft->count = 0;
-    add(draft, "BM", 2);
-    for (size_t i = 0; i < COUNT(head); i++)
-        add_number(draft, head[i].number, head[i].bytes);
-    for (unsigned i = 0; i < 256; i++)
-        add_number(draft, (i ^ turn) * 0x010101, 4);
-    for (size_t i = 0; i < SAMPLES; i++) {
-        const size_t row = how & NEGATIVE ? i / COLUMNS : ROWS - 1 - i / COLUMNS;
-        add_number(draft, (uint64_t)sample_at(true, row, i % COLUMNS) ^ turn, 1);
-    }
-}
-
 #endif

@@ -1,8 +1,7 @@
-/* Code of users' shapes before it meets a compiler: what is refused and where, what build logs say;
- * scene files that hold code, and that they need consent. */
+/* Code of users' shapes before it meets a compiler: what is refused and where; scene files that
+ * hold code, and that they need consent. */
 #define _POSIX_C_SOURCE 200809L
 
-#include "base/text.h"
 #include "claims.h"
 #include "scene_folder.h"
 #include "user/snippet.h"
@@ -30,31 +29,15 @@ static void expect_code_taken(const char *code)
     snippet_clear(&snippet);
 }
 
-#define NOT_HERE                                                                                   \
-    " is not possible here; known are #define, #if, #ifdef, #ifndef, #elif, #else, #endif and "    \
-    "#error"
+#define NOT_HERE "#include is not possible here; write here what is in that file"
 
-/* Each reaches beyond the snippet, or hides something that does. */
-static void test_hostile_code_is_refused_with_its_line(void **state)
+static void test_code_that_is_not_whole_is_refused_with_its_line(void **state)
 {
     static const char *const cases[][2] = {
-        {GOOD "#undef FUNCTION\n", "my.cl:3: #undef" NOT_HERE},
-        {"#  include \"/etc/passwd\"\n" GOOD, "my.cl:1: #include" NOT_HERE},
-        {"/* hidden */ #pragma OPENCL FP_CONTRACT ON\n" GOOD, "my.cl:1: #pragma" NOT_HERE},
-        {"#line 7 \"other.cl\"\n" GOOD, "my.cl:1: #line" NOT_HERE},
-        {"\n#de\\\nfine X\n" GOOD, "my.cl:2: #de" NOT_HERE},
-        {"/*\n*/ # /* */ \\\n include X\n" GOOD, "my.cl:3: #include" NOT_HERE},
-        {"// a comment \r#include X\n" GOOD, "my.cl:1: #include" NOT_HERE},
-        {"constant char c[] = \"/*\";\n#include X\n//*/\n" GOOD, "my.cl:2: #include" NOT_HERE},
-        {"\?\?=undef WIDTH\n" GOOD,
-         "my.cl:1: trigraph; write the character that is meant, or a space between the signs"},
-        {GOOD "%:undef WIDTH\n", "my.cl:3: digraph; write # instead"},
-        {GOOD "_Pragma(\"x\")\n", "my.cl:3: _Pragma is not possible here; remove it"},
-        {GOOD "\x01", "my.cl:3: control character; remove it"},
+        {GOOD "#include \"more.cl\"\n", "my.cl:3: " NOT_HERE},
+        {"\n \t#  include <more.cl>\n" GOOD, "my.cl:2: " NOT_HERE},
         {"", "my.cl:1: there is no function shape_distance in it; write one"},
         {DISTANCE, "my.cl:1: there is no function shape_normal in it; write one"},
-        {"/*" DISTANCE "*/" NORMAL,
-         "my.cl:1: there is no function shape_distance in it; write one"},
     };
     for (size_t i = 0; i < COUNT(cases); i++)
         expect_code_refused(cases[i][0], cases[i][1]);
@@ -66,9 +49,7 @@ static void test_sound_code_is_taken(void **state)
         GOOD,
         "#define LONG(x) \\\n  ((x) * {\\\n)\n#if defined(LONG) && 1\n" GOOD
         "#else\n#error none\n#endif",
-        "// a } in a comment \\\n and its second line }\n/* { */ " GOOD "// no end",
-        "// by 50%: half <% of it\n" GOOD,
-        "constant char c = '}', d = '\\'';\r\n" GOOD,
+        GOOD "// no #include, but a # at the end: #",
     };
     for (size_t i = 0; i < COUNT(codes); i++)
         expect_code_taken(codes[i]);
@@ -102,56 +83,6 @@ static void append(struct user_shapes *shapes, const char *name, const char *cod
     struct report report = {{0}, NULL, NULL};
     const sonject_user_shape_params params = {.name = name, .code = code, .bounding_radius_m = 1.0};
     EXPECT_OK(&report, user_shapes_append(shapes, &report, &params));
-}
-
-static void count_line(void *count, uint32_t level, const char *line)
-{
-    assert_int_equal(level, SONJECT_LOG_NEWS);
-    assert_null(strchr(line, '\n'));
-    ++*(int *)count;
-}
-
-/* The message, and the whole log line by line. What is told is in the given line of the code, which
- * is the ninth of its file. */
-static void expect_explained(const char *log, long line, const char *message)
-{
-    int lines = 0;
-    const struct report_host host = {.log_user = &lines};
-    struct report report = {{0}, count_line, &host};
-    struct user_snippet snippet;
-    char text[400];
-    assert_int_equal(snippet_make(&report, "a.cl", 9, GOOD, &snippet), SONJECT_OK);
-    snprintf(text, sizeof text, log, (long)text_count_lines(SNIPPET_BEFORE) + line);
-    assert_int_equal(explain_build_log(&report, &snippet, "some device", text),
-                     SONJECT_ERROR_INPUT);
-    assert_string_equal(report.message, message);
-    assert_int_equal(lines, text_count_lines(text));
-    snippet_clear(&snippet);
-}
-
-static void test_build_logs_become_lines(void **state)
-{
-    static const struct {
-        const char *log;
-        long line;
-        const char *message;
-    } cases[] = {
-        {"warning: /tmp/x.cl:2:1: unused\nerror: /tmp/x.cl:%ld:10: use of undeclared 'y'\n"
-         "error: /tmp/x.cl:13:1: more\n",
-         2, "a.cl:10: use of undeclared 'y'"},
-        {"<kernel>:%ld:3: error: conflicting types for 'shape_normal'\n  ^\n", 1,
-         "a.cl:9: conflicting types for 'shape_normal'"},
-        {"error: x.cl:%ld:7 <Spelling=/usr/y.h:9:9>: conflicting types\n", 2,
-         "a.cl:10: conflicting types"},
-        {"<kernel>:3:1: note: x\nx.cl:%ld: error: gone\n", 1, "a.cl:9: gone"},
-        {"error: x.cl:%ld:1: expected '}'\n", 4, "a.cl: at its end: expected '}'"},
-        {"error: x.cl:%ld:1: function 'shape_normal' is not defined\n", 0,
-         "a.cl: function 'shape_normal' is not defined"},
-        {"f: Warning: k\nptxas fatal   : no memory\n", 0,
-         "a.cl: device 'some device' cannot compile it: ptxas fatal   : no memory"},
-    };
-    for (size_t i = 0; i < COUNT(cases); i++)
-        expect_explained(cases[i].log, cases[i].line, cases[i].message);
 }
 
 static void test_equal_codes_are_one(void **state)
@@ -239,8 +170,9 @@ static void test_code_arrives_with_its_lines(void **state)
     assert_true(shapes->shapes[1].half_height_m == 0.25 && shapes->shapes[1].is_open);
     assert_true(shapes->shapes[1].half_width_m == 1.0);
     /* the line of an error in a block is that of the file */
-    expect_refused_with_consent(folder, BASE "  - shape: user\n" CODE "        #line 1\n",
-                                "scene.yaml:12: #line" NOT_HERE);
+    expect_refused_with_consent(folder,
+                                BASE "  - shape: user\n" CODE "        #include <more.cl>\n",
+                                "scene.yaml:12: " NOT_HERE);
 }
 
 static void test_wrong_sections_are_refused(void **state)
@@ -272,7 +204,7 @@ static void test_wrong_sections_are_refused(void **state)
 }
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder,
-             TEST(test_hostile_code_is_refused_with_its_line), TEST(test_sound_code_is_taken),
-             TEST(test_size_and_names_are_limited), TEST(test_build_logs_become_lines),
+             TEST(test_code_that_is_not_whole_is_refused_with_its_line),
+             TEST(test_sound_code_is_taken), TEST(test_size_and_names_are_limited),
              TEST(test_equal_codes_are_one), TEST(test_code_in_files_needs_consent),
              TEST(test_code_arrives_with_its_lines), TEST(test_wrong_sections_are_refused))
