@@ -189,17 +189,16 @@ def test_heights_change_the_image_where_they_are(make_scene, amplitude_patch):
         sonject.inject(amplitude_patch, scene)
 
 
-def test_meshes_are_files_and_may_be_cut(make_scene, amplitude_patch, tmp_path):
+def test_meshes_are_files(make_scene, amplitude_patch, tmp_path):
     path = tmp_path / "tetrahedron.obj"
     path.write_text(TETRAHEDRON)
     mesh = {"shape": "mesh", "mesh": {"file": path, "unit": "mm", "nose": "y"}}
     truth = sonject.inject(amplitude_patch, make_scene(objects=[mesh])).objects[0]
     assert truth.highlight_pixels > 0
     assert abs(truth.height_m - 0.2) < 1e-6  # it rests on the seabed
-    cut = mesh | {"cuts": [{"elevation": 90, "distance": 0}], "burial": {"fraction": 0.5}}
-    truth = sonject.inject(amplitude_patch, make_scene(objects=[cut])).objects[0]
-    # the centre, that of the whole, lies over the lowest point by 0.2 m, which is all that is left
-    assert abs(truth.height_m - 0.1) < 1e-6
+    buried = mesh | {"burial": {"fraction": 0.5}}
+    truth = sonject.inject(amplitude_patch, make_scene(objects=[buried])).objects[0]
+    assert abs(truth.height_m) < 1e-6
 
 
 def test_shapes_by_code_need_consent(make_scene, amplitude_patch):
