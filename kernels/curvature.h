@@ -9,7 +9,7 @@
  * rounding (6e-8) does not. */
 #define CURVATURE_STEP 5.0e-4f
 
-NOINLINE struct vector3 own_normal(GLOBAL const struct object_record *object, struct vector3 point,
+FUNCTION struct vector3 own_normal(GLOBAL const struct object_record *object, struct vector3 point,
                                    struct vector3 direction)
 {
 #ifdef WITH_USER_SHAPES
@@ -19,9 +19,8 @@ NOINLINE struct vector3 own_normal(GLOBAL const struct object_record *object, st
     return shape_normal(object, point, direction);
 }
 
-/* Change of one object's normal, in its own frame, for a shift on the tangent plane of a point. The
- * face of a cut is flat: there the shape's normal is not the hit's. Beside an edge the two sides
- * differ; the one that bends less is the hit's own face. */
+/* Change of one object's normal, in its own frame, for a shift on the tangent plane of a point.
+ * Beside an edge the two sides differ; the one that bends less is the hit's own face. */
 FUNCTION struct vector3 own_normal_change(GLOBAL const struct object_record *object,
                                           struct vector3 point, struct vector3 normal,
                                           struct vector3 direction, struct vector3 shift)
@@ -41,17 +40,10 @@ FUNCTION struct vector3 own_normal_change(GLOBAL const struct object_record *obj
     change = choose3(is_even, along3(back, unlike, SPLAT(0.5f)), change);
     /* the hit's normal is on the side that the ray is on, which may be the inner one */
     const vfloat side = SELECT(MASK_OF(dot3(here, normal) < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
-    const struct vector3 off = along3(normal, here, -side);
-    const mask is_own = MASK_OF(dot3(off, off) < 1.0e-4f);
-    const vfloat scale = SELECT(is_own, side / step, SPLAT(0.0f));
+    const vfloat scale = side / step;
     change.x = change.x * scale;
     change.y = change.y * scale;
     change.z = change.z * scale;
-#ifdef WITH_USER_SHAPES /* their code need not know a normal off their surface, on a cut's face */
-    struct vector3 flat;
-    flat.x = flat.y = flat.z = SPLAT(0.0f);
-    change = choose3(is_own, change, flat);
-#endif
     return change;
 }
 

@@ -2,7 +2,7 @@
 #ifndef SONJECT_KERNELS_INTERSECTION_H
 #define SONJECT_KERNELS_INTERSECTION_H
 
-#include "cut.h"
+#include "interval.h"
 #include "layout.h"
 #include "mesh_ray.h" /* boxes, which many objects need too */
 #define SHAPE_FILES
@@ -43,10 +43,10 @@ FUNCTION struct vector3 from_centre(GLOBAL const struct object_record *object, s
 }
 
 #define SHAPE_ONE(NUMBER, name, traits) +1
-/* Of the plainest shapes, which nothing cuts. */
+/* Of the plainest shapes. */
 FUNCTION int is_plain(GLOBAL const struct object_record *object)
 {
-    return object->shape < 0 PLAIN_SHAPES(SHAPE_ONE) && object->cuts == 0;
+    return object->shape < 0 PLAIN_SHAPES(SHAPE_ONE);
 }
 
 #define SHAPE_INTERVAL(NUMBER, name, traits)                                                       \
@@ -58,9 +58,9 @@ FUNCTION int is_plain(GLOBAL const struct object_record *object)
 #define SHAPE_NORMAL(NUMBER, name, traits)                                                         \
     case SHAPE_##NUMBER:                                                                           \
         return name##_normal(object, point, direction);
-#define SHAPE_TRAITS(NUMBER, name, traits)                                                         \
+#define SHAPE_CONVEX(NUMBER, name, traits)                                                         \
     case SHAPE_##NUMBER:                                                                           \
-        return ((traits)&trait) != 0;
+        return !((traits)&SHAPE_IS_HOLLOW);
 
 /* Plain shapes, in the object's own frame. */
 FUNCTION struct interval plain_interval(GLOBAL const struct object_record *object,
@@ -72,8 +72,8 @@ FUNCTION struct interval plain_interval(GLOBAL const struct object_record *objec
     }
 }
 
-/* Any shape, uncut, in the object's own frame. */
-FUNCTION struct spans shape_spans(GLOBAL const struct object_record *object, struct vector3 point,
+/* Any shape, in the object's own frame. */
+NOINLINE struct spans shape_spans(GLOBAL const struct object_record *object, struct vector3 point,
                                   struct vector3 direction)
 {
     switch (object->shape) {
@@ -84,22 +84,16 @@ FUNCTION struct spans shape_spans(GLOBAL const struct object_record *object, str
     }
 }
 
-/* Whether it is more of an enum shape_trait. */
-FUNCTION int has_trait(GLOBAL const struct object_record *object, int trait)
-{
-    switch (object->shape) {
-    default:
-        PLAIN_SHAPES(SHAPE_TRAITS)
-        OTHER_SHAPES(SHAPE_TRAITS)
-        SCENE_SHAPES(SHAPE_TRAITS)
-        ENDED_CYLINDERS(SHAPE_TRAITS)
-    }
-}
-
 /* Whether a straight way that leaves the outer side never meets the object again. */
 FUNCTION int is_convex(GLOBAL const struct object_record *object)
 {
-    return !has_trait(object, SHAPE_IS_HOLLOW);
+    switch (object->shape) {
+    default:
+        PLAIN_SHAPES(SHAPE_CONVEX)
+        OTHER_SHAPES(SHAPE_CONVEX)
+        SCENE_SHAPES(SHAPE_CONVEX)
+        ENDED_CYLINDERS(SHAPE_CONVEX)
+    }
 }
 
 /* Plain shapes, in the object's own frame, outward, unit. */
@@ -112,8 +106,8 @@ FUNCTION struct vector3 plain_normal(GLOBAL const struct object_record *object,
     }
 }
 
-/* Any shape, uncut; on the side that the ray comes from where it has no inside. */
-FUNCTION struct vector3 shape_normal(GLOBAL const struct object_record *object,
+/* Any shape; on the side that the ray comes from where it has no inside. */
+NOINLINE struct vector3 shape_normal(GLOBAL const struct object_record *object,
                                      struct vector3 point, struct vector3 direction)
 {
     switch (object->shape) {
@@ -122,19 +116,6 @@ FUNCTION struct vector3 shape_normal(GLOBAL const struct object_record *object,
     default:
         return plain_normal(object, point, direction);
     }
-}
-
-/* What the cuts leave of the shape. */
-NOINLINE struct spans object_spans(GLOBAL const struct object_record *object, struct vector3 point,
-                                   struct vector3 direction)
-{
-    struct spans spans = shape_spans(object, point, direction);
-    for (int i = 0; i < object->cuts; i++) {
-        const struct interval left = interval_under_cut(&object->cut[i], point, direction);
-        spans.first = interval_overlap(spans.first, left);
-        spans.second = interval_overlap(spans.second, left);
-    }
-    return spans;
 }
 
 /* The first end of an interval beyond `minimum`; both counted from `start`. */
@@ -165,8 +146,6 @@ FUNCTION vfloat object_distance(GLOBAL const struct object_record *object, struc
     if (is_plain(object))
         return first_end_beyond(plain_interval(object, start, step), approach, minimum);
 #if HAS_MESHES
-    if (object->shape == SHAPE_MESH && object->cuts > 0)
-        return approach + cut_mesh_distance(object, start, step, minimum - approach, is_near);
     if (object->shape == SHAPE_MESH) {
         const vfloat beyond = minimum - approach;
         const vfloat farthest = SELECT(is_near, SPLAT(FAR_AWAY), beyond - 1.0f);
@@ -174,32 +153,12 @@ FUNCTION vfloat object_distance(GLOBAL const struct object_record *object, struc
     }
 #endif
 #ifdef WITH_USER_SHAPES
-    if (object->shape == SHAPE_USER && object->cuts > 0)
-        return approach + cut_user_distance(object, start, step, minimum - approach, is_near);
     if (object->shape == SHAPE_USER)
         return approach + user_object_distance(object, start, step, minimum - approach, is_near);
 #endif
-    const struct spans inside = object_spans(object, start, step);
+    const struct spans inside = shape_spans(object, start, step);
     return smaller(first_end_beyond(inside.first, approach, minimum),
                    first_end_beyond(inside.second, approach, minimum));
-}
-
-/* The face of a cut takes the place of the shape's normal where the ray meets it. */
-NOINLINE struct vector3 normal_with_cuts(GLOBAL const struct object_record *object,
-                                         struct vector3 point, struct vector3 direction,
-                                         vfloat distance)
-{
-    const struct vector3 relative = from_centre(object, point);
-    const struct vector3 step = into_object(object, direction);
-    const struct vector3 hit =
-        into_object(object, from_centre(object, along3(point, direction, distance)));
-    const struct vector3 normal = shape_normal(object, hit, step);
-    if (object->cuts == 0 || has_trait(object, SHAPE_IS_SHEET))
-        return normal;
-    const vfloat approach = -dot3(relative, direction);
-    const struct vector3 start = into_object(object, along3(relative, direction, approach));
-    const struct cut_face face = cut_face_at(object, start, step, approach, distance);
-    return choose3(face.is_met, face.normal, normal);
 }
 
 #if HAS_MESHES
@@ -212,8 +171,7 @@ FUNCTION struct mesh_surface surface_of_mesh(GLOBAL const struct object_record *
     const vfloat approach = -dot3(relative, direction);
     const struct vector3 start = into_object(object, along3(relative, direction, approach));
     const struct vector3 step = into_object(object, direction);
-    return object->cuts == 0 ? mesh_object_surface(object, start, step, distance - approach)
-                             : cut_mesh_surface(object, start, step, approach, distance);
+    return mesh_object_surface(object, start, step, distance - approach);
 }
 #endif
 
@@ -227,12 +185,7 @@ FUNCTION struct vector3 normal_of_user_shape(GLOBAL const struct object_record *
     const vfloat approach = -dot3(relative, direction);
     const struct vector3 start = into_object(object, along3(relative, direction, approach));
     const struct vector3 step = into_object(object, direction);
-    const struct vector3 normal =
-        user_object_normal(object, along3(start, step, distance - approach), step);
-    if (object->cuts == 0 || user_of_object(object)->is_open)
-        return normal;
-    const struct cut_face face = cut_face_at(object, start, step, approach, distance);
-    return choose3(face.is_met, face.normal, normal);
+    return user_object_normal(object, along3(start, step, distance - approach), step);
 }
 #endif
 
@@ -250,11 +203,11 @@ FUNCTION struct vector3 object_normal(GLOBAL const struct object_record *object,
     if (object->shape == SHAPE_USER)
         return out_of_object(object, normal_of_user_shape(object, point, direction, distance));
 #endif
-    if (!is_plain(object))
-        return out_of_object(object, normal_with_cuts(object, point, direction, distance));
-    const struct vector3 hit = from_centre(object, along3(point, direction, distance));
-    return out_of_object(
-        object, plain_normal(object, into_object(object, hit), into_object(object, direction)));
+    const struct vector3 hit =
+        into_object(object, from_centre(object, along3(point, direction, distance)));
+    const struct vector3 step = into_object(object, direction);
+    return out_of_object(object, is_plain(object) ? plain_normal(object, hit, step)
+                                                  : shape_normal(object, hit, step));
 }
 
 /* What is wanted of a hit: where facets stand for a smooth surface the two differ. */

@@ -92,14 +92,6 @@ struct end_record {
     RECORD_INT is_open;
 };
 
-/* What lies beyond a plane is cut off: x . normal > offset in the object's own frame. */
-struct cut_record {
-    float normal_x, normal_y, normal_z; /* unit */
-    float offset;                       /* m */
-};
-
-#define OBJECT_CUTS 2
-
 /* One object without parts, or one part, in the frame of a launch: `objects` are these wherever the
  * kernels count them. */
 struct object_record {
@@ -124,8 +116,6 @@ struct object_record {
     RECORD_WORD fouling_words; /* where its fouling_record is, likewise; 0: it has none */
     RECORD_WORD tree_words; /* of the first record: where the object_tree_record of all objects is,
                                likewise; 0: there is none */
-    RECORD_INT cuts;
-    struct cut_record cut[OBJECT_CUTS];
     struct surface_record surface;
     /* Where the object's echoes and shadow are tallied, in the tile buffer (incoherent part). */
     RECORD_WORD tile_offset;     /* first element */

@@ -20,10 +20,7 @@
  * rays go on from 20 um off a surface; one that is not a number counts as no surface, a normal that
  * is not one fails the run. Every ray must get the same answer each time it is asked.
  *
- * Cuts are made in what the code gives, whose functions go on to describe the whole. Where a plane
- * runs inside a closed shape is told by its normals: a surface whose normal points along the ray is
- * one that the ray leaves by. So a closed shape's surfaces must be all there, in turn entered and
- * left, and shape_normal may be asked about points of a cut's face, where any answer will do.
+ * A closed shape's surfaces must be all there, so that a ray enters and leaves it in turn.
  *
  * The code may hold further functions, types, `constant` tables and macros; their names meet
  * neither those of the program nor of other shapes, with a compiler other than clang where

@@ -5,21 +5,20 @@
 #define SONJECT_KERNELS_SHAPES_H
 
 enum shape_trait {
-    SHAPE_IS_SHEET = 1,  /* no inside that a cut would lay open, and that its face then closes */
-    SHAPE_IS_HOLLOW = 2, /* a straight way that leaves the outer side may meet the object again;
-                            of what is flat or convex none does, cut or not */
+    SHAPE_IS_HOLLOW = 1, /* a straight way that leaves the outer side may meet the object again;
+                            of what is flat or convex none does */
 };
 
-/* ROW(number: SHAPE_ and this, name, traits). The plainest shapes, of one interval: in line where
- * nothing cuts them, for most scenes hold no others. */
+/* ROW(number: SHAPE_ and this, name, traits). The plainest shapes, of one interval, are in
+ * line, for most scenes hold no others. */
 #define PLAIN_SHAPES(ROW)                                                                          \
-    ROW(PLANE, plane, SHAPE_IS_SHEET)                                                              \
+    ROW(PLANE, plane, 0)                                                                           \
     ROW(SPHERE, sphere, 0)                                                                         \
     ROW(CYLINDER, cylinder, 0)                                                                     \
     ROW(CAPSULE, capsule, 0)
 
 #define OTHER_SHAPES(ROW)                                                                          \
-    ROW(DISC, disc, SHAPE_IS_SHEET)                                                                \
+    ROW(DISC, disc, 0)                                                                             \
     ROW(ELLIPSOID, ellipsoid, 0)                                                                   \
     ROW(BOX, box, 0)                                                                               \
     ROW(WEDGE, wedge, 0)                                                                           \
@@ -35,7 +34,7 @@ enum shape_trait {
 /* Cylinders that have other ends than flat ones. */
 #define ENDED_CYLINDERS(ROW)                                                                       \
     ROW(ENDED_CYLINDER, ended_cylinder, 0) /* solid: each end is flat or a part of a sphere */     \
-    ROW(OPEN_CYLINDER, open_cylinder, SHAPE_IS_SHEET | SHAPE_IS_HOLLOW) /* thin wall */
+    ROW(OPEN_CYLINDER, open_cylinder, SHAPE_IS_HOLLOW) /* thin wall */
 
 #define ALL_SHAPES(ROW) PLAIN_SHAPES(ROW) OTHER_SHAPES(ROW) SCENE_SHAPES(ROW)
 

@@ -308,21 +308,10 @@ typedef enum sonject_burial_kind {
     SONJECT_BURIAL_PROUD = 2     /* proud_height_m */
 } sonject_burial_kind;
 
-/* A plane that cuts a part off an object: what lies more than distance_m from the centre towards a
- * direction of the object's own. A solid shows a flat face there, a sheet (a plane, a disc, a tube,
- * an open mesh, an open user's shape) just ends. */
-typedef struct sonject_cut {
-    double azimuth_rad;   /* of the direction, from the nose towards the object's own y */
-    double elevation_rad; /* towards the object's own z */
-    double distance_m;    /* of any sign */
-} sonject_cut;
-
-#define SONJECT_CUTS_CAPACITY 2
-
 /* How a position is given. The ground point under the object's centre is meant: the middle of its
- * overall length, width and height, whatever is cut off; of an object of parts, the origin that
- * their places are counted from. Over relief that point of the mean seabed is meant; burial counts
- * from the relief's height there. */
+ * overall length, width and height; of an object of parts, the origin that their places are counted
+ * from. Over relief that point of the mean seabed is meant; burial counts from the relief's height
+ * there. */
 typedef enum sonject_position_kind {
     SONJECT_POSITION_PATCH_CENTRE = 0, /* along = range = 0 */
     SONJECT_POSITION_METRES = 1,       /* along: along-track m, range: apparent slant range m, both
@@ -361,18 +350,16 @@ typedef struct sonject_object_params {
     double burial_m;    /* depth of the lowest point below the seabed; negative: above it */
     sonject_material_params material;
     double height_m;
-    double top_diameter_m;   /* truncated cone; 0: a cone; may be the larger one */
-    double front_height_m;   /* wedge: at the nose, 0...height */
-    uint32_t nose_end;       /* sonject_end, cylinder */
-    uint32_t tail_end;       /* likewise */
-    double nose_end_depth_m; /* of a spherical end, above 0...half the diameter; 0: half the
-                                diameter, a half sphere. The length includes it */
-    double tail_end_depth_m; /* likewise */
-    double burial_fraction;  /* 0...1 of the height that the object has in its pose */
-    double proud_height_m;   /* of the highest point above the seabed, 0...that height */
-    uint32_t cut_count;      /* of cuts that count */
-    uint32_t mesh;           /* number of a mesh of the scene */
-    sonject_cut cuts[SONJECT_CUTS_CAPACITY];
+    double top_diameter_m;          /* truncated cone; 0: a cone; may be the larger one */
+    double front_height_m;          /* wedge: at the nose, 0...height */
+    uint32_t nose_end;              /* sonject_end, cylinder */
+    uint32_t tail_end;              /* likewise */
+    double nose_end_depth_m;        /* of a spherical end, above 0...half the diameter; 0: half the
+                                       diameter, a half sphere. The length includes it */
+    double tail_end_depth_m;        /* likewise */
+    double burial_fraction;         /* 0...1 of the height that the object has in its pose */
+    double proud_height_m;          /* of the highest point above the seabed, 0...that height */
+    uint32_t mesh;                  /* number of a mesh of the scene */
     uint32_t user_shape;            /* number of a user's shape of the scene */
     uint32_t level_kind;            /* sonject_level_kind */
     double level_db;                /* not for SONJECT_LEVEL_PHYSICAL */

@@ -1,5 +1,5 @@
-/* The keys of objects: a shape with its sizes, ends, cuts and surface, or parts, or a target's
- * file; and where it lies. */
+/* The keys of objects: a shape with its sizes, ends and surface, or parts, or a target's file;
+ * and where it lies. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,18 +36,6 @@ END_SECTION(tail_end, tail_end)
                  [SONJECT_END_SPHERICAL] = "spherical"},                                           \
     .section = &end##_section
 
-#undef STRUCTURE
-#define STRUCTURE sonject_cut
-static const struct field cut_fields[] = {
-    {"azimuth", "of the side that is cut off, from the nose towards the object's own y",
-     QUANTITY(azimuth_rad, ANGLE)},
-    {"elevation", "of that side; 90 deg: the top", QUANTITY(elevation_rad, ANGLE)},
-    {"distance", "of the cut from the centre towards that side", QUANTITY(distance_m, LENGTH),
-     COORDINATE, REQUIRED},
-};
-static const struct section cut_section = {ROWS(cut_fields)};
-#undef STRUCTURE
-
 #define SIZE(its) QUANTITY(its, LENGTH), POSITIVE, NONE_IF_ZERO
 
 #define SHAPE_WORD(NUMBER, name, traits) [SHAPE_##NUMBER] = #name,
@@ -66,15 +54,10 @@ static const struct section cut_section = {ROWS(cut_fields)};
          QUANTITY(front_height_m, LENGTH)},                                                        \
         {"nose_end", "of a cylinder: flat, open, spherical or {depth: }", END_FIELD(nose_end)},    \
         {"tail_end", "of a cylinder: flat, open, spherical or {depth: }", END_FIELD(tail_end)},    \
-        {"mesh",                                                                                   \
-         "of the shape mesh: its file's name, or a section",                                       \
-         .kind = FIELD_SPECIAL,                                                                    \
-         .unit = "file name",                                                                      \
-         .section = &mesh_section,                                                                 \
-         .read = read_mesh},                                                                       \
     {                                                                                              \
-        "cuts", "planes that cut parts off any shape, at most 2",                                  \
-            ENTRIES(cuts, cut_count, "cut", cut_section)                                           \
+        "mesh", "of the shape mesh: its file's name, or a section",                                \
+            .kind = FIELD_SPECIAL, .unit = "file name", .section = &mesh_section,                  \
+            .read = read_mesh                                                                      \
     }
 
 /* Angles; what heading is counted from differs. */
@@ -175,7 +158,7 @@ static sonject_status finish_shape(struct reader *reader, const struct tree_node
         checked.shape = SHAPE_PARTS;
     if (!is_given(node, "material"))
         section_defaults(&material_section, &checked.material, NULL);
-    check_shape(&check, reader->scene, &checked);
+    check_shape(&check, &checked);
     relate_energy(&check, "material.", &checked.material, NAN);
     return check.status;
 }

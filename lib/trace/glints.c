@@ -67,7 +67,7 @@ static struct glint_cell cell_of_part(const struct tracer *tracer, uint32_t part
     const double columns = tracer->view.column_spacing_m / (EDGE_COLUMN_WAVELENGTHS * wavelength);
     struct glint_cell cell =
         glint_cell_of(tracer, GLINT_CELL_WAVELENGTHS * cbrt(fmax(columns, 1.0)));
-    if (placement->size.flat || placement->size.cut_count > 0 || isinf(curvature_radius))
+    if (placement->size.flat || isinf(curvature_radius))
         return cell;
     const double round =
         glint_cell_of(tracer, CELL_OF_CURVATURE * sqrt(curvature_radius / wavelength)).across;
@@ -125,21 +125,16 @@ static bool is_edge_heard(const struct sight *sight, uint32_t axis, double half_
            sight->aspects * fabs(sight->track[axis]) + 0.5 * wavelength_m / half_m;
 }
 
-/* The gradient across the ray, of the whole path, on a face; normal: in the part's axes. */
-static double face_gradient(const struct sight *sight, const double normal[3])
+/* The gradient across the ray, of the whole path, on a face that stands across an axis. */
+static double face_gradient(const struct sight *sight, uint32_t axis)
 {
-    double ray = 0.0, across = 0.0;
-    for (int i = 0; i < 3; i++) {
-        ray += normal[i] * sight->ray[i];
-        across += normal[i] * sight->across[i];
-    }
-    return across == 0.0 ? 0.0 : 2.0 * fabs(across / ray);
+    const double across = sight->across[axis];
+    return across == 0.0 ? 0.0 : 2.0 * fabs(across / sight->ray[axis]);
 }
 
 /* The steepest gradient of a part's flat faces that have edges which are heard; 0: it has none. */
 static double steepest_face(const struct tracer *tracer, uint32_t part, const struct ray_path *path)
 {
-    static const double own[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
     const struct placement *placement = &tracer->placements[part];
     const struct shape_size *size = &placement->size;
     const double half[3] = {size->half_length_m, size->half_width_m, size->half_height_m};
@@ -152,10 +147,8 @@ static double steepest_face(const struct tracer *tracer, uint32_t part, const st
             (!(size->flat & (uint32_t)FLAT_WITH_CORNERS) ||
              is_edge_heard(&sight, next, half[next], wavelength) ||
              is_edge_heard(&sight, last, half[last], wavelength)))
-            steepest = fmax(steepest, face_gradient(&sight, own[axis]));
+            steepest = fmax(steepest, face_gradient(&sight, axis));
     }
-    for (uint32_t i = 0; i < size->cut_count; i++)
-        steepest = fmax(steepest, face_gradient(&sight, size->cuts[i].normal));
     return steepest;
 }
 

@@ -254,11 +254,9 @@ static void overall_size(const struct placement *placement, double *half_length,
 {
     static const double nose[3] = {1.0, 0.0, 0.0};
     static const double tail[3] = {-1.0, 0.0, 0.0};
-    struct shape_size uncut = placement->size;
-    uncut.cut_count = 0;
-    *half_length = fmax(shape_extent(&uncut, placement->shape, nose),
-                        shape_extent(&uncut, placement->shape, tail));
-    *radius = uncut.radius_about_nose_m;
+    *half_length = fmax(shape_extent(&placement->size, placement->shape, nose),
+                        shape_extent(&placement->size, placement->shape, tail));
+    *radius = placement->size.radius_about_nose_m;
     if (placement->shape == SHAPE_SPHERE)
         *half_length = 0.0;
     /* unless it is slender, a user's shape has its own sphere */

@@ -18,7 +18,7 @@
 #define GROUPS_WANTED 4096
 
 /* Host and device must agree on every byte. */
-typedef char object_record_is_packed[sizeof(struct object_record) == 58 * 4 ? 1 : -1];
+typedef char object_record_is_packed[sizeof(struct object_record) == 49 * 4 ? 1 : -1];
 typedef char fan_record_is_packed[sizeof(struct fan_record) == 81 * 4 ? 1 : -1];
 typedef char chain_record_is_packed[sizeof(struct chain_record) == 46 * 4 ? 1 : -1];
 typedef char target_record_is_packed[sizeof(struct target_record) == 17 * 4 ? 1 : -1];

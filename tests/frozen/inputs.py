@@ -6,7 +6,6 @@ import random
 import sys
 
 import numpy
-from PIL import Image
 
 TESTS = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / "cli"), str(TESTS / "fuzz")]
@@ -64,7 +63,7 @@ def write_inputs(folder):
         (folder / name).write_text(text)
     rows, columns = 240, 320
     amplitudes = seabed(rows, columns, 1)
-    floats, bytes8 = amplitudes.astype("<f4"), grey(amplitudes, 255, "u1")
+    floats = amplitudes.astype("<f4")
     phases = [2.4 * number for number in range(rows * columns)]
     turns = [[math.cos(phase), math.sin(phase)] for phase in phases]
     pairs = (amplitudes[..., None] * numpy.reshape(turns, (rows, columns, 2))).astype("<f4")

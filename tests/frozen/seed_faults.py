@@ -2,7 +2,7 @@
 """Makes the faults of faults.md, one at a time, in a copy of the tree, and tells which the tests catch.
 
     seed_faults.py                all, after a run of all tests that the table names without any fault
-    seed_faults.py 3 17           these alone, without that run
+    seed_faults.py 3 18           these alone, without that run
     --scratch DIR                 keeps copy and build there for the next time
 
 Of each the test that caught it last is built and run; all suites only if that passes, up to the first

@@ -11,9 +11,6 @@ import zlib
 import numpy
 
 
-CUTS = b", ".join([b"{distance: 0}"] * 200)  # more than a shape may have
-
-
 def _yaml(folder):
     return {path.name: path.read_bytes() for path in sorted(folder.glob("*.yaml"))}
 
@@ -29,15 +26,12 @@ def scenes(source):
              b"sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10")
     sines = b", ".join([b"{amplitude: 1 mm, wavelength: 1 m}"] * 200)
     texts["sines.yaml"] = start + b", motion: {sway: [" + sines + b"]}}\n"
-    texts["cuts.yaml"] = start + b"}\nobjects: [{shape: sphere, diameter: 1, cuts: [" + CUTS + b"]}]\n"
     texts["key.yaml"] = b"sonject: 1\n? [a]\n: b\n"
     return texts
 
 
 def targets(source):
-    texts = _yaml(source / "tools" / "targets")
-    texts["cuts.yaml"] = b"sonject_target: 1\nshape: sphere\ndiameter: 1\ncuts: [" + CUTS + b"]\n"
-    return texts
+    return _yaml(source / "tools" / "targets")
 
 
 def recordings(source):

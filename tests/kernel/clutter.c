@@ -20,11 +20,6 @@ static void shape_object(sonject_object_params *object, uint32_t number, double 
     object->width_m = 0.6 * object->length_m;
     object->height_m = 0.15 * object->length_m;
     object->diameter_m = object->shape == SHAPE_SPHERE ? size : 0.4 * object->length_m;
-    if (object->shape == SHAPE_MESH) {
-        object->cut_count = 1 + number / 12 % 2;
-        object->cuts[0] = (sonject_cut){0.4 * number, 0.3, 0.05};
-        object->cuts[1] = (sonject_cut){0.4 * number + 2.0, -0.5, 0.1};
-    }
     object->heading_rad = 6.28 * draw(counter);
     object->pitch_rad = draw(counter) - 0.5;
     object->roll_rad = draw(counter) - 0.5;

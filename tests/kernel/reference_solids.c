@@ -38,7 +38,7 @@ static struct point gradient_at(const struct surface *surface, struct point p, d
 static struct surface *add_surface(struct body *body, enum surface_kind kind, double a, double b,
                                    double c, double d)
 {
-    const struct surface surface = {kind, {a, b, c, d}, -INFINITY, INFINITY, 0};
+    const struct surface surface = {kind, {a, b, c, d}, -INFINITY, INFINITY};
     body->surfaces[body->count] = surface;
     return &body->surfaces[body->count++];
 }
@@ -230,13 +230,6 @@ void body_init(struct body *body, const sonject_object_params *solid, double mor
     body->size = 0.5 * fmax(fmax(solid->length_m, solid->width_m),
                             fmax(fmax(solid->diameter_m, solid->top_diameter_m), solid->height_m));
     row->build(body, solid, more);
-    for (uint32_t i = 0; i < solid->cut_count; i++) {
-        const sonject_cut *cut = &solid->cuts[i];
-        add_surface(body, PLANE, cos(cut->azimuth_rad) * cos(cut->elevation_rad),
-                    sin(cut->azimuth_rad) * cos(cut->elevation_rad), sin(cut->elevation_rad),
-                    cut->distance_m + more)
-            ->is_cut = 1;
-    }
 }
 
 /* Whether a point lies within all surfaces but one. A cylinder is the union of its straight part
@@ -244,13 +237,13 @@ void body_init(struct body *body, const sonject_object_params *solid, double mor
 static int is_within(const struct body *body, const struct surface *but, struct point p)
 {
     const int is_cylinder = body->is_round;
-    int in_part = !is_cylinder || (but && !but->is_cut);
+    int in_part = !is_cylinder;
     for (int i = 0; i < body->count; i++) {
         const struct surface *surface = &body->surfaces[i];
         if (surface == but)
             continue;
         const double value = value_at(surface, p);
-        if (surface->is_cut || (surface->kind == PLANE && !body->is_thin)) {
+        if (surface->kind == PLANE && !body->is_thin) {
             if (value > 0.0)
                 return 0;
         } else if (is_cylinder) {
@@ -274,20 +267,13 @@ int body_holds(const struct body *body, struct point p)
 
 static int is_on(const struct body *body, const struct surface *surface, struct point p)
 {
-    if (surface->is_cut)
-        return !body->is_thin && is_within(body, surface, p);
     if (p.x < surface->from || p.x > surface->to || hypot(p.x, p.y) > body->rim ||
         fabs(p.x) > body->half_length || fabs(p.y) > body->half_width)
         return 0;
     if (surface->kind == CONE && surface->numbers[0] + surface->numbers[1] * p.z < 0.0)
         return 0;
-    if (body->is_round) {
-        for (int i = 0; i < body->count; i++)
-            if (body->surfaces[i].is_cut && value_at(&body->surfaces[i], p) > 0.0)
-                return 0;
-        /* a flat end is as wide as the tube */
+    if (body->is_round) /* a flat end is as wide as the tube */
         return surface->kind != PLANE || value_at(&body->surfaces[0], p) <= 0.0;
-    }
     return is_within(body, surface, p);
 }
 

@@ -21,7 +21,6 @@ struct surface {
     enum surface_kind kind;
     double numbers[4];
     double from, to; /* of x: the part that counts */
-    int is_cut;
 };
 
 struct body {
@@ -47,7 +46,7 @@ extern const struct solid_row {
 } solid_rows[];
 extern const int solid_row_count;
 
-/* With its cuts; `more`: m that every surface is moved outwards. */
+/* `more`: m that every surface is moved outwards. */
 void body_init(struct body *body, const sonject_object_params *solid, double more);
 
 /* Whether a point lies in it, or in the plane of a sheet on it; tubes are taken as filled. */

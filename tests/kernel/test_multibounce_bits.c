@@ -20,18 +20,13 @@ static const struct variant variants[] = {
     {"focused, smooth seabed, through layers", SONJECT_COLUMNS_FOCUSED, 1, 1},
 };
 
-/* A plate that leans, a cut sphere, a torus, half a tube and a box, close to each other. */
+/* A plate that leans, a sphere, a torus, half a tube and a box, close to each other. */
 static void make_scene(struct bench *bench, const struct variant *variant)
 {
     static const struct water_layer layers[] = {{0.0, 1490.0, 1.02}, {3.0, 1530.0, 1.0}};
     struct scene *scene = &bench->scene;
     bench_place(bench_add(bench, SHAPE_PLANE, 0.5, 0.4, 0.0), 30.0, 70.0, 0.2, 0.1, 0.9);
-    sonject_object_params *sphere = bench_add(bench, SHAPE_SPHERE, 0.0, 0.0, 0.3);
-    bench_place(sphere, 24.0, 55.0, 0.0, 0.0, 0.0);
-    sphere->cuts[0].azimuth_rad = 1.0;
-    sphere->cuts[0].elevation_rad = 0.3;
-    sphere->cuts[0].distance_m = 0.1;
-    sphere->cut_count = 1;
+    bench_place(bench_add(bench, SHAPE_SPHERE, 0.0, 0.0, 0.3), 24.0, 55.0, 0.0, 0.0, 0.0);
     sonject_object_params *torus = bench_add(bench, SHAPE_TORUS, 0.0, 0.0, 0.5);
     torus->height_m = 0.12;
     bench_place(torus, 44.0, 60.0, 0.3, 1.0, 0.0);

@@ -248,8 +248,8 @@ CLAIM(a_cylinder_leaves_the_aspects)
     }
 }
 
-/* Flat faces square to the sight, of a cylinder's end, a plate, a disc, a box, a wedge's slope, and
- * of a cut; the small ones are a plane wave's (A/lambda)^2 within 0.1 dB. (From a point source both
+/* Flat faces square to the sight, of a cylinder's end, a plate, a disc, a box and a wedge's slope;
+ * the small ones are a plane wave's (A/lambda)^2 within 0.1 dB. (From a point source both
  * directions of the wavefront would curve: r sin(ka^2/2r) for the disc.) */
 CLAIM(flat_faces)
 {
@@ -259,31 +259,26 @@ CLAIM(flat_faces)
         const char *name;
         enum shape_kind shape;
         double length, width, height, diameter; /* m */
-        double cut;                             /* m from the centre to the nose; 0: none */
         double forward, before;                 /* rad; face before the centre, m */
         double (*depth)(double, double, const double *);
         const double *sizes;
     } faces[] = {
-        {"end", SHAPE_CYLINDER, 0.2, 0.0, 0.0, 0.1, 0.0, 0.0, 0.1, disc_depth, sizes[0]},
-        {"end", SHAPE_CYLINDER, 0.2, 0.0, 0.0, 0.3, 0.0, 0.0, 0.1, disc_depth, sizes[1]},
-        {"end", SHAPE_CYLINDER, 0.2, 0.0, 0.0, 0.6, 0.0, 0.0, 0.1, disc_depth, sizes[2]},
-        {"plate", SHAPE_PLANE, 0.1, 0.1, 0.0, 0.0, 0.0, -0.5 * PI, 0.0, rectangle_depth, sizes[0]},
-        {"plate", SHAPE_PLANE, 0.3, 0.3, 0.0, 0.0, 0.0, -0.5 * PI, 0.0, rectangle_depth, sizes[1]},
-        {"plate", SHAPE_PLANE, 0.6, 0.6, 0.0, 0.0, 0.0, -0.5 * PI, 0.0, rectangle_depth, sizes[2]},
-        {"disc", SHAPE_DISC, 0.0, 0.0, 0.0, 0.1, 0.0, -0.5 * PI, 0.0, disc_depth, sizes[0]},
-        {"disc", SHAPE_DISC, 0.0, 0.0, 0.0, 0.3, 0.0, -0.5 * PI, 0.0, disc_depth, sizes[1]},
-        {"disc", SHAPE_DISC, 0.0, 0.0, 0.0, 0.6, 0.0, -0.5 * PI, 0.0, disc_depth, sizes[2]},
-        {"box", SHAPE_BOX, 0.6, 0.4, 0.2, 0.0, 0.0, 0.0, 0.3, rectangle_depth, box},
-        {"wedge", SHAPE_WEDGE, 0.4, 0.3, 0.3, 0.0, 0.0, -0.92729521800161219, 0.0, rectangle_depth,
+        {"end", SHAPE_CYLINDER, 0.2, 0.0, 0.0, 0.1, 0.0, 0.1, disc_depth, sizes[0]},
+        {"end", SHAPE_CYLINDER, 0.2, 0.0, 0.0, 0.3, 0.0, 0.1, disc_depth, sizes[1]},
+        {"end", SHAPE_CYLINDER, 0.2, 0.0, 0.0, 0.6, 0.0, 0.1, disc_depth, sizes[2]},
+        {"plate", SHAPE_PLANE, 0.1, 0.1, 0.0, 0.0, -0.5 * PI, 0.0, rectangle_depth, sizes[0]},
+        {"plate", SHAPE_PLANE, 0.3, 0.3, 0.0, 0.0, -0.5 * PI, 0.0, rectangle_depth, sizes[1]},
+        {"plate", SHAPE_PLANE, 0.6, 0.6, 0.0, 0.0, -0.5 * PI, 0.0, rectangle_depth, sizes[2]},
+        {"disc", SHAPE_DISC, 0.0, 0.0, 0.0, 0.1, -0.5 * PI, 0.0, disc_depth, sizes[0]},
+        {"disc", SHAPE_DISC, 0.0, 0.0, 0.0, 0.3, -0.5 * PI, 0.0, disc_depth, sizes[1]},
+        {"disc", SHAPE_DISC, 0.0, 0.0, 0.0, 0.6, -0.5 * PI, 0.0, disc_depth, sizes[2]},
+        {"box", SHAPE_BOX, 0.6, 0.4, 0.2, 0.0, 0.0, 0.3, rectangle_depth, box},
+        {"wedge", SHAPE_WEDGE, 0.4, 0.3, 0.3, 0.0, -0.92729521800161219, 0.0, rectangle_depth,
          slope}, /* atan(0.4 / 0.3) */
-        {"cut", SHAPE_CYLINDER, 1.0, 0.0, 0.0, 0.3, 0.1, 0.0, 0.1, disc_depth, sizes[1]},
-        {"cut", SHAPE_SPHERE, 0.0, 0.0, 0.0, 0.5, 0.2, 0.0, 0.2, disc_depth, sizes[1]},
     };
     for (size_t i = 0; i < COUNT(faces); i++) {
         struct sea *sea = open_with(faces[i].shape, faces[i].length, faces[i].width,
                                     faces[i].height, faces[i].diameter);
-        sea_object(sea, 0)->cut_count = faces[i].cut > 0.0;
-        sea_object(sea, 0)->cuts[0].distance_m = faces[i].cut;
         face_sonar(sea, faces[i].forward);
         const double distance = sea_slant_range(sea, 0) - faces[i].before;
         const struct front front = {faces[i].depth, faces[i].sizes, 0.35};

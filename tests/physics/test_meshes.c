@@ -1,5 +1,5 @@
 /* Meshes against the shapes that they stand for: glints of facets by physical optics, energies and
- * shadows, cut by planes too (users' shapes beside them), plates as large as their facets, sheets
+ * shadows (users' shapes beside them), plates as large as their facets, sheets
  * with two sides, smooth surfaces that coarse facets stand for; one mesh shown by several objects;
  * and the same bits as plain C. */
 #include "trace_rough.h"
@@ -37,18 +37,15 @@ enum ball {
  * octahedron's faces four times that, under the sphere. */
 #define SUBDIVISIONS 7
 
-/* Its lowest point at a height, whole where `cut` is NULL. */
+/* Its lowest point at a height. */
 static sonject_object_params *add_ball(struct sea *sea, enum ball kind, int subdivisions,
-                                       const sonject_cut *cut, double height)
+                                       double height)
 {
     static const enum shape_kind shapes[] = {SHAPE_SPHERE, SHAPE_MESH, SHAPE_USER};
     struct mesh_sample sample;
     sonject_object_params *object =
         sea_add(sea, shapes[kind], 0.0, 0.0, kind == SPHERE ? 2.0 * BALL : 0.0);
     object->burial_m = -height;
-    object->cut_count = cut ? 1 : 0;
-    if (cut)
-        object->cuts[0] = *cut;
     if (kind == MESH) {
         sample_sphere(&sample, subdivisions);
         add_sample(sea, &sample, BALL, 0.0);
@@ -58,21 +55,11 @@ static sonject_object_params *add_ball(struct sea *sea, enum ball kind, int subd
     return object;
 }
 
-/* Lays all parts at the height of a whole ball, whatever is cut off. */
-static void ready_at(struct sea *sea, uint32_t parts, double height)
-{
-    sea_ready(sea);
-    for (uint32_t i = 0; i < parts; i++) {
-        const double *centre = sea_centre(sea, i), there[3] = {centre[0], centre[1], height};
-        sea_put(sea, i, there, sea_axes(sea, i)[0], sea_axes(sea, i)[1]);
-    }
-}
-
-static struct sea *open_ball(enum ball kind, int subdivisions, const sonject_cut *cut)
+static struct sea *open_ball(enum ball kind, int subdivisions)
 {
     struct sea *sea = sea_open(ROWS, COLUMNS, FAR_M);
-    add_ball(sea, kind, subdivisions, cut, 1.0);
-    ready_at(sea, 1, 1.0 + BALL);
+    add_ball(sea, kind, subdivisions, 1.0);
+    sea_ready(sea);
     return sea;
 }
 
@@ -89,11 +76,11 @@ static double difference_db(const struct sea *sea, struct line one, const struct
 CLAIM(facets_converge_to_the_sphere)
 {
     double range, at, last = INFINITY;
-    struct sea *sea = open_ball(SPHERE, 0, NULL);
+    struct sea *sea = open_ball(SPHERE, 0);
     const struct line sphere = sea_line(sea, 0);
     const double peak = line_peak(sea, &sphere, &range);
     for (int subdivisions = 5; subdivisions <= 7; subdivisions++) {
-        sea = open_ball(MESH, subdivisions, NULL);
+        sea = open_ball(MESH, subdivisions);
         const struct line line = sea_line(sea, 0);
         const double level = decibels_of_amplitude(line_peak(sea, &line, &at) / peak);
         const double difference = difference_db(sea, line, &sphere);
@@ -109,76 +96,20 @@ CLAIM(facets_converge_to_the_sphere)
     }
 }
 
-/* Towards the sonar, square to the sight: the face is a plate. */
-static sonject_cut facing_cut(void)
-{
-    struct sea *sea = open_ball(SPHERE, 0, NULL);
-    const double *centre = sea_centre(sea, 0);
-    const sonject_cut cut = {-0.5 * PI, atan2(sea->sonar->altitude_m - centre[2], centre[1]), 0.1};
-    return cut;
-}
-
-/* Faces seen square and not at all, and one that takes half of the glint away. A facet's depth is
- * 24 um at the most: 1.2 deg of phase, -33 dB. Of a user's sphere the same rays meet the same, but
- * for roundings and those along rims. */
-CLAIM(cut_balls_glint_like_the_cut_sphere)
-{
-    const sonject_cut cuts[] = {facing_cut(), {0.5 * PI, 0.0, 0.02}, {0.0, 0.0, 0.01}};
-    static const char *const names[] = {"towards the sonar", "away from it", "across it"};
-    for (size_t i = 0; i < COUNT(cuts); i++) {
-        const struct line sphere = sea_line(open_ball(SPHERE, 0, &cuts[i]), 0);
-        for (enum ball kind = MESH; kind <= (i == 1 ? MESH : USER); kind++) {
-            print_message("cut %s, %s: ", names[i], kind == MESH ? "mesh" : "user's shape");
-            struct sea *sea = open_ball(kind, SUBDIVISIONS, &cuts[i]);
-            expect_below("difference, dB", difference_db(sea, sea_line(sea, 0), &sphere),
-                         kind == MESH ? -33.0 : -60.0);
-        }
-    }
-}
-
-/* Two halves of a mesh, each with its face against the other's, are the whole: facets that the
- * plane crosses echo once. Rays hit or miss the cells of wavefront that the plane divides: of the
- * built-in sphere, halves of other seeds differ by -32 to -34 dB, two of them by 3 dB more, and
- * that energy of many cells varies by no more than 2 dB. A strip of 3.6 mm lost would be -20 dB. */
-CLAIM(two_halves_are_the_whole)
-{
-    static const sonject_cut halves[2] = {{0.0, 0.0, 0.013}, {PI, 0.0, -0.013}};
-    struct line rest = sea_line(open_ball(MESH, SUBDIVISIONS, NULL), 0);
-    struct sea *sea = sea_open(ROWS, COLUMNS, FAR_M);
-    for (uint32_t i = 0; i < 2; i++)
-        add_ball(sea, MESH, SUBDIVISIONS, &halves[i], 1.0)->mesh = i;
-    ready_at(sea, 2, 1.0 + BALL);
-    const double energy = line_energy_in_band(sea, &rest);
-    for (uint32_t i = 0; i < 2; i++) {
-        const struct line half = sea_line(sea, i);
-        assert_true(line_energy_in_band(sea, &half) > 0.05 * energy);
-        line_add(&rest, &half, -1.0);
-    }
-    expect_below("halves less the whole, dB",
-                 decibels_of_energy(line_energy_in_band(sea, &rest) / energy), -27.0);
-}
-
-/* The same rays meet the ball and what stands for it, whole and cut; energies differ by less than
- * the facets' depth over the radius, 1e-4, and by the few rays between both outlines and rims. */
+/* The same rays meet the ball and what stands for it; energies differ by less than the facets'
+ * depth over the radius, 1e-4, and by the few rays between both outlines. */
 CLAIM(rough_balls_are_lit_like_the_sphere)
 {
-    static const sonject_cut cuts[] = {{0, 0, 0}, {-0.5 * PI, 0.7, 0.05}, {0.3, 0.2, 0.05}};
-    double uncut = 0.0;
-    for (size_t i = 0; i < COUNT(cuts); i++) {
-        struct tile_sums sums[3];
-        for (enum ball kind = SPHERE; kind <= (i == 2 ? MESH : USER); kind++) {
-            struct sea *sea = sea_open(ROWS, COLUMNS, FAR_M);
-            make_rough(add_ball(sea, kind, SUBDIVISIONS, i > 0 ? &cuts[i] : NULL, -0.1), 0.1);
-            ready_at(sea, 1, 0.05);
-            sea_rough(sea, &sums[kind], NULL);
-            if (kind == SPHERE)
-                continue;
-            expect_close("echoes", sums[kind].energy / sums[0].energy, 1.0, 1e-3);
-            expect_close("shadow", sums[kind].lost / sums[0].lost, 1.0, 1e-3);
-            expect_close("hits", sums[kind].footprint / sums[0].footprint, 1.0, 1e-3);
-        }
-        uncut = i == 0 ? sums[0].footprint : uncut;
-        assert_true(i == 0 || fabs(sums[0].footprint / uncut - 1.0) > 0.05);
+    struct tile_sums sums[3];
+    for (enum ball kind = SPHERE; kind <= USER; kind++) {
+        struct sea *sea = sea_open(ROWS, COLUMNS, FAR_M);
+        make_rough(add_ball(sea, kind, SUBDIVISIONS, -0.2), 0.1);
+        sea_rough(sea, &sums[kind], NULL);
+        if (kind == SPHERE)
+            continue;
+        expect_close("echoes", sums[kind].energy / sums[0].energy, 1.0, 1e-3);
+        expect_close("shadow", sums[kind].lost / sums[0].lost, 1.0, 1e-3);
+        expect_close("hits", sums[kind].footprint / sums[0].footprint, 1.0, 1e-3);
     }
 }
 

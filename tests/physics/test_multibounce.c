@@ -2,6 +2,8 @@
  * of physical optics (multibounce_reference.h). Levels are systematic: 0.2 dB. */
 #include "multibounce_reference.h"
 
+CLAIMS_COMPILE
+
 #define ROWS       101
 #define COLUMNS    201
 #define RANGE      50.0
@@ -207,6 +209,23 @@ CLAIM(a_sphere_and_a_plate)
     }
 }
 
+/* A strip of a tube about x, 0.15 m long. parameters: radius, least y */
+static const char strip_code[] =
+    "float met(float3 p, float3 d, float t, float nearest, const float *a)\n"
+    "{\n"
+    "    const float3 q = p + t * d;\n"
+    "    return t > nearest && fabs(q.x) <= 0.075f && q.y >= a[1] ? t : INFINITY;\n"
+    "}\n"
+    "float shape_distance(float3 p, float3 d, float nearest, const float *a)\n"
+    "{\n"
+    "    const float u = d.y * d.y + d.z * d.z;\n"
+    "    const float v = p.y * d.y + p.z * d.z;\n"
+    "    const float root = sqrt(v * v - u * (p.y * p.y + p.z * p.z - a[0] * a[0]));\n"
+    "    return fmin(met(p, d, (-v - root) / u, nearest, a),\n"
+    "                met(p, d, (-v + root) / u, nearest, a));\n"
+    "}\n"
+    "float3 shape_normal(float3 p, const float *a) { return (float3)(0.0f, p.y, p.z); }\n";
+
 /* The inner side of a tube gathers sound on a line before the plate: -pi/2. */
 CLAIM(a_caustic)
 {
@@ -216,12 +235,10 @@ CLAIM(a_caustic)
     for (int i = 0; i < 4; i++) {
         const double radius = radii[i / 2], half_angle = 0.06 / radius;
         struct sea *sea = open_at(2);
-        sonject_object_params *tube = sea_add(sea, SHAPE_CYLINDER, 0.15, 0.0, 2.0 * radius);
-        tube->burial_m = -1.0;
-        tube->nose_end = tube->tail_end = SONJECT_END_OPEN;
-        tube->cuts[0].azimuth_rad = -0.5 * PI;
-        tube->cuts[0].distance_m = -radius * cos(half_angle);
-        tube->cut_count = 1;
+        sea_add(sea, SHAPE_USER, 0.0, 0.0, 0.0)->burial_m = -1.0;
+        sea_add_code(sea, "strip.cl", strip_code, hypot(radius, 0.075), radius,
+                     radius * cos(half_angle));
+        sea->bench->scene.user_shapes.shapes[0].is_open = true;
         add_plate(sea, 0.15, widths[i / 2]);
         sea_ready(sea);
         const struct sight sight = sight_of(sea, 3.0);

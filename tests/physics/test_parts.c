@@ -88,10 +88,7 @@ static void build_lopsided(struct sea *sea, bool is_starboard)
     sea->geometry->side = is_starboard ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
     add(sea, SHAPE_PARTS, 0.0, 0.0, 0.0, 0.0);
     add_part(sea, SHAPE_CYLINDER, 1.0, 0.2, 0.0, 0.0, 0.0);
-    sonject_object_params *cut = add_part(sea, SHAPE_SPHERE, 0.0, 0.4, 0.5, 0.3 * hand, 0.1);
-    cut->cut_count = 1;
-    cut->cuts[0].azimuth_rad = 1.0 * hand;
-    cut->cuts[0].distance_m = 0.05;
+    add_part(sea, SHAPE_SPHERE, 0.0, 0.4, 0.5, 0.3 * hand, 0.1);
     sonject_object_params *turned = sea_add_part(sea, SHAPE_CYLINDER, centre, pose);
     turned->length_m = 0.8;
     turned->diameter_m = 0.2;

@@ -82,8 +82,7 @@ CLAIM(rough_shapes_are_lit_like_the_librarys)
     }
 }
 
-/* In the pulse's band. Code has the usual cells, a sphere those that its radius allows; where both
- * have the usual ones, cut balls in test_meshes.c are the same but for roundings. */
+/* In the pulse's band. Code has the usual cells, a sphere those that its radius allows. */
 CLAIM(a_sphere_by_code_glints_like_the_sphere)
 {
     struct line lines[2];

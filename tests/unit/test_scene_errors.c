@@ -36,7 +36,6 @@ static void test_unknown_keys(void **state)
          ":6:5: objects[0].\xC3\xA9tat: unknown key; known here are target, name, class, shape, "
          "user, "
          "length, width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, "
-         "cuts, "
          "position, heading, pitch, roll, burial, level, material, fouling, parts"},
     };
     expect_all(state, wrong, COUNT(wrong));
@@ -147,11 +146,6 @@ static void test_wrong_values(void **state)
         {OBJECT "torus\n    diameter: 1\n    height: 0.5\n",
          ":6:15: objects[0].diameter: of a torus is that of its outline and must be above twice "
          "its height, 1 m, or there is no hole; it is 1 m"},
-        {OBJECT "sphere\n    diameter: 1\n    cuts: [{distance: 0}, {distance: 0}, {distance: "
-                "0}]\n",
-         ":7:11: objects[0].cuts: has 3 entries; at most 2 are possible"},
-        {OBJECT "sphere\n    diameter: 1\n    cuts: [{distance: -0.5}]\n",
-         ":7:11: objects[0].cuts: leave nothing of the object; move one outwards"},
         {OBJECT "sphere\n    diameter: 1\n    burial: {fraction: 0.5, proud: 0.5}\n",
          ":7:13: objects[0].burial: more than one of fraction and proud is there; give one"},
         {OBJECT "sphere\n    diameter: 1 m\n    material: {lambert: 0.3}\n",

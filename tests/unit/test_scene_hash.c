@@ -107,7 +107,6 @@ static void test_what_no_key_names_counts(void **state)
     (void)state;
     scene_init(&scene);
     object_init(&object);
-    object.cut_count = SONJECT_CUTS_CAPACITY;
     assert_int_equal(scene_append_object(&scene, &report, &object), SONJECT_OK);
     assert_int_equal(
         response_table_set(&scene.pulse_table, &report, numbers, numbers, numbers, 4, false),
@@ -125,8 +124,6 @@ static void test_what_no_key_names_counts(void **state)
                              &scene.objects[0].burial_kind,
                              &scene.objects[0].mesh,
                              &scene.objects[0].user_shape,
-                             &scene.objects[0].cut_count,
-                             &scene.objects[0].cuts[SONJECT_CUTS_CAPACITY - 1].distance_m,
                              &scene.motion.params.sways[SONJECT_SWAYS_CAPACITY - 1].phase_rad,
                              &scene.motion.params.yaws[SONJECT_YAWS_CAPACITY - 1].phase_rad,
                              &scene.motion.yaw_table.along_track_m[3],

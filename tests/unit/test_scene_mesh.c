@@ -185,8 +185,6 @@ static void test_what_is_refused(void **state)
          ":5:5: objects[0]: none of shape, parts and target is there; give one"},
         {SCENE "  - {shape: mesh, mesh: corner.obj, length: 1}\n",
          ":5:45: objects[0].length: a mesh has none; remove it"},
-        {SCENE "  - {shape: mesh, mesh: corner.obj, cuts: [{distance: -9}]}\n",
-         ":5:43: objects[0].cuts: leave nothing of the object; move one outwards"},
         {MESH("{unit: mm}"), ":6:11: objects[0].mesh.file: missing; add it (of triangles: STL, OBJ "
                              "or PLY)"},
         {MESH("{file: corner.obj, unit: -1}"),

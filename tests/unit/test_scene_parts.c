@@ -144,8 +144,8 @@ static void test_what_is_refused(void **state)
          ":5:13: objects[0].parts[0]: more than one of shape and parts is there; give one"},
         {OBJECT "parts: [{shape: sphere, diameter: 1}]\n    shape: sphere\n    diameter: 1\n",
          ":5:5: objects[0]: more than one of shape, parts and target is there; give one"},
-        {OBJECT "parts: [{shape: sphere, diameter: 1}]\n    cuts: [{distance: 0}]\n",
-         ":6:11: objects[0].cuts: the parts have shapes of their own; remove it"},
+        {OBJECT "parts: [{shape: sphere, diameter: 1}]\n    length: 1\n",
+         ":6:13: objects[0].length: the parts have shapes of their own; remove it"},
         {OBJECT "parts: [{diameter: 1, parts: [{shape: sphere, diameter: 1}]}]\n",
          ":5:24: objects[0].parts[0].diameter: the parts have shapes of their own; remove it"},
         {OBJECT "parts: [{shape: sphere, diameter: 1}, {shape: sphere, diameter: -1}]\n",
@@ -245,8 +245,7 @@ static void test_targets_that_are_wrong(void **state)
         {"sonject_target: 1\ntarget: target.yaml\nshape: sphere\ndiameter: 1\n",
          ":2:1: target: unknown key; known here are sonject_target, name, class, shape, user, "
          "length, "
-         "width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, cuts, "
-         "material, "
+         "width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, material, "
          "fouling, parts"},
     };
     struct scene_folder *folder = *state;

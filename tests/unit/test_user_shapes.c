@@ -182,8 +182,6 @@ static void test_wrong_sections_are_refused(void **state)
         {BASE "  - shape: user\n", "objects[0].user: missing; a user needs it"},
         {BASE "  - diameter: 1\n    shape: sphere\n" CODE,
          "objects[0].user: a sphere has none; remove it"},
-        {BASE "  - shape: user\n    cuts: [{distance: -2}]\n" CODE,
-         "objects[0].cuts: leave nothing of the object; move one outwards"},
         {OF_USER("bounding_radius: 1"),
          "objects[0].user: none of file and code is there; give one"},
         {OF_USER("bounding_radius: 1, code: x, parameters: [nan]"),
@@ -198,9 +196,6 @@ static void test_wrong_sections_are_refused(void **state)
     struct scene_folder *folder = *state;
     for (size_t i = 0; i < COUNT(cases); i++)
         expect_refused_with_consent(folder, cases[i][0], cases[i][1]);
-    EXPECT_OK(&folder->report,
-              read_with_consent(folder, BASE "  - shape: user\n    cuts: [{distance: 0}]\n" CODE));
-    assert_int_equal(folder->scene.objects[0].cut_count, 1);
 }
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder,

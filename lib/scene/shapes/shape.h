@@ -21,11 +21,6 @@ struct end_size {
     bool is_open;
 };
 
-struct cut_plane {
-    double normal[3]; /* unit, outward */
-    double offset_m;  /* of the plane from the origin along it */
-};
-
 /* Which of them a shape has, the files in kernels/shapes say. */
 struct shape_size {
     double half_length_m; /* of the straight part for a capsule */
@@ -35,12 +30,9 @@ struct shape_size {
     double ring_radius_m; /* torus: of the ring's section */
     double front_height_m;
     struct end_size nose, tail;
-    struct cut_plane cuts[SONJECT_CUTS_CAPACITY];
-    uint32_t cut_count;
     const struct mesh *mesh;             /* of a mesh; borrowed from the scene */
     const struct user_shape *user_shape; /* likewise */
-    /* Radii of the uncut shape: of a sphere about the origin and of a cylinder about the nose axis
-     * that hold it. */
+    /* Radii of a sphere about the origin and of a cylinder about the nose axis that hold it. */
     double bounding_radius_m, radius_about_nose_m;
     /* m; INFINITY where nothing is bent. Edges and tips do not count, nor what of a cone is nearer
      * to its axis than this. It decides how dense the rays on it are. */
@@ -85,13 +77,9 @@ struct shape {
     /* Sizes and radii. Sizes come in halved; both bounding radii start at radius_m, the least
      * radius of curvature at INFINITY. NULL: they stay so. */
     void (*init)(struct shape_size *size, const sonject_object_params *object);
-    /* The largest p . v over its points p (its support function); uncut. */
+    /* The largest p . v over its points p (its support function). */
     double (*extent)(const struct shape_size *size, const double v[3]);
-    /* The same of what cuts leave, and whether they leave something; NULL: it is convex, and both
-     * follow from extent. */
-    double (*cut_extent)(const struct shape_size *size, const double v[3]);
-    bool (*is_left)(const struct shape_size *size);
-    /* What the device is told besides sizes and cuts, and as which shape; NULL: nothing. */
+    /* What the device is told besides sizes, and as which shape; NULL: nothing. */
     void (*record)(struct object_record *record, const struct shape_size *size);
 };
 
@@ -110,20 +98,15 @@ void shape_size_init_in_scene(struct shape_size *size, const struct scene *scene
 void shape_size_of_mesh(struct shape_size *size, const struct mesh *mesh);
 void shape_size_of_user_shape(struct shape_size *size, const struct user_shape *shape);
 
-/* The largest p . v over the points p of what the cuts leave of a shape (its support function), v
- * of any length; -INFINITY where they leave nothing. Exact but for cut tubes, which it takes as
- * filled, and for user shapes, of which only a box and a sphere about them are known: the lesser of
- * what the cuts leave of these. */
+/* The largest p . v over the points p of a shape (its support function), v of any length. Exact but
+ * for user shapes, of which only a box and a sphere about them are known: the lesser of both. */
 double shape_extent(const struct shape_size *size, uint32_t shape, const double v[3]);
-
-/* Whether the cuts leave something. */
-bool shape_is_left(const struct shape_size *size, uint32_t shape);
 
 /* Whether no straight line from its surface outwards meets it again, as is_convex in
  * kernels/intersection.h. */
 bool shape_is_convex(const struct shape_size *size, uint32_t shape);
 
-/* The shape, its sizes and cuts, in a record. */
+/* The shape and its sizes in a record. */
 void shape_record_init(struct object_record *record, const struct shape_size *size, uint32_t shape);
 
 /* The slanting face of a record through two points of a profile, (across, up), seen from the left
@@ -134,9 +117,7 @@ void record_set_slant(struct object_record *record, double across, double up, do
 /* The radii of boxes and of what lies in them. */
 void shape_init_box(struct shape_size *size, const sonject_object_params *object);
 
-/* Whether an object's sizes fit each other and its cuts leave something of it. scene: that has its
- * mesh or user's shape, if it was read. */
-void check_shape(struct check *check, const struct scene *scene,
-                 const sonject_object_params *object);
+/* Whether an object's sizes fit each other. */
+void check_shape(struct check *check, const sonject_object_params *object);
 
 #endif

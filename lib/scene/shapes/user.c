@@ -18,27 +18,14 @@ void shape_size_of_user_shape(struct shape_size *size, const struct user_shape *
     size->least_radius_of_curvature_m = 0.0; /* it is not known: rays are as dense as they get */
 }
 
-static struct shape_size sphere_about(const struct shape_size *size)
-{
-    struct shape_size sphere = *size;
-    sphere.radius_m = size->user_shape->bounding_radius_m;
-    return sphere;
-}
-
 static double extent(const struct shape_size *size, const double v[3])
 {
-    const struct shape_size sphere = sphere_about(size);
-    return fmin(shape_extent(size, SHAPE_BOX, v), shape_extent(&sphere, SHAPE_SPHERE, v));
+    const double of_sphere =
+        size->user_shape->bounding_radius_m * sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    return fmin(shape_extent(size, SHAPE_BOX, v), of_sphere);
 }
 
-static bool is_left(const struct shape_size *size)
-{
-    const struct shape_size sphere = sphere_about(size);
-    return shape_is_left(size, SHAPE_BOX) && shape_is_left(&sphere, SHAPE_SPHERE);
-}
-
-const struct shape shape_user = {
-    .needs = SHAPE_HAS_CODE, .extent = extent, .cut_extent = extent, .is_left = is_left};
+const struct shape shape_user = {.needs = SHAPE_HAS_CODE, .extent = extent};
 
 static sonject_status find_snippet(struct user_shapes *shapes, struct report *report,
                                    const sonject_user_shape_params *shape, uint32_t *number)
