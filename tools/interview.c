@@ -5,9 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "console.h"
 
 #define SOUND_SPEED 1500.0 /* m/s, a scene's without another */
+#define PI          3.14159265358979323846
+#define BEAM_WIDTHS                                                                                \
+    0.886 /* wavelengths of an array, over the width of its half-power beam in rad */
 
 /* What is asked for. Without `usual` there must be an answer. */
 struct question {
@@ -31,15 +35,16 @@ static const struct question frequency = {"sonar.frequency", "centre frequency (
 static const struct question bandwidth = {
     "sonar.bandwidth", "bandwidth; if you don't know it, c / 2 over the column spacing", NULL};
 static const struct question array_length = {"sonar.array.length",
-                                             "length of a sidescan's array, 0.89 wavelengths over "
-                                             "its beam in rad (such as 0.5 m; nothing for "
-                                             "synthetic aperture)",
+                                             "length of a sidescan's array, or its beam width "
+                                             "(such as 0.5 m or 0.4 deg; nothing for synthetic "
+                                             "aperture)",
                                              ""};
-
 static const struct question unit = {"objects[0].mesh.unit",
                                      "unit of the mesh's numbers (m, cm or mm)", NULL};
-static const struct question nose = {
-    "objects[0].mesh.nose", "axis of the mesh that points ahead (x, -x, y, -y, z, -z)", "x"};
+static const struct question nose = {"objects[0].mesh.nose",
+                                     "axis of the mesh that points ahead (x, -x, y, -y, z, -z; "
+                                     "of a round body any but its own)",
+                                     "x"};
 
 const char *answer_about(const struct interview *interview, const char *key)
 {
@@ -100,14 +105,34 @@ static bool is_possible(struct interview *interview)
         interview->column_spacing_m = json ? strtod(json, NULL) : NAN;
         sonject_text_release(&json);
     }
+    if (status == SONJECT_OK && answer_about(interview, frequency.key)) {
+        status = sonject_scene_get(scene, frequency.key, &json);
+        interview->frequency_hz = json ? strtod(json, NULL) : NAN;
+        sonject_text_release(&json);
+    }
     sonject_scene_release(&scene);
     return status == SONJECT_OK;
+}
+
+/* The length of an array whose beam is as wide as an answer says; the answer itself, if it is no
+ * angle. */
+static const char *length_of_beam(const struct interview *interview, const char *answer,
+                                  char length[ANSWER])
+{
+    const char *rest;
+    double degrees;
+    if (!text_to_number(answer, &degrees, &rest) || !(degrees > 0.0) ||
+        strcmp(rest + strspn(rest, " "), "deg") != 0)
+        return answer;
+    snprintf(length, ANSWER, "%.3g m",
+             BEAM_WIDTHS * SOUND_SPEED / interview->frequency_hz / (degrees * PI / 180.0));
+    return length;
 }
 
 /* Asks until there is an answer that is possible. False after a message: there is none. */
 static bool ask(struct interview *interview, const struct question *question)
 {
-    char line[ANSWER];
+    char line[ANSWER], converted[ANSWER];
     for (;;) {
         const bool has_usual = question->usual && *question->usual;
         fprintf(stderr, "%s%s%s%s: ", question->text, has_usual ? " [" : "",
@@ -125,6 +150,8 @@ static bool ask(struct interview *interview, const struct question *question)
                 return true; /* nothing is an answer, too */
             value = question->usual;
         }
+        if (question == &array_length)
+            value = length_of_beam(interview, value, converted);
         const int length =
             snprintf(interview->answers[interview->count++], ANSWER, "%s=%s", question->key, value);
         if (*value && length < ANSWER && is_possible(interview))

@@ -36,7 +36,8 @@ struct interview {
     /* The image, as its calibration found; NAN: it did not. */
     bool has_nadir;
     bool has_returns; /* first ones, so that they tell the altitude */
-    double column_spacing_m, altitude_m, recorded_altitude_m, ceiling_over_seabed_db, plain_row, plain_column;
+    double frequency_hz, column_spacing_m, altitude_m, recorded_altitude_m, ceiling_over_seabed_db,
+        plain_row, plain_column;
     bool assumes_bandwidth; /* that of the columns */
 };
 

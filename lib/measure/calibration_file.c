@@ -162,7 +162,9 @@ static void tell_misfit(struct report *report, const char *image, const struct c
         report_note(
             report,
             "%s: the curve and law of speckle do not fit the plain tiles: they are off by %.2g "
-            "of the pixels, with a standard error of %.1g",
+            "of the pixels, with a standard error of %.1g; compare the speckle of what you inject "
+            "with "
+            "the image's",
             image ? path_name(image) : "the pixels", fit->misfit, fit->misfit_error);
 }
 

@@ -167,8 +167,9 @@ def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     (tmp_path / "rock.obj").rename(tmp_path / "my_mine.obj")
     write_line(tmp_path)
     begin = [word.replace("my_mine.stl", "my_mine.obj") for word in begin]
-    answer = init(sonject, *begin[2:], answers=["first_return", "600 kHz", "", "0.51 m", "mm", ""])
+    answer = init(sonject, *begin[2:], answers=["first_return", "600 kHz", "", "0.25 deg", "mm", ""])
     assert answer.returncode == 0, answer.stderr
+    assert "array: {length: 0.508 m}" in (tmp_path / "line.yaml").read_text()  # 0.886 wavelengths over it
     sonject.done(*run[1:])
     sonject.done(*campaign[1:], "--set", "images=10")
     for name in "one/report.html", "set/report.html", "set/data.yaml", "set/train/coco.json", "set/val/coco.json", train[2]:
