@@ -2,10 +2,11 @@
 #include "trace_rough.h"
 
 GROUP_KERNEL void trace_rough(__global const struct fan_record *fan_buffer,
-                          __global const struct ray_piece_record *pieces,
-                          __global const struct object_record *objects, __global const float *map,
-                          __global const float *edges, __global TALLY *seabed,
-                          __global TALLY *tiles, __global struct outcome_record *outcomes)
+                              __global const struct ray_piece_record *pieces,
+                              __global const struct object_record *objects,
+                              __global const float *map, __global const float *edges,
+                              __global TALLY *seabed, __global TALLY *tiles,
+                              __global struct outcome_record *outcomes)
 {
     const struct fan_record fan = *fan_buffer;
     const int strip = strip_of_group(&fan, GROUP_NUMBER);

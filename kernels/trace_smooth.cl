@@ -2,9 +2,9 @@
 #include "trace_smooth.h"
 
 GROUP_KERNEL void trace_smooth(__global const struct fan_record *fan_buffer,
-                           __global const struct ray_piece_record *pieces,
-                           __global const struct object_record *objects, __global TALLY *tally,
-                           __global struct outcome_record *outcomes)
+                               __global const struct ray_piece_record *pieces,
+                               __global const struct object_record *objects, __global TALLY *tally,
+                               __global struct outcome_record *outcomes)
 {
     const struct fan_record fan = *fan_buffer;
     const int strip = strip_of_group(&fan, GROUP_NUMBER);

@@ -3,11 +3,11 @@
 #include "trace_smooth_images.h"
 
 GROUP_KERNEL void trace_smooth_images(__global const struct fan_record *fan_buffer,
-                                  __global const struct ray_piece_record *pieces,
-                                  __global const struct object_record *objects,
-                                  __global TALLY *tally,
-                                  __global const struct image_pair_record *pair,
-                                  __global struct outcome_record *outcomes)
+                                      __global const struct ray_piece_record *pieces,
+                                      __global const struct object_record *objects,
+                                      __global TALLY *tally,
+                                      __global const struct image_pair_record *pair,
+                                      __global struct outcome_record *outcomes)
 {
     const struct fan_record fan = *fan_buffer;
     const int strip = strip_of_group(&fan, GROUP_NUMBER);
