@@ -52,7 +52,7 @@ static void test_missing_keys(void **state)
                                  ":3:7: sonar.bandwidth: missing; add it (sets the range "
                                  "resolution, c / (2 bandwidth))\n"
                                  ":3:7: sonar.altitude: missing; add it (height of the track over "
-                                 "the mean seabed, or from_file)"},
+                                 "the mean seabed; from_file, or first_return of the calibration)"},
         {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry: {row_spacing: {speed: 2}, "
                "column_spacing: 1, first_slant_range: 40}\n" SONAR,
          ":4:27: input.geometry.row_spacing.ping_rate: missing; add it (pings, and so rows, a "
