@@ -207,7 +207,7 @@ bool write_scene(const struct interview *interview)
         "\n    heading: 30 deg # from along-track towards range\n"
         "    # of the peak; measured ones have 8 to 19 dB. Without this line the material decides\n"
         "    level: {over_seabed: %.0f dB}%s\n",
-        level_db, level_db < USUAL_LEVEL_DB ? " # a little over the image's ceiling" : "");
+        level_db, level_db < USUAL_LEVEL_DB ? " # over the image's ceiling, which cuts it" : "");
     return finish(file, part, interview->scene);
 }
 
@@ -254,10 +254,11 @@ static void add_chip(FILE *file, const struct interview *interview, const char *
         interview->altitude_m > 0.0 ? interview->altitude_m : checked.altitude_m;
     const double below_m = fmax(altitude_m - checked.top_m, 0.1 * altitude_m);
     const double length_m = 2.0 * 1.5 * range_m * checked.top_m / below_m;
-    fprintf(file, "chip: {rows: %u, columns: %u, spread: 0.2} # %.2g m wide\n",
+    fprintf(file, "chip: {rows: %u, columns: %u, spread: 0.2} # a row is %.3g m, a column %.3g m\n",
             chip_pixels(length_m, checked.along_m, checked.rows, 16.0),
             chip_pixels(length_m, checked.last_m - checked.first_m, checked.columns, 32.0),
-            length_m);
+            checked.along_m / checked.rows,
+            (checked.last_m - checked.first_m) / (checked.columns - 1.0));
 }
 
 /* One swath, or both sides. */
@@ -283,9 +284,9 @@ static void add_swaths(FILE *file, const struct interview *interview)
         else if (has_both)
             fprintf(file, "    set: {input.channel: %s, input.calibration: %s}\n", side,
                     last_part(i == 0 ? interview->calibration : interview->other_calibration));
+        fputs("    # avoid: [{row: 20, column: 90, rows: 20, columns: 30}] # no image shows it\n",
+              file);
     }
-    fputs("    # avoid: [{row: 20, column: 90, rows: 20, columns: 30}] # real contacts in it\n",
-          file);
 }
 
 bool write_campaign(const struct interview *interview, const char *checked)

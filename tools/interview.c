@@ -41,10 +41,8 @@ static const struct question array_length = {"sonar.array.length",
                                              ""};
 static const struct question unit = {"objects[0].mesh.unit",
                                      "unit of the mesh's numbers (m, cm or mm)", NULL};
-static const struct question nose = {"objects[0].mesh.nose",
-                                     "axis of the mesh that points ahead (x, -x, y, -y, z, -z; "
-                                     "of a round body any but its own)",
-                                     "x"};
+static const struct question nose = {
+    "objects[0].mesh.nose", "axis of the mesh that points ahead (x, -x, y, -y, z, -z)", "x"};
 
 const char *answer_about(const struct interview *interview, const char *key)
 {

@@ -162,7 +162,7 @@ def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
 def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     """All but the last, which needs scikit-learn: test_train_detector.py runs that."""
     page = (pathlib.Path(os.environ["SONJECT_SOURCE"]) / "docs" / "first_detector.md").read_text()
-    begin, run, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
+    begin, run, port, starboard, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
     write_mesh(tmp_path)
     (tmp_path / "rock.obj").rename(tmp_path / "my_mine.obj")
     write_line(tmp_path)
@@ -170,7 +170,8 @@ def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     answer = init(sonject, *begin[2:], answers=["first_return", "600 kHz", "", "0.25 deg", "mm", ""])
     assert answer.returncode == 0, answer.stderr
     assert "array: {length: 0.508 m}" in (tmp_path / "line.yaml").read_text()  # 0.886 wavelengths over it
-    sonject.done(*run[1:])
+    for command in run, port, starboard:
+        sonject.done(*command[1:])
     sonject.done(*campaign[1:], "--set", "images=10")
     for name in "one/report.html", "set/report.html", "set/data.yaml", "set/train/coco.json", "set/val/coco.json", train[2]:
         assert (tmp_path / name).exists()
