@@ -162,7 +162,7 @@ def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
 def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     """All but the last, which needs scikit-learn: test_train_detector.py runs that."""
     page = (pathlib.Path(os.environ["SONJECT_SOURCE"]) / "docs" / "first_detector.md").read_text()
-    begin, run, port, starboard, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
+    begin, port, starboard, run, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
     write_mesh(tmp_path)
     (tmp_path / "rock.obj").rename(tmp_path / "my_mine.obj")
     write_line(tmp_path)
