@@ -66,8 +66,8 @@ bool write_calibration(const char *path, const char *text)
 
 /* ---- Pieces of scenes and campaigns. */
 
-/* A text as YAML, which JSON is, behind a key; nothing when memory is out, which the check of the
- * file then finds. */
+/* A text as YAML, which JSON is, behind a key; nothing when memory is out: whoever reads the file
+ * is told that a value is missing. */
 static void add_text(FILE *file, const char *before, const char *text)
 {
     json_t *value = json_string(text);

@@ -84,11 +84,20 @@ sonject_status read_image_scene(const struct interview *interview, const char *t
     return sonject_scene_read(interview->context, NULL, &params, scene);
 }
 
+/* In SI units; NAN where the scene does not tell it. */
+static double number_in(const sonject_scene *scene, const char *key)
+{
+    char *json = NULL;
+    (void)sonject_scene_get(scene, key, &json);
+    const double number = json ? strtod(json, NULL) : NAN;
+    sonject_text_release(&json);
+    return number;
+}
+
 /* Whether a scene with what was answered so far can be read; a message is left if not. */
 static bool is_possible(struct interview *interview)
 {
     sonject_scene *scene = NULL;
-    char *json = NULL;
     sonject_status status = read_image_scene(
         interview,
         interview->has_geometry
@@ -98,16 +107,10 @@ static bool is_possible(struct interview *interview)
               "input: {geometry: {row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 30 "
               "m}}\n",
         &scene);
-    if (status == SONJECT_OK && answer_about(interview, column_spacing.key)) {
-        status = sonject_scene_get(scene, column_spacing.key, &json);
-        interview->column_spacing_m = json ? strtod(json, NULL) : NAN;
-        sonject_text_release(&json);
-    }
-    if (status == SONJECT_OK && answer_about(interview, frequency.key)) {
-        status = sonject_scene_get(scene, frequency.key, &json);
-        interview->frequency_hz = json ? strtod(json, NULL) : NAN;
-        sonject_text_release(&json);
-    }
+    if (status == SONJECT_OK && answer_about(interview, column_spacing.key))
+        interview->column_spacing_m = number_in(scene, column_spacing.key);
+    if (status == SONJECT_OK && answer_about(interview, frequency.key))
+        interview->frequency_hz = number_in(scene, frequency.key);
     sonject_scene_release(&scene);
     return status == SONJECT_OK;
 }

@@ -224,19 +224,17 @@ static void choose_place(struct drawing *drawing, uint64_t within)
     const uint64_t first = (number * split->images + swaths - 1) / swaths;
     const uint64_t end = ((number + 1) * split->images + swaths - 1) / swaths;
     const uint64_t moves = drawing->attempts.of_all / ATTEMPTS_OF_CHIP;
+    const uint64_t seed = campaign->seed ^ (ATTEMPT_STRIDE * moves);
     double u, v;
     set_swath(drawing, split->swaths[number]);
-    if (moves > 0) {
-        u = uniform_number(campaign->seed ^ (ATTEMPT_STRIDE * moves), STREAM_CHIP_ROW, plan->id);
-        v = uniform_number(campaign->seed ^ (ATTEMPT_STRIDE * moves), STREAM_CHIP_COLUMN, plan->id);
-    } else if (campaign->design == DESIGN_STRATIFIED) {
+    if (moves == 0 && campaign->design == DESIGN_STRATIFIED) {
         u = stratified_number(campaign->seed, STREAM_CHIP_ROW + plan->swath, within - first,
                               end - first);
         v = stratified_number(campaign->seed, STREAM_CHIP_COLUMN + plan->swath, within - first,
                               end - first);
     } else {
-        u = uniform_number(campaign->seed, STREAM_CHIP_ROW, plan->id);
-        v = uniform_number(campaign->seed, STREAM_CHIP_COLUMN, plan->id);
+        u = uniform_number(seed, STREAM_CHIP_ROW, plan->id);
+        v = uniform_number(seed, STREAM_CHIP_COLUMN, plan->id);
     }
     crop_sample(&campaign->swaths[plan->swath].room, u, v, &plan->chip.first_row,
                 &plan->chip.first_column);

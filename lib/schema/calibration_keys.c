@@ -138,9 +138,16 @@ static sonject_status take_first_returns(struct report *report, const struct tre
     return SONJECT_OK;
 }
 
-/* What it was measured on, and where its seabed begins. */
-static sonject_status take_measured(struct report *report, struct scene *scene,
-                                    const struct tree_node *measured)
+/* Whether the scene wants them, of which a long line has thousands. */
+static bool asks_for_returns(const struct tree_node *scene)
+{
+    const struct tree_entry *sonar = tree_find(scene, "sonar");
+    const struct tree_entry *altitude = sonar ? tree_find(&sonar->value, "altitude") : NULL;
+    return altitude && is_word(&altitude->value, "first_return");
+}
+
+/* What it was measured on. */
+static void take_measured(struct scene *scene, const struct tree_node *measured)
 {
     const struct tree_entry *side = tree_find(measured, "side");
     const struct tree_entry *altitude = tree_find(measured, "recorded_altitude");
@@ -151,7 +158,6 @@ static sonject_status take_measured(struct report *report, struct scene *scene,
         snprintf(scene->calibrated_side, sizeof scene->calibrated_side, "%s", side->value.text);
     if (!isnan(number))
         scene->calibrated_altitudes = number;
-    return take_first_returns(report, measured, &scene->first_returns);
 }
 
 /* The version, and sections of scenes' keys; the rest goes under the scene's. */
@@ -169,8 +175,13 @@ static sonject_status take_keys(struct layer *layer, const char *file)
         bool is_known = false;
         for (size_t k = 0; k < COUNT(sections); k++)
             is_known = is_known || strcmp(entry->key, sections[k]) == 0;
-        if (strcmp(entry->key, "measured") == 0)
-            CHECK(take_measured(layer->reader->report, layer->reader->scene, &entry->value));
+        if (strcmp(entry->key, "measured") == 0) {
+            struct scene *scene = layer->reader->scene;
+            take_measured(scene, &entry->value);
+            if (asks_for_returns(&layer->tree->root))
+                CHECK(take_first_returns(layer->reader->report, &entry->value,
+                                         &scene->first_returns));
+        }
         if (strcmp(entry->key, "sonject_calibration") == 0 || strcmp(entry->key, "measured") == 0)
             continue;
         if (!is_known || entry->value.kind != TREE_SECTION)

@@ -619,6 +619,24 @@ FAINT = ["--set", "targets=[{class: ball, object: {shape: sphere, diameter: 0.3 
          "--set", "clutter={objects: [{class: stone, object: {shape: sphere, diameter: 0.2 m}}], number: 0}"]
 
 
+def test_a_place_where_no_target_is_seen_is_left_after_eight_draws(ground, command):
+    places = {}
+    for name, visible in ("all", "shadow: 60 dB"), ("some", "highlight: 6 dB"), ("none", "shadow: -60 dB"):
+        done = command("campaign", "campaign.yaml", "-o", name, *FAINT, "--set", "images=6",
+                       "--set", f"visible={{{visible}}}")
+        assert done.returncode == 0, done.stderr
+        for record in records(ground / name):
+            times = record.get("drawn_anew", {"times": 0})["times"]
+            places.setdefault(record["id"], []).append((times, *(record["swath"][key] for key in ("path", "row", "column"))))
+    assert len(places) == 6
+    draws = [times for first, *others in places.values() for times, *_ in others]
+    assert 0 < sum(0 < times < 8 for times in draws) and sum(times >= 8 for times in draws) >= 6
+    for (times, *first), *others in places.values():
+        assert times == 0
+        for times, *place in others:
+            assert place[0] == first[0] and (place == first) == (times < 8)
+
+
 @pytest.mark.parametrize("otherwise", ["difficult", "redraw"])
 def test_targets_are_seen_as_they_are_to_be(ground, command, otherwise):
     """Or are marked difficult, which says so of no other."""

@@ -254,8 +254,11 @@ def test_of_a_whole_line_the_altitude_is_that_at_the_objects(sonject, tmp_path, 
     (tmp_path / "one.yaml").write_text(f"{kept}\nobjects: [{ball % 15}]\n")
     (tmp_path / "two.yaml").write_text(f"{kept}\nobjects: [{ball % 15}, {ball % 45}]\n")
     (tmp_path / "none.yaml").write_text(f"{kept}\n")
-    assert "altitude 7 m" in sonject.done("check", "none.yaml").stdout
-    assert "note" not in sonject.done("check", "one.yaml").stdout
+    assert "altitude 7 m, wavelength" in sonject.done("check", "none.yaml").stdout
+    told = sonject.done("check", "one.yaml").stdout
+    assert "note" not in told and "m at the objects' pings, wavelength" in told
+    (tmp_path / "pings.csv").write_text(f"row,altitude_m\n0,6\n{ROWS - 1},6\n")
+    assert "note: the altitude" not in sonject.done("check", "two.yaml", "--set", "input.pings=pings.csv").stdout
     assert "note: the altitude" not in sonject.done("run", "one.yaml", "-o", "one").stderr
     numbers = json.loads((tmp_path / "one" / "truth.json").read_text())["numbers"]
     assert numbers["altitude_m"] == {"value": pytest.approx(altitudes[15], abs=1e-5), "from": "file"}
