@@ -1,4 +1,4 @@
-/* A picture of images from all over a data set, with boxes around their objects. */
+/* Pictures of images of a data set, drawn to scale, with boxes around their objects. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,19 +7,19 @@
 #include "base/memory.h"
 #include "dataset/data_set.h"
 #include "image/canvas.h"
+#include "image/plot.h"
 #include "measure/contacts.h"
-#include "swath/raster_file.h"
+#include "swath/geometry_notes.h"
 
 #define CELLS_ACROSS 8
-#define CELLS_MAX    64
 #define CELL_SIDE    144 /* pixels that an image may take */
 #define CELL_GAP     6
-#define CAPTION      22
+#define LINE         18 /* of a caption */
 
-/* A chip as amplitudes or grey levels, made smaller to fit a cell. */
+/* An image as amplitudes or grey levels, in the pixels that it is drawn with. */
 struct thumbnail {
-    uint32_t rows, columns;
-    double scale; /* of its pixels to the chip's, at most 1 */
+    uint32_t sides[2]; /* rows, columns */
+    double scales[2];  /* of an image's pixel: rows, columns of these */
     float *values;
 };
 
@@ -31,22 +31,23 @@ static float value_at(const struct raster_layout *layout, const void *pixels, si
                                  : first;
 }
 
-/* Means of the pixels that a smaller one stands for. */
-static void reduce(const struct raster_layout *layout, const void *pixels, struct thumbnail *small)
+/* Means of the pixels that a drawn one stands for. */
+static void resample(const struct raster_layout *layout, const void *pixels,
+                     struct thumbnail *small)
 {
-    for (uint32_t row = 0; row < small->rows; row++)
-        for (uint32_t column = 0; column < small->columns; column++) {
-            const size_t first_row = (size_t)((double)row / small->scale);
-            const size_t first_column = (size_t)((double)column / small->scale);
-            const size_t end_row =
-                (size_t)fmin(ceil((row + 1) / small->scale), (double)layout->rows);
+    const double *scales = small->scales;
+    for (uint32_t row = 0; row < small->sides[0]; row++)
+        for (uint32_t column = 0; column < small->sides[1]; column++) {
+            const size_t first_row = (size_t)(row / scales[0]);
+            const size_t first_column = (size_t)(column / scales[1]);
+            const size_t end_row = (size_t)fmin(ceil((row + 1) / scales[0]), (double)layout->rows);
             const size_t end_column =
-                (size_t)fmin(ceil((column + 1) / small->scale), (double)layout->columns);
+                (size_t)fmin(ceil((column + 1) / scales[1]), (double)layout->columns);
             double sum = 0.0;
             for (size_t r = first_row; r < end_row; r++)
                 for (size_t c = first_column; c < end_column; c++)
                     sum += value_at(layout, pixels, r * (size_t)layout->columns + c);
-            small->values[(size_t)row * small->columns + column] =
+            small->values[(size_t)row * small->sides[1] + column] =
                 (float)(sum / (double)((end_row - first_row) * (end_column - first_column)));
         }
 }
@@ -54,7 +55,7 @@ static void reduce(const struct raster_layout *layout, const void *pixels, struc
 /* Grey levels as they are; other pixels in dB, from the 1st to the 99.8th percentile. */
 static sonject_status shade(struct report *report, enum pixel_type type, struct thumbnail *small)
 {
-    const size_t count = (size_t)small->rows * small->columns;
+    const size_t count = (size_t)small->sides[0] * small->sides[1];
     float low = 0.0f;
     float high = 255.0f;
     if (type != PIXEL_UINT8) {
@@ -74,36 +75,60 @@ static sonject_status shade(struct report *report, enum pixel_type type, struct 
     return SONJECT_OK;
 }
 
-static double thumbnail_scale(double rows, double columns)
+/* To scale, as the file tells its pixels; the finer sides of pixels are never drawn longer. */
+static void choose_sides(const struct swath_file *file, uint32_t sides[2])
 {
-    return fmin(1.0, CELL_SIDE / fmax(rows, columns));
+    struct noted_geometry noted;
+    struct raster_layout layout;
+    double height, width;
+    swath_file_layout(file, &layout);
+    geometry_notes_read(file, &noted);
+    const double shape = plot_pixel_shape(noted.row_spacing_m, noted.column_spacing_m);
+    const double rows = (double)layout.rows, columns = (double)layout.columns;
+    const double finest = fmax(rows * fmax(shape, 1.0), columns * fmax(1.0 / shape, 1.0));
+    plot_sides(rows, columns, shape, fmin(CELL_SIDE, finest), &height, &width);
+    sides[0] = (uint32_t)fmax(1.0, floor(height));
+    sides[1] = (uint32_t)fmax(1.0, floor(width));
 }
 
-static sonject_status load_thumbnail(struct report *report, const char *path,
+static sonject_status open_image(const struct data_set *set, size_t split, const json_t *record,
+                                 struct swath_file **file)
+{
+    char path[PATH_CAPACITY];
+    CHECK(path_in(set->report, path, set->folder, "%s/%s", set->split_names[split],
+                  member_text(record, "image")));
+    return swath_file_open_array(set->report, path, SONJECT_CHANNEL_ONLY, NULL, file);
+}
+
+sonject_status sheet_image_sides(const struct data_set *set, size_t split, const json_t *record,
+                                 uint32_t sides[2])
+{
+    struct swath_file *file;
+    CHECK(open_image(set, split, record, &file));
+    choose_sides(file, sides);
+    swath_file_close(&file);
+    return SONJECT_OK;
+}
+
+static sonject_status load_thumbnail(const struct data_set *set, size_t split, const json_t *record,
                                      struct thumbnail *small)
 {
-    struct decoded_image *file;
+    struct swath_file *file;
     struct raster_layout layout;
-    size_t bytes;
     void *pixels = NULL;
-    memset(small, 0, sizeof *small);
-    CHECK(decoded_image_open(report, path, NULL, &file));
-    layout = file->layout;
-    const struct region all = {0, 0, layout.rows, layout.columns};
-    small->scale = thumbnail_scale((double)layout.rows, (double)layout.columns);
-    small->rows = (uint32_t)fmax(1.0, floor((double)layout.rows * small->scale));
-    small->columns = (uint32_t)fmax(1.0, floor((double)layout.columns * small->scale));
-    if (region_bytes(&layout, &all, &bytes))
-        pixels = allocate_array(bytes, 1);
-    small->values = allocate_array((size_t)small->rows * small->columns, sizeof *small->values);
-    sonject_status status = pixels && small->values
-                                ? decoded_image_read(report, file, &all, pixels)
-                                : report_out_of_memory(report, "the contact sheet");
+    CHECK(open_image(set, split, record, &file));
+    choose_sides(file, small->sides);
+    small->values =
+        allocate_array((size_t)small->sides[0] * small->sides[1], sizeof *small->values);
+    sonject_status status = small->values ? swath_file_read_all(set->report, file, &layout, &pixels)
+                                          : report_out_of_memory(set->report, "the contact sheet");
     if (status == SONJECT_OK) {
-        reduce(&layout, pixels, small);
-        status = shade(report, layout.type, small);
+        small->scales[0] = small->sides[0] / (double)layout.rows;
+        small->scales[1] = small->sides[1] / (double)layout.columns;
+        resample(&layout, pixels, small);
+        status = shade(set->report, layout.type, small);
     }
-    decoded_image_close(&file);
+    swath_file_close(&file);
     free(pixels);
     return status;
 }
@@ -111,29 +136,30 @@ static sonject_status load_thumbnail(struct report *report, const char *path,
 static void draw_thumbnail(struct canvas *canvas, const struct thumbnail *small, int64_t x,
                            int64_t y)
 {
-    for (uint32_t row = 0; row < small->rows; row++)
-        for (uint32_t column = 0; column < small->columns; column++) {
-            const uint8_t grey =
-                (uint8_t)(255.0f * small->values[(size_t)row * small->columns + column] + 0.5f);
-            const struct colour colour = {grey, grey, grey};
-            canvas_fill(canvas, x + column, y + row, 1, 1, colour);
+    for (uint32_t row = 0; row < small->sides[0]; row++)
+        for (uint32_t column = 0; column < small->sides[1]; column++) {
+            const float value = small->values[(size_t)row * small->sides[1] + column];
+            const uint8_t grey = (uint8_t)(255.0f * value + 0.5f);
+            canvas_fill(canvas, x + column, y + row, 1, 1, (struct colour){grey, grey, grey});
         }
 }
 
 /* The boxes of COCO's annotations; targets are the first objects. */
-static void draw_boxes(struct canvas *canvas, const json_t *annotations, double scale,
-                       json_int_t targets, int64_t x, int64_t y)
+static void draw_boxes(struct canvas *canvas, const json_t *record, const double scales[2],
+                       int64_t x, int64_t y)
 {
     static const struct colour of_targets = {255, 160, 0};
     static const struct colour of_others = {80, 180, 255};
+    const json_int_t targets = json_integer_value(json_object_get(record, "targets"));
     size_t i;
     const json_t *annotation;
-    json_array_foreach(annotations, i, annotation)
+    json_array_foreach(json_object_get(record, "annotations"), i, annotation)
     {
         int64_t sides[4]; /* column, row, columns, rows */
         for (size_t k = 0; k < 4; k++) {
             const json_t *box = json_object_get(annotation, "bbox");
-            const double side = scale * (double)json_integer_value(json_array_get(box, k));
+            const double side =
+                scales[k % 2 == 0] * (double)json_integer_value(json_array_get(box, k));
             sides[k] = (int64_t)fmin(fmax(k < 2 ? side : ceil(side), 0.0), CELL_SIDE);
         }
         const bool is_target =
@@ -143,64 +169,97 @@ static void draw_boxes(struct canvas *canvas, const json_t *annotations, double 
     }
 }
 
-static sonject_status draw_cell(const struct data_set *set, struct canvas *canvas, size_t split,
-                                uint64_t id, int64_t x, int64_t y)
+/* How many characters stand in a line: up to where words end, if they are not longer. */
+static size_t line_end(const char *text)
 {
-    static const struct colour black = {0, 0, 0};
+    const size_t most = text_fit(text, CELL_SIDE);
+    size_t end = most;
+    while (text[most] && end > 0 && !strchr(" _-", text[end - 1]))
+        end--;
+    return end > 0 ? end : most;
+}
+
+/* A number and a name, in as many lines as the whole takes; returns how many. canvas: NULL to count
+ * them. */
+static int64_t draw_caption(struct canvas *canvas, int64_t x, int64_t y, uint64_t id,
+                            const char *name)
+{
+    char text[SONJECT_NAME_CAPACITY + 24];
+    int64_t lines = 0;
+    snprintf(text, sizeof text, "%llu %s", (unsigned long long)id, name);
+    for (const char *from = text; *from; lines++) {
+        const size_t length = line_end(from);
+        if (canvas)
+            draw_text(canvas, x, y + FONT_ASCENT + 2 + LINE * lines, from, length, TEXT_RIGHTWARDS,
+                      (struct colour){0, 0, 0});
+        from += length;
+    }
+    return lines;
+}
+
+/* From one row of cells to the next. */
+static int64_t cell_pitch(const struct data_set *set, uint32_t cell_height)
+{
+    int64_t most = 1;
+    size_t i;
+    const json_t *name;
+    json_array_foreach(json_object_get(set->head, "classes"), i, name)
+    {
+        const int64_t lines = draw_caption(NULL, 0, 0, set->images - 1, json_string_value(name));
+        most = lines > most ? lines : most;
+    }
+    return cell_height + LINE * most + 4 + CELL_GAP;
+}
+
+static sonject_status draw_cell(const struct data_set *set, struct canvas *canvas, uint64_t id,
+                                int64_t x, int64_t y)
+{
     json_t *record;
-    struct thumbnail small = {0, 0, 0.0, NULL};
-    char caption[96];
-    char path[PATH_CAPACITY];
+    struct thumbnail small = {.values = NULL};
+    size_t split = 0;
+    while (id - set->split_first[split] >= set->split_images[split])
+        split++;
     CHECK(data_set_record(set, split, id, &record));
-    sonject_status status = path_in(set->report, path, set->folder, "%s/%s",
-                                    set->split_names[split], member_text(record, "image"));
-    THEN(status, load_thumbnail(set->report, path, &small));
+    const sonject_status status = load_thumbnail(set, split, record, &small);
     if (status == SONJECT_OK) {
-        const char *target = member_text(record, "target");
         draw_thumbnail(canvas, &small, x, y);
-        draw_boxes(canvas, json_object_get(record, "annotations"), small.scale,
-                   json_integer_value(json_object_get(record, "targets")), x, y);
-        snprintf(caption, sizeof caption, "%llu %s", (unsigned long long)id, target);
-        size_t length = strlen(caption);
-        while (length > 0 && text_length(caption, length) > CELL_SIDE)
-            length--;
-        draw_text(canvas, x, y + small.rows + FONT_ASCENT + 2, caption, length, TEXT_RIGHTWARDS,
-                  black);
+        draw_boxes(canvas, record, small.scales, x, y);
+        draw_caption(canvas, x, y + small.sides[0], id, member_text(record, "target"));
     }
     free(small.values);
     json_decref(record);
     return status;
 }
 
+sonject_status write_sheet(const struct data_set *set, const char *name, const uint64_t *ids,
+                           uint32_t count, uint32_t cell_height)
+{
+    static const struct colour white = {255, 255, 255};
+    const uint32_t across = count < CELLS_ACROSS ? count : CELLS_ACROSS;
+    const uint32_t down = (count + CELLS_ACROSS - 1) / CELLS_ACROSS;
+    const int64_t pitch = cell_pitch(set, cell_height);
+    struct canvas canvas;
+    char path[PATH_CAPACITY];
+    CHECK(path_in(set->report, path, set->folder, "%s", name));
+    if (!canvas_create(&canvas, (uint32_t)(CELL_GAP + down * pitch),
+                       CELL_GAP + across * (CELL_SIDE + CELL_GAP), white))
+        return report_out_of_memory(set->report, "the contact sheet");
+    sonject_status status = SONJECT_OK;
+    for (uint32_t i = 0; status == SONJECT_OK && i < count; i++)
+        status = draw_cell(set, &canvas, ids[i],
+                           CELL_GAP + (int64_t)(i % CELLS_ACROSS) * (CELL_SIDE + CELL_GAP),
+                           CELL_GAP + i / CELLS_ACROSS * pitch);
+    if (status == SONJECT_OK) {
+        const struct raster_layout layout = {canvas.height, canvas.width, 3, PIXEL_UINT8};
+        status = raster_file_write(set->report, path, &layout, NULL, NULL, 0, canvas.rgb);
+    }
+    free(canvas.rgb);
+    return status;
+}
+
 static uint32_t cell_count(const struct data_set *set)
 {
-    return set->images < CELLS_MAX ? (uint32_t)set->images : CELLS_MAX;
-}
-
-static int64_t cell_x(uint32_t cell)
-{
-    return CELL_GAP + (int64_t)(cell % CELLS_ACROSS) * (CELL_SIDE + CELL_GAP);
-}
-
-/* The height of the highest image, as load_thumbnail reduces it; the most that it may be where
- * images have all rows or columns of swaths. */
-static uint32_t cell_height(const struct data_set *set)
-{
-    const double rows = json_number_value(json_object_get(set->head, "rows"));
-    const double columns = json_number_value(json_object_get(set->head, "columns"));
-    if (rows < 1.0 || columns < 1.0)
-        return CELL_SIDE;
-    return (uint32_t)fmax(1.0, floor(rows * thumbnail_scale(rows, columns)));
-}
-
-static uint32_t cell_pitch(const struct data_set *set)
-{
-    return cell_height(set) + CAPTION + CELL_GAP;
-}
-
-static int64_t cell_y(const struct data_set *set, uint32_t cell)
-{
-    return CELL_GAP + (int64_t)(cell / CELLS_ACROSS) * cell_pitch(set);
+    return set->images < SHEET_CELLS ? (uint32_t)set->images : SHEET_CELLS;
 }
 
 static uint64_t cell_image(const struct data_set *set, uint64_t cell)
@@ -215,47 +274,17 @@ bool contact_sheet_shows(const struct data_set *set, uint64_t id)
     return cell < cells && cell_image(set, cell) == id;
 }
 
-json_t *contact_sheet_document(const struct data_set *set)
+sonject_status write_contact_sheet(const struct data_set *set, uint32_t cell_height,
+                                   json_t **document)
 {
-    json_t *cells = json_array();
-    for (uint32_t i = 0; i < cell_count(set); i++)
-        json_append(&cells, JSON_OBJECT({"image", json_count(cell_image(set, i))},
-                                        {"x", json_integer(cell_x(i))},
-                                        {"y", json_integer(cell_y(set, i))}));
-    return JSON_OBJECT({"width", json_integer(CELL_SIDE)},
-                       {"height", json_integer(cell_height(set))}, {"cells", cells});
-}
-
-static sonject_status draw_cells(const struct data_set *set, struct canvas *canvas)
-{
-    sonject_status status = SONJECT_OK;
-    for (uint32_t i = 0; status == SONJECT_OK && i < cell_count(set); i++) {
-        const uint64_t id = cell_image(set, i);
-        size_t split = 0;
-        while (id - set->split_first[split] >= set->split_images[split])
-            split++;
-        status = draw_cell(set, canvas, split, id, cell_x(i), cell_y(set, i));
-    }
-    return status;
-}
-
-sonject_status write_contact_sheet(const struct data_set *set)
-{
-    static const struct colour white = {255, 255, 255};
-    const uint32_t cells = cell_count(set);
-    const uint32_t across = cells < CELLS_ACROSS ? cells : CELLS_ACROSS;
-    const uint32_t down = (cells + CELLS_ACROSS - 1) / CELLS_ACROSS;
-    struct canvas canvas;
-    char path[PATH_CAPACITY];
-    CHECK(path_in(set->report, path, set->folder, "contact_sheet.png"));
-    if (!canvas_create(&canvas, CELL_GAP + down * cell_pitch(set),
-                       CELL_GAP + across * (CELL_SIDE + CELL_GAP), white))
-        return report_out_of_memory(set->report, "the contact sheet");
-    sonject_status status = draw_cells(set, &canvas);
-    if (status == SONJECT_OK) {
-        const struct raster_layout layout = {canvas.height, canvas.width, 3, PIXEL_UINT8};
-        status = raster_file_write(set->report, path, &layout, NULL, NULL, 0, canvas.rgb);
-    }
-    free(canvas.rgb);
-    return status;
+    uint64_t ids[SHEET_CELLS];
+    const uint32_t count = cell_count(set);
+    for (uint32_t i = 0; i < count; i++)
+        ids[i] = cell_image(set, i);
+    CHECK(write_sheet(set, "contact_sheet.png", ids, count, cell_height));
+    *document = JSON_OBJECT({"gap", json_integer(CELL_GAP)}, {"across", json_integer(CELLS_ACROSS)},
+                            {"width", json_integer(CELL_SIDE + CELL_GAP)},
+                            {"height", json_integer(cell_pitch(set, cell_height))},
+                            {"images", json_counts(ids, count)});
+    return SONJECT_OK;
 }

@@ -49,7 +49,8 @@ static sonject_status each_folder(struct report *report, const char *folder, con
     return SONJECT_OK;
 }
 
-/* Files that numbers name, as those of images and calibrations, and the folder where that is all.
+/* Files that numbers name, as those of images, chips and calibrations, and the folder where that is
+ * all.
  */
 static sonject_status remove_numbered(struct report *report, const char *path)
 {
@@ -94,8 +95,10 @@ static void remove_all(const struct data_set *set)
     for (size_t i = 0; i < count; i++)
         discard(set->folder, documents[i]);
     discard(set->folder, "times.json");
-    if (path_in(&ignored, path, set->folder, CALIBRATIONS_FOLDER) == SONJECT_OK)
-        remove_numbered(&ignored, path);
+    static const char *const numbered[] = {CALIBRATIONS_FOLDER, CHIPS_FOLDER};
+    for (size_t i = 0; i < COUNT(numbered); i++)
+        if (path_in(&ignored, path, set->folder, "%s", numbered[i]) == SONJECT_OK)
+            remove_numbered(&ignored, path);
     for (size_t i = 0; i < set->split_count; i++) {
         each_folder(&ignored, set->folder, set->split_names[i], UINT32_MAX, remove_numbered);
         if (path_in(&ignored, path, set->folder, "%s", set->split_names[i]) == SONJECT_OK) {
@@ -517,7 +520,6 @@ sonject_status data_set_finish(struct data_set *set)
     for (size_t i = 0; i < set->split_count; i++)
         CHECK(write_coco(set, i));
     CHECK(write_classes(set));
-    CHECK(write_contact_sheet(set));
     CHECK(write_report_page(set));
     if (set->outputs & OUTPUT_BIT(OUTPUT_YOLO))
         CHECK(write_yolo_card(set));

@@ -62,14 +62,27 @@ sonject_status data_set_record(const struct data_set *set, size_t split, uint64_
 sonject_status data_set_has_image(const struct data_set *set, size_t split, uint64_t id,
                                   char changed[PATH_CAPACITY], bool *has);
 
-/* Write contact_sheet.png and report.html from images that are all there. Errors: as
- * data_set_finish. */
-sonject_status write_contact_sheet(const struct data_set *set);
+/* Writes report.html and its pictures from images that are all there: contact_sheet.png, and below
+ * CHIPS_FOLDER what browsers do not show. Errors: as data_set_finish. */
+#define CHIPS_FOLDER "chips"
 sonject_status write_report_page(const struct data_set *set);
 
-/* Whether the contact sheet shows an image; and where it shows which, for the page. */
+#define SHEET_CELLS 64 /* at most, of a picture of images */
+
+/* The sides of an image in such a picture, rows first. Errors: as data_set_finish. */
+sonject_status sheet_image_sides(const struct data_set *set, size_t split, const json_t *record,
+                                 uint32_t sides[2]);
+
+/* Writes a picture of images; cell_height: of the highest of all pictures. Errors: as
+ * data_set_finish. */
+sonject_status write_sheet(const struct data_set *set, const char *name, const uint64_t *ids,
+                           uint32_t count, uint32_t cell_height);
+
+/* That of images from all over the set, and whether it shows one. document: how pictures are laid
+ * out, and the images of this one; for json_decref. */
 bool contact_sheet_shows(const struct data_set *set, uint64_t id);
-json_t *contact_sheet_document(const struct data_set *set);
+sonject_status write_contact_sheet(const struct data_set *set, uint32_t cell_height,
+                                   json_t **document);
 
 /* Write data.yaml, and croissant.json, which lists the named documents of the whole, those of
  * splits and folders. Errors: STORAGE, MEMORY, INPUT. */

@@ -12,7 +12,8 @@
 #define SERIES_MAX 64    /* of more names, the later ones are left out of the page */
 #define IMAGES_MAX 20000 /* that are shown; of more, every second, third, ... is taken */
 #define DIGITS     6
-#define CUT_MANY   0.25 /* of the images, from which on that is noted */
+#define CHIPS_MAX  (64 * SHEET_CELLS) /* drawn for the page, where browsers do not show images */
+#define CUT_MANY   0.25               /* of the images, from which on that is noted */
 
 /* Values under one name, in one unit. */
 struct series {
@@ -39,6 +40,10 @@ struct statistics_page {
     uint64_t drawn_anew, difficult, clipped, unseen, cut;
     uint64_t sources[COUNT(number_names)][COUNT(sources)]; /* images */
     json_t *rows;                                          /* of the images that are taken; owned */
+    json_t *sheet;                                         /* owned */
+    uint32_t cell_height;
+    uint64_t chips[CHIPS_MAX]; /* images */
+    uint32_t chip_count;
 };
 
 /* How often values come in each part of their range. */
@@ -159,12 +164,14 @@ static json_t *object_row(const json_t *object)
 }
 
 /* An image's row: its number, split, and the ending of its file; why its first draw was given up;
- * its objects. */
-static void add_row(struct statistics_page *page, size_t split, uint64_t id, const json_t *record,
-                    const json_t *objects)
+ * its objects; height and width to draw it with. */
+static sonject_status add_row(struct statistics_page *page, size_t split, uint64_t id,
+                              const json_t *record, const json_t *objects)
 {
     size_t i;
     const json_t *object;
+    uint32_t sides[2];
+    CHECK(sheet_image_sides(page->set, split, record, sides));
     const char *ending = strrchr(member_text(record, "image"), '.');
     const json_t *anew = json_object_get(record, "drawn_anew");
     json_t *row = json_array();
@@ -178,7 +185,13 @@ static void add_row(struct statistics_page *page, size_t split, uint64_t id, con
     json_append(&row, json_text(ending ? ending : ""));
     json_append(&row, anew ? json_text(member_text(anew, "because")) : json_null());
     json_append(&row, list);
+    json_append(&row, json_count(sides[0]));
+    json_append(&row, json_count(sides[1]));
     json_append(&page->rows, row);
+    page->cell_height = sides[0] > page->cell_height ? sides[0] : page->cell_height;
+    if (ending && strcmp(ending, ".tif") == 0 && page->chip_count < CHIPS_MAX)
+        page->chips[page->chip_count++] = id;
+    return SONJECT_OK;
 }
 
 static void add_sources(struct statistics_page *page, const json_t *numbers)
@@ -227,7 +240,7 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
         THEN(status, add_object(page, split, entry, is_taken));
     }
     if (status == SONJECT_OK && (is_taken || contact_sheet_shows(set, id)))
-        add_row(page, split, id, record, objects);
+        status = add_row(page, split, id, record, objects);
     json_decref(record);
     json_decref(truth);
     return status;
@@ -262,7 +275,7 @@ static json_t *numbers_document(const struct statistics_page *page)
     return numbers;
 }
 
-/* Takes the rows. */
+/* Takes the rows and the sheet. */
 static json_t *page_document(struct statistics_page *page)
 {
     static const char *const kept[] = {"sonject", "hash",  "classes",
@@ -273,17 +286,34 @@ static json_t *page_document(struct statistics_page *page)
         json_append(&columns, json_string(row_members[i].key));
     for (size_t i = 0; i < page->series_count; i++)
         json_append(&histograms, histogram_document(&page->series[i]));
-    json_t *document =
-        JSON_OBJECT({"images", json_count(page->set->images)}, JSON_COUNT(page, every),
-                    {"splits", splits_document(page)}, {"numbers", numbers_document(page)},
-                    JSON_COUNT(page, drawn_anew), JSON_COUNT(page, difficult),
-                    JSON_COUNT(page, unseen), JSON_COUNT(page, clipped), JSON_COUNT(page, cut),
-                    {"sheet", contact_sheet_document(page->set)}, {"histograms", histograms},
-                    {"columns", columns}, {"rows", page->rows});
-    page->rows = NULL;
+    json_t *document = JSON_OBJECT(
+        {"images", json_count(page->set->images)}, JSON_COUNT(page, every),
+        {"splits", splits_document(page)}, {"numbers", numbers_document(page)},
+        JSON_COUNT(page, drawn_anew), JSON_COUNT(page, difficult), JSON_COUNT(page, unseen),
+        JSON_COUNT(page, clipped), JSON_COUNT(page, cut), {"sheet", page->sheet},
+        {"histograms", histograms}, {"columns", columns}, {"rows", page->rows},
+        {"chips", json_count(page->chip_count)}, {"chips_at_once", json_count(SHEET_CELLS)});
+    page->rows = page->sheet = NULL;
     for (size_t i = 0; i < COUNT(kept); i++)
         json_add(&document, kept[i], json_incref(json_object_get(page->set->head, kept[i])));
     return document;
+}
+
+/* Chips that browsers show, sheet after sheet. */
+static sonject_status write_chips(const struct statistics_page *page)
+{
+    const struct data_set *set = page->set;
+    char name[PATH_CAPACITY];
+    CHECK(path_in(set->report, name, set->folder, CHIPS_FOLDER));
+    if (page->chip_count > 0)
+        CHECK(folder_make(set->report, name));
+    for (uint32_t i = 0; i < page->chip_count; i += SHEET_CELLS) {
+        const uint32_t left = page->chip_count - i;
+        snprintf(name, sizeof name, CHIPS_FOLDER "/%u.png", (unsigned)(i / SHEET_CELLS));
+        CHECK(write_sheet(set, name, page->chips + i, left < SHEET_CELLS ? left : SHEET_CELLS,
+                          page->cell_height));
+    }
+    return SONJECT_OK;
 }
 
 sonject_status write_report_page(const struct data_set *set)
@@ -307,11 +337,14 @@ sonject_status write_report_page(const struct data_set *set)
                     "%llu of %llu images have an object whose highlight or shadow the image's edge "
                     "cuts; a lower chip.spread or larger images have fewer",
                     (unsigned long long)page->cut, (unsigned long long)set->images);
+    THEN(status, write_contact_sheet(set, page->cell_height, &page->sheet));
+    THEN(status, write_chips(page));
     THEN(status, path_in(set->report, path, set->folder, REPORT_PAGE));
     THEN(status, report_page_write(set->report, page_document(page), DIGITS, path));
     for (size_t i = 0; i < page->series_count; i++)
         free(page->series[i].values);
     json_decref(page->rows);
+    json_decref(page->sheet);
     free(page->counts);
     free(page);
     return status;

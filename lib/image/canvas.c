@@ -119,6 +119,14 @@ int64_t text_length(const char *text, size_t count)
     return length;
 }
 
+size_t text_fit(const char *text, int64_t length)
+{
+    size_t count = 0;
+    while (text[count] && text_length(text, count + 1) <= length)
+        count++;
+    return count;
+}
+
 static int strokes_of(const char *glyph, struct stroke strokes[STROKES_MAX])
 {
     int count = 0;

@@ -45,6 +45,9 @@ enum text_direction {
 /* Length of the first `count` characters, or of the whole text if that is shorter, in pixels. */
 int64_t text_length(const char *text, size_t count);
 
+/* How many of the text's first characters are at most that long. */
+size_t text_fit(const char *text, int64_t length);
+
 /* Draws at most `count` characters; x, y: where the baseline begins. Other than printable ASCII
  * characters become boxes. */
 void draw_text(struct canvas *canvas, int64_t x, int64_t y, const char *text, size_t count,

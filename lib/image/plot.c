@@ -121,19 +121,32 @@ static struct plot_scale scale_of(uint64_t pixels, double length)
     return scale;
 }
 
+double plot_pixel_shape(double row_spacing_m, double column_spacing_m)
+{
+    const double ratio = row_spacing_m / fabs(column_spacing_m);
+    return isfinite(ratio) && ratio > 0.0 ? ratio : 1.0;
+}
+
+void plot_sides(double rows, double columns, double pixel_shape, double longest, double *height,
+                double *width)
+{
+    const double in_columns = pixel_shape * rows;
+    const double scale = longest / fmax(in_columns, columns);
+    *height = fmax(in_columns * scale, longest / LONGEST_SHAPE);
+    *width = fmax(columns * scale, longest / LONGEST_SHAPE);
+}
+
 /* Scales that make the longer side of a panel about `target` pixels long and keep distances on
  * both axes in proportion, as far as whole factors can. */
 static void choose_scales(const struct plot_frame *frame, double target,
                           struct plot_scale *along_track, struct plot_scale *range)
 {
-    const double ratio = frame->row_spacing_m / fabs(frame->column_spacing_m);
-    const double row_size = isfinite(ratio) && ratio > 0.0 ? ratio : 1.0;
-    const double height = row_size * (double)frame->rows;
-    const double width = (double)frame->columns;
-    const double longest = fmax(height, width);
-    const double shortest = longest / LONGEST_SHAPE;
-    *along_track = scale_of(frame->rows, fmax(height, shortest) / longest * target);
-    *range = scale_of(frame->columns, fmax(width, shortest) / longest * target);
+    double height, width;
+    plot_sides((double)frame->rows, (double)frame->columns,
+               plot_pixel_shape(frame->row_spacing_m, frame->column_spacing_m), target, &height,
+               &width);
+    *along_track = scale_of(frame->rows, height);
+    *range = scale_of(frame->columns, width);
 }
 
 /* Mean energies in dB (-infinity where there is none) or mean differences of each cell. Pixels that
@@ -369,15 +382,6 @@ static void draw_ticks(struct plot *plot, int64_t x, int64_t y)
               SIZE_MAX, TEXT_RIGHTWARDS, ink);
 }
 
-/* How many of the title's characters fit above a panel. */
-static size_t title_fit(const char *title, int64_t room)
-{
-    size_t count = 0;
-    while (title[count] && text_length(title, count + 1) <= room)
-        count++;
-    return count;
-}
-
 static void draw_bar(struct plot *plot, const struct colour_scale *scale, int64_t x, int64_t y)
 {
     const struct plot_ticks ticks = bar_ticks(plot, scale);
@@ -417,7 +421,7 @@ static sonject_status draw_panel(struct report *report, struct plot *plot, uint3
                 colour_of(&scale, (double)plot->values[(size_t)row * plot->range.cells + column]));
     canvas_frame(&plot->canvas, x, y, plot->panel_width, plot->panel_height, lines);
     draw_ticks(plot, x, y);
-    const size_t fitting = title_fit(title, plot->panel_width);
+    const size_t fitting = text_fit(title, plot->panel_width);
     draw_text(&plot->canvas, x + (plot->panel_width - text_length(title, fitting)) / 2, y - 10,
               title, fitting, TEXT_RIGHTWARDS, ink);
     if (has_bar(plot, number))

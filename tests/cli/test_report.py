@@ -162,7 +162,8 @@ def test_the_page_of_a_data_set_says_what_truth_says(data_set):
                                "shadow_visibility_db", "row", "column", "rows", "columns"]
     assert sorted(row[0] for row in page["rows"]) == list(range(page["images"])) == list(range(10))
     counts = {split["name"]: dict.fromkeys(page["classes"], 0) for split in page["splits"]}
-    for number, split, ending, _, objects in page["rows"]:
+    for number, split, ending, _, objects, *sides in page["rows"]:
+        assert sides == [64, 64]
         folder = data_set / page["splits"][split]["name"]
         assert (folder / "images" / f"{number:08d}{ending}").is_file()
         truth = json.loads((folder / "truth" / f"{number:08d}.json").read_text())
@@ -179,29 +180,53 @@ def test_the_page_of_a_data_set_says_what_truth_says(data_set):
     records = [json.loads(path.read_text()) for path in data_set.glob("*/records/*.json")]
     assert page["cut"] == sum(any(each["truncated"] for each in record["annotations"]) for record in records)
     # images of the contact sheet lie where it says, in one row after the other
-    assert [cell["image"] for cell in page["sheet"]["cells"]] == list(range(10))
+    assert page["sheet"]["images"] == list(range(10)) and page["chips"] == 0 and not (data_set / "chips").exists()
     sheet = read_png(data_set / "contact_sheet.png")
     empty = next(row for row in page["rows"] if not row[4])
-    (cell,) = [each for each in page["sheet"]["cells"] if each["image"] == empty[0]]
+    x, y = place(page["sheet"], empty[0])
     chip = read_png(data_set / page["splits"][empty[1]]["name"] / "images" / f"{empty[0]:08d}.png")
-    drawn = sheet[cell["y"] : cell["y"] + 64, cell["x"] : cell["x"] + 64]
-    assert (drawn == chip[..., None]).all() and page["sheet"]["height"] == 64
+    assert (sheet[y : y + 64, x : x + 64] == chip[..., None]).all()
 
 
-@pytest.mark.parametrize("rows, columns, height", [(32, 64, 32), (24, 150, 23), ("all", 64, 110)])
+def place(sheet, cell):
+    """Where a picture of images has a cell, as the page finds it."""
+    return sheet["gap"] + cell % sheet["across"] * sheet["width"], sheet["gap"] + cell // sheet["across"] * sheet["height"]
+
+
+@pytest.mark.parametrize("rows, columns, height", [(32, 64, 32), (24, 150, 28), ("all", 64, 110)])
 def test_captions_stand_under_their_chips(sonject, data_set, tmp_path, rows, columns, height):
-    """Which are not square; where they have all rows of swaths, those of this one are 110."""
-    sonject.done("campaign", "campaign.yaml", "-o", "wide", "--set", f"chip={{rows: {rows}, columns: {columns}, spread: 0}}")
+    """Which are not square, but no more than five times as wide as high; where they have all rows of swaths, those of
+    this one are 110."""
+    make(sonject, tmp_path, f"chip={{rows: {rows}, columns: {columns}, spread: 0}}", "targets[0].class=ball")
     sheet = read_png(tmp_path / "wide" / "contact_sheet.png")
-    cells = page_data(tmp_path / "wide")["sheet"]["cells"]
-    first, below = cells[0], cells[8]
-    assert (first["x"], first["y"]) == (below["x"], 6)
-    band = sheet[first["y"] + height : below["y"], first["x"] : first["x"] + 20]
+    page = page_data(tmp_path / "wide")["sheet"]
+    (left, top), below = place(page, 0), place(page, 8)
+    assert below[0] == left == top == 6
+    band = sheet[top + height : below[1], left : left + 20]
     ink = numpy.flatnonzero((band < 128).all(axis=2).any(axis=1))
     assert 2 <= ink[0] <= 6  # the row under the chip may hold a box's frame, which is not black
     assert 10 <= ink[-1] - ink[0] <= 14 and ink[-1] < 20
     if rows != "all":  # a swath may have more of them than the image shown
         assert len(band) == 28
+
+
+def make(sonject, folder, *settings):
+    sonject.done("campaign", "campaign.yaml", "-o", "wide", "--overwrite", *(word for each in settings for word in ("--set", each)))
+    return read_png(folder / "wide" / "contact_sheet.png")
+
+
+def test_chips_are_drawn_to_scale_and_names_whole(sonject, data_set, tmp_path):
+    """Rows are four times as long as columns; the name, which has no place in one line, is that of all targets."""
+    (tmp_path / "scene.yaml").write_text(SCENE.replace("row_spacing: 2.5 cm", "row_spacing: 10 cm"))
+    chip, name = "chip={rows: 20, columns: 64, spread: 0}", "mine_of_a_long_name"
+    short, long = (make(sonject, tmp_path, chip, f"targets[0].class={each}", "images=24") for each in (name[:4], name))
+    page = page_data(tmp_path / "wide")
+    assert {tuple(row[5:]) for row in page["rows"]} == {(80, 64)}
+    assert len(long) - len(short) == 3 * 18
+    named = [i for i, row in enumerate(page["rows"]) if row[4] and row[4][0][0] == name]
+    x, y = place(page["sheet"], named[0])
+    lines = [numpy.flatnonzero((long[y + 82 + 18 * line : y + 100 + 18 * line, x : x + 144] < 128).all(axis=2).any(axis=0)) for line in (0, 1)]
+    assert all(len(line) > 30 and line[-1] < 142 for line in lines), lines
 
 
 def test_images_whose_edge_cuts_a_contact_are_counted(sonject, data_set, tmp_path):
