@@ -75,20 +75,16 @@ static sonject_status shade(struct report *report, enum pixel_type type, struct 
     return SONJECT_OK;
 }
 
-/* To scale, as the file tells its pixels; the finer sides of pixels are never drawn longer. */
+/* As the file tells its pixels. */
 static void choose_sides(const struct swath_file *file, uint32_t sides[2])
 {
     struct noted_geometry noted;
     struct raster_layout layout;
-    double height, width;
     swath_file_layout(file, &layout);
     geometry_notes_read(file, &noted);
-    const double shape = plot_pixel_shape(noted.row_spacing_m, noted.column_spacing_m);
-    const double rows = (double)layout.rows, columns = (double)layout.columns;
-    const double finest = fmax(rows * fmax(shape, 1.0), columns * fmax(1.0 / shape, 1.0));
-    plot_sides(rows, columns, shape, fmin(CELL_SIDE, finest), &height, &width);
-    sides[0] = (uint32_t)fmax(1.0, floor(height));
-    sides[1] = (uint32_t)fmax(1.0, floor(width));
+    plot_small_sides(layout.rows, layout.columns,
+                     plot_pixel_shape(noted.row_spacing_m, noted.column_spacing_m), CELL_SIDE,
+                     sides);
 }
 
 static sonject_status open_image(const struct data_set *set, size_t split, const json_t *record,

@@ -12,6 +12,7 @@
 #include "dataset/fit.h"
 #include "dataset/run.h"
 #include "image/canvas.h"
+#include "image/plot.h"
 #include "measure/contacts.h"
 #include "swath/raster_file.h"
 
@@ -218,19 +219,22 @@ static sonject_status draw_chip(struct report *report, struct canvas *canvas,
     const double median_db = 10.0 * log10(fmax((double)sorted[count / 2], 1e-30));
     free(sorted);
     const sonject_box *label = &chip->label;
-    const double scale =
-        fmin(1.0, CELL_SIDE / (double)(chip->rows > chip->columns ? chip->rows : chip->columns));
-    for (int64_t i = 0; i < (int64_t)((double)chip->rows * scale); i++)
-        for (int64_t j = 0; j < (int64_t)((double)chip->columns * scale); j++) {
+    uint32_t sides[2];
+    plot_small_sides(chip->rows, chip->columns,
+                     plot_pixel_shape(chip->row_spacing_m, chip->column_spacing_m), CELL_SIDE,
+                     sides);
+    for (uint32_t i = 0; i < sides[0]; i++)
+        for (uint32_t j = 0; j < sides[1]; j++) {
             const size_t at =
-                (size_t)((double)i / scale) * chip->columns + (size_t)((double)j / scale);
+                i * chip->rows / sides[0] * chip->columns + j * chip->columns / sides[1];
             const double db = 10.0 * log10(fmax((double)chip->intensity[at], 1e-30)) - median_db;
             const uint8_t grey = (uint8_t)(255.0 * fmin(fmax((db + 14.0) / 34.0, 0.0), 1.0));
             canvas_fill(canvas, x + j, y + i, 1, 1, (struct colour){grey, grey, grey});
         }
-    canvas_frame(canvas, x + (int64_t)((double)label->first_column * scale),
-                 y + (int64_t)((double)label->first_row * scale),
-                 (int64_t)((double)label->columns * scale), (int64_t)((double)label->rows * scale),
+    const double down = sides[0] / (double)chip->rows, across = sides[1] / (double)chip->columns;
+    canvas_frame(canvas, x + (int64_t)((double)label->first_column * across),
+                 y + (int64_t)((double)label->first_row * down),
+                 (int64_t)((double)label->columns * across), (int64_t)((double)label->rows * down),
                  (struct colour){255, 160, 0});
     return SONJECT_OK;
 }

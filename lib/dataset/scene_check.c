@@ -7,9 +7,11 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "image/statistics.h"
 #include "inject/injection.h"
 #include "inject/swath.h"
 #include "scene/placement.h"
+#include "swath/geometry_notes.h"
 #include "user/shape_check.h"
 
 #define MAP_ROWS    20
@@ -40,8 +42,36 @@ static void add_note(void *user, uint32_t level, const char *line)
     growing_text_add(user, "           note: %s\n", line);
 }
 
-static void describe_patch(struct growing_text *text, const struct scene *scene,
-                           const struct swath *swath, const struct patch_view *view)
+/* Of all pings, where the altitude is told ping by ping: that at the objects may be far off it. */
+static sonject_status describe_altitudes(struct growing_text *text, struct report *report,
+                                         const struct scene *scene, const struct region *patch)
+{
+    struct swath_file *file;
+    double spread[3];
+    if (scene->altitude_by == ALTITUDE_GIVEN)
+        return SONJECT_OK;
+    double *altitudes = allocate_array((size_t)patch->rows, sizeof *altitudes);
+    CHECK_MEMORY(report, altitudes, "the altitudes");
+    const sonject_status status =
+        swath_file_open_array(report, scene->input_path, scene->channel, scene->array, &file);
+    if (status == SONJECT_OK) {
+        for (uint64_t i = 0; i < patch->rows; i++)
+            altitudes[i] =
+                recorded_altitude(scene, swath_file_recording(file), patch->first_row + i);
+        spread_of(altitudes, (size_t)patch->rows, spread);
+        growing_text_add(text,
+                         "           altitudes of the pings: %.3g m in the median, %.3g...%.3g m "
+                         "(5...95 %%)\n",
+                         spread[1], spread[0], spread[2]);
+        swath_file_close(&file);
+    }
+    free(altitudes);
+    return status;
+}
+
+static sonject_status describe_patch(struct growing_text *text, struct report *report,
+                                     const struct scene *scene, const struct swath *swath,
+                                     const struct patch_view *view)
 {
     const double last = view_processor_range(view, (double)view->columns - 1.0);
     growing_text_add(text, "image      %llu x %llu pixels, %u channel%s\n",
@@ -69,6 +99,7 @@ static void describe_patch(struct growing_text *text, const struct scene *scene,
             ? ""
             : " at the objects' pings",
         view->wavelength_m * 1e3);
+    CHECK(describe_altitudes(text, report, scene, &swath->patch));
     const struct report_host host = {.log_user = text};
     struct report noting = {{0}, add_note, &host};
     tell_scene(&noting, scene);
@@ -77,6 +108,7 @@ static void describe_patch(struct growing_text *text, const struct scene *scene,
         text, "injection  %s, paths that meet up to %u surface%s\n",
         scene->injection.mode == SONJECT_MODE_RESYNTHESISE ? "resynthesise" : "composite",
         (unsigned)scene->injection.interactions, scene->injection.interactions == 1 ? "" : "s");
+    return SONJECT_OK;
 }
 
 /* Length on the ground of the shadow of something high up at a ground range. */
@@ -222,7 +254,7 @@ sonject_status describe_scene(struct report *report, struct device_slot *slot,
         const struct patch_view *view = &setup.tracer.view;
         const struct placements *placements = &setup.placements;
         struct growing_text text = {0};
-        describe_patch(&text, scene, &swath, view);
+        status = describe_patch(&text, report, scene, &swath, view);
         const struct relief *relief = placements->relief;
         if (relief)
             growing_text_add(
@@ -232,7 +264,7 @@ sonject_status describe_scene(struct report *report, struct device_slot *slot,
                 relief->lowest_m, relief->highest_m, relief->row_step_m, relief->column_step_m);
         describe_objects(&text, scene, view, placements);
         describe_meshes(&text, scene, placements);
-        status = try_user_shapes(&text, report, slot, &scene->user_shapes);
+        THEN(status, try_user_shapes(&text, report, slot, &scene->user_shapes));
         draw_plan(&text, view, placements);
         char *characters = growing_text_end(&text);
         if (!characters)

@@ -136,6 +136,17 @@ void plot_sides(double rows, double columns, double pixel_shape, double longest,
     *width = fmax(columns * scale, longest / LONGEST_SHAPE);
 }
 
+void plot_small_sides(uint64_t rows, uint64_t columns, double pixel_shape, uint32_t longest,
+                      uint32_t sides[2])
+{
+    const double finest =
+        fmax((double)rows * fmax(pixel_shape, 1.0), (double)columns * fmax(1.0 / pixel_shape, 1.0));
+    double height, width;
+    plot_sides((double)rows, (double)columns, pixel_shape, fmin(longest, finest), &height, &width);
+    sides[0] = (uint32_t)fmax(1.0, floor(height));
+    sides[1] = (uint32_t)fmax(1.0, floor(width));
+}
+
 /* Scales that make the longer side of a panel about `target` pixels long and keep distances on
  * both axes in proportion, as far as whole factors can. */
 static void choose_scales(const struct plot_frame *frame, double target,

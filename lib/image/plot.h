@@ -48,6 +48,11 @@ double plot_pixel_shape(double row_spacing_m, double column_spacing_m);
 void plot_sides(double rows, double columns, double pixel_shape, double longest, double *height,
                 double *width);
 
+/* Those of a small image, rows first, of which none is longer; the finer sides of its pixels are
+ * not drawn longer, either. */
+void plot_small_sides(uint64_t rows, uint64_t columns, double pixel_shape, uint32_t longest,
+                      uint32_t sides[2]);
+
 /* Ticks of an axis: multiples of 1, 2 or 5 times a power of ten. */
 #define TICK_LABEL_CAPACITY 40
 

@@ -186,6 +186,13 @@ double median_of(double *values, size_t count)
     return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
 }
 
+void spread_of(double *values, size_t count, double spread[3])
+{
+    spread[1] = median_of(values, count);
+    spread[0] = values[(size_t)(0.05 * (double)(count - 1) + 0.5)];
+    spread[2] = values[(size_t)(0.95 * (double)(count - 1) + 0.5)];
+}
+
 /* A whole number that is larger the larger the float is. */
 static uint32_t order_of(float value)
 {

@@ -25,6 +25,9 @@ void mean_and_deviation(const float *values, size_t count, double *mean, double 
 /* Sorts the values; count > 0. */
 double median_of(double *values, size_t count);
 
+/* The 5, 50 and 95 % quantiles of values, which it sorts; count > 0. */
+void spread_of(double *values, size_t count, double spread[3]);
+
 /* Largest distance between the cumulative distributions of two samples (Kolmogorov-Smirnov), each
  * first divided by its own mean: 0...1. Errors: MEMORY. */
 sonject_status histogram_distance(struct report *report, const float *a, const float *b,

@@ -120,6 +120,7 @@ struct calibration {
     struct estimate noise_floor_db;            /* over the seabed about shadows */
     size_t shadows;                            /* that tell it */
     struct estimate nadir_column, altitude_m;
+    double altitude_ends_m[2]; /* which 5 and 95 % of pings lie below */
     struct first_returns returns;
     double row_spacing_m, column_spacing_m, first_slant_range_m; /* NAN: unknown */
     uint32_t side;              /* SONJECT_SIDE_... that the file tells; SIDE_UNKNOWN */

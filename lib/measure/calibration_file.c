@@ -161,11 +161,12 @@ static void tell_misfit(struct report *report, const char *image, const struct c
     if (!found->transfer_kind.unseen && !curve_fits(fit))
         report_note(
             report,
-            "%s: the curve and law of speckle do not fit the plain tiles: they are off by %.2g "
-            "of the pixels, with a standard error of %.1g; compare the speckle of what you inject "
-            "with "
-            "the image's",
-            image ? path_name(image) : "the pixels", fit->misfit, fit->misfit_error);
+            "%s: the measured grey-level curve does not explain the seabed's speckle (%.2g %% of "
+            "its "
+            "pixels are off): targets may have another grain or contrast than the seabed. Compare "
+            "them in quicklook.png of sonject run; if they differ, give the sonar maker's curve as "
+            "input.transfer",
+            image ? path_name(image) : "the pixels", 100.0 * fit->misfit);
 }
 
 sonject_status calibrate_image(struct report *report, const sonject_calibrate_params *params,

@@ -294,8 +294,9 @@ static void draw_law(struct chart *chart, const struct calibration *found,
     else
         snprintf(text, sizeof text, "looks %.3g +- %.2g", found->looks.value, found->looks.error);
     draw_legend(chart, 0, false, text, blue);
-    snprintf(text, sizeof text, "misfit %.2g +- %.1g: %s", fit->misfit, fit->misfit_error,
-             curve_fits(fit) ? "fits" : "does not fit");
+    snprintf(text, sizeof text, "%s: %.2g +- %.1g %% of pixels off",
+             curve_fits(fit) ? "fits" : "does not fit", 100.0 * fit->misfit,
+             100.0 * fit->misfit_error);
     draw_legend(chart, 1, false, text, blue);
     if (fit->texture > 0.0) {
         snprintf(text, sizeof text, "K shape %.3g", 1.0 / fit->texture);
@@ -368,6 +369,9 @@ static void draw_water(struct chart *chart, const struct calibration *found)
     if (!found->altitude_m.unseen) {
         snprintf(text, sizeof text, "altitude %.3g m (median)", found->altitude_m.value);
         draw_legend(chart, !found->nadir_column.unseen, true, text, ink);
+        snprintf(text, sizeof text, "%.3g...%.3g m (5...95 %%)", found->altitude_ends_m[0],
+                 found->altitude_ends_m[1]);
+        draw_legend(chart, 1 + !found->nadir_column.unseen, true, text, ink);
     }
 }
 

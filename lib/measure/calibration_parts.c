@@ -317,14 +317,17 @@ static void tell_water(struct calibration *found, double *scratch)
     }
     const double error = return_error(returns->columns, found->rows, scratch);
     memcpy(scratch, returns->columns, found->rows * sizeof *scratch);
-    const double columns = median_of(scratch, found->rows);
+    double columns[3];
+    spread_of(scratch, found->rows, columns);
     const bool knows_first = returns->sides != WATER_BETWEEN && found->first_slant_range_m >= 0.0;
     const double first = knows_first ? found->first_slant_range_m / found->column_spacing_m : 0.5;
     if (!(found->column_spacing_m > 0.0)) {
         found->altitude_m.unseen = "the column spacing is not known";
         return;
     }
-    found->altitude_m.value = (columns + first) * found->column_spacing_m;
+    found->altitude_m.value = (columns[1] + first) * found->column_spacing_m;
+    for (int i = 0; i < 2; i++)
+        found->altitude_ends_m[i] = (columns[2 * i] + first) * found->column_spacing_m;
     found->altitude_m.error = fmax(error, 0.3) * found->column_spacing_m;
 }
 

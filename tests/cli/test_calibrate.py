@@ -95,7 +95,8 @@ def test_a_misfit_tells_what_no_law_of_speckle_explains(sonject, tmp_path):
         "sonject: 1\ninput: {path: made.npy, calibration: auto, geometry: {row_spacing: 5 cm, column_spacing: 5 cm, "
         "first_slant_range: 30 m}}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\nobjects: []\n")
     for command in ["calibrate", "made.npy"], ["run", "scene.yaml", "-o", "out"]:
-        assert "note: made.npy: the curve and law of speckle do not fit" in sonject.done(*command).stderr
+        (note,) = re.findall("note: (made.npy: the measured grey-level curve does not explain .*)", sonject.done(*command).stderr)
+        assert f"{100 * told[1]['value']:.2g} % of its pixels are off" in note and note.endswith("as input.transfer")
 
 
 def test_complex_pixels_have_no_curve(sonject, tmp_path):

@@ -257,6 +257,7 @@ def test_of_a_whole_line_the_altitude_is_that_at_the_objects(sonject, tmp_path, 
     assert "altitude 7 m, wavelength" in sonject.done("check", "none.yaml").stdout
     told = sonject.done("check", "one.yaml").stdout
     assert "note" not in told and "m at the objects' pings, wavelength" in told
+    assert "altitudes of the pings: 7 m in the median, 5.2...8.8 m (5...95 %)" in told
     (tmp_path / "pings.csv").write_text(f"row,altitude_m\n0,6\n{ROWS - 1},6\n")
     assert "note: the altitude" not in sonject.done("check", "two.yaml", "--set", "input.pings=pings.csv").stdout
     assert "note: the altitude" not in sonject.done("run", "one.yaml", "-o", "one").stderr
