@@ -402,9 +402,28 @@ static void test_text_is_cut_off(void **state)
     free(canvas.rgb);
 }
 
+/* Pixels that are four times as high as wide, or the reverse: to scale, none enlarged but the
+ * longer sides; a side is at least a fifth of the other. */
+static void test_small_images_are_to_scale(void **state)
+{
+    static const struct {
+        uint64_t rows, columns;
+        double shape;
+        uint32_t sides[2];
+    } cases[] = {{20, 64, 4.0, {80, 64}},    {72, 288, 4.0, {144, 144}}, {64, 20, 0.25, {64, 80}},
+                 {64, 64, 1.0, {64, 64}},    {24, 150, 1.0, {28, 144}},  {5000, 50, 1.0, {144, 28}},
+                 {288, 144, NAN, {144, 72}}, {1, 1, 1.0, {1, 1}}};
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        uint32_t sides[2];
+        plot_small_sides(cases[i].rows, cases[i].columns, plot_pixel_shape(cases[i].shape, 1.0),
+                         144, sides);
+        assert_memory_equal(sides, cases[i].sides, sizeof sides);
+    }
+}
+
 TEST_PROGRAM(NULL, NULL, TEST(test_grey_levels), TEST(test_scale_from_percentiles),
              TEST(test_large_images_average_energy), TEST(test_difference_colours),
              TEST(test_panels_side_by_side), TEST(test_ticks_are_where_they_belong),
              TEST(test_tick_numbers), TEST(test_nothing_to_draw),
              TEST(test_shapes_and_pixels_without_levels), TEST(test_extreme_axes_and_titles),
-             TEST(test_font), TEST(test_text_is_cut_off))
+             TEST(test_font), TEST(test_text_is_cut_off), TEST(test_small_images_are_to_scale))
