@@ -289,6 +289,26 @@ static void add_swaths(FILE *file, const struct interview *interview)
     }
 }
 
+/* Stones as high as the target, alone: of bare seabed a detector learns that all that
+ * is bright is a target. */
+static void add_clutter(FILE *file, const char *text)
+{
+    struct checked checked;
+    read_checked(&checked, text);
+    fprintf(file,
+            "clutter:\n"
+            "  alone: 0.25 # this share of the images shows a stone and no target\n"
+            "  number: 0 # beside a target, which they might hide\n"
+            "  objects:\n"
+            "  - class: stone\n"
+            "    object: {shape: ellipsoid, material: rock}\n"
+            "    draw:\n"
+            "      length: {log_uniform: [%.2g m, %.2g m]}\n"
+            "      width: {of: length, uniform: [0.6, 0.95]}\n"
+            "      height: {of: width, uniform: [0.5, 0.9]}\n",
+            fmax(checked.top_m, 0.05), fmax(2.0 * checked.top_m, 0.1));
+}
+
 bool write_campaign(const struct interview *interview, const char *checked)
 {
     char part[NAME + 8];
@@ -300,7 +320,7 @@ bool write_campaign(const struct interview *interview, const char *checked)
             "sonject_campaign: 1\nscene: %s # all that is not drawn\nimages: 500\n",
             last_part(interview->campaign), last_part(interview->scene));
     add_chip(file, interview, checked);
-    fputs("empty: 0.5 # this share of the images shows no target\n"
+    fputs("empty: 0.25 # this share of the images shows bare seabed\n"
           "visible: {highlight: 1.2 dB, shadow: -2.3 dB} # what nobody would see is drawn again\n",
           file);
     add_swaths(file, interview);
@@ -315,5 +335,6 @@ bool write_campaign(const struct interview *interview, const char *checked)
     fputs("\n    object: {", file);
     add_target(file, interview, ", ");
     fputs("}\n", file);
+    add_clutter(file, checked);
     return finish(file, part, interview->campaign);
 }

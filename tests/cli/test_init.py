@@ -156,7 +156,7 @@ def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
         assert f"side: {side}\n" in (tmp_path / f"{name}_calibration.yaml").read_text()
     sonject.done("campaign", "line_campaign.yaml", "-o", "set", "--set", "images=20")
     notes = json.loads((tmp_path / "set" / "train" / "coco.json").read_text())
-    assert {category["name"] for category in notes["categories"]} == {"rock"}
+    assert {category["name"] for category in notes["categories"]} == {"rock", "stone"}
 
 
 def test_the_pages_commands_make_a_data_set(sonject, tmp_path):

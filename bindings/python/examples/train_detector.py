@@ -32,14 +32,15 @@ def features(image):
 
 
 def examples(campaign, split):
-    """Features of a split's images, and whether each has a target."""
-    numbers = [number for number in range(len(campaign)) if campaign.describe(number).split == split]
-    if not numbers:
+    """Features of a split's images, whether each has a target, and how many have clutter alone."""
+    told = [each for each in map(campaign.describe, range(len(campaign))) if each.split == split]
+    if not told:
         raise SystemExit(f"the campaign has no split {split!r}: see its splits")
-    labels = numpy.array([campaign.describe(number).has_target for number in numbers])
+    labels = numpy.array([each.has_target for each in told], bool)
     if labels.all() or not labels.any():
         raise SystemExit(f"split {split!r} has images of one kind only: see the campaign's empty")
-    return numpy.array([features(campaign[number].image) for number in numbers]), labels
+    clutter = sum(each.object_count > 0 and not each.has_target for each in told)
+    return numpy.array([features(campaign[each.id].image) for each in told]), labels, clutter
 
 
 def area_under_curve(scores, labels):
@@ -59,14 +60,19 @@ def main():
     parser.add_argument("--try", default="val", metavar="SPLIT", dest="tried")
     options = parser.parse_args()
     campaign = sonject.Campaign(options.campaign)
-    inputs, labels = examples(campaign, options.train)
-    unseen, truth = examples(campaign, options.tried)
+    inputs, labels, _ = examples(campaign, options.train)
+    unseen, truth, clutter = examples(campaign, options.tried)
     detector = RandomForestClassifier(300, min_samples_leaf=2, random_state=0).fit(inputs, labels)
     scores = detector.predict_proba(unseen)[:, 1]
     area, error = area_under_curve(scores, truth)
     found = numpy.mean(scores[truth] > numpy.quantile(scores[~truth], 0.95))
-    print(f"trained on {len(labels)} images, tried on {truth.sum()} with a target and {(~truth).sum()} without")
+    others = (~truth).sum()
+    print(f"trained on {len(labels)} images, tried on {truth.sum()} with a target and {others} without, of which {clutter} have clutter")
     print(f"area under the ROC curve {area:.3f} ± {error:.3f}; at 5 % false alarms it finds {100 * found:.0f} %")
+    least = 1 - 0.05 ** (1 / others)  # at this rate, one in 20 such splits has none
+    print(f"{others} images without a target cannot tell a false alarm rate below {100 * least:.1f} % from none")
+    if clutter == 0:
+        print("none of these has clutter: where stones lie, false alarms are more; see the campaign's clutter.alone")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 """The notebooks are short, have no outputs and name what exists; the first runs as a program. All are
-run by test_notebooks_run.py, which needs Jupyter's client and scikit-learn."""
+run by test_notebooks_run.py, which needs Jupyter's client."""
 
 import ast
 import json

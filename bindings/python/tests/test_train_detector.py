@@ -43,21 +43,30 @@ def tell(tmp_path, monkeypatch, capsys):
     (tmp_path / "scene.yaml").write_text(SCENE)
     monkeypatch.chdir(tmp_path)
 
-    def run(low, high, diameter, *arguments):
-        (tmp_path / "campaign.yaml").write_text(CAMPAIGN % (low, high, diameter))
+    def run(low, high, diameter, *arguments, clutter=""):
+        (tmp_path / "campaign.yaml").write_text(CAMPAIGN % (low, high, diameter) + clutter)
         monkeypatch.setattr(sys, "argv", ["train_detector.py", "campaign.yaml", *arguments])
         train_detector.main()
-        return [float(number) for number in re.findall(r"\d+\.?\d*", capsys.readouterr().out)]
+        text = capsys.readouterr().out
+        return text, *(float(number) for number in re.findall(r"\d+\.?\d*", text))
 
     return run
 
 
 def test_it_finds_what_can_be_seen_and_nothing_else(tell):
-    images, targets, empty, area, error, _, _ = tell(12, 18, "0.5 m")
-    assert (images, targets, empty) == (80, 40, 40)
+    text, images, targets, empty, clutter, area, error, *_ = tell(12, 18, "0.5 m")
+    assert (images, targets, empty, clutter) == (80, 40, 40, 0)
     assert area - 3 * error > 0.9
-    _, _, _, area, error, _, _ = tell(-20, -10, "2 cm")
+    assert "\n40 images without a target cannot tell a false alarm rate below 7.2 % from none\nnone of these has clutter:" in text
+    _, _, _, _, _, area, error, *_ = tell(-20, -10, "2 cm")
     assert abs(area - 0.5) < 4 * max(error, 0.065)  # of a guess: that of 40 and 40
+
+
+def test_clutter_is_told(tell):
+    text, _, targets, others, clutter, *_ = tell(12, 18, "0.5 m", clutter="""\
+clutter: {alone: 0.25, number: 0, objects: [{class: stone, object: {shape: sphere, diameter: 0.3 m, burial: {fraction: 0.5}}}]}
+""")
+    assert targets + others == 80 and 10 <= clutter <= 30 and "clutter.alone" not in text
 
 
 def test_a_split_that_is_not_there_is_told(tell):
