@@ -40,8 +40,7 @@ static void trial_clear(struct trial *trial)
     image_plan_clear(&trial->plan);
 }
 
-/* Measures an opened swath, with the altitude at each row: the row's before it where none is told.
- */
+/* Measures an opened swath, with the altitude at each row. */
 static sonject_status measure_rows(struct sonject_campaign *campaign, uint32_t number,
                                    const struct scene *scene, const struct swath_file *file)
 {
@@ -50,12 +49,8 @@ static sonject_status measure_rows(struct sonject_campaign *campaign, uint32_t n
     /* as check_water_column */
     const bool may_show_water = scene->water_layer_count == 0 && scene->relief.count == 0;
     double *altitudes = allocate_array(rows, sizeof *altitudes);
-    double altitude = scene->sonar.altitude_m;
     CHECK_MEMORY(campaign->report, altitudes, "the altitudes");
-    for (size_t i = 0; i < rows; i++) {
-        const double told = recorded_altitude(scene, swath_file_recording(file), i);
-        altitudes[i] = altitude = told > 0.0 ? told : altitude;
-    }
+    row_altitudes(scene, swath_file_recording(file), &(struct region){.rows = rows}, altitudes);
     const sonject_status status = campaign_measure(campaign->report, &campaign->campaign, number,
                                                    &scene->geometry, altitudes, may_show_water);
     free(altitudes);

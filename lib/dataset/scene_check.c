@@ -55,9 +55,7 @@ static sonject_status describe_altitudes(struct growing_text *text, struct repor
     const sonject_status status =
         swath_file_open_array(report, scene->input_path, scene->channel, scene->array, &file);
     if (status == SONJECT_OK) {
-        for (uint64_t i = 0; i < patch->rows; i++)
-            altitudes[i] =
-                recorded_altitude(scene, swath_file_recording(file), patch->first_row + i);
+        row_altitudes(scene, swath_file_recording(file), patch, altitudes);
         spread_of(altitudes, (size_t)patch->rows, spread);
         growing_text_add(text,
                          "           altitudes of the pings: %.3g m in the median, %.3g...%.3g m "

@@ -446,7 +446,9 @@ sonject_status recording_describe(struct report *report, const struct recording_
     return status;
 }
 
-double recorded_altitude(const struct scene *scene, const struct recording *recording, uint64_t row)
+/* 0 where nothing is told of it. */
+static double row_altitude(const struct scene *scene, const struct recording *recording,
+                           uint64_t row)
 {
     const struct ping_table *pings = &scene->pings;
     if (scene->altitude_by == ALTITUDE_GIVEN)
@@ -457,4 +459,14 @@ double recorded_altitude(const struct scene *scene, const struct recording *reco
         return recording ? (double)recording->pings[row].altitude_m : scene->sonar.altitude_m;
     const double last = pings->rows[pings->count - 1];
     return ping_table_at(pings, pings->altitudes_m, fmin(fmax((double)row, pings->rows[0]), last));
+}
+
+void row_altitudes(const struct scene *scene, const struct recording *recording,
+                   const struct region *region, double *altitudes)
+{
+    double altitude = scene->sonar.altitude_m;
+    for (uint64_t i = 0; i < region->rows; i++) {
+        const double told = row_altitude(scene, recording, region->first_row + i);
+        altitudes[i] = altitude = told > 0.0 ? told : altitude;
+    }
 }

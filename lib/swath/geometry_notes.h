@@ -60,9 +60,9 @@ struct recording_wish {
 sonject_status recording_describe(struct report *report, const struct recording_wish *wish,
                                   struct scene *scene, const char **key);
 
-/* The altitude at a row of the scene's input, m; 0 where nothing is told of it. recording: the
- * input; NULL for other files. */
-double recorded_altitude(const struct scene *scene, const struct recording *recording,
-                         uint64_t row);
+/* The altitudes at the region's rows of the scene's input, m: the row's before it where none is
+ * told. recording: the input; NULL for other files. */
+void row_altitudes(const struct scene *scene, const struct recording *recording,
+                   const struct region *region, double *altitudes);
 
 #endif

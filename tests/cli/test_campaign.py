@@ -599,7 +599,7 @@ def test_values_that_do_not_go_together_are_drawn_anew(ground, command):
         assert "or there is no hole" in record["drawn_anew"]["because"]
     page = page_data(ground / "anew")
     assert page["drawn_anew"] == len(anew)
-    assert {id: because for id, _, _, because, _ in page["rows"] if because} == {
+    assert {id: because for id, _, _, because, *_ in page["rows"] if because} == {
         record["id"]: record["drawn_anew"]["because"] for record in anew}
     only = command("campaign", "campaign.yaml", "-o", "one", "--only", anew[0]["id"], *settings)
     assert only.returncode == 0, only.stderr
