@@ -284,7 +284,8 @@ static void add_swaths(FILE *file, const struct interview *interview)
         else if (has_both)
             fprintf(file, "    set: {input.channel: %s, input.calibration: %s}\n", side,
                     last_part(i == 0 ? interview->calibration : interview->other_calibration));
-        fputs("    # avoid: [{row: 20, column: 90, rows: 20, columns: 30}] # no image shows it\n",
+        fputs("    # avoid: [{along_track: [20 m, 25 m], slant_range: [5 m, 9 m]}] # no image "
+              "shows it\n",
               file);
     }
 }

@@ -317,7 +317,7 @@ static void tell_water(struct calibration *found, double *scratch)
     }
     const double error = return_error(returns->columns, found->rows, scratch);
     memcpy(scratch, returns->columns, found->rows * sizeof *scratch);
-    const double columns = median_of(scratch, found->rows);
+    const double columns = found->median_return = median_of(scratch, found->rows);
     const bool knows_first = returns->sides != WATER_BETWEEN && found->first_slant_range_m >= 0.0;
     const double first = knows_first ? found->first_slant_range_m / found->column_spacing_m : 0.5;
     if (!(found->column_spacing_m > 0.0)) {
