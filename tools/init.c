@@ -67,6 +67,17 @@ static const char *other_side(const struct init_options *options)
                                                : NULL;
 }
 
+/* The files of one side of a recording, or of all of it. */
+static bool name_side(const struct interview *interview, const char *side, char *calibration,
+                      char *picture)
+{
+    char end[64];
+    snprintf(end, sizeof end, "%s_calibration.yaml", side);
+    const bool is_named = name_file(calibration, interview, end);
+    snprintf(end, sizeof end, "%s_quicklook.png", side);
+    return name_file(picture, interview, end) && is_named;
+}
+
 /* Beside each other, in the working folder unless -o says another. The scene names the image from
  * its own folder: as it was given, or from the root. */
 static bool name_files(struct interview *interview)
@@ -76,15 +87,16 @@ static bool name_files(struct interview *interview)
     const char *other = other_side(options);
     char end[64];
     char *here = output && last_part(output) != output ? working_folder() : NULL;
-    snprintf(end, sizeof end, "_%s_calibration.yaml", other ? other : "");
-    const bool is_named = snprintf(interview->folder, NAME, "%s", here ? here : "") < NAME &&
-                          name_file(interview->calibration, interview, "_calibration.yaml") &&
-                          name_file(interview->other_calibration, interview, other ? end : "") &&
-                          name_file(interview->campaign, interview, "_campaign.yaml") &&
-                          (output ? snprintf(interview->scene, NAME, "%s", output) < NAME
-                                  : name_file(interview->scene, interview, ".yaml"));
+    snprintf(end, sizeof end, "_%s", other ? other : "");
+    const bool is_named =
+        snprintf(interview->folder, NAME, "%s", here ? here : "") < NAME &&
+        name_side(interview, "", interview->calibration, interview->picture) &&
+        name_side(interview, end, interview->other_calibration, interview->other_picture) &&
+        name_file(interview->campaign, interview, "_campaign.yaml") &&
+        (output ? snprintf(interview->scene, NAME, "%s", output) < NAME
+                : name_file(interview->scene, interview, ".yaml"));
     if (!other || !options->makes_campaign)
-        *interview->other_calibration = '\0';
+        *interview->other_calibration = *interview->other_picture = '\0';
     if (!options->makes_campaign)
         *interview->campaign = '\0';
     free(here);
@@ -96,9 +108,10 @@ static bool name_files(struct interview *interview)
 /* Whether nothing is in the way of what is made. */
 static bool are_free(const struct interview *interview)
 {
-    const char *files[] = {interview->scene, interview->calibration, interview->campaign,
-                           interview->other_calibration};
-    for (int i = 0; i < 4; i++)
+    const char *files[] = {
+        interview->scene,    interview->calibration,       interview->picture,
+        interview->campaign, interview->other_calibration, interview->other_picture};
+    for (int i = 0; i < 6; i++)
         if (*files[i] && file_exists(files[i])) {
             message(files[i], ": is there already: choose another scene (-o), or remove it");
             return false;
@@ -195,6 +208,7 @@ static sonject_status learn(struct interview *interview, char **text)
     const char *nadir = strstr(*text, "nadir_column:"), *end = strstr(*text, "\nmeasured:");
     interview->has_returns = strstr(*text, "\n  first_return:") != NULL;
     interview->has_nadir = nadir && end && nadir < end; /* behind it are reasons and errors */
+    interview->nadir_column = measured(*text, "nadir_column");
     interview->column_spacing_m = measured(*text, "column_spacing");
     interview->altitude_m = measured(*text, "altitude");
     interview->recorded_altitude_m = measured(*text, "recorded_altitude");
@@ -220,8 +234,36 @@ static void learn_other_side(struct interview *interview, char **text)
     if (status == SONJECT_OK)
         status = calibrate(interview, context, other_side(interview->options), text);
     if (status != SONJECT_OK)
-        *interview->other_calibration = '\0'; /* it has no such side */
+        *interview->other_calibration = *interview->other_picture = '\0'; /* it has no such side */
     sonject_context_release(&context);
+}
+
+/* Draws a side of the image, or both about their nadir. */
+static sonject_status draw(const struct interview *interview, const char *channel,
+                           const char *picture)
+{
+    char geometry[4 * ANSWER];
+    const sonject_quicklook_params params = {.struct_size = sizeof params,
+                                             .image = interview->options->image,
+                                             .picture = picture,
+                                             .channel = channel,
+                                             .array = interview->options->array,
+                                             .geometry = interview->has_geometry ? NULL : geometry};
+    if (!interview->has_geometry) {
+        const int length =
+            snprintf(geometry, sizeof geometry, "{row_spacing: %s, column_spacing: %s",
+                     answer_about(interview, "input.geometry.row_spacing"),
+                     answer_about(interview, "input.geometry.column_spacing"));
+        char *rest = geometry + length;
+        const size_t left = sizeof geometry - (size_t)length;
+        if (interview->has_nadir)
+            snprintf(rest, left, ", nadir_column: %.17g, side: starboard}",
+                     interview->nadir_column);
+        else
+            snprintf(rest, left, ", first_slant_range: %s}",
+                     answer_about(interview, "input.geometry.first_slant_range"));
+    }
+    return sonject_quicklook(interview->context, &params);
 }
 
 /* Writes the scene and what goes with it, and checks it, as sonject check does. Gives the exit
@@ -237,6 +279,10 @@ static int write_files(struct interview *interview, const char *calibration, con
     sonject_status status = sonject_scene_read(interview->context, interview->scene, NULL, &scene);
     if (status == SONJECT_OK)
         status = sonject_check(interview->context, scene, &checked);
+    if (status == SONJECT_OK)
+        status = draw(interview, interview->options->channel, interview->picture);
+    if (status == SONJECT_OK && other)
+        status = draw(interview, other_side(interview->options), interview->other_picture);
     sonject_scene_release(&scene);
     if (status != SONJECT_OK)
         return fail_with(interview->context, status);
@@ -246,7 +292,7 @@ static int write_files(struct interview *interview, const char *calibration, con
     if (!is_written)
         return EXIT_CODE_STORAGE;
     message(interview->scene, " is a scene to begin with; ", interview->calibration,
-            " has what was measured");
+            " has what was measured; ", interview->picture, " shows the image");
     if (*interview->campaign)
         message(interview->campaign, " is a campaign to begin with");
     return finish_output();

@@ -13,7 +13,7 @@
 #include "console.h"
 
 #define USUAL_LEVEL_DB  15.0
-#define OVER_CEILING_DB 4.0 /* of a peak, the rest of a highlight being fainter */
+#define OVER_CEILING_DB 2.0 /* of a peak at a place that is darker than most */
 #define FAINTEST_DB     8.0 /* of a campaign's peaks; measured ones have 8 to 19 dB */
 #define CHIP_MOST       512.0
 
@@ -207,7 +207,7 @@ bool write_scene(const struct interview *interview)
         "\n    heading: 30 deg # from along-track towards range\n"
         "    # of the peak; measured ones have 8 to 19 dB. Without this line the material decides\n"
         "    level: {over_seabed: %.0f dB}%s\n",
-        level_db, level_db < USUAL_LEVEL_DB ? " # over the image's ceiling, which cuts it" : "");
+        level_db, level_db < USUAL_LEVEL_DB ? " # by the image's ceiling, which cuts more" : "");
     return finish(file, part, interview->scene);
 }
 
@@ -284,7 +284,8 @@ static void add_swaths(FILE *file, const struct interview *interview)
         else if (has_both)
             fprintf(file, "    set: {input.channel: %s, input.calibration: %s}\n", side,
                     last_part(i == 0 ? interview->calibration : interview->other_calibration));
-        fputs("    # avoid: [{row: 20, column: 90, rows: 20, columns: 30}] # no image shows it\n",
+        fputs("    # avoid: [{along_track: [20 m, 25 m], slant_range: [5 m, 9 m]}] # no image "
+              "shows it\n",
               file);
     }
 }

@@ -27,8 +27,8 @@ struct interview {
     const struct init_options *options;
     char answers[ANSWERS][ANSWER]; /* "key=value" */
     size_t count;
-    char scene[NAME], calibration[NAME], campaign[NAME]; /* files */
-    char other_calibration[NAME];                        /* of a recording's other side; "": none */
+    char scene[NAME], calibration[NAME], picture[NAME], campaign[NAME]; /* files */
+    char other_calibration[NAME], other_picture[NAME]; /* of a recording's other side; "": none */
     char folder[NAME]; /* that names of other files are meant from; "": the scene's */
     char *objects;     /* override with the target's file; owned; NULL: there is none */
     bool has_mesh;     /* it is one of a mesh */
@@ -36,8 +36,8 @@ struct interview {
     /* The image, as its calibration found; NAN: it did not. */
     bool has_nadir;
     bool has_returns; /* first ones, so that they tell the altitude */
-    double frequency_hz, column_spacing_m, altitude_m, recorded_altitude_m, ceiling_over_seabed_db,
-        plain_row, plain_column;
+    double nadir_column, frequency_hz, column_spacing_m, altitude_m, recorded_altitude_m,
+        ceiling_over_seabed_db, plain_row, plain_column;
     bool assumes_bandwidth; /* that of the columns */
 };
 

@@ -156,13 +156,20 @@ struct object_columns {
     double first, last; /* there are none where first is above */
 };
 
+/* Where contacts are that images are not to show. Where it is told in metres the pixels are known
+ * once the swath is measured. */
+struct avoided_box {
+    struct region pixels;
+    double along_track_m[2], slant_range_m[2]; /* both ends; NAN: told in pixels */
+};
+
 struct swath_plan {
     char *path;          /* to open; owned */
     const char *written; /* as the campaign file has it; its tree's */
     char *split;         /* that it must be in; NULL: any; owned */
     char **keys;         /* of the scene, for this swath, "key=value"; owned */
     size_t key_count;
-    struct region *avoid; /* owned */
+    struct avoided_box *avoid; /* owned */
     size_t avoid_count;
     struct tree_place place;
     struct raster_layout layout; /* once it is opened */
@@ -241,8 +248,8 @@ struct campaign {
     uint32_t chip_rows, chip_columns; /* 0: all of each swath */
     uint32_t edge, clearance;         /* pixels kept free at swaths' edges, around contacts */
     double spread;                    /* of the chip's sides, where objects may lie */
-    double nearest_range_m, farthest_range_m;
-    double least_ratio, most_ratio; /* of range over altitude; 0: any */
+    double slant_range_m[2];          /* of images' middles */
+    double least_ratio, most_ratio;   /* of range over altitude; 0: any */
     double empty, clutter_alone;
     bool has_one_target; /* in each image, and nothing else, whatever the file says */
     double visible_highlight_db, visible_shadow_db; /* of targets: at least, at most; NaN: any */
@@ -278,6 +285,10 @@ sonject_status campaign_check_key(const struct tree *tree, struct tree_place pla
 /* The same of an entry's key, which its text is or ends with. */
 sonject_status campaign_check_entry(struct reader *reader, const struct tree_entry *entry,
                                     const char *key, bool is_object);
+
+/* Reads a list of two lengths that grow. */
+sonject_status campaign_read_lengths(struct reader *reader, const struct tree_node *node,
+                                     double ends_m[2]);
 
 /* Read `swaths` and `splits` into a campaign. */
 sonject_status campaign_read_swaths(struct reader *reader, const struct tree_node *node,

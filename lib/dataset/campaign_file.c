@@ -217,17 +217,8 @@ static sonject_status read_range(struct reader *reader, const struct tree_node *
                                  void *structure)
 {
     struct campaign *campaign = structure;
-    if (node->kind != TREE_LIST || node->count != 2)
-        return refuse_value(reader, node, "must be two slant ranges, [nearest, farthest]");
-    CHECK(read_quantity(reader, &node->entries[0].value, QUANTITY_LENGTH,
-                        &campaign->nearest_range_m));
-    CHECK(read_quantity(reader, &node->entries[1].value, QUANTITY_LENGTH,
-                        &campaign->farthest_range_m));
     campaign->has_range = true;
-    if (campaign->nearest_range_m < campaign->farthest_range_m)
-        return SONJECT_OK;
-    return refuse_value(reader, node, "begins at %g m, which is not below its end, %g m",
-                        campaign->nearest_range_m, campaign->farthest_range_m);
+    return campaign_read_lengths(reader, node, campaign->slant_range_m);
 }
 
 static sonject_status read_ratio(struct reader *reader, const struct tree_node *node,

@@ -130,7 +130,7 @@ static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, s
     else if (!shows_water)
         low = fmax(low, floor(bottom) + 1.0);
     if (campaign->has_range)
-        limit_columns(limits, half, campaign->nearest_range_m, campaign->farthest_range_m, &low,
+        limit_columns(limits, half, campaign->slant_range_m[0], campaign->slant_range_m[1], &low,
                       &high);
     plan->objects.first = has_all ? low : is_reversed ? 0.0 : floor(bottom) + 1.0;
     plan->objects.last = has_all       ? high
@@ -275,6 +275,34 @@ static void forbid_covered(const struct campaign *campaign, uint64_t block, doub
     *forbidden = end > from ? (uint64_t)(end - from) + block - 1 : 0;
 }
 
+/* The pixels of an interval of which some are in the image. False: none is. */
+static bool pixels_of(double from, double to, uint64_t image, uint64_t *first, uint64_t *count)
+{
+    const double low = fmax(0.0, floor(fmin(from, to)));
+    const double high = fmin((double)image, ceil(fmax(from, to)) + 1.0);
+    *first = (uint64_t)fmin(low, (double)image);
+    *count = high > low ? (uint64_t)(high - low) : 0;
+    return *count > 0;
+}
+
+/* Finds the pixels of a box that is told in metres. */
+static sonject_status find_box(const struct campaign *campaign, const struct swath_plan *plan,
+                               const sonject_geometry_params *geometry, struct avoided_box *box)
+{
+    const double *along_m = box->along_track_m, *range_m = box->slant_range_m;
+    const double first_m = geometry->first_along_track_m, row_m = geometry->row_spacing_m;
+    if (isnan(along_m[0]) ||
+        (pixels_of((along_m[0] - first_m) / row_m, (along_m[1] - first_m) / row_m,
+                   plan->layout.rows, &box->pixels.first_row, &box->pixels.rows) &&
+         pixels_of(geometry_column(geometry, range_m[0]), geometry_column(geometry, range_m[1]),
+                   plan->layout.columns, &box->pixels.first_column, &box->pixels.columns)))
+        return SONJECT_OK;
+    return tree_failure(&campaign->tree, plan->place, "swaths",
+                        "avoid: %s shows nothing at %g to %g m along the track and slant ranges of "
+                        "%g to %g m",
+                        plan->written, along_m[0], along_m[1], range_m[0], range_m[1]);
+}
+
 /* The first pixels that a box to avoid leaves to no chip. */
 static struct region forbid_box(const struct campaign *campaign, const struct swath_plan *plan,
                                 const struct region *box)
@@ -362,7 +390,7 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
         return tree_failure(&campaign->tree, plan->place, "swaths",
                             "no image within %s has its middle at slant ranges of %g to %g m and "
                             "begins beyond the sonar's altitude, up to %g m",
-                            plan->written, campaign->nearest_range_m, campaign->farthest_range_m,
+                            plan->written, campaign->slant_range_m[0], campaign->slant_range_m[1],
                             limits.highest_m);
     struct crop_places *room = &plan->room;
     crop_places_clear(room);
@@ -381,8 +409,10 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
         limit_ratios(&limits, plan);
     else if (has_ratio)
         CHECK(limit_objects(report, &limits, plan));
-    for (size_t i = 0; i < plan->avoid_count; i++)
-        room->boxes[room->box_count++] = forbid_box(campaign, plan, &plan->avoid[i]);
+    for (size_t i = 0; i < plan->avoid_count; i++) {
+        CHECK(find_box(campaign, plan, geometry, &plan->avoid[i]));
+        room->boxes[room->box_count++] = forbid_box(campaign, plan, &plan->avoid[i].pixels);
+    }
     qsort(room->boxes, room->box_count, sizeof *room->boxes, compare_starts);
     uint64_t column;
     for (uint64_t row = chips.first_row, end; row < chips.first_row + chips.rows; row = end) {

@@ -43,28 +43,71 @@ static sonject_status read_swath_keys(struct reader *reader, const struct tree_n
     return SONJECT_OK;
 }
 
-#define STRUCTURE struct region
+sonject_status campaign_read_lengths(struct reader *reader, const struct tree_node *node,
+                                     double ends_m[2])
+{
+    if (node->kind != TREE_LIST || node->count != 2)
+        return refuse_value(reader, node, "must be two lengths, [from, to]");
+    for (int i = 0; i < 2; i++)
+        CHECK(read_quantity(reader, &node->entries[i].value, QUANTITY_LENGTH, &ends_m[i]));
+    if (ends_m[0] < ends_m[1])
+        return SONJECT_OK;
+    return refuse_value(reader, node, "begins at %g m, which is not below its end, %g m", ends_m[0],
+                        ends_m[1]);
+}
+
+static sonject_status read_along_track(struct reader *reader, const struct tree_node *node,
+                                       void *structure)
+{
+    return campaign_read_lengths(reader, node, ((struct avoided_box *)structure)->along_track_m);
+}
+
+static sonject_status read_slant_range(struct reader *reader, const struct tree_node *node,
+                                       void *structure)
+{
+    return campaign_read_lengths(reader, node, ((struct avoided_box *)structure)->slant_range_m);
+}
+
+static sonject_status finish_box(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    static const char *const counts[] = {"rows", "columns"};
+    const bool is_in_pixels = tree_find(node, "row") != NULL;
+    (void)structure;
+    for (int i = 0; i < 2; i++)
+        if ((tree_find(node, counts[i]) != NULL) != is_in_pixels)
+            refuse_key(reader, node, counts[i],
+                       is_in_pixels ? "is missing" : "goes with row and column, in pixels");
+    return SONJECT_OK;
+}
+
+#define STRUCTURE struct avoided_box
 static const struct field box_fields[] = {
-    {"row", "first row", COUNT64(first_row, 0, PIXELS_MAX), REQUIRED},
-    {"column", "first column", COUNT64(first_column, 0, PIXELS_MAX), REQUIRED},
-    {"rows", "number of rows", COUNT64(rows, 0, PIXELS_MAX), REQUIRED},
-    {"columns", "number of columns", COUNT64(columns, 0, PIXELS_MAX), REQUIRED},
+    {"along_track", "from where to where", SPECIAL(read_along_track, "list of two lengths")},
+    {"slant_range", "from where to where", SPECIAL(read_slant_range, "list of two lengths")},
+    {"row", "first row", COUNT64(pixels.first_row, 0, PIXELS_MAX)},
+    {"column", "first column", COUNT64(pixels.first_column, 0, PIXELS_MAX)},
+    {"rows", "number of rows", COUNT64(pixels.rows, 0, PIXELS_MAX)},
+    {"columns", "number of columns", COUNT64(pixels.columns, 0, PIXELS_MAX)},
 };
-static const struct section box_section = {ROWS(box_fields)};
+static const struct section box_section = {
+    ROWS(box_fields), .choice = "row+column along_track+slant_range", .finish = finish_box};
 #undef STRUCTURE
 
 static sonject_status read_box(struct reader *reader, const struct tree_node *node, void *structure)
 {
     struct swath_plan *swath = structure;
     CHECK(grow_list(reader->report, &swath->avoid, swath->avoid_count, sizeof *swath->avoid));
-    return read_section(reader, &box_section, node, &swath->avoid[swath->avoid_count++]);
+    struct avoided_box *box = &swath->avoid[swath->avoid_count++];
+    box->along_track_m[0] = box->slant_range_m[0] = NAN;
+    return read_section(reader, &box_section, node, box);
 }
 
 static sonject_status read_avoid(struct reader *reader, const struct tree_node *node,
                                  void *structure)
 {
-    static const struct list boxes = {0, BOXES_MAX, " of {row: , column: , rows: , columns: }",
-                                      read_box};
+    static const struct list boxes = {
+        0, BOXES_MAX, " of {along_track: [from, to], slant_range: [from, to]}", read_box};
     return read_list(reader, node, &boxes, structure);
 }
 

@@ -305,7 +305,7 @@ static bool is_free(const struct drawing *drawing, double row, double column)
     row += (double)drawing->plan->chip.first_row;
     column += (double)drawing->plan->chip.first_column;
     for (size_t i = 0; images_show_contacts(campaign) && i < swath->avoid_count; i++) {
-        const struct region *box = &swath->avoid[i];
+        const struct region *box = &swath->avoid[i].pixels;
         const double first_row = (double)box->first_row, first_column = (double)box->first_column;
         if (row > first_row - clearance && row < first_row + (double)box->rows + clearance &&
             column > first_column - clearance &&

@@ -379,14 +379,21 @@ static sonject_status find_from_tiles(struct report *report, struct calibration 
     return SONJECT_OK;
 }
 
+/* How ill a row suits a first target: its altitude is unlike the others', 1 dB for each 5 %. */
+static double oddness_of_row(const struct calibration *found, size_t row)
+{
+    const double returned = found->median_return > 0.0 ? found->returns.columns[row] : 0.0;
+    return returned > 0.0 ? 20.0 * fabs(log(returned / found->median_return)) : 0.0;
+}
+
 /* What highlights have over the seabed before they are cut, where objects without a position lie.
- */
+ * The place is a dark one among them, so that a first target stands out, at a usual altitude. */
 static void find_room(struct calibration *found, const struct stored_swath *swath)
 {
     const double *levels = found->fits[found->family].levels;
     double count = 0.0, sum = 0.0, squares = 0.0, least = INFINITY;
-    found->room_db.how = "the ceiling over plain tiles in the middle third of the columns, as at "
-                         "this row and column";
+    found->room_db.how = "the ceiling over plain tiles in the middle third of the columns; row and "
+                         "column are the place of one that is darker than most";
     found->room_db.unseen = found->full_scale.unseen;
     if (found->room_db.unseen)
         return;
@@ -403,17 +410,19 @@ static void find_room(struct calibration *found, const struct stored_swath *swat
         found->room_db.unseen = "fewer than two plain tiles are in the middle third of the columns";
         return;
     }
-    const double mean = sum / count;
+    const double mean = sum / count, deviation = sqrt(fmax(0.0, squares / count - mean * mean));
     found->room_db.value =
         DECIBELS * pixel_log_intensity(found, swath, found->full_scale.value) - mean;
-    found->room_db.error = sqrt(fmax(0.0, squares / count - mean * mean) / count);
+    found->room_db.error = deviation / sqrt(count);
     for (size_t i = 0; i < found->tiles.count; i++) {
         const size_t middle = found->tiles.columns[i] + found->tiles.side / 2;
-        const double off = fabs(DECIBELS * levels[i] - mean);
+        const size_t row = found->tiles.rows[i] + found->tiles.side / 2;
+        const double off =
+            fabs(DECIBELS * levels[i] - (mean - deviation)) + oddness_of_row(found, row);
         if (middle < found->columns / 3 || middle >= 2 * found->columns / 3 || off >= least)
             continue;
         least = off;
-        found->plain_row = found->tiles.rows[i] + found->tiles.side / 2;
+        found->plain_row = row;
         found->plain_column = middle;
     }
 }

@@ -115,13 +115,14 @@ struct calibration {
     struct plain_tiles tiles;
     struct estimate full_scale, clipped, looks, shape;
     struct estimate room_db;        /* of the ceiling over the seabed in the middle columns */
-    size_t plain_row, plain_column; /* middle of a plain tile there, of about that level */
+    size_t plain_row, plain_column; /* middle of a plain tile there, darker than most */
     struct estimate along_rows, range_columns; /* half-power widths of the response, pixels */
     struct estimate noise_floor_db;            /* over the seabed about shadows */
     size_t shadows;                            /* that tell it */
     struct estimate nadir_column, altitude_m;
     double altitude_ends_m[2]; /* which 5 and 95 % of pings lie below */
     struct first_returns returns;
+    double median_return; /* of these, columns; 0: unseen */
     double row_spacing_m, column_spacing_m, first_slant_range_m; /* NAN: unknown */
     uint32_t side;              /* SONJECT_SIDE_... that the file tells; SIDE_UNKNOWN */
     double recorded_altitude_m; /* that the file tells, in the median or mean; 0: it does not */

@@ -319,6 +319,7 @@ static void tell_water(struct calibration *found, double *scratch)
     memcpy(scratch, returns->columns, found->rows * sizeof *scratch);
     double columns[3];
     spread_of(scratch, found->rows, columns);
+    found->median_return = columns[1];
     const bool knows_first = returns->sides != WATER_BETWEEN && found->first_slant_range_m >= 0.0;
     const double first = knows_first ? found->first_slant_range_m / found->column_spacing_m : 0.5;
     if (!(found->column_spacing_m > 0.0)) {

@@ -18,6 +18,7 @@
 #define PARAMETER_MOST   1e5
 #define MANY_LOOKS       4.0
 #define LEVEL_STEPS      12
+#define NO_GAIN          1e-5 /* of a tile's likelihood by another level */
 #define STRAY_SHARE      1e-5 /* of pixels, in any cell, that are no speckle: contacts, edges */
 #define EVALUATIONS_MOST 160
 #define CLOSE            0.02 /* of the likelihood: no tile tells such a difference */
@@ -96,6 +97,10 @@ static double fit_level(const struct fitting *fit, const uint16_t *counts, doubl
     for (int i = 0; i < LEVEL_STEPS; i++) {
         double step = information > 0.0 ? slope / information : 0.0;
         step = fmin(1.0, fmax(-1.0, step));
+        if (slope * step < NO_GAIN) {
+            *level += step;
+            return best + 0.5 * slope * step;
+        }
         double tried = -INFINITY, tried_slope = 0.0, tried_information = 0.0;
         for (int half = 0; half < 4 && tried < best; half++, step *= 0.5)
             tried = tile_likelihood(fit, counts, *level + step, &tried_slope, &tried_information);
@@ -104,10 +109,10 @@ static double fit_level(const struct fitting *fit, const uint16_t *counts, doubl
             break;
         *level += step;
         best = tried;
+        /* what the step showed of the curvature tells more of the peak than the information */
+        const double curvature = (slope - tried_slope) / step;
+        information = curvature > 0.0 ? curvature : tried_information;
         slope = tried_slope;
-        information = tried_information;
-        if (fabs(step) < 1e-4)
-            break;
     }
     return best;
 }

@@ -149,6 +149,9 @@ static void check_places(int quality)
 {
     struct report report = {{0}, NULL, NULL};
     struct region boxes[] = {{25, 40, 5, 7}, {0, 0, 2, 2}, {58, 0, 99, 3}};
+    struct avoided_box avoided[] = {{{0, 0, 0, 0}, {6.25, 7.25}, {40.0, 43.0}}, /* the first */
+                                    {boxes[1], {NAN, NAN}, {NAN, NAN}},
+                                    {boxes[2], {NAN, NAN}, {NAN, NAN}}};
     struct swath_plan swath;
     struct campaign campaign;
     int hits[60][90] = {{0}};
@@ -156,18 +159,19 @@ static void check_places(int quality)
     uint64_t places = 0;
     memset(&swath, 0, sizeof swath);
     memset(&campaign, 0, sizeof campaign);
-    const sonject_geometry_params geometry = {.column_spacing_m = 0.5, .first_slant_range_m = 20.0};
+    const sonject_geometry_params geometry = {
+        .row_spacing_m = 0.25, .column_spacing_m = 0.5, .first_slant_range_m = 20.0};
     campaign.swaths = &swath;
     campaign.chip_rows = 16;
     campaign.chip_columns = 17;
     campaign.edge = 1;
     campaign.clearance = 3;
     campaign.has_range = true;
-    campaign.nearest_range_m = 26.0;  /* columns 12, where the middle is that of a chip at 4... */
-    campaign.farthest_range_m = 52.0; /* ...and 64 */
+    campaign.slant_range_m[0] = 26.0; /* columns 12, where the middle is that of a chip at 4... */
+    campaign.slant_range_m[1] = 52.0; /* ...and 64 */
     swath.layout.rows = 60;
     swath.layout.columns = 90;
-    swath.avoid = boxes;
+    swath.avoid = avoided;
     swath.avoid_count = 3;
     swath.jpeg_quality = quality;
     for (int i = 0; i < 60; i++)
