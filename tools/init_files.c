@@ -290,8 +290,8 @@ static void add_swaths(FILE *file, const struct interview *interview)
     }
 }
 
-/* Stones as high as the target, alone: of bare seabed a detector learns that all that
- * is bright is a target. */
+/* Stones as high as the target, alone: of bare seabed a detector learns that all that is bright is a
+ * target. */
 static void add_clutter(FILE *file, const char *text)
 {
     struct checked checked;

@@ -227,6 +227,14 @@ static bool is_faint(const struct campaign *campaign, const sonject_object_truth
             !(truth->shadow_visibility_db <= campaign->visible_shadow_db));
 }
 
+static const char *visibility_text(double decibels, char text[16])
+{
+    if (isnan(decibels))
+        return "none";
+    snprintf(text, 16, "%.1f dB", decibels);
+    return text;
+}
+
 /* Finds the targets that are seen less than they are to be; false: there are none. next: of several
  * targets those alone are drawn anew, and all others keep their places. */
 static bool find_faint(const struct sonject_campaign *campaign, struct campaign_image *image,
@@ -245,9 +253,10 @@ static bool find_faint(const struct sonject_campaign *campaign, struct campaign_
         are_some = true;
         places.are_kept[i] = false;
         next->of_targets[i] += plan->target_count > 1;
-        snprintf(why, REASON_CAPACITY,
-                 "the target is seen too little: highlight %.1f dB, shadow %.1f dB",
-                 truth->highlight_visibility_db, truth->shadow_visibility_db);
+        char highlight[16], shadow[16];
+        snprintf(why, REASON_CAPACITY, "the target is seen too little: highlight %s, shadow %s",
+                 visibility_text(truth->highlight_visibility_db, highlight),
+                 visibility_text(truth->shadow_visibility_db, shadow));
     }
     if (plan->target_count > 1)
         next->places = places;
