@@ -82,9 +82,8 @@ static void choose_sides(const struct swath_file *file, uint32_t sides[2])
     struct raster_layout layout;
     swath_file_layout(file, &layout);
     geometry_notes_read(file, &noted);
-    plot_small_sides(layout.rows, layout.columns,
-                     plot_pixel_shape(noted.row_spacing_m, noted.column_spacing_m), CELL_SIDE,
-                     sides);
+    plot_small_sides(layout.rows, layout.columns, noted.row_spacing_m, noted.column_spacing_m,
+                     CELL_SIDE, sides);
 }
 
 static sonject_status open_image(const struct data_set *set, size_t split, const json_t *record,
@@ -279,6 +278,7 @@ sonject_status write_contact_sheet(const struct data_set *set, uint32_t cell_hei
         ids[i] = cell_image(set, i);
     CHECK(write_sheet(set, "contact_sheet.png", ids, count, cell_height));
     *document = JSON_OBJECT({"gap", json_integer(CELL_GAP)}, {"across", json_integer(CELLS_ACROSS)},
+                            {"most", json_integer(SHEET_CELLS)},
                             {"width", json_integer(CELL_SIDE + CELL_GAP)},
                             {"height", json_integer(cell_pitch(set, cell_height))},
                             {"images", json_counts(ids, count)});

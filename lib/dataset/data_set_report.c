@@ -286,13 +286,13 @@ static json_t *page_document(struct statistics_page *page)
         json_append(&columns, json_string(row_members[i].key));
     for (size_t i = 0; i < page->series_count; i++)
         json_append(&histograms, histogram_document(&page->series[i]));
-    json_t *document = JSON_OBJECT(
-        {"images", json_count(page->set->images)}, JSON_COUNT(page, every),
-        {"splits", splits_document(page)}, {"numbers", numbers_document(page)},
-        JSON_COUNT(page, drawn_anew), JSON_COUNT(page, difficult), JSON_COUNT(page, unseen),
-        JSON_COUNT(page, clipped), JSON_COUNT(page, cut), {"sheet", page->sheet},
-        {"histograms", histograms}, {"columns", columns}, {"rows", page->rows},
-        {"chips", json_count(page->chip_count)}, {"chips_at_once", json_count(SHEET_CELLS)});
+    json_t *document =
+        JSON_OBJECT({"images", json_count(page->set->images)}, JSON_COUNT(page, every),
+                    {"splits", splits_document(page)}, {"numbers", numbers_document(page)},
+                    JSON_COUNT(page, drawn_anew), JSON_COUNT(page, difficult),
+                    JSON_COUNT(page, unseen), JSON_COUNT(page, clipped), JSON_COUNT(page, cut),
+                    {"sheet", page->sheet}, {"histograms", histograms}, {"columns", columns},
+                    {"rows", page->rows}, {"chips", json_count(page->chip_count)});
     page->rows = page->sheet = NULL;
     for (size_t i = 0; i < COUNT(kept); i++)
         json_add(&document, kept[i], json_incref(json_object_get(page->set->head, kept[i])));

@@ -220,9 +220,8 @@ static sonject_status draw_chip(struct report *report, struct canvas *canvas,
     free(sorted);
     const sonject_box *label = &chip->label;
     uint32_t sides[2];
-    plot_small_sides(chip->rows, chip->columns,
-                     plot_pixel_shape(chip->row_spacing_m, chip->column_spacing_m), CELL_SIDE,
-                     sides);
+    plot_small_sides(chip->rows, chip->columns, chip->row_spacing_m, chip->column_spacing_m,
+                     CELL_SIDE, sides);
     for (uint32_t i = 0; i < sides[0]; i++)
         for (uint32_t j = 0; j < sides[1]; j++) {
             const size_t at =

@@ -121,28 +121,31 @@ static struct plot_scale scale_of(uint64_t pixels, double length)
     return scale;
 }
 
-double plot_pixel_shape(double row_spacing_m, double column_spacing_m)
+/* Height over width of a pixel; 1 where nothing tells it. */
+static double pixel_shape(double row_spacing_m, double column_spacing_m)
 {
     const double ratio = row_spacing_m / fabs(column_spacing_m);
     return isfinite(ratio) && ratio > 0.0 ? ratio : 1.0;
 }
 
-void plot_sides(double rows, double columns, double pixel_shape, double longest, double *height,
-                double *width)
+/* The sides of a picture to scale, whose longer one is given. */
+static void choose_sides(double rows, double columns, double shape, double longest, double *height,
+                         double *width)
 {
-    const double in_columns = pixel_shape * rows;
+    const double in_columns = shape * rows;
     const double scale = longest / fmax(in_columns, columns);
     *height = fmax(in_columns * scale, longest / LONGEST_SHAPE);
     *width = fmax(columns * scale, longest / LONGEST_SHAPE);
 }
 
-void plot_small_sides(uint64_t rows, uint64_t columns, double pixel_shape, uint32_t longest,
-                      uint32_t sides[2])
+void plot_small_sides(uint64_t rows, uint64_t columns, double row_spacing_m,
+                      double column_spacing_m, uint32_t longest, uint32_t sides[2])
 {
+    const double shape = pixel_shape(row_spacing_m, column_spacing_m);
     const double finest =
-        fmax((double)rows * fmax(pixel_shape, 1.0), (double)columns * fmax(1.0 / pixel_shape, 1.0));
+        fmax((double)rows * fmax(shape, 1.0), (double)columns * fmax(1.0 / shape, 1.0));
     double height, width;
-    plot_sides((double)rows, (double)columns, pixel_shape, fmin(longest, finest), &height, &width);
+    choose_sides((double)rows, (double)columns, shape, fmin(longest, finest), &height, &width);
     sides[0] = (uint32_t)fmax(1.0, floor(height));
     sides[1] = (uint32_t)fmax(1.0, floor(width));
 }
@@ -153,9 +156,9 @@ static void choose_scales(const struct plot_frame *frame, double target,
                           struct plot_scale *along_track, struct plot_scale *range)
 {
     double height, width;
-    plot_sides((double)frame->rows, (double)frame->columns,
-               plot_pixel_shape(frame->row_spacing_m, frame->column_spacing_m), target, &height,
-               &width);
+    choose_sides((double)frame->rows, (double)frame->columns,
+                 pixel_shape(frame->row_spacing_m, frame->column_spacing_m), target, &height,
+                 &width);
     *along_track = scale_of(frame->rows, height);
     *range = scale_of(frame->columns, width);
 }

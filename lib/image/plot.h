@@ -40,18 +40,11 @@ sonject_status plot_panels(struct report *report, const struct plot_frame *frame
                            const struct plot_panel *panels, uint32_t count, uint8_t **picture,
                            uint32_t *height, uint32_t *width, struct plot_place *places);
 
-/* Height over width of a pixel; 1 where nothing tells it. */
-double plot_pixel_shape(double row_spacing_m, double column_spacing_m);
-
-/* The sides of a picture to scale whose longer one is given; no more than five times the other, so
- * that long lines are still seen. */
-void plot_sides(double rows, double columns, double pixel_shape, double longest, double *height,
-                double *width);
-
-/* Those of a small image, rows first, of which none is longer; the finer sides of its pixels are
- * not drawn longer, either. */
-void plot_small_sides(uint64_t rows, uint64_t columns, double pixel_shape, uint32_t longest,
-                      uint32_t sides[2]);
+/* The sides of a picture of a small image to scale, rows first, of which none is longer than
+ * `longest`; nor are the finer sides of its pixels drawn longer. Spacings that are no numbers above
+ * 0 make square pixels. */
+void plot_small_sides(uint64_t rows, uint64_t columns, double row_spacing_m,
+                      double column_spacing_m, uint32_t longest, uint32_t sides[2]);
 
 /* Ticks of an axis: multiples of 1, 2 or 5 times a power of ten. */
 #define TICK_LABEL_CAPACITY 40

@@ -415,8 +415,7 @@ static void test_small_images_are_to_scale(void **state)
                  {288, 144, NAN, {144, 72}}, {1, 1, 1.0, {1, 1}}};
     for (size_t i = 0; i < COUNT(cases); i++) {
         uint32_t sides[2];
-        plot_small_sides(cases[i].rows, cases[i].columns, plot_pixel_shape(cases[i].shape, 1.0),
-                         144, sides);
+        plot_small_sides(cases[i].rows, cases[i].columns, cases[i].shape, 1.0, 144, sides);
         assert_memory_equal(sides, cases[i].sides, sizeof sides);
     }
 }
