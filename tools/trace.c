@@ -9,14 +9,11 @@
 struct trace_options {
     struct stage_options stage;
     struct scene_arguments scene;
-    const char *export_file;
 };
 
 static const struct argument arguments[] = {
     {"--output", "-o", "FILE", "file of sums to write, for sonject form", ARGUMENT_TEXT, true,
      offsetof(struct trace_options, stage.output)},
-    {"--export", NULL, "FILE.h5", "also writes the impulses as HDF5 arrays, for other programs",
-     ARGUMENT_TEXT, false, offsetof(struct trace_options, export_file)},
     SCENE_ARGUMENTS(struct trace_options),
     STAGE_ARGUMENTS(struct trace_options),
 };
@@ -29,8 +26,7 @@ static sonject_status trace(sonject_context *context, const void *verb_options,
     sonject_scene *scene = NULL;
     sonject_status status = scene_arguments_read(context, &options->scene, &scene);
     if (status == SONJECT_OK)
-        status = sonject_trace(context, scene, options->stage.output, options->export_file,
-                               progress_update, progress);
+        status = sonject_trace(context, scene, options->stage.output, progress_update, progress);
     sonject_scene_release(&scene);
     return status;
 }

@@ -12,15 +12,13 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
-/* Traces the scene and writes what rays added up to the file, for sonject_form, and, where it is
- * not NULL, its impulses to export_file as arrays of HDF5, described in lib/inject/impulses.h
- * (builds without it: UNSUPPORTED). Each appears whole or not at all. The file keeps the scene's
- * text, and the names of the files that it names, but not these: they, and the input image, are
- * needed again; of a scene with tables in memory it keeps no text. Errors: ARGUMENT, INPUT, DEVICE,
- * STORAGE, MEMORY, UNSUPPORTED, CANCELLED. */
+/* Traces the scene and writes what rays added up to the file, for sonject_form. It appears whole or
+ * not at all, and keeps the scene's text, and the names of the files that it names, but not these:
+ * they, and the input image, are needed again; of a scene with tables in memory it keeps no text.
+ * Errors: ARGUMENT, INPUT, DEVICE, STORAGE, MEMORY, UNSUPPORTED, CANCELLED. */
 SONJECT_API sonject_status sonject_trace(sonject_context *context, const sonject_scene *scene,
-                                         const char *file, const char *export_file,
-                                         sonject_progress_function progress, void *user);
+                                         const char *file, sonject_progress_function progress,
+                                         void *user);
 
 typedef struct sonject_form_params {
     uint32_t struct_size;

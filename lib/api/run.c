@@ -120,8 +120,7 @@ sonject_status sonject_merge(sonject_context *context, const sonject_scene *scen
 }
 
 sonject_status sonject_trace(sonject_context *context, const sonject_scene *scene, const char *file,
-                             const char *export_file, sonject_progress_function progress,
-                             void *user)
+                             sonject_progress_function progress, void *user)
 {
     struct run_request request;
     CHECK(begin(context, &request, progress, user, NULL));
@@ -130,8 +129,7 @@ sonject_status sonject_trace(sonject_context *context, const sonject_scene *scen
         return null_argument(report, "file");
     CHECK(scene_use(report, scene, &request.scene));
     request.source = &scene->source;
-    return context_finish(context,
-                          trace_scene(report, &context->device, &request, file, export_file));
+    return context_finish(context, trace_scene(report, &context->device, &request, file));
 }
 
 sonject_status sonject_form(sonject_context *context, const sonject_scene *scene,

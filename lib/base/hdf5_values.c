@@ -29,17 +29,6 @@ void hdf5_leave(const struct hdf5_session *session)
     pthread_mutex_unlock(&one_at_a_time);
 }
 
-hid_t hdf5_make_group(hid_t file, const char *path)
-{
-    const hid_t links = H5Pcreate(H5P_LINK_CREATE);
-    hid_t group = -1;
-    if (links >= 0 && H5Pset_create_intermediate_group(links, 1) >= 0)
-        group = H5Gcreate2(file, path, links, H5P_DEFAULT, H5P_DEFAULT);
-    if (links >= 0)
-        H5Pclose(links);
-    return group;
-}
-
 void hdf5_abandon(hid_t file)
 {
     void *handle = NULL;
@@ -59,21 +48,6 @@ static bool write_scalar(hid_t object, const char *name, hid_t stored, hid_t nat
     if (space >= 0)
         H5Sclose(space);
     return is_done;
-}
-
-bool hdf5_write_whole(hid_t object, const char *name, uint64_t value)
-{
-    return write_scalar(object, name, H5T_STD_U64LE, H5T_NATIVE_UINT64, &value);
-}
-
-bool hdf5_write_integer(hid_t object, const char *name, int64_t value)
-{
-    return write_scalar(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, &value);
-}
-
-bool hdf5_write_number(hid_t object, const char *name, double value)
-{
-    return write_scalar(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
 }
 
 /* Texts of `bytes` bytes, their terminator among them. */

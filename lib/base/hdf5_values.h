@@ -33,16 +33,10 @@ struct hdf5_session {
 void hdf5_enter(struct hdf5_session *session);
 void hdf5_leave(const struct hdf5_session *session);
 
-/* A group, and those above it that are missing. A negative answer: failed. */
-hid_t hdf5_make_group(hid_t file, const char *path);
-
 /* Lets a file that cannot be written be closed: what HDF5 still wants to write goes nowhere. */
 void hdf5_abandon(hid_t file);
 
-/* Attributes of one value. */
-bool hdf5_write_whole(hid_t object, const char *name, uint64_t value);
-bool hdf5_write_integer(hid_t object, const char *name, int64_t value);
-bool hdf5_write_number(hid_t object, const char *name, double value);
+/* An attribute. */
 bool hdf5_write_text(hid_t object, const char *name, const char *text);
 
 #endif

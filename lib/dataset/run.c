@@ -12,7 +12,6 @@
 #include "base/progress.h"
 #include "base/report.h"
 #include "base/system/process.h"
-#include "inject/impulses.h"
 #include "inject/scene_hash.h"
 #include "schema/scene_file.h"
 
@@ -342,46 +341,27 @@ sonject_status run_scene(struct report *report, struct device_slot *slot,
     return status;
 }
 
-static sonject_status export_lines(void *export, const struct impulse_lines *lines)
-{
-    return impulse_export_lines(export, lines);
-}
-
 static sonject_status trace_swath(struct report *report, struct device_slot *slot,
                                   const struct run_request *request, const struct swath *swath,
-                                  const char *file, const char *export_file)
+                                  const char *file)
 {
-    const struct scene *scene = request->scene;
     const struct injection_input input = swath_input(swath);
     struct device *device = NULL;
-    struct impulse_export *export = NULL;
     char hash[HASH_TEXT_CAPACITY];
-    sonject_status status = scene_hash(report, scene, swath->identity, hash);
-    if (status == SONJECT_OK && export_file && *export_file)
-        status = impulse_export_begin(report, export_file, &export);
-    THEN(status, device_slot_open(report, slot, scene->user_shapes.count > 0, &device));
-    const struct impulse_sink sink = {export_lines, export};
+    CHECK(scene_hash(report, request->scene, swath->identity, hash));
+    CHECK(device_slot_open(report, slot, request->scene->user_shapes.count > 0, &device));
     const struct checkpoint_job job = {report,          device, request,         hash,
                                        swath->identity, &input, clock_seconds(), request->progress,
                                        request->user};
-    struct export_facts facts = {.scene_hash = hash,
-                                 .image_hash = swath->identity,
-                                 .image_rows = swath->layout.rows,
-                                 .image_columns = swath->layout.columns};
-    THEN(status, trace_into_file(&job, file, export ? &sink : NULL, &facts.counts));
-    if (status == SONJECT_OK && export)
-        status = impulse_export_publish(export, scene, &input, &facts);
-    impulse_export_release(&export);
-    return status;
+    return trace_into_file(&job, file);
 }
 
 sonject_status trace_scene(struct report *report, struct device_slot *slot,
-                           const struct run_request *request, const char *file,
-                           const char *export_file)
+                           const struct run_request *request, const char *file)
 {
     struct swath swath;
     CHECK(swath_open(report, request->scene, &swath));
-    const sonject_status status = trace_swath(report, slot, request, &swath, file, export_file);
+    const sonject_status status = trace_swath(report, slot, request, &swath, file);
     swath_close(&swath);
     return status;
 }

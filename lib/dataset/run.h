@@ -29,11 +29,9 @@ sonject_status run_scene(struct report *report, struct device_slot *slot,
 void tell_result(struct report *report, const struct scene *scene, const struct swath *swath,
                  const struct injection_result *result);
 
-/* Traces the request's scene and writes its sums to the file, and its impulses to export_file where
- * that is neither NULL nor "": sonject_trace. */
+/* Traces the request's scene and writes its sums to the file: sonject_trace. */
 sonject_status trace_scene(struct report *report, struct device_slot *slot,
-                           const struct run_request *request, const char *file,
-                           const char *export_file);
+                           const struct run_request *request, const char *file);
 
 /* Forms the image of what was traced: sonject_form. scene: NULL for that whose text is kept. The
  * request has the folder, and what is asked of it. */

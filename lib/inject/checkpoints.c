@@ -16,8 +16,7 @@
 #include "trace/checkpoint.h"
 
 #define CHECKPOINT_S 60.0
-#define NAMES_MOST   12  /* shards that a message names */
-#define EXPORT_SHARE 0.7 /* of a trace's time, where it exports too */
+#define NAMES_MOST   12 /* shards that a message names */
 
 /* One call's tracing. */
 struct tracing {
@@ -218,31 +217,17 @@ static sonject_status end_checkpoint(struct tracing *tracing, sonject_status tra
     return status;
 }
 
-sonject_status trace_into_file(const struct checkpoint_job *job, const char *path,
-                               const struct impulse_sink *sink, struct trace_counts *counts)
+sonject_status trace_into_file(const struct checkpoint_job *job, const char *path)
 {
     struct tracing tracing;
-    struct trace_counts kept;
-    const double exported = sink ? EXPORT_SHARE : 0.0;
-    struct progress_share exporting = {job->progress, job->user, 0.0, exported};
-    struct progress_share keeping = {job->progress, job->user, exported, 1.0 - exported};
     sonject_status status = begin(&tracing, job);
     THEN(status, find_rays(&tracing));
-    if (status == SONJECT_OK && sink) { /* an export is of the whole patch */
-        struct injection_input whole = tracing.input;
-        whole.is_whole = true;
-        whole.checkpoint = NULL;
-        status = injection_trace(job->report, job->device, tracing.scene, &whole, sink,
-                                 progress_share_tell, &exporting, counts);
-    }
     THEN(status, checkpoint_begin(&tracing.checkpoint, job->report, path, NULL, &tracing.head));
-    THEN(status, injection_trace(job->report, job->device, tracing.scene, &tracing.input, NULL,
-                                 progress_share_tell, &keeping, &kept));
+    THEN(status, injection_trace(job->report, job->device, tracing.scene, &tracing.input,
+                                 job->progress, job->user));
     THEN(status, checkpoint_publish(&tracing.checkpoint, job->request->source));
     checkpoint_clear(&tracing.checkpoint);
     pilots_clear(&tracing.pilots);
-    if (status == SONJECT_OK && !sink)
-        *counts = kept;
     return status;
 }
 
@@ -253,11 +238,9 @@ static sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is
     if (!is_complete)
         CHECK(find_rays(tracing));
     while (!is_complete) {
-        struct trace_counts counts;
         CHECK(begin_checkpoint(tracing, next));
-        const sonject_status status =
-            injection_trace(tracing->report, job->device, tracing->scene, &tracing->input, NULL,
-                            tell, tracing, &counts);
+        const sonject_status status = injection_trace(tracing->report, job->device, tracing->scene,
+                                                      &tracing->input, tell, tracing);
         CHECK(end_checkpoint(tracing, status, &next, &is_complete));
     }
     return SONJECT_OK;

@@ -45,10 +45,8 @@ struct checkpoint_job {
 sonject_status inject_by_checkpoints(const struct checkpoint_job *job,
                                      struct injection_result *result, bool *is_formed);
 
-/* Traces everything into a file of sums, and hands its impulses to the sink, unless that is NULL.
- * *counts is filled in. Errors: as sonject_trace, and the sink's own. */
-sonject_status trace_into_file(const struct checkpoint_job *job, const char *path,
-                               const struct impulse_sink *sink, struct trace_counts *counts);
+/* Traces everything into a file of sums. Errors: as sonject_trace. */
+sonject_status trace_into_file(const struct checkpoint_job *job, const char *path);
 
 /* Where the tallies of a run's folder are, for free(); NULL where memory lacks. */
 char *checkpoints_folder(const char *folder);

@@ -297,8 +297,7 @@ sonject_status injection_run(struct report *report, struct device *device,
 
 sonject_status injection_trace(struct report *report, struct device *device,
                                const struct scene *scene, const struct injection_input *input,
-                               const struct impulse_sink *sink, sonject_progress_function progress,
-                               void *user, struct trace_counts *counts)
+                               sonject_progress_function progress, void *user)
 {
     struct prepared prepared;
     sonject_status status = prepare(&prepared, report, device, scene, input);
@@ -307,12 +306,11 @@ sonject_status injection_trace(struct report *report, struct device *device,
         status = window_job_init(&job, &prepared, &prepared.windows, i, input->is_complex, progress,
                                  user);
         if (status == SONJECT_OK) {
-            status = trace_impulses(&job.tracer, &job.patch.request, sink);
+            status = trace_impulses(&job.tracer, &job.patch.request, NULL);
             window_job_clear(&job, &prepared);
         }
     }
     THEN(status, end_tracing(&prepared.setup.tracer));
-    *counts = prepared.setup.tracer.counts;
     prepared_clear(&prepared);
     return status;
 }

@@ -103,12 +103,11 @@ enum injected_plane {
 void injection_result_plane(const struct injection_result *result, enum injected_plane plane,
                             float *out);
 
-/* The first stage of it by the scene's own number of rays, whose impulses go to the sink. Errors:
- * as sonject_inject, and the sink's own. */
+/* The first stage of it by the scene's own number of rays, kept by the input's checkpoint. Errors:
+ * as sonject_inject. */
 sonject_status injection_trace(struct report *report, struct device *device,
                                const struct scene *scene, const struct injection_input *input,
-                               const struct impulse_sink *sink, sonject_progress_function progress,
-                               void *user, struct trace_counts *counts);
+                               sonject_progress_function progress, void *user);
 
 /* The element level of a patch: its impulses, traced as for the image, heard by hydrophones. Fills
  * *layout (not its struct_size) for a patch of the input's size; pixels are not used. Errors:

@@ -12,7 +12,6 @@ import images
 from conftest import COMMAND, assert_refused, files_below, make_swath, write_scene
 from test_run import DEMO, contents, limit_file_size, stop_at_the_bar
 
-HAS_HDF5 = os.environ.get("SONJECT_HAS_HDF5") == "1"
 
 # A rough and smooth object of two parts.
 PARTS = """\
@@ -251,42 +250,3 @@ def test_a_trace_that_is_stopped_leaves_no_file(sonject, scene, tmp_path, enviro
     assert not (tmp_path / "impulses.sums").exists()
     if number == signal.SIGTERM:
         assert not left_by_trace(tmp_path)
-
-
-def test_the_export_holds_what_is_formed(sonject, scene, tmp_path):
-    if not HAS_HDF5:
-        assert_refused(sonject("trace", scene, "-o", "a", "--export", "a.h5"), 3, "HDF5")
-        return
-    h5py = pytest.importorskip("h5py")
-    scene.write_text(scene.read_text() + PARTS)
-    command(sonject, "trace", scene, "-o", "a", "--export", "a.h5", *NOMINAL)
-    command(sonject, "trace", scene, "-o", "b", *NOMINAL)
-    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
-    command(sonject, "form", "a", "-o", "formed")
-    facts = json.loads((tmp_path / "formed" / "run.json").read_text())
-    with h5py.File(tmp_path / "a.h5") as file:
-        assert file.attrs["rays"] > facts["rays"] > 0  # of the whole patch, not of the objects' windows
-        assert file.attrs["bandwidth_hz"] == 30e3
-        assert sorted(file["objects"]) == ["0", "1"]
-        lost = file["objects/0/lost"]
-        units = {name: data.attrs["units"].decode() if isinstance(data.attrs["units"], bytes)
-                 else data.attrs["units"] for name, data in file["objects/0"].items()}
-        assert units == {"energy": "m^2", "footprint": "rays", "lost": "m^2"}
-        seabed, tile = file["seabed"], file["objects/0"]
-        assert seabed["energy"].shape == (seabed.attrs["strips"], seabed.attrs["bins"])
-        # an object hides no more than the seabed under it returns
-        row = tile.attrs["first_strip"] - seabed.attrs["first_strip"]
-        column = tile.attrs["first_bin"] - seabed.attrs["first_bin"]
-        under = seabed["energy"][row:row + lost.shape[0], column:column + lost.shape[1]]
-        assert 0 < lost[()].sum() <= under.sum()
-        assert "multibounce" not in file
-    command(sonject, "trace", scene, "-o", "d", "--export", "d.h5", "--set",
-            "injection.interactions=2", *NOMINAL)
-    with h5py.File(tmp_path / "d.h5") as file:
-        regions = file["multibounce"].values()  # the faces of the buoy see each other
-        for region in regions:
-            assert region["real"].shape == (region.attrs["strips"], region.attrs["bins"])
-        assert any(region["imaginary"][()].any() for region in regions)
-    assert_refused(sonject("form", "a.h5", "-o", "result"), 3, "a.h5", "trace again")
-    assert_refused(sonject("trace", scene, "-o", "c", "--export", "none/c.h5"), 5, "none/c.h5")
-    assert not (tmp_path / "c").exists()

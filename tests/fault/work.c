@@ -250,7 +250,7 @@ static sonject_status make_campaign(struct work *work, sonject_context *context,
 
 static sonject_status trace(struct work *work, sonject_context *context, sonject_scene *scene)
 {
-    return sonject_trace(context, scene, work->impulses, NULL, NULL, NULL);
+    return sonject_trace(context, scene, work->impulses, NULL, NULL);
 }
 
 static sonject_status form(struct work *work, sonject_context *context, sonject_scene *scene)

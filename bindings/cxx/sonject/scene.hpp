@@ -179,14 +179,11 @@ class scene
             });
     }
 
-    /* Traces alone, and keeps the impulses in the file, for sonject::form; in export_file, if one
-     * is named, as HDF5 arrays for other programs. */
-    void trace(const std::string &file, const progress &callback = progress(),
-               const std::string &export_file = std::string()) const
+    /* Traces alone, and keeps the sums in the file, for sonject::form. */
+    void trace(const std::string &file, const progress &callback = progress()) const
     {
         detail::tell_progress(context_, callback, [&](sonject_progress_function tell, void *user) {
-            return sonject_trace(context_, handle_, file.c_str(),
-                                 export_file.empty() ? nullptr : export_file.c_str(), tell, user);
+            return sonject_trace(context_, handle_, file.c_str(), tell, user);
         });
     }
 

@@ -167,20 +167,10 @@ def merge(
     )
 
 
-def trace(
-    scene: Scene,
-    file: PathLike,
-    progress: Optional[Progress] = None,
-    *,
-    export_file: Optional[PathLike] = None,
-) -> None:
-    """Traces the scene and writes its sums to a file, which form makes images of.
-
-    export_file: the same as HDF5 arrays, for other programs.
-    """
+def trace(scene: Scene, file: PathLike, progress: Optional[Progress] = None) -> None:
+    """Traces the scene and writes its sums to a file, which form makes images of."""
     context = scene.context
-    context.work("sonject_trace", context, scene, file_name("file", file),
-                 optional_file_name("export_file", export_file), progress=progress)
+    context.work("sonject_trace", context, scene, file_name("file", file), progress=progress)
 
 
 def form(

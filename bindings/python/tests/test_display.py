@@ -134,7 +134,7 @@ def test_a_bar_ends_at_one_or_where_the_work_does(bars, make_scene, amplitude_pa
         sonject.inject(amplitude_patch, outside, progress=True)
     outside.close()
     with pytest.raises(ValueError, match="closed"):
-        outside.context.work("sonject_trace", outside.context, outside, b"a", None, progress=True)
+        outside.context.work("sonject_trace", outside.context, outside, b"a", progress=True)
     assert len(bars) == 3 and all(bar.n < 1.0 and bar.is_closed for bar in bars[1:])
 
 

@@ -1,6 +1,5 @@
 """Tracing and image formation apart."""
 
-import os
 
 import numpy
 import pytest
@@ -46,15 +45,6 @@ def test_a_scene_in_memory_is_formed_with_the_scene_at_hand(tmp_path):
         sonject.form(impulses, tmp_path / "other", scene=other)
     with pytest.raises(sonject.SonjectError, match="takes no overrides"):
         sonject.form(impulses, tmp_path / "other", {"sonar.bandwidth": "29 kHz"}, make_scene())
-
-
-@pytest.mark.skipif(os.environ.get("SONJECT_HAS_HDF5") != "1", reason="built without HDF5")
-def test_impulses_are_exported_too(tmp_path):
-    told = []
-    sonject.trace(make_scene(), tmp_path / "impulses.sums", export_file=tmp_path / "arrays.h5",
-                  progress=lambda fraction, stage: told.append(fraction))
-    assert told == sorted(told) and len(told) > 3  # of both traces together
-    assert (tmp_path / "arrays.h5").read_bytes().startswith(b"\x89HDF")
 
 
 def test_progress_ends_at_one(tmp_path):
