@@ -8,8 +8,6 @@
 #include "base/memory.h"
 #include "dataset/campaign.h"
 #include "dataset/fit.h"
-#include "image/raster.h"
-#include "inject/swath.h"
 #include "schema/scene_file.h"
 #include "schema/yaml_tree.h"
 
@@ -115,28 +113,6 @@ sonject_status sonject_campaign_scene(sonject_context *context, sonject_campaign
     return status;
 }
 
-/* The image becomes the amplitudes of what its file would store, so that those who learn from it in
- * memory see no step, and nothing over full scale, that the file would not show. */
-static sonject_status round_as_stored(struct report *report, const struct swath *swath,
-                                      struct injection_result *result)
-{
-    size_t bad = 0;
-    uint64_t at_full_scale = 0; /* the input's are counted already */
-    if (swath->is_complex)
-        return SONJECT_OK;
-    void *stored = swath_stored_result(swath, result, &result->statistics.output_clipped);
-    CHECK_MEMORY(report, stored, "an image");
-    const sonject_status status =
-        transfer_to_amplitude(&swath->transfer, swath->layout.type, stored,
-                              result->rows * result->columns, result->image, &bad, &at_full_scale);
-    free(stored);
-    return status == SONJECT_OK ? SONJECT_OK
-                                : report_failure(report, status,
-                                                 "what the file would store at pixel %zu is no "
-                                                 "amplitude",
-                                                 bad);
-}
-
 sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaign *campaign,
                                        uint64_t id, sonject_progress_function progress, void *user,
                                        sonject_result **result)
@@ -156,7 +132,7 @@ sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaig
     CHECK_MEMORY(&context->report, made, "a result");
     memset(&image, 0, sizeof image);
     sonject_status status = campaign_image_make(device, campaign, id, progress, user, &image);
-    THEN(status, round_as_stored(&context->report, &image.swath, &image.result));
+    THEN(status, campaign_image_round(&context->report, &image));
     if (status == SONJECT_OK) {
         made->report = &context->report;
         made->result = image.result;

@@ -470,6 +470,10 @@ sonject_status campaign_image_make(struct device *device, struct sonject_campaig
                                    struct campaign_image *image);
 void campaign_image_clear(struct campaign_image *image);
 
+/* The image becomes the amplitudes of what its file would store, so that those who learn from it in
+ * memory see no step, and nothing over full scale, that the file would not show. Errors: MEMORY. */
+sonject_status campaign_image_round(struct report *report, struct campaign_image *image);
+
 #define CALIBRATIONS_FOLDER "calibrations" /* in the folder of a run */
 
 /* Makes the calibration that a scene asks for in the run's folder; the scene is left initialised.

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "dataset/data_set.h"
 #include "dataset/run.h"
+#include "image/raster.h"
 #include "inject/scene_hash.h"
 #include "schema/scene_file.h"
 
@@ -299,4 +300,25 @@ sonject_status campaign_image_make(struct device *device, struct sonject_campaig
         campaign_image_clear(image);
         memset(image, 0, sizeof *image);
     }
+}
+
+sonject_status campaign_image_round(struct report *report, struct campaign_image *image)
+{
+    const struct swath *swath = &image->swath;
+    struct injection_result *result = &image->result;
+    size_t bad = 0;
+    uint64_t at_full_scale = 0; /* the input's are counted already */
+    if (swath->is_complex)
+        return SONJECT_OK;
+    void *stored = swath_stored_result(swath, result, &result->statistics.output_clipped);
+    CHECK_MEMORY(report, stored, "an image");
+    const sonject_status status =
+        transfer_to_amplitude(&swath->transfer, swath->layout.type, stored,
+                              result->rows * result->columns, result->image, &bad, &at_full_scale);
+    free(stored);
+    return status == SONJECT_OK ? SONJECT_OK
+                                : report_failure(report, status,
+                                                 "what the file would store at pixel %zu is no "
+                                                 "amplitude",
+                                                 bad);
 }
