@@ -1,6 +1,4 @@
 /* sonject convert: a file of one format from a file of another. */
-#include <string.h>
-
 #include <sonject/sonject.h>
 
 #include "console.h"
@@ -13,9 +11,6 @@ struct convert_options {
     const char *into;
     const char *channel;
     const char *array;
-    bool magnitude;
-    const char *type;
-    struct number_argument scale;
     struct geometry_arguments geometry;
 };
 
@@ -28,33 +23,8 @@ static const struct argument arguments[] = {
      MEMBER(channel)},
     {"--array", NULL, "NAME", "in an HDF5 or MATLAB file of several", ARGUMENT_TEXT, false,
      MEMBER(array)},
-    {"--magnitude", NULL, NULL, "of complex samples", ARGUMENT_FLAG, false, MEMBER(magnitude)},
-    {"--type", NULL, "TYPE", "uint8, uint16 or float32, with --scale", ARGUMENT_TEXT, false,
-     MEMBER(type)},
-    {"--scale", NULL, "FACTOR", "new samples over old ones, with --type", ARGUMENT_NUMBER, false,
-     MEMBER(scale)},
     GEOMETRY_ARGUMENTS(struct convert_options, "resample the columns to equal steps of it"),
 };
-
-static bool read_type(const struct convert_options *options, sonject_convert_params *params)
-{
-    static const char *const types[] = {"uint8", "uint16", "float32"};
-    if ((options->type != NULL) != options->scale.is_given) {
-        message("convert: --type and --scale belong together");
-        return false;
-    }
-    if (!options->type)
-        return true;
-    params->scale = options->scale.value;
-    for (uint32_t i = 0; i < 3; i++)
-        if (strcmp(options->type, types[i]) == 0)
-            params->samples = SONJECT_SAMPLES_UINT8 + i;
-    if (params->samples == SONJECT_SAMPLES_KEPT || !(params->scale > 0.0)) {
-        message("convert: --type takes uint8, uint16 or float32, and --scale a number above 0");
-        return false;
-    }
-    return true;
-}
 
 static int work(const void *verb_options)
 {
@@ -67,8 +37,7 @@ static int work(const void *verb_options)
     params.into = options->into;
     params.channel = options->channel;
     params.array = options->array;
-    params.magnitude = options->magnitude;
-    if (!channel_check("convert", options->channel) || !read_type(options, &params) ||
+    if (!channel_check("convert", options->channel) ||
         !geometry_parse("convert", &options->geometry, &is_ground, &params.altitude_m, geometry,
                         &params.geometry))
         return EXIT_CODE_USAGE;
@@ -94,10 +63,9 @@ const struct verb convert_verb = {
     .second_offset = MEMBER(output),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes =
-        "OUT is .tif, .png, .npy or .h5; with --into FILE it is of FILE's format,\n"
-        "XTF, JSF and MATLAB too. Samples that a new type cannot hold are refused, never cut;\n"
-        "numbers beyond a JSF file's 16 bits alone are cut to its largest.",
+    .notes = "OUT is .tif, .png, .npy or .h5; with --into FILE it is of FILE's format,\n"
+             "XTF, JSF and MATLAB too. Samples that a file cannot hold are refused, never cut;\n"
+             "numbers beyond a JSF file's 16 bits alone are cut to its largest.",
     .options_size = sizeof(struct convert_options),
     .work = work,
 };

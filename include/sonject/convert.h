@@ -10,14 +10,6 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
-/* Types of samples that a conversion makes. */
-typedef enum sonject_samples {
-    SONJECT_SAMPLES_KEPT = 0, /* the input's type */
-    SONJECT_SAMPLES_UINT8 = 1,
-    SONJECT_SAMPLES_UINT16 = 2,
-    SONJECT_SAMPLES_FLOAT32 = 3
-} sonject_samples;
-
 /* The range axis that a conversion makes. */
 typedef enum sonject_convert_axis {
     SONJECT_CONVERT_AXIS_KEPT = 0, /* the input's range axis */
@@ -27,27 +19,24 @@ typedef enum sonject_convert_axis {
 
 typedef struct sonject_convert_params {
     uint32_t struct_size;
-    uint32_t samples;   /* sonject_samples; another type needs a scale */
-    const char *input;  /* any image, array or recording that runs read */
-    const char *output; /* .tif, .png, .npy, .h5; with `into` any */
-    const char *into;   /* NULL, or a file of the output's size and type: the output is a copy of it
-                           with the input's samples, all else untouched; not of
-                           PNG and JPEG, whose copies are new */
+    uint32_t range_axis; /* sonject_convert_axis; columns are resampled to equal steps of it, each
+                            from the nearest column of the input, at the input's column spacing */
+    const char *input;   /* any image, array or recording that runs read */
+    const char *output;  /* .tif, .png, .npy, .h5; with `into` any */
+    const char *into; /* NULL, or a file of the output's size and type: the output is a copy of it
+                         with the input's samples, all else untouched; not of
+                         PNG and JPEG, whose copies are new */
     const char *channel; /* as of sonject_quicklook_params, like the other two */
     const char *array;
     const char *geometry; /* of slant range; NULL: the input's own. Refused where that is of ground
                              range */
     double altitude_m;    /* 0: the input's own */
-    double scale;         /* with samples: new = old * scale, whole numbers rounded; 0: 1 */
-    uint32_t magnitude;   /* 1: of complex samples their magnitude */
-    uint32_t range_axis;  /* sonject_convert_axis; columns are resampled to equal steps of it, each
-                             from the nearest column of the input, at the input's column spacing */
 } sonject_convert_params;
 
 /* Converts a file. Geometry that is known goes with the samples where the format keeps texts (all
  * but .npy; a line of the log tells of it). Channel and array are those of
  * `input`, and of `into` where that has several. Doubles become floats. Refused (INPUT): samples
- * that the new type cannot hold (numbers beyond a JSF file's 16 bits are cut), formats that cannot
+ * that the file cannot hold (numbers beyond a JSF file's 16 bits are cut), formats that cannot
  * hold the samples as they are, a range axis of an input that does not tell its own, and whatever
  * would do nothing. The output appears whole or not at all. Errors: ARGUMENT, INPUT, STORAGE,
  * MEMORY, UNSUPPORTED (a format that this build lacks), CANCELLED. */

@@ -41,25 +41,15 @@ sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklo
     return draw_quicklook(report, &taken, &options);
 }
 
-static sonject_status check_conversion(struct report *report, sonject_convert_params *params)
+static sonject_status check_conversion(struct report *report, const sonject_convert_params *params)
 {
     if (!params->input || !params->output)
         return null_argument(report, "input and output");
-    if (params->samples > SONJECT_SAMPLES_FLOAT32 ||
-        params->range_axis > SONJECT_CONVERT_AXIS_GROUND)
-        return report_failure(report, SONJECT_ERROR_ARGUMENT,
-                              "samples or range_axis: no such choice");
-    if (params->scale == 0.0)
-        params->scale = 1.0;
-    if (!(params->scale > 0.0) || !isfinite(params->scale))
-        return report_failure(report, SONJECT_ERROR_INPUT, "scale must be a number above 0, not %g",
-                              params->scale);
+    if (params->range_axis > SONJECT_CONVERT_AXIS_GROUND)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT, "range_axis: no such choice");
     if (!(params->altitude_m >= 0.0) || !isfinite(params->altitude_m))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "altitude must be a number of m above 0, not %g", params->altitude_m);
-    if (params->samples == SONJECT_SAMPLES_KEPT && params->scale != 1.0)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "a scale belongs to a type of samples: say which");
     return SONJECT_OK;
 }
 

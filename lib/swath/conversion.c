@@ -55,64 +55,6 @@ static sonject_status take_geometry(struct report *report, struct conversion *co
     return SONJECT_OK;
 }
 
-static void replace(struct conversion *conversion, void *pixels)
-{
-    free(conversion->pixels);
-    conversion->pixels = pixels;
-}
-
-static sonject_status to_magnitude(struct report *report, struct conversion *conversion,
-                                   const char *input)
-{
-    struct raster_layout *layout = &conversion->layout;
-    const size_t count = (size_t)(layout->rows * layout->columns);
-    const float *parts = conversion->pixels;
-    if (layout->channels != 2 || layout->type != PIXEL_FLOAT32)
-        return input_failure(report, input,
-                             "is not complex, so it has no other magnitude: take that out");
-    float *magnitudes = allocate_array(count, sizeof *magnitudes);
-    CHECK_MEMORY(report, magnitudes, "the magnitudes");
-    for (size_t i = 0; i < count; i++)
-        magnitudes[i] = hypotf(parts[2 * i], parts[2 * i + 1]);
-    replace(conversion, magnitudes);
-    layout->channels = 1;
-    return SONJECT_OK;
-}
-
-static sonject_status to_type(struct report *report, struct conversion *conversion,
-                              const sonject_convert_params *params)
-{
-    struct raster_layout *layout = &conversion->layout;
-    const enum pixel_type type = params->samples == SONJECT_SAMPLES_UINT8    ? PIXEL_UINT8
-                                 : params->samples == SONJECT_SAMPLES_UINT16 ? PIXEL_UINT16
-                                                                             : PIXEL_FLOAT32;
-    const size_t count = (size_t)(layout->rows * layout->columns) * layout->channels;
-    if (layout->channels == 2 && type != PIXEL_FLOAT32)
-        return input_failure(
-            report, params->input,
-            "is complex, which whole numbers do not hold: ask for its magnitude too");
-    if (type == layout->type && params->scale == 1.0)
-        return input_failure(report, params->input, "already has %s samples: take the type out",
-                             type_name(layout));
-    void *fresh = allocate_array(count, pixel_bytes(type));
-    CHECK_MEMORY(report, fresh, "the samples");
-    for (size_t i = 0; i < count; i++) {
-        const double number = pixel_number(layout->type, conversion->pixels, i) * params->scale;
-        if (pixel_store(type, fresh, i, number))
-            continue;
-        free(fresh);
-        const uint64_t pixel = i / layout->channels;
-        return input_failure(report, params->input,
-                             "the sample at row %llu, column %llu would become %g, which the new "
-                             "type does not hold: choose another scale",
-                             (unsigned long long)(pixel / layout->columns),
-                             (unsigned long long)(pixel % layout->columns), number);
-    }
-    replace(conversion, fresh);
-    layout->type = type;
-    return SONJECT_OK;
-}
-
 static sonject_status check_axis(struct report *report, const char *path, enum range_axis axis,
                                  double altitude, const struct range_columns *columns)
 {
@@ -285,12 +227,8 @@ sonject_status convert_file(struct report *report, const sonject_convert_params 
     memset(&conversion, 0, sizeof conversion);
     sonject_status status = check_uses(report, params, options);
     THEN(status, read_input(report, params, options, &conversion));
-    if (params->magnitude)
-        THEN(status, to_magnitude(report, &conversion, params->input));
     if (params->range_axis != SONJECT_CONVERT_AXIS_KEPT)
         THEN(status, resample(report, &conversion, params));
-    if (params->samples != SONJECT_SAMPLES_KEPT)
-        THEN(status, to_type(report, &conversion, params));
     THEN(status, params->into ? write_into(report, params, options, &conversion)
                               : write_new(report, params, &conversion));
     free(conversion.pixels);

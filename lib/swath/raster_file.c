@@ -239,8 +239,7 @@ static sonject_status check_format(struct report *report, const char *path,
                                   : layout->channels == 1 || is_float)
         return SONJECT_OK;
     return input_failure(report, path,
-                         "this format does not hold %s samples: write .tif, .npy or .h5, or ask "
-                         "for another type and give its scale",
+                         "this format does not hold %s samples: write .tif, .npy or .h5",
                          layout->channels == 2 ? "complex"
                          : is_float            ? "floating-point"
                                                : "integer");

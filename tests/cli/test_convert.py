@@ -177,34 +177,16 @@ def test_hdf5_keeps_samples_and_geometry(sonject, tmp_path, line, sides):
     assert b"sonject:side=starboard\n" in (tmp_path / "b.tif").read_bytes()
 
 
-def test_complex_samples_and_their_magnitude(sonject, tmp_path, swath):
+def test_types_of_samples_stay(sonject, tmp_path, swath):
     image = (swath * numpy.exp(1j * swath * 50)).astype(numpy.complex64)
     numpy.save(tmp_path / "a.npy", image)
     sonject.done("convert", "a.npy", "b.tif")
     sonject.done("convert", "b.tif", "c.npy")
     assert numpy.array_equal(numpy.load(tmp_path / "c.npy"), image)
-    sonject.done("convert", "a.npy", "d.tif", "--magnitude")
-    magnitude = images.read_tiff(tmp_path / "d.tif")
-    assert numpy.abs(magnitude - numpy.abs(image)).max() <= 1e-7 * magnitude.max()
     assert_refused(sonject("convert", "a.npy", "d.png"), 3, "does not hold complex samples")
-    assert_refused(sonject("convert", "d.tif", "e.tif", "--magnitude"), 3, "is not complex")
-
-
-def test_types_change_by_a_stated_scale_alone(sonject, tmp_path, swath):
     numpy.save(tmp_path / "a.npy", swath)
     assert_refused(sonject("convert", "a.npy", "b.png"), 3, "does not hold floating-point samples")
-    assert_refused(sonject("convert", "a.npy", "b.png", "--type", "uint8"), 2, "--scale")
-    scale = 255.0 / float(swath.max())
-    assert_refused(
-        sonject("convert", "a.npy", "b.png", "--type", "uint8", "--scale", 1.1 * scale), 3,
-        "row {}, column {} would become".format(*numpy.argwhere(swath * 1.1 * scale >= 255.5)[0]))
     assert not (tmp_path / "b.png").exists()
-    sonject.done("convert", "a.npy", "b.png", "--type", "uint8", "--scale", scale)
-    sonject.done("convert", "b.png", "b.npy")
-    rounded = numpy.floor(swath.astype("f8") * scale + 0.5).astype("u1")
-    assert numpy.array_equal(numpy.load(tmp_path / "b.npy"), rounded)
-    assert_refused(sonject("convert", "a.npy", "b.tif", "--type", "float32", "--scale", 1), 3,
-                   "already has float32 samples")
 
 
 def test_ground_range_and_back(sonject, tmp_path, line, sides):

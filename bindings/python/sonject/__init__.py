@@ -27,7 +27,7 @@ from .actions import (
 from .campaign import Campaign, fit_campaign, merge_campaign
 from .context import Context, Progress, default_context, devices
 from .enumerations import (
-    ConvertAxis, LabelFormat, LabelPart, RangeAxis, Samples, SeriesForm, Status,
+    ConvertAxis, LabelFormat, LabelPart, RangeAxis, SeriesForm, Status,
 )
 from .errors import Cancelled, SonjectError
 from .mesh import write_mesh
@@ -46,7 +46,7 @@ def version() -> str:
 __all__ = [
     "Box", "Campaign", "CampaignImage", "Cancelled", "ContactMeasures", "Context", "ConvertAxis",
     "Device", "ElementLayout", "LabelFormat", "LabelPart", "Measurement", "ObjectTruth",
-    "Progress", "RangeAxis", "Result", "Samples", "Scene", "SeriesForm", "SonjectError",
+    "Progress", "RangeAxis", "Result", "Scene", "SeriesForm", "SonjectError",
     "Statistics", "Status", "Transfer", "absorption", "calibrate", "check", "convert",
     "default_context", "devices", "element_layout", "element_series", "form", "inject", "keys",
     "fit_campaign", "measure", "measure_contact", "merge", "merge_campaign", "quicklook", "run", "run_elements", "trace",

@@ -29,7 +29,7 @@ from ._values import (
     whole_number,
 )
 from .context import Context, Progress, ProgressBridge, default_context
-from .enumerations import ConvertAxis, LabelFormat, RangeAxis, Samples, SeriesForm
+from .enumerations import ConvertAxis, LabelFormat, RangeAxis, SeriesForm
 from .keys import Quantity
 from .result import Array, Box, ContactMeasures, Measurement, Result
 from .scene import Scene
@@ -258,9 +258,6 @@ def convert(
     into: Optional[PathLike] = None,
     channel: Union[str, int, None] = None,
     array: Optional[str] = None,
-    magnitude: bool = False,
-    samples: Samples = Samples.KEPT,
-    scale: float = 1.0,
     range_axis: ConvertAxis = ConvertAxis.KEPT,
     geometry: Optional[Mapping[str, Any]] = None,
     altitude_m: Optional[Quantity] = None,
@@ -268,9 +265,8 @@ def convert(
 ) -> None:
     """Makes a file of one format (.tif, .png, .npy, .h5) from a file of another.
 
-    into: the output is a copy of this file with the source's samples; samples, scale: another type,
-    in which values that do not fit are refused; geometry, altitude_m: None for what the source's
-    metadata says.
+    into: the output is a copy of this file with the source's samples; geometry, altitude_m: None for
+    what the source's metadata says.
     """
     context = default_context() if context is None else context
     params = filled(
@@ -279,9 +275,6 @@ def convert(
         output=file_name("output", output),
         into=optional_file_name("into", into),
         **_image_keys(channel=channel, array=array, geometry=geometry),
-        magnitude=bool(magnitude),
-        samples=choice("samples", Samples, samples),
-        scale=scale,
         range_axis=choice("range_axis", ConvertAxis, range_axis),
         **given(altitude_m=altitude_m),
     )
