@@ -1,12 +1,14 @@
 /* The same bits everywhere: what a device tallies, at every width, chunking and core count, is what
- * the same kernel functions give as plain C, one lane at a time. */
+ * the same kernels give as the C compiler takes them, with the fewest lanes. */
 #include "claims.h"
-#include "trace_chains.h"
-#include "trace_rough_images.h"
-#include "trace_smooth_images.h"
+#include "elementary.h"
+#include "random.h"
 
 #include "device/opencl/opencl.h"
+#include "kernel/clutter.h"
+#include "kernel/mesh_samples.h"
 #include "kernel/reference_solids.h"
+#include "mesh_arrays.h"
 #include "physics/bench.h"
 #include "physics/user_codes.h"
 
@@ -39,6 +41,8 @@ enum object_set {
     NO_OBJECTS,
     FOUR_OBJECTS,
     MORE_SHAPES, /* of every kind */
+    RINGS,       /* meshes, one with smooth normals */
+    CLUTTER,     /* so many that a tree is searched, and groups of targets are aimed at */
     TWO_OBJECTS,
     CROWD /* a mesh, a user's shape and spheres, too many for one launch */
 };
@@ -55,6 +59,8 @@ static const struct scene_case {
     {"map", FOUR_OBJECTS, ROUGH | AT_ALL | WITH_MAP, 0.2, 1},
     {"seabed alone", NO_OBJECTS, ROUGH | AT_ALL, 0.0, 1},
     {"more shapes", MORE_SHAPES, ROUGH | AT_ALL | GLINTS, 0.2, 1},
+    {"meshes", RINGS, ROUGH | AT_ALL, 0.1, 1},
+    {"clutter", CLUTTER, ROUGH | AT_ALL, 0.1, 1},
     {"layers", FOUR_OBJECTS, ROUGH | AT_ALL | GLINTS | IMAGES | TILES | IN_LAYERS, 0.0, 1},
     {"relief", FOUR_OBJECTS, ROUGH | AT_ALL | GLINTS | IMAGES | TILES | ON_RELIEF, 0.0, 1},
     {"crowd over relief", CROWD, TILES | ON_RELIEF, 0.0, 1},
@@ -65,6 +71,7 @@ static const struct scene_case {
     {"beam", FOUR_OBJECTS, ROUGH | WITH_BEAM, 0.0, 1},
     {"fouling", FOUR_OBJECTS, ROUGH | AT_ALL | TILES | FOULED, 0.2, 1},
     {"chains", TWO_OBJECTS, CHAINS | AT_ALL, 0.0, 3},
+    {"chains in clutter", CLUTTER, CHAINS | AT_ALL, 0.0, 3},
     {"chains off what is fouled", TWO_OBJECTS, CHAINS | FOULED | UNDER_SURFACE, 0.0, 3},
     {"chains, paper's columns, map", TWO_OBJECTS, CHAINS | PAPER_COLUMNS | WITH_MAP, 0.0, 3},
     {"chains, wide source", TWO_OBJECTS, CHAINS | SMOOTH_SEABED, 4.0, 4},
@@ -118,10 +125,36 @@ static void place_crowd(struct bench *bench)
     }
 }
 
+static void place_rings(struct bench *bench)
+{
+    bench->scene.meshes = calloc(2, sizeof *bench->scene.meshes);
+    assert_non_null(bench->scene.meshes);
+    for (uint32_t i = 0; i < 2; i++) {
+        struct mesh_sample ring;
+        struct mesh_options options;
+        mesh_options_init(&options);
+        options.unit_m = 0.4;
+        options.smooth_angle_rad = i;
+        sample_ring(&ring, 60, 40);
+        EXPECT_OK(&bench->report,
+                  mesh_from_arrays(&bench->report, "ring", ring.positions, ring.vertices,
+                                   ring.corners, ring.triangles, &options,
+                                   &bench->scene.meshes[bench->scene.mesh_count++]));
+        sample_clear(&ring);
+        bench_place(bench_add(bench, SHAPE_MESH, 0.0, 0.0, 0.0), 30.0 + 35.0 * i, 60.0, 0.7 * i,
+                    1.1 * i, 0.0)
+            ->mesh = i;
+    }
+}
+
 static void place_objects(struct bench *bench, enum object_set set)
 {
     if (set == CROWD)
         place_crowd(bench);
+    if (set == RINGS)
+        place_rings(bench);
+    if (set == CLUTTER)
+        clutter_strew(bench, 200, 0.4);
     if (set == MORE_SHAPES) {
         place_more_shapes(bench);
     } else if (set == FOUR_OBJECTS) {
@@ -177,7 +210,7 @@ static void make_scene(struct bench *bench, const struct scene_case *scene)
     sonject_sonar_params *sonar = &bench->scene.sonar;
     sonject_injection_params *injection = &bench->scene.injection;
     injection->seed = 0x123456789abcdefu;
-    injection->ray_scale = scene->flags & CHAINS ? 0.25 : 0.5;
+    injection->ray_scale = scene->objects == CLUTTER ? 0.06 : scene->flags & CHAINS ? 0.25 : 0.5;
     injection->interactions = scene->interactions;
     injection->order_energies = 1;
     injection->estimator =
@@ -396,74 +429,9 @@ static struct tallies trace_on_device(struct bench *bench, const struct subject 
     return tallies;
 }
 
-/* The records that a device was given, so that both work from the same ones. */
-struct given {
-    void *buffers[LAUNCH_BUFFERS_MAX];
-};
-
-static struct outcome_record strip_as_c(const struct trace *trace, const struct subject *subject,
-                                        const struct given *given, struct tallies *tallies,
-                                        int strip)
-{
-    const struct fan_record *fan = &trace->launch->fan;
-    const struct ray_piece_record *rays = trace->launch->rays.pieces;
-    void *const *buffers = given->buffers;
-    if (subject->part == ROUGH)
-        return trace_rough_strip(fan, rays, buffers[ROUGH_OBJECTS], subject->map,
-                                 buffers[ROUGH_EDGES], tallies->sums, tallies->tiles, strip, 0);
-    if (subject->part == CHAINS)
-        return trace_chains_strip(fan, rays, buffers[CHAIN_RECORD], buffers[CHAIN_OBJECTS],
-                                  buffers[CHAIN_SPHERES], subject->map, tallies->sums,
-                                  (float[1]){0.0f}, strip, 0);
-    if (!subject->pair)
-        return trace_smooth_strip(fan, rays, buffers[SMOOTH_OBJECTS], tallies->sums, strip, 0);
-    return trace_smooth_images_strip(fan, rays, buffers[SMOOTH_SOURCES], buffers[SMOOTH_OBJECTS],
-                                     tallies->sums, strip, 0);
-}
-
-static struct tallies trace_as_c(struct bench *bench, const struct subject *subject)
-{
-    static struct trace trace;
-    struct given given = {{NULL}};
-    trace_begin(&trace, bench, subject);
-    struct tallies tallies = tallies_of(&trace, subject);
-    struct fan_record *record = &trace.launch->fan;
-    for (size_t i = 0; i < trace.launch->buffer_count; i++)
-        given.buffers[i] = bench_copy_buffer(bench, trace.launch->buffers[i]);
-    for (uint32_t i = 0; i < fan_count(bench, subject); i++) {
-        const struct chain_fan fan = aim(&trace, bench, subject, i);
-        if (subject->part == CHAINS) {
-            *record = fan.record;
-            record->quanta = ldexpf(1.0f, trace.chains.exponents[0]);
-            record->table = trace.chains.table;
-        }
-        record->first_strip = fan.strips.first;
-        record->strips = fan.strips.count;
-        if (subject->part == ROUGH)
-            rough_trace_aim(&trace.rough, fan.strips);
-        record->segments = 1;
-        for (int strip = 0; strip < record->strips; strip++) {
-            const struct outcome_record outcome =
-                strip_as_c(&trace, subject, &given, &tallies, strip);
-            assert_int_equal(outcome.faults, 0);
-            tallies.counts.rays += outcome.rays;
-            tallies.counts.queries += outcome.queries;
-            tallies.counts.impulses += outcome.impulses;
-        }
-        if (subject->part != CHAINS)
-            assert_int_equal(tallies.counts.rays,
-                             (uint64_t)record->rays * record->strata * (uint64_t)record->strips);
-    }
-    for (size_t i = 0; i < trace.launch->buffer_count; i++)
-        free(given.buffers[i]);
-    launch_end(trace.launch);
-    return tallies;
-}
-
-/* The same device with kernels of each number of lanes; plain C, which is the same for all, runs
- * once. */
+/* The same device with kernels of each number of lanes, and what all are compared with. */
 static uint32_t widths[BENCH_WIDTHS];
-static struct device *devices[BENCH_WIDTHS];
+static struct device *devices[BENCH_WIDTHS], *reference;
 static size_t width_count;
 
 /* Programs take long to compile, and all are of the same vectors: only some are compared at all
@@ -483,7 +451,8 @@ static bool compare_bits(struct bench *bench, const struct subject *subject)
 {
     const int32_t least = subject->part == ROUGH ? 1 : subject->part == GLINTS ? 5 : 13;
     struct device *own = bench->tracer.device;
-    struct tallies expected = trace_as_c(bench, subject);
+    bench->tracer.device = reference;
+    struct tallies expected = trace_on_device(bench, subject, 1 << 20);
     const bool had_echoes = is_alive(subject, &expected);
     for (size_t w = 0; w < width_count; w++) {
         if (!is_compared(bench, subject, w))
@@ -514,9 +483,9 @@ static void on_scenes_with(unsigned flags, body *run)
     struct bench bench;
     width_count = bench_widths(widths);
     bench_open(&bench, ROWS, COLUMNS, 18.0);
-    for (size_t w = 0; w < width_count; w++) {
+    reference = bench_open_reference(&bench);
+    for (size_t w = 0; w < width_count; w++)
         devices[w] = bench_open_width(&bench, widths[w]);
-    }
     for (size_t i = 0; i < COUNT(scenes); i++)
         if (scenes[i].flags & flags &&
             !(scenes[i].objects == CROWD && native_is_named(bench.device->name))) { /* has code */
@@ -528,6 +497,7 @@ static void on_scenes_with(unsigned flags, body *run)
         }
     for (size_t w = 0; w < width_count; w++)
         device_close(&devices[w]);
+    device_close(&reference);
     bench_close(&bench);
 }
 

@@ -1,8 +1,7 @@
 /* Many objects: what the hierarchy finds is what a loop over all objects finds, to the bit, for
- * rays that run together and apart, from near and far, as plain C, as vectors and on devices. */
+ * rays that run together and apart, from near and far, as plain C and as vectors. On devices:
+ * test_bits.c. */
 #include "claims.h"
-#include "trace_chains.h"
-#include "trace_rough.h"
 #include "trace_smooth.h"
 
 #include "kernel/clutter.h"
@@ -190,76 +189,20 @@ static void test_hits_are_in_their_spheres(void **state)
     searched_end(&searched);
 }
 
-/* What plain C gives, which is the same for all numbers of lanes: made by the first of them. */
-static int64_t *sums_as_c[16];
-static size_t sums_known, sums_next;
-
-/* The next sums of the course; *is_new: to be made. */
-static int64_t *next_sums(size_t count, bool *is_new)
-{
-    assert_true(sums_next < COUNT(sums_as_c));
-    *is_new = sums_next == sums_known;
-    if (*is_new)
-        sums_as_c[sums_known++] = calloc(count, sizeof(int64_t));
-    assert_non_null(sums_as_c[sums_next]);
-    return sums_as_c[sums_next++];
-}
-
-static void forget_sums(void)
-{
-    while (sums_known > 0)
-        free(sums_as_c[--sums_known]);
-    sums_next = 0;
-}
-
-/* The device walks the tree, plain C loops. A source rectangle has visibility tested too. */
-static void compare_rough(struct bench *bench)
-{
-    static struct rough_trace trace;
-    bool is_new;
-    EXPECT_OK(&bench->report, rough_trace_begin(&trace, &bench->tracer, NULL));
-    const size_t cells = line_grid_cells(&trace.grid);
-    float *energy = calloc(cells, sizeof *energy);
-    int64_t *lines = next_sums(cells, &is_new);
-    int64_t *tiles = next_sums(trace.tile_elements, &is_new);
-    assert_non_null(energy);
-    EXPECT_OK(&bench->report,
-              rough_trace_strips(&trace, &bench->tracer, trace.grid.strips, energy));
-    struct object_record *objects = bench_copy_buffer(bench, trace.launch.buffers[ROUGH_OBJECTS]);
-    int64_t *from_device = bench_copy_buffer(bench, trace.launch.buffers[ROUGH_TALLIES]);
-    int64_t *device_tiles = bench_copy_buffer(bench, trace.launch.buffers[ROUGH_TILES]);
-    objects[0].tree_words = 0;
-    trace.launch.fan.segments = 1;
-    for (int strip = 0; is_new && strip < trace.launch.fan.strips; strip++)
-        assert_int_equal(trace_rough_strip(&trace.launch.fan, NULL, objects, NULL,
-                                           trace.edges.elevations, lines, tiles, strip, 0)
-                             .faults,
-                         0);
-    /* a dead trace would agree too */
-    assert_true(bench_expect_sums("seabed", from_device, lines, cells) > 300);
-    assert_true(bench_expect_sums("tiles", device_tiles, tiles, trace.tile_elements) > 300);
-    free(energy);
-    free(objects);
-    free(from_device);
-    free(device_tiles);
-    rough_trace_end(&trace);
-}
-
 /* The device knows the parts in the way alone, plain C all of them, with the relief behind them. */
 static size_t compare_smooth(struct bench *bench, uint32_t number)
 {
     struct smooth_trace trace;
-    bool is_new;
     struct tracer *tracer = &bench->tracer;
     EXPECT_OK(&bench->report, smooth_trace_begin(&trace, tracer, number, NULL));
     const struct span strips = {trace.grid.strips.first, trace.chunk};
     const size_t cells = (size_t)strips.count * (size_t)trace.grid.bins.count;
     float *field = calloc(2 * cells, sizeof *field);
-    int64_t *lines = next_sums(2 * cells, &is_new);
+    int64_t *lines = calloc(2 * cells, sizeof *lines);
     device_buffer buffer = NULL;
     const struct part_list all = all_parts(tracer);
     struct object_record *records;
-    assert_non_null(field);
+    assert_true(field && lines);
     EXPECT_OK(&bench->report,
               object_records_create(&records, tracer, &all, tracer->placements[number].centre));
     EXPECT_OK(&bench->report, smooth_trace_strips(&trace, tracer, strips, field, field + cells));
@@ -272,11 +215,12 @@ static size_t compare_smooth(struct bench *bench, uint32_t number)
     trace.launch.fan.objects = (int)tracer->part_count;
     trace.launch.fan.relief_words = object_buffer_relief_words(tracer, tracer->part_count);
     trace.launch.fan.only_object = (int)number;
-    for (int strip = 0; is_new && strip < trace.launch.fan.strips; strip++)
+    for (int strip = 0; strip < trace.launch.fan.strips; strip++)
         assert_int_equal(
             trace_smooth_strip(&trace.launch.fan, NULL, objects, lines, strip, 0).faults, 0);
     const size_t filled = bench_expect_sums("glints", from_device, lines, 2 * cells);
     free(field);
+    free(lines);
     free(records);
     free(objects);
     free(from_device);
@@ -285,86 +229,24 @@ static size_t compare_smooth(struct bench *bench, uint32_t number)
     return filled;
 }
 
-static void compare_chains(struct bench *bench)
+static void test_parts_out_of_the_way_change_no_glint(void **state)
 {
-    struct chain_trace trace;
-    bool is_new;
-    struct tracer *tracer = &bench->tracer;
-    EXPECT_OK(&bench->report, chain_trace_begin(&trace, tracer, NULL));
-    const size_t cells = trace.orders * line_grid_cells(&trace.grid);
-    struct chain_record *chains = bench_copy_buffer(bench, trace.launch.buffers[CHAIN_RECORD]);
-    struct object_record *objects = bench_copy_buffer(bench, trace.launch.buffers[CHAIN_OBJECTS]);
-    struct sphere_record *spheres = bench_copy_buffer(bench, trace.launch.buffers[CHAIN_SPHERES]);
-    int64_t *expected = next_sums(cells, &is_new);
-    assert_true(chains->groups > 0);
-    objects[0].tree_words = 0;
-    /* the seabed's fan and some objects' */
-    for (uint32_t i = 0; i < chain_fan_count(tracer); i += 41) {
-        struct chain_fan fan;
-        EXPECT_OK(&bench->report, chain_fan_init(&fan, tracer, &trace.grid, false, i));
-        const struct span strips = {fan.strips.first + fan.strips.count / 3,
-                                    fan.strips.count < 24 ? fan.strips.count / 3 : 8};
-        EXPECT_OK(&bench->report, chain_trace_strips(&trace, tracer, &fan, strips));
-        trace.launch.fan.segments = 1;
-        for (int strip = 0; is_new && strip < strips.count; strip++)
-            assert_int_equal(trace_chains_strip(&trace.launch.fan, NULL, chains, objects, spheres,
-                                                NULL, expected, (float[1]){0.0f}, strip, 0)
-                                 .faults,
-                             0);
-    }
-    int64_t *measured = bench_copy_buffer(bench, trace.launch.buffers[CHAIN_TALLIES]);
-    assert_true(bench_expect_sums("chains", measured, expected, cells) > 300);
-    free(measured);
-    free(chains);
-    free(objects);
-    free(spheres);
-    chain_trace_end(&trace);
-}
-
-/* At the ends of the row of widths: programs take long to compile (see test_bits.c). */
-static void test_devices(void **state)
-{
-    uint32_t widths[BENCH_WIDTHS];
-    const size_t count = bench_widths(widths);
-    for (size_t w = 0; w < count; w++) {
+    for (int has_relief = 0; has_relief < 2; has_relief++) {
         struct bench bench;
-        bench_open(&bench, ROWS, COLUMNS, MIDDLE_M);
-        bench_set_width(&bench, widths[w]);
-        print_message("width %u\n", (unsigned)widths[w]);
-        clutter_strew(&bench, 200, 0.4);
-        bench.scene.injection.interactions = 3;
-        bench.scene.injection.ray_scale = 0.1;
-        bench.scene.seabed.lambert = 0.2;
-        bench.scene.sonar.transducer_side_m = 0.1;
-        bench_ready(&bench);
-        sums_next = 0;
-        compare_rough(&bench);
         size_t filled = 0;
-        for (uint32_t number = 0; number < 200; number += 23)
+        bench_open(&bench, ROWS, COLUMNS, MIDDLE_M);
+        clutter_strew(&bench, 200, 0.4);
+        if (has_relief) {
+            struct relief_feature *ripples = bench_add_relief(&bench, RELIEF_RIPPLES);
+            ripples->wavelength_m = 0.4;
+            ripples->height_m = 0.05;
+        }
+        bench_ready(&bench);
+        for (uint32_t number = 0; number < 200; number += has_relief ? 70 : 23)
             filled += compare_smooth(&bench, number);
         assert_true(filled > 300);
-        compare_chains(&bench);
         bench_close(&bench);
     }
-    forget_sums();
-}
-
-/* Where launches of some of the parts have the relief. */
-static void test_relief_behind_some_of_the_parts(void **state)
-{
-    struct bench bench;
-    bench_open(&bench, ROWS, COLUMNS, MIDDLE_M);
-    clutter_strew(&bench, 200, 0.4);
-    struct relief_feature *ripples = bench_add_relief(&bench, RELIEF_RIPPLES);
-    ripples->wavelength_m = 0.4;
-    ripples->height_m = 0.05;
-    bench_ready(&bench);
-    size_t filled = 0;
-    for (uint32_t number = 0; number < 200; number += 70)
-        filled += compare_smooth(&bench, number);
-    assert_true(filled > 300);
-    bench_close(&bench);
-    forget_sums();
 }
 
 int main(void)
@@ -372,8 +254,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_tree_is_the_loop),
         cmocka_unit_test(test_hits_are_in_their_spheres),
-        cmocka_unit_test(test_devices),
-        cmocka_unit_test(test_relief_behind_some_of_the_parts),
+        cmocka_unit_test(test_parts_out_of_the_way_change_no_glint),
     };
     return bench_run_on_devices(tests, COUNT(tests));
 }

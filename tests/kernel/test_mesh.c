@@ -1,13 +1,13 @@
 /* Where rays meet meshes, against a reference in double precision that tries every triangle; that
- * nothing leaks through a closed mesh; that bits do not depend on width, neighbours or device. */
+ * nothing leaks through a closed mesh; that bits do not depend on lanes and neighbours (on devices:
+ * test_bits.c). */
+#include "base/report.h"
 #include "claims.h"
 #include "kernel/mesh_native.h"
 #include "kernel/mesh_probe.h"
 #include "kernel/mesh_samples.h"
-#include "kernel/probe_device.h"
 #include "kernel/random_rays.h"
 #include "mesh_arrays.h"
-#include "physics/bench.h"
 
 #define RAYS 51200 /* a multiple of 8 */
 
@@ -457,33 +457,10 @@ static void expect_same(const char *what, const struct flight *found, const stru
                 fail_msg("%s: plane %d of ray %u differs", what, plane, (unsigned)ray);
 }
 
-static void compare_device(const char *name, unsigned width, const struct mesh *mesh,
-                           const struct flight *expected)
-{
-    static const char *const kernels[] = {"nearest", "blocked", "surface"};
-    static struct report report;
-    struct device *device;
-    struct probe_device probe;
-    char what[160];
-    sonject_context_params params = {.struct_size = sizeof params};
-    params.device_name = name;
-    EXPECT_OK(&report, device_open(&report, &params, &device));
-    probe_device_begin(&probe, &report, device, width, mesh);
-    memset(flight.output, 0, sizeof flight.output);
-    for (size_t i = 0; i < COUNT(kernels); i++)
-        probe_device_run(&probe, kernels[i], flight.input[0], flight.output[0], RAYS, 1);
-    snprintf(what, sizeof what, "%s at %u lanes", name, width);
-    expect_same(what, &flight, expected);
-    probe_device_end(&probe);
-    device_close(&device);
-}
-
-static void test_bits_are_the_same_at_every_width(void **state)
+static void test_lanes_meet_what_one_ray_meets(void **state)
 {
     struct mesh_sample sample;
     struct mesh mesh;
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
     sample_ring(&sample, 200, 100);
     prepare(&sample, 0.4, &mesh);
     lay_mixed(&mesh);
@@ -492,16 +469,6 @@ static void test_bits_are_the_same_at_every_width(void **state)
                         other_flight.output[0], RAYS, 0, RAYS);
     ask(&mesh, &flight);
     expect_same("8 lanes of plain C", &flight, &other_flight);
-    for (size_t i = 0; i < devices; i++) {
-        uint32_t widths[BENCH_WIDTHS];
-        if (native_is_named(names[i])) /* is plain C */
-            continue;
-        bench_device = names[i];
-        const size_t count = bench_widths(widths);
-        for (size_t w = 0; w < count; w++)
-            compare_device(names[i], widths[w], &mesh, &other_flight);
-    }
-    bench_device = NULL;
     mesh_clear(&mesh);
 }
 
@@ -552,5 +519,4 @@ TEST_PROGRAM(NULL, NULL, TEST(test_rays_meet_the_nearest_triangle),
              TEST(test_nothing_leaks_through_a_closed_mesh), TEST(test_a_fine_sphere_is_a_sphere),
              TEST(test_smooth_normals_show_the_side_that_was_met),
              TEST(test_lifted_rays_pass_the_facets), TEST(test_reach_ends_at_what_is_met),
-             TEST(test_bits_are_the_same_at_every_width),
-             TEST(test_packet_order_never_changes_hits))
+             TEST(test_lanes_meet_what_one_ray_meets), TEST(test_packet_order_never_changes_hits))

@@ -39,6 +39,18 @@ struct device *bench_open_width(struct bench *bench, uint32_t width)
     return device;
 }
 
+struct device *bench_open_reference(struct bench *bench)
+{
+    const char *kept = bench_device;
+    uint32_t width = 1;
+    while (!native_has_width(width))
+        width *= 2;
+    bench_device = "native";
+    struct device *device = bench_open_width(bench, width);
+    bench_device = kept;
+    return device;
+}
+
 static void take_device(struct bench *bench)
 {
     if (free_device) {

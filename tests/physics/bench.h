@@ -38,6 +38,10 @@ struct device *bench_open_device(struct bench *bench);
  * work-items that share what they count. */
 struct device *bench_open_width(struct bench *bench, uint32_t width);
 
+/* The device native with the fewest lanes that it has, for device_close: kernels as the C compiler
+ * takes them, which all others are to give the bits of. */
+struct device *bench_open_reference(struct bench *bench);
+
 /* Gives the bench's device another number of lanes, and none of the programs of before. */
 void bench_set_width(struct bench *bench, uint32_t width);
 

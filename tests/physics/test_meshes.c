@@ -1,9 +1,7 @@
 /* Meshes against the shapes that they stand for: glints of facets by physical optics, energies and
  * shadows (users' shapes beside them), plates as large as their facets, sheets
- * with two sides, smooth surfaces that coarse facets stand for; one mesh shown by several objects;
- * and the same bits as plain C. */
-#include "trace_rough.h"
-
+ * with two sides, smooth surfaces that coarse facets stand for; one mesh shown by several objects.
+ */
 #include "../kernel/mesh_samples.h"
 #include "sea.h"
 #include "user_codes.h"
@@ -421,38 +419,4 @@ CLAIM(a_mesh_of_many_objects_is_held_once)
     /* meshes begin at multiples of 64 bytes */
     assert_in_range(bytes[0] - bytes[1], 2 * of_mesh, 2 * of_mesh + 2 * 128);
     assert_in_range(bytes[1], of_mesh, of_mesh + 8192);
-}
-
-/* Connections to a source of 10 cm start where smooth normals lift them to. */
-CLAIM(tallies_have_the_bits_of_plain_c)
-{
-    for (int is_smooth = 0; is_smooth < 2; is_smooth++) {
-        static struct rough_trace trace;
-        struct mesh_sample sample;
-        struct sea *sea = sea_open(ROWS, COLUMNS, FAR_M);
-        struct bench *bench = sea->bench;
-        make_rough(sea_add(sea, SHAPE_MESH, 0.0, 0.0, 0.0), 0.1);
-        sample_sphere(&sample, 4);
-        add_sample(sea, &sample, BALL, is_smooth ? 1.0 : 0.0);
-        sea->sonar->transducer_side_m = 0.1;
-        sea_ready(sea);
-        assert_int_equal(rough_trace_begin(&trace, &bench->tracer, NULL), SONJECT_OK);
-        struct object_record *objects =
-            bench_copy_buffer(bench, trace.launch.buffers[ROUGH_OBJECTS]);
-        const size_t lines = line_grid_cells(&trace.grid);
-        float *seabed = claim_memory(lines, sizeof *seabed);
-        int64_t *line = claim_memory(lines, sizeof *line);
-        int64_t *tile = claim_memory(trace.tile_elements, sizeof *tile);
-        assert_int_equal(rough_trace_strips(&trace, &bench->tracer, trace.grid.strips, seabed),
-                         SONJECT_OK);
-        int64_t *from_device = bench_copy_buffer(bench, trace.launch.buffers[ROUGH_TILES]);
-        trace.launch.fan.segments = 1;
-        for (int strip = 0; strip < trace.launch.fan.strips; strip++)
-            trace_rough_strip(&trace.launch.fan, trace.launch.rays.pieces, objects, NULL,
-                              trace.edges.elevations, line, tile, strip, 0);
-        assert_true(bench_expect_sums("tiles", from_device, tile, trace.tile_elements) > 1000);
-        free(objects);
-        free(from_device);
-        rough_trace_end(&trace);
-    }
 }
