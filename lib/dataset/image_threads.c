@@ -159,7 +159,7 @@ static bool start_thread(struct image_thread *thread, struct image_pool *pool,
     thread->slot.params = slot->params;
     thread->maker = (struct image_maker){NULL, &thread->campaign, note_fraction, thread};
     pthread_mutex_lock(&pool->lock);
-    const bool is_started = pthread_create(&thread->thread, NULL, make_images, thread) == 0;
+    const bool is_started = thread_start(&thread->thread, make_images, thread);
     pool->running += is_started;
     pthread_mutex_unlock(&pool->lock);
     return is_started;

@@ -223,43 +223,28 @@ static bool is_zero(const unsigned char *bytes, size_t count)
     return i == count;
 }
 
-/* Whether columns of a row hold nothing but 0. line: room for them; whole: as of read_patch. */
-static sonject_status find_zeros(struct report *report, struct swath_file *file, const void *whole,
-                                 const struct swath *swath, const struct region *columns,
-                                 unsigned char *line, bool *are_zeros)
-{
-    const size_t pixel = stored_bytes(swath);
-    const uint64_t first = columns->first_row * swath->layout.columns + columns->first_column;
-    if (!whole && columns->columns > 0)
-        CHECK(swath_file_read(report, file, columns, line));
-    *are_zeros = is_zero(whole ? (const unsigned char *)whole + (size_t)first * pixel : line,
-                         (size_t)columns->columns * pixel);
-    return SONJECT_OK;
-}
-
 /* A row that is dark in the patch alone is a ping all the same. whole: as of read_patch. */
 static sonject_status find_empty_rows(struct report *report, struct swath_file *file,
                                       const void *whole, struct swath *swath)
 {
     const size_t patch_bytes = (size_t)swath->patch.columns * stored_bytes(swath);
-    const uint64_t end = swath->patch.first_column + swath->patch.columns;
-    unsigned char *line = allocate_array((size_t)swath->layout.columns, stored_bytes(swath));
+    const size_t row_bytes = (size_t)swath->layout.columns * stored_bytes(swath);
+    unsigned char *line = allocate_array(row_bytes, 1);
     sonject_status status = SONJECT_OK;
     swath->empty.numbers = allocate_array((size_t)swath->patch.rows, sizeof(uint64_t));
     if (!line || !swath->empty.numbers)
         status = report_out_of_memory(report, "the patch");
     for (size_t i = 0; status == SONJECT_OK && i < swath->patch.rows; i++) {
-        const uint64_t row = swath->patch.first_row + i;
-        const struct region left = {row, 0, 1, swath->patch.first_column};
-        const struct region right = {row, end, 1, swath->layout.columns - end};
-        bool are_zeros = true;
+        const struct region row = {swath->patch.first_row + i, 0, 1, swath->layout.columns};
+        const unsigned char *bytes = line;
         if (!is_zero((unsigned char *)swath->stored + i * patch_bytes, patch_bytes))
             continue;
-        status = find_zeros(report, file, whole, swath, &left, line, &are_zeros);
-        if (are_zeros)
-            THEN(status, find_zeros(report, file, whole, swath, &right, line, &are_zeros));
-        if (status == SONJECT_OK && are_zeros)
-            swath->empty.numbers[swath->empty.count++] = row;
+        if (whole)
+            bytes = (const unsigned char *)whole + (size_t)row.first_row * row_bytes;
+        else
+            status = swath_file_read(report, file, &row, line);
+        if (status == SONJECT_OK && is_zero(bytes, row_bytes))
+            swath->empty.numbers[swath->empty.count++] = row.first_row;
     }
     free(line);
     return status;

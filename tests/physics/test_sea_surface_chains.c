@@ -233,49 +233,6 @@ CLAIM(every_path_has_its_energy)
     }
 }
 
-/* --- The scene upside down --- */
-
-/* A sphere near a Lambert seabed, and the same near a Lambert surface: sonar 230 m off both, and so
- * far away that only what is close to the sphere comes in time. */
-static struct energies trace_beside(uint32_t column_rule, bool is_below_surface, uint64_t seed)
-{
-    const double depth = 460.0, height = 3.2, lambert = 0.2;
-    const struct ranges far = {RANGES, 400.0 - 0.5 * RANGES, 1.0};
-    struct sea *sea = open_scene(height, 3.0);
-    sea->sonar->altitude_m = 230.0;
-    sea_move(sea, 400.0);
-    sea->surface->water_depth_m = depth;
-    sea->surface->material.reflection = 0.0;
-    sea->surface->material.lambert = is_below_surface ? lambert : 0.0;
-    sea->seabed->lambert = is_below_surface ? 1e-9 : lambert;
-    sea->injection->interactions = 2;
-    sea->injection->ray_scale = 0.25; /* errors are then up to what is systematic */
-    sea->injection->column_rule = column_rule;
-    sea_ready(sea);
-    if (is_below_surface) { /* higher than objects may be placed */
-        const double *centre = sea_centre(sea, 0),
-                     there[3] = {centre[0], centre[1], depth - height};
-        sea_put(sea, 0, there, sea_axes(sea, 0)[0], sea_axes(sea, 0)[1]);
-    }
-    return sea_chains(sea, &far, seed, SEEDS);
-}
-
-/* 1 %: in paper columns the surface's share keeps the angles at the sphere. The last ranges hear
- * seabed further from the sphere than the library looks. */
-CLAIM(upside_down_it_is_the_same)
-{
-    static const uint32_t rules[] = {SONJECT_COLUMNS_PAPER, SONJECT_COLUMNS_FOCUSED};
-    for (int i = 0; i < 2; i++) {
-        const struct energies upright = trace_beside(rules[i], false, 1);
-        const struct energies turned = trace_beside(rules[i], true, 500);
-        struct estimate expected[RANGES];
-        for (int range = 0; range < RANGES; range++)
-            expected[range] = energy_of(&upright, 1, range);
-        expect_energies(i == 0 ? "upside down, paper" : "upside down, focused", &turned, 1,
-                        expected, RANGES - 3, 0.01, 0.1, 3);
-    }
-}
-
 /* --- What changes nothing --- */
 
 struct change {

@@ -70,25 +70,14 @@ def test_truth_and_statistics(patch, make_scene):
     assert math.isnan(result.statistics.correlation)
 
 
-def test_orders_make_up_the_energy(patch, make_scene):
+def test_orders_are_kept_only_where_asked_for(patch, make_scene):
+    assert sonject.inject(patch, make_scene()).order_energies == []
     injection = {"interactions": 2, "order_energies": True}
-    objects = [{"shape": "sphere", "diameter": 0.5, "material": "concrete"}]
-    result = sonject.inject(patch, make_scene(injection=injection, objects=objects))
-    first, second = result.order_energies
-    assert first.dtype == second.dtype == numpy.float32
-    assert first.shape == second.shape == (ROWS, COLUMNS)
-    assert numpy.all(first >= 0) and numpy.all(second >= 0)
-    assert numpy.any(second > 0)
-    # Pixels are formed of some 200 positive energies in single precision, each order by itself.
-    assert numpy.allclose(first + second, result.energy, rtol=64 * 2.0**-24, atol=0)
-
-
-def test_orders_are_kept_only_where_asked_for(amplitude_patch, make_scene):
-    assert sonject.inject(amplitude_patch, make_scene()).order_energies == []
-    asked = make_scene(injection={"order_energies": True})
-    result = sonject.inject(amplitude_patch, asked)
-    (first,) = result.order_energies
-    assert numpy.array_equal(first, result.energy)
+    result = sonject.inject(patch, make_scene(injection=injection))
+    for energy in result.order_energies:
+        assert energy.dtype == numpy.float32 and energy.shape == (ROWS, COLUMNS)
+    # pixels are formed of some 200 positive energies in single precision, each order by itself
+    assert numpy.allclose(sum(result.order_energies), result.energy, rtol=64 * 2.0**-24, atol=0)
 
 
 def test_orders_that_are_not_there_are_refused(amplitude_patch, make_scene):
@@ -170,6 +159,7 @@ def test_a_repeated_row_is_not_taken_for_packed_rows():
         (numpy.ones(4, numpy.float32), ValueError, "rows and columns"),
         (numpy.ones((4, 0), numpy.float32), ValueError, "rows and columns"),
         (numpy.full((4, 4), 1e300), ValueError, "beyond single precision"),
+        (numpy.full((ROWS, COLUMNS), numpy.nan), sonject.SonjectError, "(?i)nan"),
     ],
 )
 def test_arrays_that_are_no_patch_are_refused(make_scene, patch, error, message):
@@ -177,22 +167,10 @@ def test_arrays_that_are_no_patch_are_refused(make_scene, patch, error, message)
         sonject.inject(patch, make_scene())
 
 
-def test_nan_is_named(patch, make_scene):
-    patch[5, 7] = numpy.nan
-    with pytest.raises(sonject.SonjectError) as caught:
-        sonject.inject(patch, make_scene())
-    assert caught.value.status is sonject.Status.ERROR_INPUT
-    assert "nan" in str(caught.value).lower()
-    assert "\n" not in str(caught.value)
-
-
 def test_no_patch_is_an_error(make_scene):
     with pytest.raises(sonject.SonjectError) as caught:
         sonject.inject(None, make_scene())
-    assert caught.value.status in (
-        sonject.Status.ERROR_ARGUMENT,
-        sonject.Status.ERROR_INPUT,
-    )
+    assert caught.value.status is sonject.Status.ERROR_ARGUMENT
 
 
 def test_a_uniform_input_needs_no_patch(make_scene):
@@ -261,14 +239,6 @@ def test_the_file_of_a_scene_is_for_runs(make_scene, tmp_path):
 def test_calls_release_the_global_lock():
     library = _library.load()  # ctypes holds the lock during calls of a PyDLL alone
     assert isinstance(library, ctypes.CDLL) and not isinstance(library, ctypes.PyDLL)
-
-
-def test_levels_are_those_asked_for(amplitude_patch, make_scene):
-    for name, value in (("target_strength", -40.0), ("over_seabed", 11.0)):
-        scene = make_scene()
-        scene["objects[0].level"] = {name: value}
-        truth = sonject.inject(amplitude_patch, scene).objects[0]
-        assert getattr(truth, name + "_db") == pytest.approx(value, abs=1e-4)
 
 
 def test_measure_takes_what_inject_gives(amplitude_patch, make_scene):
