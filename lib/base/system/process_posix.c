@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
@@ -118,12 +119,24 @@ char *folder_of_code(const void *address)
 }
 
 /* Each image of a campaign takes megabytes and gives them back. glibc would have the system take
- * them, and clear them anew for the next image: a tenth of a campaign's time. */
+ * them, and clear them anew for the next image: a tenth of a campaign's time. What the heap takes
+ * first comes in large pages, which the system makes at once, not 4 KB at a time: a seventh of
+ * a short run's time. */
 static void keep_freed_memory(void)
 {
 #ifdef __GLIBC__
+    enum {
+        LARGE_PAGE = 2 << 20,
+        HEAP = 256 << 20
+    };
     mallopt(M_MMAP_THRESHOLD, 32 << 20);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
+    mallopt(M_TOP_PAD, HEAP);
+    char *first = malloc(1 << 20); /* more than the heap has */
+    mallopt(M_TOP_PAD, 0);
+    if (first)
+        madvise(first + (-(uintptr_t)first & (LARGE_PAGE - 1)), HEAP - LARGE_PAGE, MADV_HUGEPAGE);
+    free(first);
 #endif
 }
 
