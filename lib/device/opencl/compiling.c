@@ -1,0 +1,67 @@
+/* Compiling takes a driver seconds, on slow machines minutes, and tells nothing meanwhile: a thread
+ * of its own does it, while the caller's tells what is waited for, and how long already. */
+#define _POSIX_C_SOURCE 200809L
+#include <pthread.h>
+#include <stdio.h>
+#include <time.h>
+
+#include "base/system/process.h"
+#include "device/opencl/opencl.h"
+
+struct waited_for {
+    void (*compile)(void *user);
+    void *user;
+    pthread_mutex_t lock;
+    pthread_cond_t ended;
+    bool has_ended;
+};
+
+static void *do_compile(void *user)
+{
+    struct waited_for *waited_for = user;
+    waited_for->compile(waited_for->user);
+    pthread_mutex_lock(&waited_for->lock);
+    waited_for->has_ended = true;
+    pthread_cond_signal(&waited_for->ended);
+    pthread_mutex_unlock(&waited_for->lock);
+    return NULL;
+}
+
+/* With the lock. */
+static void wait_a_little(struct waited_for *waited_for)
+{
+    struct timespec end;
+    clock_gettime(CLOCK_REALTIME, &end);
+    end.tv_nsec += 200000000;
+    end.tv_sec += end.tv_nsec / 1000000000;
+    end.tv_nsec %= 1000000000;
+    if (!waited_for->has_ended)
+        pthread_cond_timedwait(&waited_for->ended, &waited_for->lock, &end);
+}
+
+sonject_status wait_for_compiler(struct report *report, void (*compile)(void *user), void *user)
+{
+    struct waited_for waited_for = {compile, user, PTHREAD_MUTEX_INITIALIZER,
+                                    PTHREAD_COND_INITIALIZER, false};
+    const double start_s = clock_seconds();
+    bool is_cancelled = false;
+    pthread_t thread;
+    if (!thread_start(&thread, do_compile, &waited_for)) {
+        compile(user);
+        return SONJECT_OK;
+    }
+    pthread_mutex_lock(&waited_for.lock);
+    while (!waited_for.has_ended) {
+        const double waited_s = clock_seconds() - start_s;
+        char stage[32];
+        snprintf(stage, sizeof stage, "compiling, once: %.0f s", waited_s);
+        pthread_mutex_unlock(&waited_for.lock);
+        if (waited_s > 0.5) /* else it was compiled before */
+            is_cancelled = report_is_cancelled(report, stage) || is_cancelled;
+        pthread_mutex_lock(&waited_for.lock);
+        wait_a_little(&waited_for);
+    }
+    pthread_mutex_unlock(&waited_for.lock);
+    pthread_join(thread, NULL);
+    return is_cancelled ? report_failure(report, SONJECT_CANCELLED, "cancelled") : SONJECT_OK;
+}
