@@ -1,9 +1,7 @@
 /* Compiling takes a driver seconds, on slow machines minutes, and tells nothing meanwhile: a thread
  * of its own does it, while the caller's tells what is waited for, and how long already. */
-#define _POSIX_C_SOURCE 200809L
 #include <pthread.h>
 #include <stdio.h>
-#include <time.h>
 
 #include "base/system/process.h"
 #include "device/opencl/opencl.h"
@@ -27,18 +25,6 @@ static void *do_compile(void *user)
     return NULL;
 }
 
-/* With the lock. */
-static void wait_a_little(struct waited_for *waited_for)
-{
-    struct timespec end;
-    clock_gettime(CLOCK_REALTIME, &end);
-    end.tv_nsec += 200000000;
-    end.tv_sec += end.tv_nsec / 1000000000;
-    end.tv_nsec %= 1000000000;
-    if (!waited_for->has_ended)
-        pthread_cond_timedwait(&waited_for->ended, &waited_for->lock, &end);
-}
-
 sonject_status wait_for_compiler(struct report *report, void (*compile)(void *user), void *user)
 {
     struct waited_for waited_for = {compile, user, PTHREAD_MUTEX_INITIALIZER,
@@ -59,7 +45,8 @@ sonject_status wait_for_compiler(struct report *report, void (*compile)(void *us
         if (waited_s > 0.5) /* else it was compiled before */
             is_cancelled = report_is_cancelled(report, stage) || is_cancelled;
         pthread_mutex_lock(&waited_for.lock);
-        wait_a_little(&waited_for);
+        if (!waited_for.has_ended)
+            wait_a_little(&waited_for.ended, &waited_for.lock);
     }
     pthread_mutex_unlock(&waited_for.lock);
     pthread_join(thread, NULL);
