@@ -22,9 +22,9 @@ typedef enum sonject_log_level {
  * the call. */
 typedef void (*sonject_log_function)(void *user, uint32_t level, const char *line);
 
-/* Called between pieces of work with the finished fraction, 0...1. Return 0 to go on, anything else
- * to cancel: the call then answers SONJECT_CANCELLED. A call that succeeds tells 1 at its end, when
- * nothing is left to cancel. */
+/* Called between pieces of work, and while a driver compiles, with the finished fraction, 0...1.
+ * Return 0 to go on, anything else to cancel: the call then answers SONJECT_CANCELLED. A call that
+ * succeeds tells 1 at its end, when nothing is left to cancel. */
 typedef int (*sonject_progress_function)(void *user, double fraction, const char *stage);
 
 /* A host's threads: calls task(argument) on some of them, or on the caller's, up to `count` times

@@ -40,11 +40,11 @@ sonject_status report_out_of_memory(struct report *report, const char *what)
     return report_failure(report, SONJECT_ERROR_MEMORY, "out of memory for %s", what);
 }
 
-bool report_is_cancelled(const struct report *report)
+bool report_is_cancelled(const struct report *report, const char *stage)
 {
     const struct report_host *host = report->host;
     return host && host->progress &&
-           host->progress(host->progress_user, host->fraction, host->stage) != 0;
+           host->progress(host->progress_user, host->fraction, stage ? stage : host->stage) != 0;
 }
 
 void report_line(struct report *report, uint32_t level, const char *line)

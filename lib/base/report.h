@@ -82,8 +82,9 @@ sonject_status report_gather(struct report *report, char lines[REPORT_CAPACITY],
             (status) = (expression);                                                               \
     } while (0)
 
-/* Whether the caller wants the call under way to end, for those who wait for another process. */
-bool report_is_cancelled(const struct report *report);
+/* Whether the caller wants the call under way to end, for those who wait. stage: what for; NULL:
+ * that which was told last. */
+bool report_is_cancelled(const struct report *report, const char *stage);
 
 /* Send a line to the log, if there is one: news, a note, or a line of a level that is known. */
 void report_log(struct report *report, const char *format, ...) REPORT_FORMAT(2);

@@ -506,8 +506,9 @@ struct image_work {
     uint64_t count;
     /* Makes one of them, 0...count - 1; called once for each by any thread, in rising order. */
     sonject_status (*make)(void *user, const struct image_maker *maker, uint64_t index);
-    /* Told by the calling thread how many are done, parts of some included; not 0: cancels. */
-    int (*tell)(void *user, double done);
+    /* Told by the calling thread how many are done, parts of some included, and the stage of one;
+     * not 0: cancels. */
+    int (*tell)(void *user, double done, const char *stage);
     void *user;
 };
 

@@ -26,18 +26,19 @@ struct sweep {
 };
 
 /* Within images, too, so that the run can be cancelled there. */
-static int tell_images(void *user, double done)
+static int tell_images(void *user, double done, const char *stage)
 {
     struct sweep *sweep = user;
     const double elapsed = clock_seconds() - sweep->start_s;
     const double made = (double)__atomic_load_n(&sweep->made, __ATOMIC_RELAXED);
-    char rate[32] = "first image";
+    char rate[32];
     if (!sweep->progress)
         return 0;
     const double images_per_s = elapsed > 0.0 ? made / elapsed : 0.0;
     if (images_per_s > 0.0)
         snprintf(rate, sizeof rate, "%.*f images/s", images_per_s < 10.0 ? 2 : 0, images_per_s);
-    return sweep->progress(sweep->user, done / (double)sweep->missing_count, rate);
+    return sweep->progress(sweep->user, done / (double)sweep->missing_count,
+                           images_per_s > 0.0 ? rate : stage);
 }
 
 /* Another process may be at the same campaign: what it made meanwhile is not made again. */

@@ -251,9 +251,10 @@ static void take_round(struct fit *fit, struct fit_round *round)
     }
 }
 
-static int tell_round(void *user, double done)
+static int tell_round(void *user, double done, const char *stage)
 {
     const struct fit_round *round = user;
+    (void)stage;
     return round->progress &&
            round->progress(round->user, ((double)round->number + done / FIT_CHIPS) / FIT_ROUNDS,
                            round->stage) != 0;

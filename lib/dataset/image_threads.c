@@ -2,6 +2,7 @@
  * stores are its own, and a queue of its own on the device. The caller's thread makes no image: it
  * tells progress and the log's lines, since callbacks belong to it. */
 #include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,6 +24,7 @@ struct image_pool {
     size_t running;         /* threads */
     bool has_news;          /* there is something to tell, or a thread has ended */
     bool is_cancelled;
+    char stage[64];        /* told last, of any image */
     sonject_status status; /* of the first image that failed */
     uint64_t failed;       /* which */
     struct growing_text lines;
@@ -59,9 +61,10 @@ static int note_fraction(void *user, double fraction, const char *stage)
 {
     struct image_thread *thread = user;
     struct image_pool *pool = thread->pool;
-    (void)stage;
     pthread_mutex_lock(&pool->lock);
     thread->host.fraction = fraction;
+    if (*stage) /* else it is that which was told before */
+        snprintf(pool->stage, sizeof pool->stage, "%s", stage);
     const bool is_it = pool->is_cancelled;
     tell_news(pool);
     pthread_mutex_unlock(&pool->lock);
@@ -195,13 +198,16 @@ static void watch(struct image_pool *pool, const struct image_thread *threads, s
         struct growing_text lines = pool->lines;
         memset(&pool->lines, 0, sizeof pool->lines);
         double done = (double)pool->done;
+        char stage[sizeof pool->stage];
+        memcpy(stage, pool->stage, sizeof stage);
         for (size_t i = 0; i < count; i++)
             done += threads[i].host.fraction;
         pthread_mutex_unlock(&pool->lock);
         if (lines.length > 0)
             tell_lines(pool->campaign->report, lines.characters);
         free(lines.characters);
-        const bool is_to_end = pool->work->tell && pool->work->tell(pool->work->user, done) != 0;
+        const bool is_to_end =
+            pool->work->tell && pool->work->tell(pool->work->user, done, stage) != 0;
         pthread_mutex_lock(&pool->lock);
         pool->is_cancelled = pool->is_cancelled || is_to_end;
         while (!is_end && !pool->has_news)
@@ -213,7 +219,7 @@ static void watch(struct image_pool *pool, const struct image_thread *threads, s
 sonject_status campaign_work(struct sonject_campaign *campaign, const struct device_slot *slot,
                              const struct image_work *work)
 {
-    struct image_pool pool = {.campaign = campaign, .work = work};
+    struct image_pool pool = {.campaign = campaign, .work = work, .stage = "first image"};
     const size_t count = thread_count(campaign, work->count);
     if (work->count == 0)
         return SONJECT_OK;

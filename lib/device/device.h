@@ -38,6 +38,7 @@ struct device {
     struct shared_device *shared; /* with all contexts of the device */
     struct _cl_context *context;  /* its */
     struct _cl_command_queue *queue;
+    struct _cl_kernel *fresh; /* of a program just built, not launched yet; NULL: none */
 };
 
 /* Names of all devices, the default one marked: see sonject_devices. Errors: DEVICE, MEMORY. */

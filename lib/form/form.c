@@ -293,7 +293,7 @@ sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t c
         const size_t bytes = (size_t)run.count * width * sizeof(float);
         const float *parts[2] = {real_part + at, imaginary_part ? imaginary_part + at : NULL};
         device_buffer bins[2] = {NULL, NULL};
-        for (int part = 0; part < 2; part++)
+        for (int part = 0; part < 2 && parts[part]; part++)
             THEN(status,
                  buffer_create(lines->report, lines->device, bytes, parts[part], &bins[part]));
         THEN(status,

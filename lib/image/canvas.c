@@ -153,14 +153,16 @@ static int strokes_of(const char *glyph, struct stroke strokes[STROKES_MAX])
     return count;
 }
 
-static double distance_to(const struct stroke *stroke, double x, double y)
+static double square_distance_to(const struct stroke *stroke, double x, double y)
 {
     const double along_x = stroke->x1 - stroke->x0;
     const double along_y = stroke->y1 - stroke->y0;
     const double square = along_x * along_x + along_y * along_y;
     const double projected = (x - stroke->x0) * along_x + (y - stroke->y0) * along_y;
     const double at = square > 0.0 ? fmin(fmax(projected / square, 0.0), 1.0) : 0.0;
-    return hypot(x - stroke->x0 - at * along_x, y - stroke->y0 - at * along_y);
+    const double across_x = x - stroke->x0 - at * along_x;
+    const double across_y = y - stroke->y0 - at * along_y;
+    return across_x * across_x + across_y * across_y;
 }
 
 void canvas_line(struct canvas *canvas, double x0, double y0, double x1, double y1,
@@ -177,7 +179,8 @@ void canvas_line(struct canvas *canvas, double x0, double y0, double x1, double 
     for (double y = top; y <= bottom; y += 1.0)
         for (double x = left; x <= right; x += 1.0)
             blend(canvas, (int64_t)x, (int64_t)y, colour,
-                  fmin(fmax(0.5 * thickness + 0.5 - distance_to(&stroke, x, y), 0.0), 1.0));
+                  fmin(fmax(0.5 * thickness + 0.5 - sqrt(square_distance_to(&stroke, x, y)), 0.0),
+                       1.0));
 }
 
 static void draw_glyph(struct canvas *canvas, int64_t x, int64_t y, const char *glyph,
@@ -190,8 +193,8 @@ static void draw_glyph(struct canvas *canvas, int64_t x, int64_t y, const char *
         for (int right = -1; right <= width + 1; right++) {
             double nearest = 100.0;
             for (int i = 0; i < count; i++)
-                nearest = fmin(nearest, distance_to(&strokes[i], right, up));
-            const double coverage = fmin(fmax(HALF_STROKE + 0.5 - nearest, 0.0), 1.0);
+                nearest = fmin(nearest, square_distance_to(&strokes[i], right, up));
+            const double coverage = fmin(fmax(HALF_STROKE + 0.5 - sqrt(nearest), 0.0), 1.0);
             if (direction == TEXT_RIGHTWARDS)
                 blend(canvas, x + right, y - up, colour, coverage);
             else

@@ -174,13 +174,14 @@ static sonject_status fill_cells(struct report *report, const struct plot_panel 
     const bool is_complete = sums && counts;
     for (uint64_t row = 0; is_complete && row < along_track->pixels; row++) {
         const float *pixels = panel->amplitude + row * range->pixels;
-        for (uint64_t i = 0; i < range->pixels; i++) {
-            const double value = (double)pixels[i];
-            if (isnan(value))
-                continue;
-            sums[i / range->down] += panel->is_difference ? value : value * value;
-            counts[i / range->down]++;
-        }
+        for (uint64_t cell = 0, i = 0; cell < range->cells; cell++)
+            for (uint32_t k = 0; k < range->down && i < range->pixels; k++, i++) {
+                const double value = (double)pixels[i];
+                if (isnan(value))
+                    continue;
+                sums[cell] += panel->is_difference ? value : value * value;
+                counts[cell]++;
+            }
         if ((row + 1) % along_track->down != 0 && row + 1 != along_track->pixels)
             continue;
         for (size_t cell = 0; cell < range->cells; cell++) {
@@ -253,7 +254,8 @@ struct plot {
     struct plot_scale along_track, range;
     int64_t panel_height, panel_width; /* in the picture */
     double minimum_db, maximum_db;
-    float *values; /* cells of the panel that is drawn */
+    float *values;  /* cells of a panel */
+    uint32_t shown; /* its number; count: none yet */
     struct plot_ticks row_ticks, column_ticks;
     struct canvas canvas;
 };
@@ -266,14 +268,15 @@ struct colour_scale {
 
 static uint8_t between(uint8_t from, uint8_t to, double share)
 {
-    return (uint8_t)floor(from + (to - from) * share + 0.5);
+    return (uint8_t)(from + (to - from) * share + 0.5);
 }
 
 static struct colour colour_of(const struct colour_scale *scale, double value)
 {
     if (isnan(value))
         return black;
-    const double share = fmin(fmax((value - scale->low) / (scale->high - scale->low), 0.0), 1.0);
+    const double place = (value - scale->low) / (scale->high - scale->low);
+    const double share = place > 0.0 ? place < 1.0 ? place : 1.0 : 0.0;
     if (!scale->is_difference) {
         const uint8_t grey = between(0, 255, share);
         const struct colour colour = {grey, grey, grey};
@@ -418,13 +421,20 @@ static void draw_bar(struct plot *plot, const struct colour_scale *scale, int64_
     draw_text(&plot->canvas, x, y - 10, "dB", SIZE_MAX, TEXT_RIGHTWARDS, ink);
 }
 
+static sonject_status fill_values(struct report *report, struct plot *plot, uint32_t panel)
+{
+    if (panel == plot->shown)
+        return SONJECT_OK;
+    plot->shown = panel;
+    return fill_cells(report, &plot->panels[panel], &plot->along_track, &plot->range, plot->values);
+}
+
 static sonject_status draw_panel(struct report *report, struct plot *plot, uint32_t number,
                                  int64_t x, int64_t y)
 {
-    const struct plot_panel *panel = &plot->panels[number];
     const struct colour_scale scale = scale_of_panel(plot, number);
-    const char *title = panel->title ? panel->title : "";
-    CHECK(fill_cells(report, panel, &plot->along_track, &plot->range, plot->values));
+    const char *title = plot->panels[number].title ? plot->panels[number].title : "";
+    CHECK(fill_values(report, plot, number));
     const int64_t cell_height = plot->along_track.up;
     const int64_t cell_width = plot->range.up;
     for (uint32_t row = 0; row < plot->along_track.cells; row++)
@@ -455,12 +465,9 @@ static sonject_status choose_limits(struct report *report, struct plot *plot)
         first++;
     if (first == plot->count)
         return SONJECT_OK; /* no panel needs the grey scale */
-    const sonject_status status =
-        fill_cells(report, &plot->panels[first], &plot->along_track, &plot->range, plot->values);
-    return status != SONJECT_OK ? status
-                                : find_limits(report, plot->values,
-                                              (size_t)plot->along_track.cells * plot->range.cells,
-                                              &plot->minimum_db, &plot->maximum_db);
+    CHECK(fill_values(report, plot, first));
+    return find_limits(report, plot->values, (size_t)plot->along_track.cells * plot->range.cells,
+                       &plot->minimum_db, &plot->maximum_db);
 }
 
 static sonject_status draw_all(struct report *report, struct plot *plot, struct plot_place *places)
@@ -497,7 +504,7 @@ sonject_status plot_panels(struct report *report, const struct plot_frame *frame
     memset(&plot, 0, sizeof plot);
     plot.frame = frame;
     plot.panels = panels;
-    plot.count = count;
+    plot.count = plot.shown = count;
     plot.range_label = frame->range_label ? frame->range_label : "";
     choose_scales(frame, count > 1 ? SIDE_BY_SIDE : SINGLE_PANEL, &plot.along_track, &plot.range);
     plot.panel_height = (int64_t)plot.along_track.cells * plot.along_track.up;

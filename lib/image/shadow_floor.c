@@ -111,21 +111,22 @@ static sonject_status find_level(struct report *report, struct shadow_search *se
 
 /* How many pixels along an axis are one look, by the squared differences of pixels some way apart
  * on some of its lines; variance: of a pixel. */
-static double look_length(const struct shadow_search *search, size_t step, size_t length,
-                          double *variance)
+static double look_length(const struct shadow_search *search, bool is_along, double *variance)
 {
-    const size_t count = search->rows * search->columns;
-    const size_t lines_apart = 1 + count / PIXELS_ENOUGH;
+    const size_t rows = search->rows, columns = search->columns;
+    const size_t step = is_along ? columns : 1, length = is_along ? rows : columns;
+    const size_t lines_apart = 1 + rows * columns / PIXELS_ENOUGH;
     double sums[LAGS + 1] = {0.0}, counts[LAGS + 1] = {0.0}, sum = 0.0;
-    for (size_t i = 0; i < count; i++) {
-        if ((step == 1 ? i / length : i % step) % lines_apart != 0)
+    for (size_t i = 0; i < rows * columns; i++) {
+        const size_t row = i / columns, place = is_along ? row : i - row * columns;
+        if ((is_along ? i - row * columns : row) % lines_apart != 0)
             continue;
         const double own = (double)search->intensity[i] / (double)search->level[i];
         if (!holds(search, i, SEABED) || !(own < BRIGHTEST))
             continue;
         sum += own;
         counts[0] += 1.0;
-        for (size_t lag = 1; lag <= LAGS && i / step % length + lag < length; lag++) {
+        for (size_t lag = 1; lag <= LAGS && place + lag < length; lag++) {
             const size_t at = i + lag * step;
             const double other = (double)search->intensity[at] / (double)search->level[at];
             if (!holds(search, at, SEABED) || !(other < BRIGHTEST))
@@ -158,8 +159,8 @@ static sonject_status find_dark(struct report *report, struct shadow_search *sea
     CHECK(find_level(report, search, search->smooth));
     for (size_t i = 0; i < count; i++)
         search->level[i] *= search->level[i] * search->level[i] * search->level[i];
-    search->row_length = look_length(search, search->columns, search->rows, &variance);
-    search->column_length = look_length(search, 1, search->columns, &search->variance);
+    search->row_length = look_length(search, true, &variance);
+    search->column_length = look_length(search, false, &search->variance);
     search->variance = fmax(search->variance, variance);
     search->column_deviation = fmax(COLUMN_DEVIATION, COLUMN_BY_LENGTH * search->column_length);
     search->row_deviation = fmax(ROW_DEVIATION, ROW_BY_LENGTH * search->row_length);

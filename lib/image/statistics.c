@@ -14,14 +14,17 @@
 #define SORT_BITS 11 /* at a time: three times are enough for all 32 */
 #define SORT_BINS ((size_t)1 << SORT_BITS)
 
-/* A running mean along a line: full weight up to radius, edge_weight (0...1) one pixel further on
- * either side, so that any variance can be had, not only those of whole widths. */
+/* A running mean along lines, some together: full weight up to radius, edge_weight (0...1) one
+ * pixel further on either side, so that any variance can be had, not only those of whole widths. */
+typedef double line_values[LINES_AT_ONCE];
+
 struct line_mean {
     size_t length, radius;
     double edge_weight;
-    double *line;   /* the line with radius zeros on either side */
-    double *before; /* sums from the start of a block of 2 * radius + 1 */
-    double *after;  /* sums to its end */
+    double *weight;      /* of the whole window about a value */
+    line_values *line;   /* the values with radius + 1 zeros on either side */
+    line_values *before; /* sums from the start of a block of 2 * radius + 1 */
+    line_values *after;  /* sums to its end, but 0 at its start */
 };
 
 static size_t padded_length(const struct line_mean *mean)
@@ -44,6 +47,11 @@ size_t local_mean_reach(double deviation)
     return (size_t)fmin(PASSES * (radius_of_pass(deviation) + 1.0), 1e9);
 }
 
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
 static sonject_status line_mean_init(struct line_mean *mean, struct report *report, size_t length,
                                      double deviation)
 {
@@ -58,62 +66,57 @@ static sonject_status line_mean_init(struct line_mean *mean, struct report *repo
     } else {
         mean->radius = length; /* every mean is that of the whole line */
     }
-    mean->line = allocate_array(padded_length(mean), sizeof(double));
-    mean->before = allocate_array(padded_length(mean), sizeof(double));
-    mean->after = allocate_array(padded_length(mean), sizeof(double));
-    return mean->line && mean->before && mean->after ? SONJECT_OK
-                                                     : report_out_of_memory(report, "a local mean");
+    mean->weight = allocate_array(length, sizeof *mean->weight);
+    mean->line = allocate_array(padded_length(mean) + 2, sizeof *mean->line);
+    mean->before = allocate_array(padded_length(mean), sizeof *mean->before);
+    mean->after = allocate_array(padded_length(mean), sizeof *mean->after);
+    CHECK_MEMORY(report, mean->weight && mean->line && mean->before && mean->after, "a local mean");
+    for (size_t i = 0; i < length; i++) {
+        const size_t left = i, right = length - 1 - i;
+        mean->weight[i] = (double)(smaller(left, mean->radius) + 1 + smaller(right, mean->radius));
+        mean->weight[i] += left > mean->radius ? mean->edge_weight : 0.0;
+        mean->weight[i] += right > mean->radius ? mean->edge_weight : 0.0;
+    }
+    return SONJECT_OK;
 }
 
 /* Sums within blocks of the window's width: any window is the end of one block and the start of the
  * next. Nothing is ever subtracted, so a bright echo leaves no rounding error in its neighbours. */
 static void sum_blocks(struct line_mean *mean)
 {
+    line_values *line = mean->line + 1;
     const size_t width = 2 * mean->radius + 1;
     const size_t padded = padded_length(mean);
     for (size_t start = 0; start < padded; start += width) {
         const size_t end = padded - start < width ? padded : start + width;
-        double sum = 0.0;
+        line_values sum = {0.0};
         for (size_t i = start; i < end; i++)
-            mean->before[i] = sum += mean->line[i];
-        sum = 0.0;
-        for (size_t i = end; i-- > start;)
-            mean->after[i] = sum += mean->line[i];
+            for (int k = 0; k < LINES_AT_ONCE; k++)
+                mean->before[i][k] = sum[k] += line[i][k];
+        memset(sum, 0, sizeof sum);
+        for (size_t i = end - 1; i > start; i--)
+            for (int k = 0; k < LINES_AT_ONCE; k++)
+                mean->after[i][k] = sum[k] += line[i][k];
+        memset(mean->after[start], 0, sizeof sum);
     }
 }
 
-static size_t smaller(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
-
-static double window_mean(const struct line_mean *mean, const double *line, size_t i)
+/* Smooths mean->line, whose inner part the caller has filled, in place. */
+static void smooth_line(struct line_mean *mean)
 {
     const size_t width = 2 * mean->radius + 1;
-    const size_t last = i + width - 1;
-    double sum = i % width == 0 ? mean->before[last] : mean->after[i] + mean->before[last];
-    double weight =
-        (double)(smaller(i, mean->radius) + 1 + smaller(mean->length - 1 - i, mean->radius));
-    if (i > mean->radius) {
-        sum += mean->edge_weight * line[i - mean->radius - 1];
-        weight += mean->edge_weight;
-    }
-    if (mean->length - 1 - i > mean->radius) {
-        sum += mean->edge_weight * line[i + mean->radius + 1];
-        weight += mean->edge_weight;
-    }
-    return sum / weight;
-}
-
-/* Smooths mean->line, whose inner part the caller has filled, in place. scratch: length values. */
-static void smooth_line(struct line_mean *mean, double *scratch)
-{
-    double *line = mean->line + mean->radius;
     for (int pass = 0; pass < PASSES; pass++) {
         sum_blocks(mean);
-        for (size_t i = 0; i < mean->length; i++)
-            scratch[i] = window_mean(mean, line, i);
-        memcpy(line, scratch, mean->length * sizeof *line);
+        for (size_t i = 0; i < mean->length; i++) {
+            const double *last = mean->before[i + width - 1];
+            const double *left = mean->line[i], *right = mean->line[i + width + 1];
+            double *sum = mean->after[i];
+            for (int k = 0; k < LINES_AT_ONCE; k++)
+                sum[k] = (sum[k] + last[k] + mean->edge_weight * left[k] +
+                          mean->edge_weight * right[k]) /
+                         mean->weight[i];
+        }
+        memcpy(mean->line + mean->radius + 1, mean->after, mean->length * sizeof *mean->line);
     }
 }
 
@@ -124,28 +127,19 @@ static sonject_status smooth_lines(struct report *report, const float *from, flo
                                    double deviation)
 {
     struct line_mean mean;
-    sonject_status status = line_mean_init(&mean, report, length, deviation);
-    double *scratch = allocate_array(length, sizeof *scratch);
-    double *gathered = allocate_array(length, LINES_AT_ONCE * sizeof *gathered);
-    if (status == SONJECT_OK && !(scratch && gathered))
-        status = report_out_of_memory(report, "a local mean");
+    const sonject_status status = line_mean_init(&mean, report, length, deviation);
     for (size_t first = 0; status == SONJECT_OK && first < lines; first += LINES_AT_ONCE) {
         const size_t count = smaller(LINES_AT_ONCE, lines - first);
-        double *line = mean.line + mean.radius;
+        line_values *line = mean.line + mean.radius + 1;
         for (size_t i = 0; i < length; i++)
             for (size_t k = 0; k < count; k++)
-                gathered[k * length + i] = (double)from[(first + k) * apart + i * step];
-        for (size_t k = 0; k < count; k++) {
-            memcpy(line, gathered + k * length, length * sizeof *line);
-            smooth_line(&mean, scratch);
-            memcpy(gathered + k * length, line, length * sizeof *line);
-        }
+                line[i][k] = (double)from[(first + k) * apart + i * step];
+        smooth_line(&mean);
         for (size_t i = 0; i < length; i++)
             for (size_t k = 0; k < count; k++)
-                to[(first + k) * apart + i * step] = (float)gathered[k * length + i];
+                to[(first + k) * apart + i * step] = (float)line[i][k];
     }
-    free(gathered);
-    free(scratch);
+    free(mean.weight);
     free(mean.line);
     free(mean.before);
     free(mean.after);

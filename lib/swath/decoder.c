@@ -67,7 +67,7 @@ bool decoder_receive(const struct report *report, const struct channel *channel,
         const bool has_waited = got < 0 && errno == EAGAIN;
         if (has_waited || (got < 0 && errno == EINTR)) {
             waits += has_waited;
-            if (report_is_cancelled(report))
+            if (report_is_cancelled(report, NULL))
                 errno = ECANCELED;
             else if (waits < DECODER_SILENCE_S * CHILD_WAITS_PER_SECOND)
                 continue;

@@ -1,4 +1,4 @@
-"""Times with warm program caches, one line each. Figure 6 of the paper, from process start to files,
+"""Times with warm program caches, one line each. Figures 6 (PoCL) and 7 (native) of the paper, from process start to files,
 beside the time that the process needs to do nothing (list the devices); the injection alone, by the
 C interface through the Python bindings, for a 512 x 512 patch; the targets of tools/targets with two
 interactions; a mesh of a million triangles from its file to an image of 400 x 400; and forming an image anew at two thirds of the bandwidth, beside
@@ -29,16 +29,16 @@ def best_time(action, repeats=5):
     return min(times)
 
 
-def time_figure6(folder, swath):
+def time_figure(figure, device, folder, swath):
     def run(number):
-        subprocess.run([COMMAND, "run", SCENES / "figure6.yaml", "--quiet", "--set",
-                        f"input.path={swath}", "-o", folder / f"figure6 {number}"], check=True)
+        subprocess.run([COMMAND, "run", SCENES / f"{figure}.yaml", "--quiet", "--device", device, "--set",
+                        f"input.path={swath}", "-o", folder / f"{figure} {number}"], check=True)
 
     run("first")
     whole = best_time(run)
     nothing = best_time(lambda _: subprocess.run([COMMAND, "devices"], check=True,
                                                  stdout=subprocess.DEVNULL))
-    print(f"figure 6, process start to files: {whole:.3f} s (a process that does nothing: "
+    print(f"{figure} on {device}, process start to files: {whole:.3f} s (a process that does nothing: "
           f"{nothing:.3f} s)")
 
 
@@ -94,7 +94,8 @@ with tempfile.TemporaryDirectory() as name:
     swath = folder / "swath.png"
     subprocess.run([COMMAND, "seabed", "-o", swath, "--rows", "472", "--columns", "512",
                     "--first-range", "43.6125"], check=True)
-    time_figure6(folder, swath)
+    time_figure("figure6", "pthread", folder, swath)
+    time_figure("figure7", "native", folder, swath)
     time_injection()
     time_targets(folder)
     time_mesh(folder)

@@ -267,14 +267,19 @@ def test_a_limit_on_file_sizes_leaves_nothing_half(sonject, scene, tmp_path):
     assert contents(tmp_path / "result") == contents(tmp_path / "first")
 
 
-def start_and_wait_for_the_bar(arguments, folder, variables):
-    """Starts the command with a terminal for its messages; returns once its bar tells of tracing: one
-    of reading comes before where the image takes long to read."""
+def start_at_a_terminal(arguments, folder, variables):
     mine, its = pty.openpty()
     process = subprocess.Popen(
         [COMMAND, *map(str, arguments)], cwd=folder, env=variables, stdout=its, stderr=its
     )
     os.close(its)
+    return process, mine
+
+
+def start_and_wait_for_the_bar(arguments, folder, variables):
+    """Returns once the bar tells of tracing: one of reading comes before where the image takes long
+    to read."""
+    process, mine = start_at_a_terminal(arguments, folder, variables)
     seen = b""
     end = time.monotonic() + 120
     while not re.search(rb"tracing[^\r]*%", seen) and time.monotonic() < end:
@@ -319,8 +324,22 @@ def stop_at_the_bar(arguments, output, folder, variables, *numbers):
     return code, text
 
 
-def test_a_signal_while_the_driver_compiles_stops_a_run(scene, tmp_path, environment):
-    cold = {**environment, "XDG_CACHE_HOME": str(tmp_path), "POCL_CACHE_DIR": str(tmp_path / "pocl")}
+@pytest.fixture
+def cold(tmp_path, environment):
+    """The driver's cache is empty."""
+    return {**environment, "XDG_CACHE_HOME": str(tmp_path), "POCL_CACHE_DIR": str(tmp_path / "pocl")}
+
+
+def test_who_waits_for_the_drivers_compiler_reads_so_and_that_it_is_once(scene, tmp_path, cold):
+    for is_first in (True, False):
+        process, terminal = start_at_a_terminal(
+            ["run", scene, "-o", f"first {is_first}", "--device", "pthread"], tmp_path, cold)
+        text = read_rest(terminal)
+        assert process.wait() == 0, text
+        assert bool(re.search(r"\rcompiling, once: \d+ s .*%", text)) == is_first, text
+
+
+def test_a_signal_while_the_driver_compiles_stops_a_run(scene, tmp_path, cold):
     process = subprocess.Popen([COMMAND, "run", scene, "-o", "result", "--device", "pthread"], cwd=tmp_path, env=cold,
                                text=True, stderr=subprocess.PIPE)
     while process.poll() is None and not (tmp_path / "pocl").exists():

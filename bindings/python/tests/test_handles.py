@@ -1,6 +1,7 @@
 """Lifetimes, files and the remaining calls."""
 
 import os
+import re
 import subprocess
 import sys
 
@@ -80,15 +81,17 @@ def test_log_errors_are_raised(amplitude_patch, make_scene):
         assert lines and all(isinstance(line, str) for line in lines)
 
 
-def test_the_log_tells_device_programs_and_noise_floor():
-    # a process of its own, in which no other context has the programs
+def test_the_log_tells_device_programs_and_noise_floor_and_progress_the_compiling(tmp_path):
+    # a process of its own, in which no other context has the programs, nor the driver's cache
     answer = run_python(
-        "import numpy, sonject\n"
+        "import numpy, sonject, sys\n"
         "with sonject.Context(device='pthread', log=lambda level, line: print(line)) as context:\n"
         f"    scene = sonject.Scene(**{KEYS}, context=context)\n"
         "    patch = numpy.random.default_rng(1).rayleigh(size=(64, 64)).astype(numpy.float32)\n"
-        "    sonject.inject(patch, scene)\n"
+        "    sonject.inject(patch, scene, lambda fraction, stage: print(stage, file=sys.stderr))\n",
+        POCL_CACHE_DIR=str(tmp_path),
     )
+    assert re.search(r"^compiling, once: \d+ s$", answer.stderr, re.M)
     lines = answer.stdout.splitlines()
     assert [line for line in lines if line.startswith("device '")] == lines[:1]
     assert any("trace_rough.cl built in" in line for line in lines)

@@ -47,6 +47,9 @@ uint32_t processor_count(void);
  * system has none. */
 bool thread_start(pthread_t *thread, void *(*run)(void *user), void *user);
 
+/* For the condition, a fifth of a second at most. */
+void wait_a_little(pthread_cond_t *condition, pthread_mutex_t *lock);
+
 /* ---- Libraries. */
 
 /* A library of the system's, by its name and the number of its interface, loaded to stay; NULL:

@@ -62,6 +62,32 @@ static sonject_status opencl_clear(struct report *report, struct device *device,
         clEnqueueFillBuffer(device->queue, buffer, &zero, sizeof zero, 0, bytes, 0, NULL, NULL));
 }
 
+struct kernel_launch {
+    const struct device *device;
+    device_kernel kernel;
+    cl_uint dimensions;
+    const size_t *global, *group; /* group: NULL: as the driver likes */
+    const char *call;             /* the last one */
+    cl_int error;
+};
+
+static void launch(void *kernel_launch)
+{
+    struct kernel_launch *launch = kernel_launch;
+    const struct device *device = launch->device;
+    if (device->is_pocl)
+        pthread_mutex_lock(&one_launch_of_pocl);
+    launch->call = "clEnqueueNDRangeKernel";
+    launch->error = clEnqueueNDRangeKernel(device->queue, launch->kernel, launch->dimensions, NULL,
+                                           launch->global, launch->group, 0, NULL, NULL);
+    if (launch->error == CL_SUCCESS) {
+        launch->call = "clFinish";
+        launch->error = clFinish(device->queue);
+    }
+    if (device->is_pocl)
+        pthread_mutex_unlock(&one_launch_of_pocl);
+}
+
 static sonject_status opencl_kernel_run(struct report *report, struct device *device,
                                         device_kernel kernel,
                                         const struct kernel_argument *arguments,
@@ -82,18 +108,20 @@ static sonject_status opencl_kernel_run(struct report *report, struct device *de
                                                      sizeof group, group, NULL)));
         has_group = group[0] > 0;
     }
-    if (device->is_pocl)
-        pthread_mutex_lock(&one_launch_of_pocl);
-    const char *call = "clEnqueueNDRangeKernel";
-    cl_int error = clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, global,
-                                          has_group ? group : NULL, 0, NULL, NULL);
-    if (error == CL_SUCCESS) {
-        call = "clFinish";
-        error = clFinish(device->queue);
+    struct kernel_launch run = {.device = device,
+                                .kernel = kernel,
+                                .dimensions = dimensions,
+                                .global = global,
+                                .group = has_group ? group : NULL};
+    sonject_status waited = SONJECT_OK;
+    if (kernel == device->fresh) { /* PoCL compiles most of it now */
+        device->fresh = NULL;
+        waited = wait_for_compiler(report, launch, &run);
+    } else {
+        launch(&run);
     }
-    if (device->is_pocl)
-        pthread_mutex_unlock(&one_launch_of_pocl);
-    return opencl_answer(report, device, call, error);
+    CHECK(opencl_answer(report, device, run.call, run.error));
+    return waited;
 }
 
 static void opencl_kernel_release(device_kernel kernel)

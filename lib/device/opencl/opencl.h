@@ -42,6 +42,10 @@ const char *opencl_error_name(cl_int error);
 sonject_status opencl_answer(struct report *report, const struct device *device, const char *call,
                              cl_int error);
 
+/* Calls compile(user), and tells the call's progress while that takes long. Errors: CANCELLED,
+ * after it. */
+sonject_status wait_for_compiler(struct report *report, void (*compile)(void *user), void *user);
+
 /* What an open device does (launch.c), with what the other files have of it. */
 extern const struct device_calls opencl_calls;
 void opencl_close(struct device *device);

@@ -33,12 +33,15 @@ static void program_options(const struct device *device, enum program_variant va
 
 /* A program to be built, and what came of it, to be told when the driver is left. */
 struct building {
+    struct report *report;
     struct device *device;
     const struct embedded_source *source;
+    const char *name; /* of the kernel */
+    device_kernel *kernel;
     const struct user_code *code; /* unit_count 0: none */
     char options[OPTIONS_CAPACITY];
     char key[HASH_TEXT_CAPACITY];
-    const char *call; /* that failed */
+    const char *call; /* the last one, of OpenCL; NULL: none yet */
     cl_int error;
     cl_program failed; /* has the log; NULL: none */
     size_t unit;       /* that did not compile; unit_count: the library's own source */
@@ -153,9 +156,7 @@ static void put_first(struct shared_device *shared, size_t place, struct kept_pr
     shared->programs[0] = kept;
 }
 
-/* The program stays the device's, where the one that was not used for longest may go; NULL: see
- * `building`. */
-static cl_program find_or_build(struct building *building)
+static cl_program find_kept(const struct building *building)
 {
     struct shared_device *shared = building->device->shared;
     for (size_t i = 0; i < shared->program_count; i++) {
@@ -164,6 +165,14 @@ static cl_program find_or_build(struct building *building)
             return shared->programs[0].program;
         }
     }
+    return NULL;
+}
+
+/* The program stays the device's, where the one that was not used for longest may go; NULL: see
+ * `building`. */
+static cl_program build(struct building *building)
+{
+    struct shared_device *shared = building->device->shared;
     const double start = clock_seconds();
     struct kept_program kept;
     kept.program = building->code->unit_count > 0
@@ -179,27 +188,49 @@ static cl_program find_or_build(struct building *building)
     return kept.program;
 }
 
+/* Nothing where the program is to be built and may not. */
+static void make_kernel(struct building *building, bool builds)
+{
+    if (driver_enter(building->report) != SONJECT_OK)
+        return;
+    cl_program program = find_kept(building);
+    if (!program && builds)
+        program = build(building);
+    if (program) {
+        building->call = "clCreateKernel";
+        *building->kernel = clCreateKernel(program, building->name, &building->error);
+    }
+    driver_leave();
+}
+
+static void build_kernel(void *building)
+{
+    make_kernel(building, true);
+}
+
 sonject_status opencl_kernel_create(struct report *report, struct device *device,
                                     enum device_program program, enum program_variant variant,
                                     const struct user_code *code, const char *name,
                                     device_kernel *kernel)
 {
     static const struct user_code none = {0};
-    struct building building = {.device = device,
+    struct building building = {.report = report,
+                                .device = device,
                                 .source = &embedded_sources[program],
+                                .name = name,
+                                .kernel = kernel,
                                 .code = code ? code : &none,
                                 .error = CL_SUCCESS};
     program_options(device, variant, code != NULL, building.options);
     CHECK(make_key(report, &building));
-    CHECK(driver_enter(report));
-    cl_program built = find_or_build(&building);
-    if (built) {
-        building.call = "clCreateKernel";
-        *kernel = clCreateKernel(built, name, &building.error);
-    }
-    driver_leave();
-    if (building.seconds > 0.0)
+    CHECK(driver_claim(report));
+    make_kernel(&building, false);
+    const sonject_status waited =
+        building.call ? SONJECT_OK : wait_for_compiler(report, build_kernel, &building);
+    if (building.seconds > 0.0) {
         report_log(report, "%s built in %.1f s", building.source->name, building.seconds);
+        device->fresh = *kernel;
+    }
     if (building.failed) {
         const sonject_status status = tell_failure(report, &building);
         clReleaseProgram(building.failed);
@@ -207,5 +238,8 @@ sonject_status opencl_kernel_create(struct report *report, struct device *device
     }
     if (building.error != CL_SUCCESS)
         *kernel = NULL;
-    return opencl_answer(report, device, building.call, building.error);
+    CHECK(opencl_answer(report, device, building.call, building.error));
+    if (waited != SONJECT_OK)
+        kernel_release(device, kernel);
+    return waited;
 }
