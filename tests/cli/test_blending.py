@@ -191,3 +191,22 @@ objects:
         assert levels[0] - levels[1] > 15  # the seabed's level is a mean over metres, which mixes both
     else:
         assert levels == pytest.approx([-35, -35], abs=0.3)  # speckle's error of over 1000 pixels
+
+
+def test_shadows_over_relief_are_dark_all_over(sonject, tmp_path):
+    """Of a real aperture: what an object hides is formed by the same responses as the seabed."""
+    (tmp_path / "scene.yaml").write_text("""\
+sonject: 1
+input:
+  synthetic: {rows: 40, columns: 288, seed: 7, ripple_contrast: 0, patch_contrast: 0 dB}
+  geometry: {row_spacing: 12 cm, column_spacing: 3 cm, first_slant_range: 19 m}
+sonar: {kind: real, array: {length: 32 cm}, frequency: 600 kHz, bandwidth: 25 kHz, altitude: 5.5 m}
+seabed: {relief: [{ripples: {wavelength: 1 m, height: 1 mm}}]}
+injection: {noise_floor: -60 dB}
+objects: [{name: box, shape: box, length: 2 m, width: 0.5 m, height: 0.5 m, position: {row: 20, column: 100}}]
+""")
+    sonject.done("run", "scene.yaml", "-o", "out")
+    columns = (images.read_tiff(tmp_path / "out" / "image.tif")[16:24] ** 2).mean(axis=0)
+    seabed = columns[:60].mean()
+    # the shadow ends at column 177; the first columns hold the box's own echo and its pulse
+    assert decibels(columns[115:170] / seabed).max() < -50
