@@ -188,10 +188,12 @@ bool write_scene(const struct interview *interview)
           file);
     add_input(file, interview);
     add_sonar(file, interview);
-    fputs("\nseabed:\n"
-          "  lambert: -27 dB # backscatter strength; it decides how far targets stand out\n"
-          "\nobjects:\n",
-          file);
+    fputs(
+        "\nseabed:\n"
+        "  lambert: -27 dB # backscatter strength; it decides how far targets stand out\n"
+        "  # relief: [{scour: {width: 50 cm, depth: 5 cm}}] # as currents wash out around objects\n"
+        "\nobjects:\n",
+        file);
     add_name(file, "  - name: ", interview);
     fputs("\n    ", file);
     add_target(file, interview, "\n    ");

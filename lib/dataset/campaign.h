@@ -163,6 +163,13 @@ struct avoided_box {
     double along_track_m[2], slant_range_m[2]; /* both ends; NAN: told in pixels */
 };
 
+#define RATIO_MAX 1000
+
+/* Of range over altitude; 0: any. */
+struct ratio_limits {
+    double least, most;
+};
+
 struct swath_plan {
     char *path;          /* to open; owned */
     const char *written; /* as the campaign file has it; its tree's */
@@ -171,6 +178,7 @@ struct swath_plan {
     size_t key_count;
     struct avoided_box *avoid; /* owned */
     size_t avoid_count;
+    struct ratio_limits ratio; /* instead of the campaign's */
     struct tree_place place;
     struct raster_layout layout; /* once it is opened */
     uint32_t side; /* likewise: enum recorded_side, also of a picture of both; 0: it has one */
@@ -249,7 +257,7 @@ struct campaign {
     uint32_t edge, clearance;         /* pixels kept free at swaths' edges, around contacts */
     double spread;                    /* of the chip's sides, where objects may lie */
     double slant_range_m[2];          /* of images' middles */
-    double least_ratio, most_ratio;   /* of range over altitude; 0: any */
+    struct ratio_limits ratio;        /* of swaths that have none */
     double empty, clutter_alone;
     bool has_one_target; /* in each image, and nothing else, whatever the file says */
     double visible_highlight_db, visible_shadow_db; /* of targets: at least, at most; NaN: any */
@@ -289,6 +297,10 @@ sonject_status campaign_check_entry(struct reader *reader, const struct tree_ent
 /* Reads a list of two lengths that grow. */
 sonject_status campaign_read_lengths(struct reader *reader, const struct tree_node *node,
                                      double ends_m[2]);
+
+/* Reads "[least, most]". */
+sonject_status campaign_read_ratio(struct reader *reader, const struct tree_node *node,
+                                   struct ratio_limits *ratio);
 
 /* Read `swaths` and `splits` into a campaign. */
 sonject_status campaign_read_swaths(struct reader *reader, const struct tree_node *node,

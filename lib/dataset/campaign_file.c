@@ -10,7 +10,6 @@
 #include "dataset/campaign.h"
 #include "schema/keys.h"
 
-#define RATIO_MAX     1000
 #define OBJECT_PREFIX "objects[]."
 
 sonject_status grow_list(struct report *report, void *list, size_t count, size_t size)
@@ -221,21 +220,25 @@ static sonject_status read_range(struct reader *reader, const struct tree_node *
     return campaign_read_lengths(reader, node, campaign->slant_range_m);
 }
 
-static sonject_status read_ratio(struct reader *reader, const struct tree_node *node,
-                                 void *structure)
+sonject_status campaign_read_ratio(struct reader *reader, const struct tree_node *node,
+                                   struct ratio_limits *ratio)
 {
-    struct campaign *campaign = structure;
     if (node->kind != TREE_LIST || node->count != 2)
         return refuse_value(reader, node, "must be two numbers, [least, most]");
-    CHECK(read_quantity(reader, &node->entries[0].value, QUANTITY_NUMBER, &campaign->least_ratio));
-    CHECK(read_quantity(reader, &node->entries[1].value, QUANTITY_NUMBER, &campaign->most_ratio));
-    if (campaign->least_ratio >= 1.0 && campaign->least_ratio < campaign->most_ratio &&
-        campaign->most_ratio <= RATIO_MAX)
+    CHECK(read_quantity(reader, &node->entries[0].value, QUANTITY_NUMBER, &ratio->least));
+    CHECK(read_quantity(reader, &node->entries[1].value, QUANTITY_NUMBER, &ratio->most));
+    if (ratio->least >= 1.0 && ratio->least < ratio->most && ratio->most <= RATIO_MAX)
         return SONJECT_OK;
     return refuse_value(reader, node,
                         "must rise within 1...%d, where 1 is straight below the sonar, not from %g "
                         "to %g",
-                        RATIO_MAX, campaign->least_ratio, campaign->most_ratio);
+                        RATIO_MAX, ratio->least, ratio->most);
+}
+
+static sonject_status read_ratio(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    return campaign_read_ratio(reader, node, &((struct campaign *)structure)->ratio);
 }
 
 static sonject_status read_side(struct reader *reader, const struct tree_node *node, uint32_t *side)

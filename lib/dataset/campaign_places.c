@@ -93,6 +93,7 @@ struct limits {
     const sonject_geometry_params *geometry;
     const double *altitudes_m; /* of each row */
     double lowest_m, highest_m;
+    struct ratio_limits ratio;
     bool shows_water; /* images may begin in the water column */
 };
 
@@ -119,7 +120,7 @@ static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, s
     const double half = has_all ? 0.0 : 0.5 * (double)(campaign->chip_columns - 1);
     const double end =
         (double)chips->first_column + (double)(has_all ? plan->chip_columns : chips->columns) - 1.0;
-    const bool has_ratio = campaign->least_ratio > 0.0;
+    const bool has_ratio = limits->ratio.least > 0.0;
     const bool shows_water = has_all ? has_ratio : limits->shows_water; /* objects have a ratio */
     const double bottom =
         geometry_column(geometry, shows_water ? limits->lowest_m : limits->highest_m);
@@ -178,14 +179,13 @@ struct object_columns objects_of_chip(const struct swath_plan *plan, uint64_t fi
 static void limit_ratio(const struct limits *limits, const struct swath_plan *plan, uint64_t block,
                         double half, struct object_columns *columns)
 {
-    const struct campaign *campaign = limits->campaign;
     const uint64_t end = first_row_of(&plan->room, block + 1) + plan->chip_rows - 1;
     double lowest = HUGE_VAL, highest = 0.0;
     for (uint64_t row = first_row_of(&plan->room, block); row < end; row++) {
         lowest = fmin(lowest, limits->altitudes_m[row]);
         highest = fmax(highest, limits->altitudes_m[row]);
     }
-    limit_columns(limits, half, campaign->least_ratio * highest, campaign->most_ratio * lowest,
+    limit_columns(limits, half, limits->ratio.least * highest, limits->ratio.most * lowest,
                   &columns->first, &columns->last);
 }
 
@@ -344,8 +344,13 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
                                 bool may_show_water)
 {
     struct swath_plan *plan = &campaign->swaths[swath];
-    struct limits limits = {campaign, geometry, altitudes_m,
-                            HUGE_VAL, 0.0,      may_show_water && campaign->least_ratio > 0.0};
+    struct limits limits = {.campaign = campaign,
+                            .geometry = geometry,
+                            .altitudes_m = altitudes_m,
+                            .lowest_m = HUGE_VAL,
+                            .ratio = plan->ratio.least > 0.0 ? plan->ratio : campaign->ratio};
+    const bool has_ratio = limits.ratio.least > 0.0;
+    limits.shows_water = may_show_water && has_ratio;
     for (uint64_t row = 0; row < plan->layout.rows; row++) {
         limits.lowest_m = fmin(limits.lowest_m, altitudes_m[row]);
         limits.highest_m = fmax(limits.highest_m, altitudes_m[row]);
@@ -404,7 +409,6 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
                     "chip.clearance is 0: objects may reach into contacts to avoid in %s, from "
                     "which their middles alone keep away",
                     plan->written);
-    const bool has_ratio = campaign->least_ratio > 0.0;
     if (has_ratio && campaign->chip_columns > 0)
         limit_ratios(&limits, plan);
     else if (has_ratio)
@@ -427,7 +431,7 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
                             "to %g m, and keeps away from %zu contacts",
                             plan->written,
                             campaign->chip_columns > 0 ? "its middle" : "places for objects",
-                            campaign->least_ratio, campaign->most_ratio, limits.lowest_m,
+                            limits.ratio.least, limits.ratio.most, limits.lowest_m,
                             limits.highest_m, plan->avoid_count);
     return tree_failure(&campaign->tree, plan->place, "swaths",
                         "the %zu contacts to avoid in %s leave no room for images of %llu x %llu "

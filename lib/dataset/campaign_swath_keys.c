@@ -111,6 +111,12 @@ static sonject_status read_avoid(struct reader *reader, const struct tree_node *
     return read_list(reader, node, &boxes, structure);
 }
 
+static sonject_status read_ratio(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    return campaign_read_ratio(reader, node, &((struct swath_plan *)structure)->ratio);
+}
+
 #define STRUCTURE struct swath_plan
 static const struct field swath_fields[] = {
     {"path", "image file", SPECIAL(read_swath_path, "file name"), REQUIRED},
@@ -121,6 +127,8 @@ static const struct field swath_fields[] = {
      "boxes of contacts that images are not to show; that they may show and objects keep away "
      "from, where rows or columns are all",
      SPECIAL(read_avoid, "list"), .is_list = true, .section = &box_section},
+    {"range_over_altitude", "of this swath's images, instead of chip.range_over_altitude",
+     SPECIAL(read_ratio, "list of two numbers"), .range = "1..." TEXT_OF(RATIO_MAX)},
 };
 const struct section campaign_swath_section = {ROWS(swath_fields)};
 #undef STRUCTURE

@@ -18,7 +18,7 @@
 #define CLEAR_LEAST    24 /* contacts of a round */
 #define PAD_MOST       16.0
 #define PAD_CLEAR      0.75 /* pixels */
-#define RANGES_LEAST   1.05 /* farthest over nearest, for the chips to be limited to them */
+#define RATIOS_LEAST   1.05 /* farthest over nearest, for the chips to be limited to them */
 
 /* The value below which a share of those that are numbers lies, which are sorted; NaN: there are
  * none. */
@@ -39,12 +39,15 @@ static sonject_status measure_real(struct fit *fit)
     const struct contact_set *set = &fit->set;
     fit->real = allocate_array(set->count, sizeof *fit->real);
     CHECK_MEMORY(fit->report, fit->real, "contacts");
+    fit->swaths = allocate_array(set->count, sizeof *fit->swaths);
+    CHECK_MEMORY(fit->report, fit->swaths, "contacts");
     for (size_t i = 0; i < set->count; i++) {
         const struct labelled_contact *contact = &set->contacts[i];
         const char *image = set->images[contact->image];
         struct contact_chip chip;
         sonject_status status = contact_chip_read(fit->campaign, image, &contact->box, &chip);
         THEN(status, contact_chip_measure(fit->report, &chip, contact->part, &fit->real[i]));
+        fit->swaths[i] = chip.swath;
         const bool is_shown = status == SONJECT_OK && fit->real_chip_count < FIT_SHOWN &&
                               i * FIT_SHOWN / set->count >= fit->real_chip_count;
         if (is_shown)
@@ -78,8 +81,24 @@ static void leave_out_less_seen(struct fit *fit)
     fit->real_count = kept;
 }
 
-/* Where chips may lie, as contacts do, and how well targets are to be seen: as all contacts are but
- * one in fifty. More left out would make what is compared narrower than what a labeller sees. */
+/* Between which ranges over altitude contacts of a swath lie; SIZE_MAX: all. Zeros where these are
+ * too few or too near each other to tell. values: room for all. */
+static struct ratio_limits ratios_of_contacts(const struct fit *fit, size_t swath, double *values)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < fit->real_count; i++)
+        if (swath == SIZE_MAX || fit->swaths[i] == swath)
+            values[n++] = fit->real[i].range_over_altitude;
+    const struct ratio_limits limits = {fmax(1.0, quantile_of(values, n, 0.05)),
+                                        quantile_of(values, n, 0.95)};
+    return n >= CONTACTS_LEAST && limits.most > RATIOS_LEAST * limits.least
+               ? limits
+               : (struct ratio_limits){0.0, 0.0};
+}
+
+/* Where chips may lie, as contacts do, swath by swath, and how well targets are to be seen: as all
+ * contacts are but one in fifty. More left out would make what is compared narrower than what a
+ * labeller sees. */
 static sonject_status take_contacts(struct fit *fit)
 {
     CHECK(measure_real(fit));
@@ -92,14 +111,14 @@ static sonject_status take_contacts(struct fit *fit)
                        offsetof(struct contact_extents, member), share, values)
     fit->selection.highlight_db = OF_REAL(highlight_visibility_db, share);
     fit->selection.shadow_db = OF_REAL(shadow_visibility_db, 1.0 - share);
-    const double nearest = OF_REAL(slant_range_m, 0.05);
-    const double farthest = OF_REAL(slant_range_m, 0.95);
 #undef OF_REAL
+    const size_t swaths = fit->campaign->campaign.swath_count;
+    fit->selection.swaths = allocate_array(swaths, sizeof *fit->selection.swaths);
+    fit->selection.chip = ratios_of_contacts(fit, SIZE_MAX, values);
+    for (size_t i = 0; fit->selection.swaths && swaths > 1 && i < swaths; i++)
+        fit->selection.swaths[i] = ratios_of_contacts(fit, i, values);
     free(values);
-    if (farthest > RANGES_LEAST * nearest) {
-        fit->selection.nearest_range_m = nearest;
-        fit->selection.farthest_range_m = farthest;
-    }
+    CHECK_MEMORY(fit->report, fit->selection.swaths, "contacts");
     leave_out_less_seen(fit);
     return quantile_goals(fit->report, fit->real, fit->real_count, fit->goals);
 }
@@ -172,11 +191,12 @@ static sonject_status open_round(struct fit *fit, uint32_t round, struct sonject
 /* The campaign's first round, where its swaths reach the contacts' ranges; else without these. */
 static sonject_status open_first(struct fit *fit, struct sonject_campaign **opened)
 {
-    const double nearest = fit->selection.nearest_range_m;
     sonject_status status = open_round(fit, 0, opened);
-    if (status != SONJECT_ERROR_INPUT || !isfinite(nearest))
+    if (status != SONJECT_ERROR_INPUT || !(fit->selection.chip.least > 0.0))
         return status;
-    fit->selection.nearest_range_m = fit->selection.farthest_range_m = NAN;
+    fit->selection.chip = (struct ratio_limits){0.0, 0.0};
+    free(fit->selection.swaths);
+    fit->selection.swaths = NULL;
     fit->has_no_such_ranges = true;
     return open_round(fit, 0, opened);
 }
@@ -473,7 +493,7 @@ sonject_status campaign_fit(struct report *report, struct device_slot *slot,
     fit->report = report;
     fit->source = *source;
     fit->part = params->part;
-    fit->selection = (struct fitted_selection){NAN, NAN, NAN, NAN};
+    fit->selection = (struct fitted_selection){.highlight_db = NAN, .shadow_db = NAN};
     sonject_status status = read_all(fit, params);
     THEN(status, run_rounds(fit, slot, progress, user));
     THEN(status, write_all(fit, params->fitted, params->contacts));
@@ -484,6 +504,8 @@ sonject_status campaign_fit(struct report *report, struct device_slot *slot,
     fit_draws_clear(&fit->draws);
     campaign_close(&fit->campaign);
     contact_set_clear(&fit->set);
+    free(fit->selection.swaths);
+    free(fit->swaths);
     free(fit->real);
     free(fit->made);
     free(fit);

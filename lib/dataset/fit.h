@@ -16,8 +16,9 @@ struct contact_chip {
     float *intensity; /* rows x columns; owned */
     size_t rows, columns;
     double row_spacing_m, column_spacing_m;
-    double first_slant_range_m, altitude_m; /* of column 0 */
+    double first_slant_range_m, altitude_m; /* of column 0, from which range grows */
     sonject_box label;
+    size_t swath; /* number of the campaign's that shows it; SIZE_MAX: none does */
 };
 
 void contact_chip_clear(struct contact_chip *chip);
@@ -53,10 +54,11 @@ struct fitted_number {
     char key[FIT_KEY_CAPACITY];   /* "targets[0].draw.length" */
 };
 
-/* What else a fitted campaign says. NaN: as it was. */
+/* What else a fitted campaign says. NaN, and limits of 0: as it was. */
 struct fitted_selection {
-    double highlight_db, shadow_db;           /* visible */
-    double nearest_range_m, farthest_range_m; /* chip.slant_range */
+    double highlight_db, shadow_db; /* visible */
+    struct ratio_limits chip;       /* range over altitude */
+    struct ratio_limits *swaths;    /* one each; NULL: they have none of their own */
 };
 
 /* The campaign must outlive it. Starts as all zeros; for fit_draws_clear. */
@@ -103,6 +105,7 @@ struct fit {
     struct sonject_campaign *campaign; /* as its file is */
     struct contact_set set;
     struct contact_extents *real; /* owned */
+    size_t *swaths;               /* that show them; owned */
     size_t real_count;            /* that are measured; of quantiles 0 */
     struct quantile_goal goals[EXTENT_KINDS];
     struct drawn_contact *made; /* of all rounds; owned */

@@ -14,6 +14,7 @@
 #include "scene/geometry.h"
 #include "schema/scene_file.h"
 #include "swath/geometry_notes.h"
+#include "swath/recording.h"
 
 #define CHIP_MARGIN  64 /* pixels around a label, of which the seabed's level is taken */
 #define LABEL_MARGIN 2  /* pixels around a label that are searched, too */
@@ -36,21 +37,32 @@ static struct window_box chip_window(const sonject_box *label, size_t rows, size
     return box_with_margin(&box, CHIP_MARGIN, rows, columns);
 }
 
-/* Intensities of a window of pixels of rows of so many columns. */
+/* Intensities of a window of pixels of rows of so many columns, with range growing to the right.
+ * first_column: of these pixels in the geometry's image. */
 static sonject_status cut_chip(struct report *report, const float *pixels, bool is_complex,
                                size_t columns, const struct window_box *window,
-                               const sonject_box *label, struct contact_chip *chip)
+                               const sonject_box *label, const sonject_geometry_params *geometry,
+                               size_t first_column, struct contact_chip *chip)
 {
+    const bool is_reversed = geometry_is_reversed(geometry);
+    const size_t last = window->columns - 1;
+    const size_t nearest = first_column + window->first_column + (is_reversed ? last : 0);
     chip->rows = window->rows;
     chip->columns = window->columns;
     chip->label = *label;
     chip->label.first_row -= window->first_row;
     chip->label.first_column -= window->first_column;
+    if (is_reversed)
+        chip->label.first_column = last + 1 - chip->label.first_column - label->columns;
+    chip->row_spacing_m = geometry->row_spacing_m;
+    chip->column_spacing_m = geometry->column_spacing_m;
+    chip->first_slant_range_m = geometry_range(geometry, (double)nearest);
     chip->intensity = allocate_array(window->rows, window->columns * sizeof *chip->intensity);
     CHECK_MEMORY(report, chip->intensity, "a contact");
     for (size_t i = 0; i < window->rows * window->columns; i++) {
-        const size_t k = (window->first_row + i / window->columns) * columns +
-                         window->first_column + i % window->columns;
+        const size_t column = is_reversed ? last - i % window->columns : i % window->columns;
+        const size_t k =
+            (window->first_row + i / window->columns) * columns + window->first_column + column;
         chip->intensity[i] =
             is_complex ? pixels[2 * k] * pixels[2 * k] + pixels[2 * k + 1] * pixels[2 * k + 1]
                        : pixels[k] * pixels[k];
@@ -58,27 +70,33 @@ static sonject_status cut_chip(struct report *report, const float *pixels, bool 
     return SONJECT_OK;
 }
 
-/* The campaign's swath of that file, whose keys are its image's; by name where no path is the
- * same. */
-static const struct swath_plan *swath_of_image(const struct campaign *campaign, const char *image)
+/* The campaign's swath of that file, whose keys are its image's: of that side, if there is one, and
+ * by name where no path is the same. */
+static const struct swath_plan *swath_of_image(const struct campaign *campaign, const char *image,
+                                               uint32_t side)
 {
     const struct swath_plan *found = NULL;
+    int best = 0;
     for (size_t i = 0; i < campaign->swath_count; i++) {
         const struct swath_plan *swath = &campaign->swaths[i];
-        if (strcmp(swath->path, image) == 0)
-            return swath;
-        if (strcmp(path_name(swath->path), path_name(image)) == 0)
+        const bool has_name = strcmp(path_name(swath->path), path_name(image)) == 0;
+        const int fits = has_name * (1 + 2 * (strcmp(swath->path, image) == 0)) +
+                         (has_name && swath->side == side);
+        if (fits > best) {
+            best = fits;
             found = swath;
+        }
     }
     return found;
 }
 
-/* The campaign's scene for an image that nothing is injected into. patch: NULL, all of it. */
+/* The campaign's scene for an image that nothing is injected into. swath: the campaign's of it, or
+ * NULL. patch: NULL, all of it. */
 static sonject_status read_image_scene(struct sonject_campaign *campaign, const char *image,
+                                       const struct swath_plan *swath,
                                        const struct window_box *patch, bool tells_geometry,
                                        bool tells_altitude, struct scene *scene)
 {
-    const struct swath_plan *swath = swath_of_image(&campaign->campaign, image);
     const size_t keys = swath ? swath->key_count : 0;
     const size_t number = swath ? (size_t)(swath - campaign->campaign.swaths) : 0;
     char patch_text[160], path[PATH_CAPACITY], name[HASH_TEXT_CAPACITY];
@@ -121,34 +139,32 @@ static sonject_status read_image_scene(struct sonject_campaign *campaign, const 
     return status;
 }
 
-/* Contacts are measured with their shadows to the right. Errors: INPUT. */
-static sonject_status check_direction(struct report *report, const char *image,
-                                      const sonject_geometry_params *geometry)
+/* The side of a picture of both on which a label lies; 0 where it shows one. */
+static uint32_t side_of_label(const sonject_box *label, double nadir_column)
 {
-    if (!geometry_is_reversed(geometry))
-        return SONJECT_OK;
-    return input_failure(report, image,
-                         "shows range growing to the left, in which contacts are not measured; fit "
-                         "to those of the other side (input.geometry.side: starboard)");
+    const double middle = (double)label->first_column + 0.5 * (double)(label->columns - 1);
+    return !(nadir_column > 0.0) ? 0 : middle < nadir_column ? RECORDED_PORT : RECORDED_STARBOARD;
 }
 
-/* What an image says of itself. */
+/* What an image says of itself. nadir_column: 0 where it shows one side. */
 static sonject_status describe_image(struct sonject_campaign *campaign, const char *image,
                                      struct raster_layout *layout, bool *tells_geometry,
-                                     bool *tells_altitude)
+                                     bool *tells_altitude, double *nadir_column)
 {
     struct scene scene;
     struct swath_file *file = NULL;
-    CHECK(read_image_scene(campaign, image, NULL, false, false, &scene));
+    CHECK(read_image_scene(campaign, image, swath_of_image(&campaign->campaign, image, 0), NULL,
+                           false, false, &scene));
     sonject_status status =
         swath_file_open_array(campaign->report, image, scene.channel, scene.array, &file);
     if (status == SONJECT_OK) {
         struct noted_geometry noted;
-        sonject_geometry_params told;
+        sonject_geometry_params told = scene.geometry;
         swath_file_layout(file, layout);
         geometry_notes_read(file, &noted);
         *tells_geometry = geometry_notes_tell(&noted, &told);
         *tells_altitude = isfinite(noted.altitude_m);
+        *nadir_column = told.nadir_column;
     }
     swath_file_close(&file);
     scene_clear(&scene);
@@ -163,8 +179,10 @@ sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *
     struct swath swath;
     bool tells_geometry = false;
     bool tells_altitude = false;
+    double nadir_column = 0.0;
     memset(chip, 0, sizeof *chip);
-    CHECK(describe_image(campaign, image, &layout, &tells_geometry, &tells_altitude));
+    CHECK(
+        describe_image(campaign, image, &layout, &tells_geometry, &tells_altitude, &nadir_column));
     if (label->first_row >= layout.rows || label->rows > layout.rows - label->first_row ||
         label->first_column >= layout.columns ||
         label->columns > layout.columns - label->first_column)
@@ -180,16 +198,18 @@ sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *
     sonject_box inner = *label;
     inner.first_row -= window.first_row;
     inner.first_column -= window.first_column;
-    CHECK(read_image_scene(campaign, image, &window, tells_geometry, tells_altitude, &scene));
-    sonject_status status = check_direction(campaign->report, image, &scene.geometry);
-    THEN(status, swath_open_stored(campaign->report, &scene, &campaign->store, &swath));
+    const uint32_t side = side_of_label(label, nadir_column);
+    const struct swath_plan *plan = swath_of_image(&campaign->campaign, image, side);
+    CHECK(read_image_scene(campaign, image, plan, &window, tells_geometry, tells_altitude, &scene));
+    if (side != 0)
+        scene.geometry.side = side == RECORDED_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
+    sonject_status status = swath_open_stored(campaign->report, &scene, &campaign->store, &swath);
     if (status == SONJECT_OK) {
-        const sonject_geometry_params *geometry = &scene.geometry;
         status = cut_chip(campaign->report, swath.pixels, swath.is_complex, all.columns, &all,
-                          &inner, chip);
-        chip->row_spacing_m = geometry->row_spacing_m;
-        chip->column_spacing_m = geometry->column_spacing_m;
-        chip->first_slant_range_m = geometry_range(geometry, (double)window.first_column);
+                          &inner, &scene.geometry, window.first_column, chip);
+        chip->swath = plan && (side == 0 || plan->side == side)
+                          ? (size_t)(plan - campaign->campaign.swaths)
+                          : SIZE_MAX;
         chip->altitude_m = scene.sonar.altitude_m;
         swath_close(&swath);
     }
@@ -210,19 +230,13 @@ sonject_status contact_chip_of_image(struct report *report, const struct campaig
     *is_seen = box->rows > 0;
     if (!*is_seen)
         return SONJECT_OK;
-    CHECK(check_direction(report, image->scene.input_path, &image->scene.geometry));
     const struct window_box tight = window_box_of(box);
     const struct window_box padded =
         box_with_margin(&tight, (size_t)pad, result->rows, result->columns);
     const sonject_box label = {padded.first_row, padded.first_column, padded.rows, padded.columns};
     const struct window_box window = chip_window(&label, result->rows, result->columns);
-    const sonject_geometry_params *geometry = &image->scene.geometry;
     CHECK(cut_chip(report, result->image, result->is_complex, result->columns, &window, &label,
-                   chip));
-    chip->row_spacing_m = geometry->row_spacing_m;
-    chip->column_spacing_m = geometry->column_spacing_m;
-    chip->first_slant_range_m =
-        geometry_range(geometry, (double)(image->plan.chip.first_column + window.first_column));
+                   &image->scene.geometry, (size_t)image->plan.chip.first_column, chip));
     chip->altitude_m = image->scene.sonar.altitude_m;
     return SONJECT_OK;
 }
@@ -298,9 +312,10 @@ sonject_status contact_chip_measure(struct report *report, const struct contact_
     for (int i = 0; i < EXTENT_KINDS; i++)
         extents->of[i] = NAN;
     extents->highlight_visibility_db = extents->shadow_visibility_db = extents->pad_pixels = NAN;
-    extents->slant_range_m =
+    const double range_m =
         chip->first_slant_range_m + chip->column_spacing_m * ((double)chip->label.first_column +
                                                               0.5 * (double)chip->label.columns);
+    extents->range_over_altitude = range_m / chip->altitude_m;
     const sonject_status status =
         measure_placed_contact(report, chip->intensity, chip->rows, chip->columns, &place,
                                chip->row_spacing_m, chip->column_spacing_m, &measures);

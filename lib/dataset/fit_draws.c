@@ -14,6 +14,7 @@
 #define ALL_SIZES  (BIT(FITTED_LENGTH) | BIT(FITTED_WIDTH) | BIT(FITTED_HEIGHT))
 #define LEVEL_KEY  "level.over_seabed"
 #define FLOOR_KEY  "injection.noise_floor"
+#define RATIO_KEY  "range_over_altitude"
 #define OF_OBJECTS "objects[]."
 
 /* Sizes of an object that a key sets; 0: none that is moved. item: NULL for draws of all objects.
@@ -382,14 +383,32 @@ static sonject_status splice_levels(struct splice_list *list, const struct fit_d
     return SONJECT_OK;
 }
 
+/* Limits of a section, in place of those that it has. */
+static sonject_status splice_ratio(struct splice_list *list, const struct fit_draws *draws,
+                                   struct report *report, const struct tree_node *section,
+                                   const struct ratio_limits *ratio)
+{
+    const struct tree_entry *there = tree_find(section, RATIO_KEY);
+    char ends[2][48], pair[160];
+    if (!(ratio->least > 0.0))
+        return SONJECT_OK;
+    write_value(ends[0], ratio->least, "");
+    write_value(ends[1], ratio->most, "");
+    snprintf(pair, sizeof pair, RATIO_KEY ": [%s, %s]", ends[0], ends[1]);
+    if (!there)
+        return insert_key(list, report, draws, section, pair);
+    for (size_t i = 0; i < 2; i++)
+        CHECK(replace_scalar(list, report, draws->text, &there->value.entries[i].value, ends[i]));
+    return SONJECT_OK;
+}
+
 static sonject_status splice_selection(struct splice_list *list, const struct fit_draws *draws,
                                        struct report *report,
                                        const struct fitted_selection *selection)
 {
     const struct tree_node *root = &draws->campaign->tree.root;
     const struct tree_node *visible = section_of(root, "visible");
-    const struct tree_node *chip = section_of(root, "chip");
-    const struct tree_entry *range = chip ? tree_find(chip, "slant_range") : NULL;
+    const struct tree_entry *swaths = tree_find(root, "swaths");
     char values[2][48], pair[160];
     write_value(values[0], selection->highlight_db, " dB");
     write_value(values[1], selection->shadow_db, " dB");
@@ -404,15 +423,10 @@ static sonject_status splice_selection(struct splice_list *list, const struct fi
     }
     if (visible && isfinite(selection->highlight_db) && isfinite(selection->shadow_db))
         CHECK(set_key(list, draws, report, "visible", "shadow", values[1]));
-    if (!isfinite(selection->nearest_range_m))
-        return SONJECT_OK;
-    write_value(values[0], selection->nearest_range_m, " m");
-    write_value(values[1], selection->farthest_range_m, " m");
-    snprintf(pair, sizeof pair, "[%s, %s]", values[0], values[1]);
-    if (!range || range->value.kind != TREE_LIST || range->value.count != 2)
-        return set_key(list, draws, report, "chip", "slant_range", pair);
-    for (size_t i = 0; i < 2; i++)
-        CHECK(replace_scalar(list, report, draws->text, &range->value.entries[i].value, values[i]));
+    CHECK(splice_ratio(list, draws, report, section_of(root, "chip"), &selection->chip));
+    for (size_t i = 0; selection->swaths && i < swaths->value.count; i++)
+        CHECK(splice_ratio(list, draws, report, &swaths->value.entries[i].value,
+                           &selection->swaths[i]));
     return SONJECT_OK;
 }
 

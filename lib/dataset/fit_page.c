@@ -154,6 +154,12 @@ static void add_row(json_t **rows, const char *key, const char *before, double f
                                   {"after", after}));
 }
 
+static void add_ratio(json_t **rows, const char *key, const struct ratio_limits *ratio)
+{
+    if (ratio->least > 0.0)
+        add_row(rows, key, "", ratio->least, ratio->most, "");
+}
+
 /* Numbers before and after, in the order in which a key has them. */
 static json_t *draws_document(const struct fit *fit)
 {
@@ -183,8 +189,12 @@ static json_t *draws_document(const struct fit *fit)
         add_row(&rows, "draw.injection.noise_floor", "the scene's", draws->floor_db, NAN, " dB");
     add_row(&rows, "visible.highlight", "", selection->highlight_db, NAN, " dB");
     add_row(&rows, "visible.shadow", "", selection->shadow_db, NAN, " dB");
-    add_row(&rows, "chip.slant_range", "", selection->nearest_range_m, selection->farthest_range_m,
-            " m");
+    add_ratio(&rows, "chip.range_over_altitude", &selection->chip);
+    for (size_t i = 0; selection->swaths && i < draws->campaign->swath_count; i++) {
+        char key[64];
+        snprintf(key, sizeof key, "swaths[%zu].range_over_altitude", i);
+        add_ratio(&rows, key, &selection->swaths[i]);
+    }
     return rows;
 }
 

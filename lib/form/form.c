@@ -63,7 +63,8 @@ struct span next_filled_strips(const struct filled_span *filled, int32_t count, 
     return run;
 }
 
-/* The columns that the grid's bins reach through the pulse. */
+/* The columns that the grid's bins reach through the pulse; of a real aperture from the first of a
+ * block of the view's on, so that all lines of the view share their blocks' responses. */
 static void choose_window(struct form_lines *lines, const struct patch_view *view,
                           int32_t taps_each_side)
 {
@@ -73,8 +74,9 @@ static void choose_window(struct form_lines *lines, const struct patch_view *vie
         (double)(lines->grid.bins.first + lines->grid.bins.count - 1 + taps_each_side) / per_pixel);
     const double low = fmax(first, 0.0);
     const double high = fmin(last, (double)view->columns - 1.0);
-    lines->first_column = high < low ? 0 : (size_t)low;
-    lines->columns = high < low ? 0 : (size_t)(high - low) + 1;
+    const size_t block = lines->response.array_length_m > 0.0 ? FORM_BLOCK_COLUMNS : 1;
+    lines->first_column = high < low ? 0 : (size_t)low / block * block;
+    lines->columns = high < low ? 0 : (size_t)high + 1 - lines->first_column;
     lines->stride = (lines->columns + COLUMN_STEP - 1) / COLUMN_STEP * COLUMN_STEP;
 }
 

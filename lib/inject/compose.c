@@ -137,7 +137,8 @@ static void compose_pixel(const struct scene *scene, const struct patch_level *l
     /* a realisation is of what is in view already */
     const double seabed = resynthesises ? 1.0 : sqrt(visibility);
     /* noise is lost with the pixel that held it; a brighter pixel holds enough */
-    const double lost = sqrt(fmax(0.0, 1.0 - visibility) * (level->noise_ratio * level->level[i]));
+    const double lost =
+        sqrt(fmax(0.0, 1.0 - visibility) * (noise_over_level(level, i) * level->level[i]));
     const double noise_real = noise ? noise[i] : 0.0;
     const double noise_imaginary = noise ? noise[count + i] : 0.0;
     real_part = seabed * real_part + scale * echoes->target_real[i] + lost * noise_real;

@@ -19,7 +19,8 @@ struct patch_level {
     float *map;           /* reflectivity over mu0 for the tracer */
     float *cell_energy;   /* expected cross-section of a pixel of plain seabed (mu0), m^2; a column
                              each */
-    double noise_ratio;   /* noise energy over level */
+    double noise_ratio;   /* noise energy over level, or over the one below */
+    double noise_over;    /* 0: over that of each pixel */
     size_t water_columns; /* before the first return from the bottom; their level is that of the
                              seabed nearby */
 };
@@ -43,6 +44,9 @@ sonject_status patch_level_init(struct patch_level *level, const struct tracer *
                                 const struct patch_view *view, const struct patch_facts *facts,
                                 const float *pixels, bool is_complex);
 void patch_level_clear(struct patch_level *level);
+
+/* Noise energy at a pixel over its level. */
+double noise_over_level(const struct patch_level *level, size_t i);
 
 /* Expected cross-sections, m^2, of pixels of plain seabed in the view's columns. */
 void fill_cell_energies(const struct patch_view *view, const struct point_response *response,

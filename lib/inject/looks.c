@@ -365,7 +365,7 @@ static void add_look(const struct look_work *work, uint32_t look, double weight,
     const double seabed =
         phase_energy > 0.0 ? sqrt(visibility / phase_energy) * (double)work->pixels[i] : 0.0;
     const double noise =
-        sqrt(fmax(0.0, 1.0 - visibility) * level->noise_ratio * (double)level->level[i]);
+        sqrt(fmax(0.0, 1.0 - visibility) * noise_over_level(level, i) * (double)level->level[i]);
     double target_real, target_imaginary;
     target_in_look(work, look, i, &target_real, &target_imaginary);
     const double a = seabed * (double)work->planes[PHASE_REAL][i] + gain * target_real +

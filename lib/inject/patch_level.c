@@ -227,6 +227,12 @@ sonject_status patch_facts_init(struct patch_facts *facts, struct report *report
     return estimate_noise(facts, report, view, pixels, is_complex);
 }
 
+double noise_over_level(const struct patch_level *level, size_t i)
+{
+    return level->noise_over > 0.0 ? level->noise_ratio * level->noise_over / level->level[i]
+                                   : level->noise_ratio;
+}
+
 void patch_level_clear(struct patch_level *level)
 {
     free(level->intensity);
@@ -266,7 +272,9 @@ sonject_status patch_level_init(struct patch_level *level, const struct tracer *
     THEN(status, find_map(report, &region, intensity, planes, planes + wide));
     if (status == SONJECT_OK) {
         level->water_columns = view_water_columns(&tracer->view);
+        const double over_db = tracer->scene->injection.noise_floor_over_db;
         level->noise_ratio = facts->noise_ratio;
+        level->noise_over = isnan(over_db) ? 0.0 : pow(10.0, over_db / 10.0);
         level->level = level->intensity + count;
         level->map = level->level + count;
         level->cell_energy = level->map + count;

@@ -56,7 +56,7 @@ static struct pixel_levels levels_at(const struct patch_level *level, const stru
     levels.own = echo->energy[local];
     levels.others = fmax(0.0, (double)echoes->target_energy[i] - levels.own);
     levels.background = fmax(0.0, without - echoes->lost_energy[i]) +
-                        level->noise_ratio * level->cell_energy[column];
+                        noise_over_level(level, i) * level->cell_energy[column];
     levels.hidden_share = without > 0.0 ? echo->lost[local] / without : 0.0;
     return levels;
 }
@@ -206,7 +206,7 @@ static double expected_over_seabed(const struct patch_level *level, const struct
         }
     }
     return (own + fmax(0.0, indirect)) / (double)level->cell_energy[column] + 1.0 - hidden +
-           hidden * level->noise_ratio;
+           hidden * noise_over_level(level, i);
 }
 
 /* Lays the ruler of contacts on an object as it is expected to show, in its box with a margin. */

@@ -45,8 +45,8 @@ enum extent {
 struct contact_extents {
     double of[EXTENT_KINDS];
     double highlight_visibility_db, shadow_visibility_db;
-    double pad_pixels;    /* by which its label is wider than what shows, on each side */
-    double slant_range_m; /* of the label's middle */
+    double pad_pixels;          /* by which its label is wider than what shows, on each side */
+    double range_over_altitude; /* of the label's middle */
 };
 
 /* An injected contact: what was drawn, and what it shows. */

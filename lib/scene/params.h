@@ -419,13 +419,15 @@ typedef struct sonject_injection_params {
     uint32_t mode;         /* sonject_injection_mode */
     uint32_t column_rule;  /* sonject_column_rule */
     bool estimate_noise;   /* noise floor estimated from the patch, noise_floor_db unused */
-    double noise_floor_db; /* noise energy over local mean seabed energy */
-    double influence_db;   /* composite: a pixel is the target's when the change that it makes is
-                              above this level over the seabed */
-    double ray_scale;      /* up to RAY_SCALE_MAX; factor on the number of rays, unless there is an
-                              accuracy */
-    double accuracy; /* relative standard error of expected energies, which decides the number of
-                        rays; 0: ray_scale does */
+    double noise_floor_db; /* noise energy over the mean seabed's */
+    double
+        noise_floor_over_db; /* level of that seabed, whatever lies about; NaN: the local one's */
+    double influence_db;     /* composite: a pixel is the target's when the change that it makes is
+                                above this level over the seabed */
+    double ray_scale; /* up to RAY_SCALE_MAX; factor on the number of rays, unless there is an
+                         accuracy */
+    double accuracy;  /* relative standard error of expected energies, which decides the number of
+                         rays; 0: ray_scale does */
     uint64_t seed;
     uint64_t ray_seed;         /* turns the rays' random numbers alone into others; no key */
     uint32_t interactions;     /* surfaces that a path may meet */

@@ -245,8 +245,13 @@ static sonject_status add_feature(const struct making *making, const struct reli
     if (feature->kind == RELIEF_RIPPLES)
         return add_ripples(making, feature);
     if (feature->kind == RELIEF_SCOUR) {
-        CHECK(find_object(making, feature->object, &object));
-        add_bump(making, &making->footprints[object], feature->width_m, -feature->height_m);
+        uint32_t end = making->scene->object_count;
+        if (*feature->object) {
+            CHECK(find_object(making, feature->object, &object));
+            end = object + 1;
+        }
+        for (; object < end; object++)
+            add_bump(making, &making->footprints[object], feature->width_m, -feature->height_m);
         return SONJECT_OK;
     }
     view_find_pixel(view, making->first_row, making->first_column, feature->position_kind,

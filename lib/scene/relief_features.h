@@ -35,7 +35,7 @@ struct relief_feature {
     double width_m;      /* scour: from the object's outline to where it ends */
     uint32_t position_kind; /* mound, pit: as an object's */
     double position_along, position_range;
-    char object[SONJECT_NAME_CAPACITY]; /* scour: name of the object */
+    char object[SONJECT_NAME_CAPACITY]; /* scour: name of the one; "": all */
 };
 
 /* Of a scene; all 0: the seabed is a plane. */

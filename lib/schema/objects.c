@@ -94,7 +94,6 @@ static void relate_fouling(struct check *check, const void *structure)
                        fouling->relief_length_m, fouling->relief_m);
 }
 static const struct section fouling_section = {ROWS(fouling_fields), .relations = relate_fouling};
-#undef STRUCTURE
 
 #define FOULING_FIELD                                                                              \
     {                                                                                              \
@@ -102,7 +101,6 @@ static const struct section fouling_section = {ROWS(fouling_fields), .relations 
             SAME(fouling_section)                                                                  \
     }
 
-#define STRUCTURE sonject_object_params
 static const struct field shape_fields[] = {SHAPE_FIELDS};
 
 void object_init(sonject_object_params *object)

@@ -414,6 +414,10 @@ static const struct field injection_fields[] = {
      WITHIN(-HUGE_VAL, 0.0), .bounds = ABOVE_LEAST | BELOW_MOST,
      .range = "below 0 dB (the seabed's own level)", .preset = -25.0, .words = {"estimate"},
      .word_values = {-25.0}, .read = read_noise_floor, .unit = "dB, or estimate"},
+    {"noise_floor_over",
+     "level of the seabed that noise_floor is over, of full scale or an amplitude of 1: noise is "
+     "the same everywhere; by default that about each pixel",
+     QUANTITY(noise_floor_over_db, DECIBEL), WITHIN(-200.0, 200.0), NONE_IF_NAN},
     {"influence", "change over the seabed from which a pixel is the target's",
      QUANTITY(influence_db, DECIBEL), WITHIN(-200.0, 0.0), .preset = -40.0},
     {"rays", "factor on the number of rays", QUANTITY(ray_scale, NUMBER),

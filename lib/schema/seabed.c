@@ -55,7 +55,7 @@ static const struct field pit_fields[] = {
 static const struct section pit_section = {ROWS(pit_fields)};
 
 static const struct field scour_fields[] = {
-    {"object", "name of the object that it surrounds", LABEL(object), REQUIRED},
+    {"object", "name of the one that it surrounds; by default all", LABEL(object)},
     {"width", "from the object's outline to where it ends", QUANTITY(width_m, LENGTH), POSITIVE,
      REQUIRED},
     {"depth", "at and under the object, which rests on its bottom", HEIGHT},
@@ -218,7 +218,7 @@ static const struct field relief_fields[] = {
     {"ripples", "of sand", SAME(ripples_section), SETS(kind, RELIEF_RIPPLES)},
     {"mound", "a round rise", SAME(mound_section), SETS(kind, RELIEF_MOUND)},
     {"pit", "a round hollow", SAME(pit_section), SETS(kind, RELIEF_PIT)},
-    {"scour", "a hollow around an object", SAME(scour_section), SETS(kind, RELIEF_SCOUR)},
+    {"scour", "hollows around objects", SAME(scour_section), SETS(kind, RELIEF_SCOUR)},
     {"heights", "from a file", .kind = FIELD_SPECIAL, .section = &heights_section,
      .read = read_relief_heights},
 };

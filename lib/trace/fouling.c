@@ -8,9 +8,6 @@
 #define PI    3.14159265358979323846
 #define WAVES FOULING_WAVES
 
-typedef char
-    fouling_record_is_packed[sizeof(struct fouling_record) == (3 + 8 * WAVES) * 4 ? 1 : -1];
-
 static const sonject_fouling_params *fouling_of(const struct tracer *tracer, uint32_t object)
 {
     return &tracer->scene->objects[object].fouling;

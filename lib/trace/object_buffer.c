@@ -226,18 +226,10 @@ static void write_mesh(uint32_t *words, const struct mesh *mesh)
         write_words(words, &at, mesh->normals, normal_words(mesh));
 }
 
-/* The records of users' shapes follow, one for each part that shows one. */
-static size_t user_words(const struct tracer *tracer, const struct part_list *parts)
-{
-    size_t words = 0;
-    for (uint32_t i = 0; i < parts->count; i++)
-        if (placement_of(tracer, parts, i)->size.user_shape)
-            words += ALIGNED(WORDS_OF(struct user_record));
-    return words;
-}
-
-static void write_users(const struct tracer *tracer, const struct part_list *parts,
-                        struct object_record *records, uint32_t *words, size_t at)
+/* Writes the records of users' shapes, one for each part that shows one; words: NULL, to find where
+ * they end alone. Returns that. */
+static size_t write_users(const struct tracer *tracer, const struct part_list *parts,
+                          struct object_record *records, uint32_t *words, size_t at)
 {
     for (uint32_t i = 0; i < parts->count; i++) {
         const struct user_shape *shape = placement_of(tracer, parts, i)->size.user_shape;
@@ -245,40 +237,30 @@ static void write_users(const struct tracer *tracer, const struct part_list *par
             continue;
         const struct user_record record = user_record_of(shape);
         records[i].mesh_words = (uint32_t)(at - i * WORDS_OF(struct object_record));
-        memcpy(words + at, &record, sizeof record);
+        if (words)
+            memcpy(words + at, &record, sizeof record);
         at += ALIGNED(WORDS_OF(record));
     }
+    return at;
 }
 
-/* Fouling changes what rough parts alone return. */
-static bool part_is_fouled(const struct tracer *tracer, const struct placement *part)
-{
-    return object_is_fouled(tracer, part->object) && material_is_rough(&part->material);
-}
-
-/* Likewise the records of fouling, behind them. */
-static size_t fouling_words(const struct tracer *tracer, const struct part_list *parts)
-{
-    size_t words = 0;
-    for (uint32_t i = 0; i < parts->count; i++)
-        if (part_is_fouled(tracer, placement_of(tracer, parts, i)))
-            words += ALIGNED(WORDS_OF(struct fouling_record));
-    return words;
-}
-
-static void write_fouling(const struct tracer *tracer, const struct part_list *parts,
-                          struct object_record *records, uint32_t *words, size_t at)
+/* Likewise the records of fouling, which changes what rough parts alone return. */
+static size_t write_fouling(const struct tracer *tracer, const struct part_list *parts,
+                            struct object_record *records, uint32_t *words, size_t at)
 {
     for (uint32_t i = 0; i < parts->count; i++) {
         const struct placement *part = placement_of(tracer, parts, i);
         struct fouling_record record;
-        if (!part_is_fouled(tracer, part))
+        if (!object_is_fouled(tracer, part->object) || !material_is_rough(&part->material))
             continue;
-        fouling_record_init(&record, tracer, part);
         records[i].fouling_words = (uint32_t)(at - i * WORDS_OF(struct object_record));
-        memcpy(words + at, &record, sizeof record);
+        if (words) {
+            fouling_record_init(&record, tracer, part);
+            memcpy(words + at, &record, sizeof record);
+        }
         at += ALIGNED(WORDS_OF(record));
     }
+    return at;
 }
 
 static size_t record_words(uint32_t part_count)
@@ -319,8 +301,8 @@ static sonject_status write_buffer(struct tracer *tracer, struct object_record *
 {
     size_t begin[SCENE_MESHES_MAX];
     const size_t users_begin = lay_out(tracer, parts, begin);
-    const size_t fouling_begin = users_begin + user_words(tracer, parts);
-    const size_t tree_begin = fouling_begin + fouling_words(tracer, parts);
+    const size_t fouling_begin = write_users(tracer, parts, records, NULL, users_begin);
+    const size_t tree_begin = write_fouling(tracer, parts, records, NULL, fouling_begin);
     const size_t count = tree_begin + tree->count;
     if (count > WORDS_MOST || count * WORD > tracer->device->allocation_limit)
         return report_failure(tracer->report, SONJECT_ERROR_INPUT,

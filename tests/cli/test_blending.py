@@ -9,6 +9,7 @@ import json
 import numpy
 import pytest
 
+import images
 from images import tiff_bytes
 from measured_images import measured, read_png, read_xtf
 
@@ -162,3 +163,50 @@ def test_sidescan(sonject, tmp_path):
         json.loads(untouched.stdout)["seabed"]["amplitude_contrast"], abs=0.02)
     check_objects(numbers, shallowest=-14)  # five to eight pings wide
     check_seam(told["seam"])
+
+
+@pytest.mark.parametrize("looks", [1, 4])
+@pytest.mark.parametrize("over", [None, -20])
+def test_noise_follows_the_seabed_or_does_not(sonject, tmp_path, over, looks):
+    """On sand that is 20 dB brighter than mud shadows are brighter; over one level they are as dark."""
+    scales = numpy.repeat([1.0, 0.1], 200)[:, None]
+    pixels = numpy.random.default_rng(5).rayleigh(scales / 2**0.5, (400, 300)).astype(numpy.float32)
+    (tmp_path / "image.tif").write_bytes(tiff_bytes(pixels))
+    (tmp_path / "scene.yaml").write_text(f"""\
+sonject: 1
+input:
+  path: image.tif
+  geometry: {{row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 30 m}}
+sonar: {{frequency: 300 kHz, bandwidth: 15 kHz, altitude: 6 m}}
+injection: {{noise_floor: -15 dB, match: {{looks: {looks}}}{"" if over is None else f", noise_floor_over: {over} dB"}}}
+objects:
+  - {{name: sand, shape: box, length: 2 m, width: 1 m, height: 1 m, position: {{row: 60, column: 100}}}}
+  - {{name: mud, shape: box, length: 2 m, width: 1 m, height: 1 m, position: {{row: 340, column: 100}}}}
+""")
+    sonject.done("run", "scene.yaml", "-o", "out")
+    image = images.read_tiff(tmp_path / "out" / "image.tif")
+    shadow = inner(read_png(tmp_path / "out" / "shadow.png") > 0, 4)
+    levels = [decibels((image[rows][shadow[rows]] ** 2).mean()) for rows in (slice(0, 200), slice(200, 400))]
+    if over is None:
+        assert levels[0] - levels[1] > 15  # the seabed's level is a mean over metres, which mixes both
+    else:
+        assert levels == pytest.approx([-35, -35], abs=0.3)  # speckle's error of over 1000 pixels
+
+
+def test_shadows_over_relief_are_dark_all_over(sonject, tmp_path):
+    """Of a real aperture: what an object hides is formed by the same responses as the seabed."""
+    (tmp_path / "scene.yaml").write_text("""\
+sonject: 1
+input:
+  synthetic: {rows: 40, columns: 288, seed: 7, ripple_contrast: 0, patch_contrast: 0 dB}
+  geometry: {row_spacing: 12 cm, column_spacing: 3 cm, first_slant_range: 19 m}
+sonar: {kind: real, array: {length: 32 cm}, frequency: 600 kHz, bandwidth: 25 kHz, altitude: 5.5 m}
+seabed: {relief: [{ripples: {wavelength: 1 m, height: 1 mm}}]}
+injection: {noise_floor: -60 dB}
+objects: [{name: box, shape: box, length: 2 m, width: 0.5 m, height: 0.5 m, position: {row: 20, column: 100}}]
+""")
+    sonject.done("run", "scene.yaml", "-o", "out")
+    columns = (images.read_tiff(tmp_path / "out" / "image.tif")[16:24] ** 2).mean(axis=0)
+    seabed = columns[:60].mean()
+    # the shadow ends at column 177; the first columns hold the box's own echo and its pulse
+    assert decibels(columns[115:170] / seabed).max() < -50

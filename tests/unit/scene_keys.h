@@ -342,6 +342,8 @@ static const struct key_case {
     {"injection.mode", "resynthesise", S(U32, injection.mode), .number = SONJECT_MODE_RESYNTHESISE},
     {"injection.columns", "paper", S(U32, injection.column_rule), .number = SONJECT_COLUMNS_PAPER},
     {"injection.noise_floor", "-30 dB", S(DOUBLE, injection.noise_floor_db), .number = -30.0},
+    {"injection.noise_floor_over", "-12 dB", S(DOUBLE, injection.noise_floor_over_db),
+     .number = -12.0},
     {"injection.influence", "-35 dB", S(DOUBLE, injection.influence_db), .number = -35.0},
     {"injection.rays", "0.5", S(DOUBLE, injection.ray_scale), .number = 0.5},
     {"injection.accuracy", "2 %", S(DOUBLE, injection.accuracy), .number = 0.02},

@@ -226,7 +226,7 @@ static const char block_file[] =
     "chip:\n"
     "  rows: 64\n"
     "  columns: 64\n"
-    "swaths: [{path: a.tif}]\n"
+    "swaths: [{path: a.tif}, {path: b.tif}, {path: c.tif, range_over_altitude: [1, 9]}]\n"
     "targets:\n"
     "  - class: \"m\xc3\xbcll\" # \xc3\xbc\n"
     "    object: {shape: box, height: 2 m}\n"
@@ -243,10 +243,11 @@ static const char moved_file[] =
     "scene: s.yaml\n"
     "images: 10 # a few\n"
     "chip:\n"
-    "  slant_range: [30 m, 60.5 m]\n"
+    "  range_over_altitude: [1.5, 6.25]\n"
     "  rows: 64\n"
     "  columns: 64\n"
-    "swaths: [{path: a.tif}]\n"
+    "swaths: [{range_over_altitude: [2, 4], path: a.tif}, {path: b.tif}, {path: c.tif, "
+    "range_over_altitude: [1.25, 3]}]\n"
     "targets:\n"
     "  - class: \"m\xc3\xbcll\" # \xc3\xbc\n"
     "    object: {shape: box, height: 2 m}\n"
@@ -284,7 +285,8 @@ static void a_fitted_file_is_the_users_own_with_other_numbers(void **state)
     draws.floor_db = -22.0;
     draws.has_added = true;
     fit_draws_move(&draws, moves);
-    const struct fitted_selection selection = {1.2, -2.3, 30.0, 60.5};
+    struct ratio_limits swaths[] = {{2.0, 4.0}, {0.0, 0.0}, {1.25, 3.0}};
+    const struct fitted_selection selection = {1.2, -2.3, {1.5, 6.25}, swaths};
     EXPECT_OK(report, fit_draws_text(&draws, report, &selection, "# fitted\n", &text));
     assert_string_equal(text, moved_file);
     free(text);
@@ -299,7 +301,7 @@ static char *fitted_text(struct scene_folder *folder, const char *file, const ch
     static struct campaign campaign;
     static const struct draw_move moves[FITTED_KINDS] = {
         {0.0, 0.0, 1.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 1.0}, {0.0, 1.0, 1.0}, {0.0, 2.0, 1.0}};
-    static const struct fitted_selection selection = {1.2, -2.3, 30.0, 60.5};
+    static const struct fitted_selection selection = {1.2, -2.3, {1.5, 6.25}, NULL};
     struct report *report = &folder->report;
     struct fit_draws draws;
     char *text = NULL;
@@ -330,13 +332,14 @@ static void what_is_in_braces_stays_so(void **state)
     struct scene_folder *folder = *state;
     char unchanged[200];
     char *text = fitted_text(folder, flow_file, NULL, unchanged);
-    assert_string_equal(text, "{visible: {highlight: 1.2 dB, shadow: -2.3 dB, otherwise: redraw}, "
-                              "sonject_campaign: 1, scene: s.yaml, images: 10,\n"
-                              " chip: {\n  slant_range: [30 m, 60.5 m], rows: 64, columns: 64},\n"
-                              " swaths: [{path: a.tif}],\n"
-                              " draw: {injection.noise_floor: {uniform: [-18 dB, -16 dB]}},\n"
-                              " targets: [{class: tin, object: {shape: sphere, diameter: 1},\n"
-                              "  draw: {level.over_seabed: 13 dB}}]}\n");
+    assert_string_equal(text,
+                        "{visible: {highlight: 1.2 dB, shadow: -2.3 dB, otherwise: redraw}, "
+                        "sonject_campaign: 1, scene: s.yaml, images: 10,\n"
+                        " chip: {\n  range_over_altitude: [1.5, 6.25], rows: 64, columns: 64},\n"
+                        " swaths: [{path: a.tif}],\n"
+                        " draw: {injection.noise_floor: {uniform: [-18 dB, -16 dB]}},\n"
+                        " targets: [{class: tin, object: {shape: sphere, diameter: 1},\n"
+                        "  draw: {level.over_seabed: 13 dB}}]}\n");
     assert_string_equal(unchanged, ""); /* the noise floor is moved */
     free(text);
 }
@@ -344,7 +347,7 @@ static void what_is_in_braces_stays_so(void **state)
 static void what_overrides_give_is_not_written_over(void **state)
 {
     static const char *const overrides[] = {"visible={highlight: 3 dB, shadow: -1 dB}",
-                                            "chip.slant_range=[20 m, 90 m]",
+                                            "chip.range_over_altitude=[2, 9]",
                                             "chip={rows: 64, columns: 64}"};
     struct scene_folder *folder = *state;
     for (size_t i = 0; i < COUNT(overrides); i++) {

@@ -79,7 +79,7 @@ static void test_features_lie_where_they_are_told(void **state)
                          "m, height: 30 cm}\n"
                          "  - pit: {position: {row: 280, column: 240}, radius: 1 m, depth: 20 "
                          "cm}\n"
-                         "  - scour: {object: can, width: 50 cm, depth: 10 cm}\n" OBJECTS};
+                         "  - scour: {width: 50 cm, depth: 10 cm}\n" OBJECTS};
     for (int side = 0; side < 2; side++) {
         struct ground ground;
         take(*state, &ground, texts[side]);
