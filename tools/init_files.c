@@ -209,7 +209,8 @@ bool write_scene(const struct interview *interview)
         "\n    heading: 30 deg # from along-track towards range\n"
         "    # of the peak; measured ones have 8 to 19 dB. Without this line the material decides\n"
         "    level: {over_seabed: %.0f dB}%s\n",
-        level_db, level_db < USUAL_LEVEL_DB ? " # by the image's ceiling, which cuts more" : "");
+        level_db,
+        level_db < USUAL_LEVEL_DB ? " # as the image's ceiling allows: more is cut off" : "");
     return finish(file, part, interview->scene);
 }
 
@@ -286,14 +287,14 @@ static void add_swaths(FILE *file, const struct interview *interview)
         else if (has_both)
             fprintf(file, "    set: {input.channel: %s, input.calibration: %s}\n", side,
                     last_part(i == 0 ? interview->calibration : interview->other_calibration));
-        fputs("    # avoid: [{along_track: [20 m, 25 m], slant_range: [5 m, 9 m]}] # no image "
-              "shows it\n",
+        fputs("    # avoid: [{along_track: [20 m, 25 m], slant_range: [5 m, 9 m]}, "
+              "{along_track: [30 m, 31 m], slant_range: [5 m, 30 m]}]\n",
               file);
     }
 }
 
-/* Stones as high as the target, alone: of bare seabed a detector learns that all that is bright is a
- * target. */
+/* Stones as high as the target, alone: of bare seabed a detector learns that all that is bright is
+ * a target. */
 static void add_clutter(FILE *file, const char *text)
 {
     struct checked checked;

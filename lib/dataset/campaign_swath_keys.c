@@ -124,8 +124,8 @@ static const struct field swath_fields[] = {
     {"set", "keys of the scene for this swath, such as {input.channel: port}",
      SPECIAL(read_swath_keys, "section")},
     {"avoid",
-     "boxes of contacts that images are not to show; that they may show and objects keep away "
-     "from, where rows or columns are all",
+     "boxes of contacts that no image shows; where chip.rows or chip.columns is all, images show "
+     "them and objects keep away",
      SPECIAL(read_avoid, "list"), .is_list = true, .section = &box_section},
     {"range_over_altitude", "of this swath's images, instead of chip.range_over_altitude",
      SPECIAL(read_ratio, "list of two numbers"), .range = "1..." TEXT_OF(RATIO_MAX)},

@@ -64,7 +64,7 @@ def note(text=b"a note of the operator"):
 
 def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), altitudes=None, silent=(), **options):
     """Rows x columns of 16 bit samples a side, column 0 next to the track, and a sub-bottom channel
-    and notes between them. Port's samples go into the file from far to near, as recorders do. empty:
+    and notes between them. row_spacing: or where each row lies along the track. Port's samples go into the file from far to near, as recorders do. empty:
     rows whose pings have neither position nor altitude. altitudes: of the rows, where they differ.
     silent: rows whose pings have no samples."""
     data = file_header([SUBBOTTOM, PORT, STARBOARD], units=options.pop("units", 0))
@@ -78,7 +78,8 @@ def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), altitudes=None, silent
             lines = [(channel, samples[:0]) for channel, samples in lines]
         if altitudes is not None:
             options["altitude"] = altitudes[row]
-        place = (1000.0 + 0.6 * row_spacing * row, 2000.0 + 0.8 * row_spacing * row)
+        along = row_spacing[row] if numpy.ndim(row_spacing) else row_spacing * row
+        place = (1000.0 + 0.6 * along, 2000.0 + 0.8 * along)
         if row in empty:
             data += ping(lines, number=row, **{**options, "altitude": 0.0})
         else:

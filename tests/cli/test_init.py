@@ -221,6 +221,20 @@ def test_both_sides_of_an_image_are_two_swaths(sonject, tmp_path):
     sonject.done("campaign", "both_campaign.yaml", "-o", "set", "--set", "images=4")
 
 
+def test_places_to_avoid_are_in_metres_of_the_pictures_axes(sonject, tmp_path):
+    """Which are those of all pings' mean spacing, 10 cm, though the first half sails slowly and the other fast."""
+    sides = [Made("amplitude", water=numpy.full(ROWS, 100), seed=seed).numbers for seed in (1, 2)]
+    along = numpy.cumsum(numpy.where(numpy.arange(ROWS) < ROWS / 2, 0.05, 0.15))
+    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, row_spacing=along, altitudes=numpy.full(ROWS, 5.0)))
+    answer = init(sonject, "line.xtf", "--channel", "port", "--campaign", answers=["", "100 kHz", "30 kHz", ""])
+    assert answer.returncode == 0, answer.stderr
+    sonject.done("campaign", "line_campaign.yaml", "-o", "set", "--set", "images=40", "--set", "chip.rows=48", "--set",
+                 "swaths[0].avoid=[{along_track: [0 m, 30 m], slant_range: [0 m, 30 m]}]")
+    records = [json.loads(path.read_text()) for path in (tmp_path / "set").glob("*/records/*.json")]
+    rows = {split: [record["swath"]["row"] for record in records if record["split"] == split] for split in ("train", "val")}
+    assert 301 <= min(rows["train"]) < 400 and min(rows["val"]) < 100, rows  # port is for training
+
+
 def test_one_image_has_no_splits_and_a_target_may_be_a_file(sonject, image):
     (image.parent / "scenes").mkdir()
     (image.parent / "ball.yaml").write_text("sonject_target: 1\nshape: sphere\ndiameter: 0.4 m\n")
