@@ -288,7 +288,7 @@ static void add_swaths(FILE *file, const struct interview *interview)
             fprintf(file, "    set: {input.channel: %s, input.calibration: %s}\n", side,
                     last_part(i == 0 ? interview->calibration : interview->other_calibration));
         fputs("    # avoid: [{along_track: [20 m, 25 m], slant_range: [5 m, 9 m]}, "
-              "{along_track: [30 m, 31 m], slant_range: [5 m, 30 m]}]\n",
+              "{along_track: [30 m, 31 m], slant_range: [5 m, 30 m]}] # for example\n",
               file);
     }
 }

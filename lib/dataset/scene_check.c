@@ -90,9 +90,10 @@ static sonject_status describe_patch(struct growing_text *text, struct report *r
     growing_text_add(text, "           grazing angle %.1f...%.1f deg\n",
                      grazing_degrees(view, view->first_range_m), grazing_degrees(view, last));
     growing_text_add(
-        text, "sonar      %.4g kHz, bandwidth %.4g kHz, altitude %.3g m%s, wavelength %.4g mm\n",
+        text, "sonar      %.4g kHz, bandwidth %.4g kHz, altitude %.3g m%s%s, wavelength %.4g mm\n",
         scene->sonar.centre_frequency_hz / 1e3, scene->sonar.bandwidth_hz / 1e3,
         scene->sonar.altitude_m,
+        scene->altitude_by == ALTITUDE_OF_RETURNS ? " by first returns" : "",
         scene->altitude_by == ALTITUDE_GIVEN || scene->patch.rows > 0 || scene->object_count == 0
             ? ""
             : " at the objects' pings",

@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* syscall */
+#define _DEFAULT_SOURCE /* syscall */
 #include "base/system/child.h"
 
 #include <errno.h>
