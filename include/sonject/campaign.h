@@ -138,8 +138,8 @@ typedef struct sonject_campaign_fit_params {
 
 /* Fits a campaign to real contacts: moves what its targets draw of length, width, height and level
  * over the seabed, and the noise floor, until contacts that it injects measure as the real ones do;
- * sets range_over_altitude and visible from the contacts. What cannot be told from contacts stays as
- * it is: classes' shares, headings, burial, materials, fixed sizes. Some 830 images are made, by
+ * sets range_over_altitude and visible from the contacts. What cannot be told from contacts stays
+ * as it is: classes' shares, headings, burial, materials, fixed sizes. Some 830 images are made, by
  * threads as in sonject_campaign_run. path, params: as of sonject_campaign_read. The same inputs
  * give the same bytes. progress may be NULL.
  * Errors: ARGUMENT, INPUT (fewer than ten contacts, labels that cannot be read, ...), DEVICE,

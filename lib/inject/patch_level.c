@@ -229,9 +229,9 @@ sonject_status patch_facts_init(struct patch_facts *facts, struct report *report
 
 double noise_over_level(const struct patch_level *level, size_t i)
 {
-    const double own = (double)level->level[i];
-    return level->noise_over > 0.0 && own > 0.0 ? level->noise_ratio * level->noise_over / own
-                                                : level->noise_ratio;
+    return level->noise_over > 0.0
+               ? level->noise_ratio * level->noise_over / (double)level->level[i]
+               : level->noise_ratio;
 }
 
 void patch_level_clear(struct patch_level *level)

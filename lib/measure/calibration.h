@@ -122,7 +122,7 @@ struct calibration {
     struct estimate nadir_column, altitude_m;
     double altitude_ends_m[2]; /* which 5 and 95 % of pings lie below */
     struct first_returns returns;
-    double median_return; /* of these, columns; 0: unseen */
+    double median_return;                                        /* of these, columns; 0: unseen */
     double row_spacing_m, column_spacing_m, first_slant_range_m; /* NAN: unknown */
     uint32_t side;              /* SONJECT_SIDE_... that the file tells; SIDE_UNKNOWN */
     double recorded_altitude_m; /* that the file tells, in the median or mean; 0: it does not */

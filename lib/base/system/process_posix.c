@@ -91,16 +91,6 @@ bool thread_start(pthread_t *thread, void *(*run)(void *user), void *user)
     return is_started;
 }
 
-void wait_a_little(pthread_cond_t *condition, pthread_mutex_t *lock)
-{
-    struct timespec end;
-    clock_gettime(CLOCK_REALTIME, &end);
-    end.tv_nsec += 200000000;
-    end.tv_sec += end.tv_nsec / 1000000000;
-    end.tv_nsec %= 1000000000;
-    pthread_cond_timedwait(condition, lock, &end);
-}
-
 void *library_load(const char *name, int number)
 {
     char file[256];

@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include <windows.h>
 
@@ -91,16 +90,6 @@ uint32_t processor_count(void)
 bool thread_start(pthread_t *thread, void *(*run)(void *user), void *user)
 {
     return pthread_create(thread, NULL, run, user) == 0;
-}
-
-void wait_a_little(pthread_cond_t *condition, pthread_mutex_t *lock)
-{
-    struct timespec end;
-    clock_gettime(CLOCK_REALTIME, &end);
-    end.tv_nsec += 200000000;
-    end.tv_sec += end.tv_nsec / 1000000000;
-    end.tv_nsec %= 1000000000;
-    pthread_cond_timedwait(condition, lock, &end);
 }
 
 void *library_load(const char *name, int number)
