@@ -66,7 +66,8 @@ typedef struct sonject_context_params {
  * Threads: a context and whatever was made with it belong to one thread at a time; different
  * contexts may be used by different threads at once, also when these are the first to use a
  * device.
- * Contexts of one device share what is compiled for it, which is given back with the last of them.
+ * Contexts of one device share what is compiled for it, which is given back with the last of them. On
+ * the device native, a context keeps up to 96 MB of its buffers for later calls.
  * Forks: the device native works in children, also with contexts that were made before. OpenCL does
  * not, in a child of a process in which a call asked for it (one that opened a device that was not
  * named native, or listed them): there the default is native, and other devices answer
