@@ -13,7 +13,7 @@ static void expect_arrived(const struct key_case *key, const void *structure)
         const char *text = place;
         if (key->type == TYPE_PATH)
             memcpy(&text, place, sizeof text);
-        assert_string_equal(text, key->text);
+        assert_string_equal(text, key->value);
     } else if (!(number_at(structure, key) == key->number)) {
         fail_msg("%s: %s gave %.17g, not %.17g", key->path, key->value, number_at(structure, key),
                  key->number);
@@ -32,7 +32,7 @@ static void expect_case(struct scene_folder *folder, const struct key_case *key)
 #endif
     if (status != SONJECT_OK)
         fail_msg("%s=%s: %s", key->path, key->value, folder->report.message);
-    expect_arrived(key, structure_of(&folder->scene, key->path));
+    expect_arrived(key, structure_of(&folder->scene, key));
 }
 
 /* A value that the key's place holds anyway would show nothing. */
@@ -45,7 +45,7 @@ static void expect_not_the_default(struct scene_folder *folder, const struct key
         return; /* the only word for it is the default; its keys have cases of their own */
     if (read_case(folder, key, NULL) != SONJECT_OK)
         return; /* the section cannot do without the key */
-    const void *structure = structure_of(&folder->scene, key->path);
+    const void *structure = structure_of(&folder->scene, key);
     if (structure && number_at(structure, key) == key->number)
         fail_msg("%s: %s is there without the key, too", key->path, key->value);
 }

@@ -38,10 +38,6 @@ static bool is_without_effect(const char *path)
 static const char *second_value(const char *path)
 {
     static const char *const values[][2] = {
-        {".heights.unit", "1 m"},
-        {".temperature", "3 C"},
-        {".salinity", "20"},
-        {".absorption.depth", "60 m"},
         {".user.code", "float3 shape_normal(); float shape_distance();"},
         {".mesh", "{file: '" SOURCE_ROOT "/tools/targets/rock.obj', unit: cm}"},
     };
@@ -57,7 +53,7 @@ static const char *second_value(const char *path)
 /* Changes the member that a key sets. */
 static void change(const struct scene *scene, const struct key_case *key)
 {
-    char *member = (char *)(uintptr_t)structure_of(scene, key->path) + key->offset;
+    char *member = (char *)(uintptr_t)structure_of(scene, key) + key->offset;
     double number;
     if (key->type == TYPE_DOUBLE) {
         memcpy(&number, member, sizeof number);
