@@ -3,8 +3,6 @@
  * whole, and the next call works.
  *
  * SONJECT_FAULT_POINTS: how many n are tried of each piece of work (0: all). KIND: the calls. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 
 #define CL_TARGET_OPENCL_VERSION 120
@@ -114,7 +112,6 @@ static void test_piece(void **state)
 
 static void test_discovery_short_of_memory_says_so(void **state)
 {
-    (void)state;
     for (long n = 1; n <= 2; n++) { /* platforms, devices */
         fault_arm(FAULT_OPENCL, n, false, CL_OUT_OF_HOST_MEMORY);
         const sonject_status status = work_do(&work, &work_inject);

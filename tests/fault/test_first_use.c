@@ -2,8 +2,6 @@
  * contexts hold; and two threads that go on, each with a context of its own, with the same images
  * as one. This process makes no call of the library, so that each of its children is the first to
  * use the driver. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 
 #include <pthread.h>

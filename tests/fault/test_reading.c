@@ -1,7 +1,5 @@
 /* A disk that cannot be read is no damaged file: whichever of a reader's calls fails, the status is
  * STORAGE, and the message has the name of the file (or of the copy) and the system's words. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 
 #include <errno.h>
@@ -140,11 +138,9 @@ static void test_a_disk_under_the_decoder(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_written_formats, make_temporary_folder,
-                                        remove_temporary_folder),
+        IN_FOLDER(test_written_formats),
 #ifdef FAILING_PREAD
-        cmocka_unit_test_setup_teardown(test_a_disk_under_the_decoder, make_temporary_folder,
-                                        remove_temporary_folder),
+        IN_FOLDER(test_a_disk_under_the_decoder),
 #endif
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,3 @@
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 
 #include <sys/stat.h>
@@ -129,26 +127,9 @@ int work_prepare(struct work *work)
     return work_do(work, &seabed) != SONJECT_OK;
 }
 
-static void empty_folder(const char *path)
-{
-    char file[WORK_PATH + 300];
-    DIR *list = opendir(path);
-    if (!list)
-        return;
-    for (const struct dirent *entry = readdir(list); entry; entry = readdir(list)) {
-        snprintf(file, sizeof file, "%s/%s", path, entry->d_name);
-        if (is_entry(entry) && unlink(file) != 0)
-            empty_folder(file);
-    }
-    closedir(list);
-    (void)rmdir(path);
-}
-
 int work_remove(struct work *work)
 {
-    empty_folder(work->folder->path);
-    free(work->folder);
-    return 0;
+    return remove_temporary_folder((void **)&work->folder);
 }
 
 static sonject_status read_scene(struct work *work, sonject_context *context, sonject_scene *scene)
@@ -356,7 +337,7 @@ void work_expect(struct work *work)
 {
     work->expected_digest = work->digest;
     work->expected_count = list_results(work, work->expected);
-    empty_folder(work->results);
+    (void)remove_folder(work->results);
 }
 
 static void check_file(const struct work *work, const struct work_file *file)
@@ -384,5 +365,5 @@ void work_check_results(struct work *work, bool is_done)
     }
     if (is_done)
         assert_int_equal(count, work->expected_count);
-    empty_folder(work->results);
+    (void)remove_folder(work->results);
 }

@@ -1,5 +1,5 @@
-/* A fresh folder with one scene file, for the tests of scene files. To be included after cmocka.h,
- * by files that begin with #define _POSIX_C_SOURCE 200809L. */
+/* A fresh folder with one scene file, for the tests of scene files. To be included after cmocka.h.
+ */
 #ifndef SCENE_FOLDER_H
 #define SCENE_FOLDER_H
 
@@ -83,11 +83,6 @@ static inline void write_file(struct scene_folder *folder, const char *name, con
     write_bytes(file_in(folder, name), bytes, count);
 }
 
-static inline void remove_file(struct scene_folder *folder, const char *name)
-{
-    assert_int_equal(unlink(file_in(folder, name)), 0);
-}
-
 static inline void write_scene(struct scene_folder *folder, const char *text, size_t bytes)
 {
     write_file(folder, "scene.yaml", text, bytes);
@@ -155,6 +150,17 @@ static inline void expect_scene_refused(struct scene_folder *folder, const char 
     }
     if (strcmp(folder->report.message, expected) != 0)
         fail_msg("the message is\n%s\nand not\n%s", folder->report.message, expected);
+}
+
+/* Scenes that are refused, and the messages as above. */
+struct refusal {
+    const char *text, *message;
+};
+
+static inline void expect_all_refused(void **state, const struct refusal *wrong, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        expect_scene_refused(*state, wrong[i].text, wrong[i].message);
 }
 
 /* The text of an example scene, its end marked by a 0, for free(). name: "demo". */

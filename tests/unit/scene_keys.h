@@ -1,5 +1,5 @@
 /* Every key of scene files: a value for it, where that must arrive, and what its section needs
- * then. To be included by files that begin with #define _POSIX_C_SOURCE 200809L. */
+ * then. */
 #ifndef SCENE_KEYS_H
 #define SCENE_KEYS_H
 

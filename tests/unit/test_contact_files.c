@@ -1,7 +1,5 @@
 /* Labels of contacts: each format, as others and as sonject itself write it, what highlight and
  * shadow of one contact are, and labels that are wrong. Images are of 30 rows and 40 columns. */
-#define _POSIX_C_SOURCE 200809L
-
 #include <sys/stat.h>
 
 #include "base/report.h"
@@ -385,10 +383,6 @@ static void test_where_images_are_looked_for(void **state)
         expect_contacts(state, "labels/train", LABELLED_BOTH, &expected, 1);
         (void)unlink(temporary_file(*state, places[i]));
     }
-    for (size_t i = 0; i < COUNT(labels); i++)
-        (void)unlink(temporary_file(*state, labels[i]));
-    for (size_t i = COUNT(folders); i-- > 0;)
-        assert_int_equal(rmdir(temporary_file(*state, folders[i])), 0);
 }
 
 /* ---- VOC. */
@@ -668,21 +662,19 @@ static int make_labels_folder(void **state)
 
 static int remove_labels_folder(void **state)
 {
-    char outer[TEMPORARY_CAPACITY];
-    const struct temporary_folder *folder = *state;
-    const size_t length = strlen(folder->path) - strlen("/labels");
-    snprintf(outer, sizeof outer, "%.*s", (int)length, folder->path);
-    return remove_temporary_folder(state) != 0 || rmdir(outer) != 0;
+    struct temporary_folder *folder = *state;
+    *strrchr(folder->path, '/') = '\0';
+    return remove_temporary_folder(state);
 }
 
-#define IN_FOLDER(test)                                                                            \
+#define WITH_LABELS(test)                                                                          \
     cmocka_unit_test_setup_teardown(test, make_labels_folder, remove_labels_folder)
 
-TEST_PROGRAM(NULL, NULL, IN_FOLDER(test_coco), IN_FOLDER(test_coco_that_is_wrong),
-             IN_FOLDER(test_tables), IN_FOLDER(test_tables_that_are_wrong),
-             IN_FOLDER(test_so_many_contacts_and_no_more), IN_FOLDER(test_yolo),
-             IN_FOLDER(test_yolo_that_is_wrong), IN_FOLDER(test_where_images_are_looked_for),
-             IN_FOLDER(test_voc), IN_FOLDER(test_voc_that_is_wrong),
-             IN_FOLDER(test_own_labels_are_read_as_they_were_written),
-             IN_FOLDER(test_highlight_and_shadow_are_one_contact), IN_FOLDER(test_quantiles),
-             IN_FOLDER(test_quantiles_that_are_wrong))
+TEST_PROGRAM(NULL, NULL, WITH_LABELS(test_coco), WITH_LABELS(test_coco_that_is_wrong),
+             WITH_LABELS(test_tables), WITH_LABELS(test_tables_that_are_wrong),
+             WITH_LABELS(test_so_many_contacts_and_no_more), WITH_LABELS(test_yolo),
+             WITH_LABELS(test_yolo_that_is_wrong), WITH_LABELS(test_where_images_are_looked_for),
+             WITH_LABELS(test_voc), WITH_LABELS(test_voc_that_is_wrong),
+             WITH_LABELS(test_own_labels_are_read_as_they_were_written),
+             WITH_LABELS(test_highlight_and_shadow_are_one_contact), WITH_LABELS(test_quantiles),
+             WITH_LABELS(test_quantiles_that_are_wrong))

@@ -1,7 +1,5 @@
 /* Draws moved towards contacts in a world whose laws are known, and a campaign's file with new
  * numbers in their places. */
-#define _POSIX_C_SOURCE 200809L /* mkdtemp */
-
 #include "claims.h"
 
 #include "dataset/fit.h"
@@ -59,7 +57,6 @@ static void draws_reach_what_made_the_contacts(void **state)
     static struct contact_extents real[CONTACTS];
     struct quantile_goal goals[EXTENT_KINDS];
     struct move_prior prior = {.contacts = CONTACTS};
-    (void)state;
     for (uint64_t i = 0; i < CONTACTS; i++) {
         struct drawn_contact contact;
         show(&hidden, 1, i, &contact);
@@ -132,7 +129,6 @@ static double move_by_copies(size_t copies)
  * four fifths of the way. */
 static void copies_of_an_extent_count_little(void **state)
 {
-    (void)state;
     const double one = move_by_copies(1);
     const double four = move_by_copies(4);
     print_message("one: %.3f, four: %.3f\n", one, four);
@@ -151,7 +147,6 @@ static void rounds_are_compared_whole(void **state)
     struct quantile_goal goals[EXTENT_KINDS];
     const struct move_prior prior = {.contacts = CONTACTS};
     struct draw_move moves[FITTED_KINDS];
-    (void)state;
     for (uint64_t i = 0; i < CONTACTS; i++) {
         struct drawn_contact *old = &made[i], *now = &made[CONTACTS + i];
         show(&world, 2, i, now);
@@ -174,7 +169,6 @@ static void rounds_are_compared_whole(void **state)
 
 static void a_median_has_the_error_of_statistics(void **state)
 {
-    (void)state;
     /* of a normal distribution: sqrt(pi / 2) of the mean's */
     const double error = quantile_error(0.5, 2.0 * 0.67449 * 3.0, 100.0);
     assert_true(fabs(error - 0.3 * sqrt(PI / 2.0)) < 1e-3);
@@ -190,7 +184,6 @@ static void quantiles_of_few_are_in_the_middle(void **state)
         SAMPLES = 4000,
         VALUES = 10
     };
-    (void)state;
     for (int fifth = 1; fifth < 5; fifth++) {
         const double share = 0.2 * fifth;
         double low = 0.0;
@@ -209,7 +202,6 @@ static void quantiles_of_few_are_in_the_middle(void **state)
 /* The least and the largest of ten are known but roughly, not infinitely ill. */
 static void ends_of_published_quantiles_have_errors(void **state)
 {
-    (void)state;
     for (int end = 0; end <= 1; end++) {
         const double error = quantile_error(end, 1.0, 10.0);
         assert_true(error > quantile_error(0.5, 1.0, 10.0) && error < 10.0);
@@ -292,7 +284,6 @@ static void a_fitted_file_is_the_users_own_with_other_numbers(void **state)
     free(text);
     fit_draws_clear(&draws);
     campaign_clear(&campaign);
-    unlink(file_in(folder, "campaign.yaml"));
 }
 
 static char *fitted_text(struct scene_folder *folder, const char *file, const char *override,
@@ -315,7 +306,6 @@ static char *fitted_text(struct scene_folder *folder, const char *file, const ch
     fit_draws_text(&draws, report, &selection, "", &text);
     fit_draws_clear(&draws);
     campaign_clear(&campaign);
-    unlink(file_in(folder, "campaign.yaml"));
     return text;
 }
 

@@ -1,8 +1,6 @@
 /* Reading meshes: files written here, whole and spoilt on purpose. Every one is read or
  * refused in one line that names it, takes memory in proportion to its size, and leaves nothing
  * behind (run under sanitizers and valgrind). */
-#define _POSIX_C_SOURCE 200809L
-
 #include "base/byte_order.h"
 #include "claims.h"
 #include "kernel/mesh_samples.h"

@@ -1,5 +1,4 @@
 /* Launches on the device native: each work-item runs once, whoever else launches. */
-#define _POSIX_C_SOURCE 200809L
 #include "claims.h"
 
 #include <fenv.h>

@@ -1,6 +1,4 @@
 /* Tables of sound speeds: every way to write them, and files that are none. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "schema/tables.h"
 #include "temporary_folder.h"

@@ -1,7 +1,5 @@
 /* Measured responses and motion from callers and files: what is taken, and what is refused in one
  * line. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 
 #include "scene_folder.h"

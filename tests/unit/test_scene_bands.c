@@ -1,6 +1,4 @@
 /* Bands: several sonars in one scene file. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 
@@ -90,26 +88,24 @@ static void test_bands_that_are_left_are_named(void **state)
 
 static void test_what_is_wrong_is_told(void **state)
 {
-    struct scene_folder *folder = *state;
-    expect_scene_refused(folder, TWO_BANDS,
-                         ":6:3: bands: choose one of low, high (--set band=low)");
-    expect_scene_refused(folder, TWO_BANDS "band: middle\n",
-                         ":10:7: band: 'middle' is not one of low, high");
-    expect_scene_refused(folder, HEAD "band: low\n",
-                         ":5:7: band: there are no bands to choose from");
-    expect_scene_refused(folder, HEAD "bands: {}\n",
-                         ":5:8: bands: must be a section of bands: their names, and keys");
-    expect_scene_refused(folder, HEAD "bands: {../up: {}}\n",
-                         ":5:16: bands.../up: a band's name is that of a folder: 1 to 63 letters, "
-                         "digits, _ and -");
-    expect_scene_refused(folder, HEAD "bands: {low: 3}\nband: low\n",
-                         ":5:14: bands.low: must be a section of the scene's keys that this band "
-                         "changes");
-    expect_scene_refused(folder, HEAD "bands: {low: {bands: {}}}\nband: low\n",
-                         ":5:22: bands.low.bands: cannot be a band's own; remove it");
-    /* the place is where it was written */
-    expect_scene_refused(folder, HEAD "bands:\n  low: {sonar: {bandwidth: 3 kg}}\nband: low\n",
-                         ":6:28: sonar.bandwidth: unit 'kg' is not one of Hz, kHz, MHz");
+    static const struct refusal wrong[] = {
+        {TWO_BANDS, ":6:3: bands: choose one of low, high (--set band=low)"},
+        {TWO_BANDS "band: middle\n", ":10:7: band: 'middle' is not one of low, high"},
+        {HEAD "band: low\n", ":5:7: band: there are no bands to choose from"},
+        {HEAD "bands: {}\n", ":5:8: bands: must be a section of bands: their names, and keys"},
+        {HEAD "bands: {../up: {}}\n",
+         ":5:16: bands.../up: a band's name is that of a folder: 1 to 63 letters, "
+         "digits, _ and -"},
+        {HEAD "bands: {low: 3}\nband: low\n",
+         ":5:14: bands.low: must be a section of the scene's keys that this band "
+         "changes"},
+        {HEAD "bands: {low: {bands: {}}}\nband: low\n",
+         ":5:22: bands.low.bands: cannot be a band's own; remove it"},
+        /* the place is where it was written */
+        {HEAD "bands:\n  low: {sonar: {bandwidth: 3 kg}}\nband: low\n",
+         ":6:28: sonar.bandwidth: unit 'kg' is not one of Hz, kHz, MHz"},
+    };
+    expect_all_refused(state, wrong, COUNT(wrong));
 }
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_a_band_changes_its_keys_alone),

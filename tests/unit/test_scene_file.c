@@ -1,6 +1,4 @@
 /* Scene files that are good: every key, every way to write it, overrides. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_keys.h"
 
@@ -64,7 +62,6 @@ static void test_every_key_has_a_case(void **state)
     json_t *keys = list_keys();
     size_t i;
     json_t *key;
-    (void)state;
     json_array_foreach(keys, i, key)
     {
         assert_true(text_of(key, "unit")[0] && text_of(key, "meaning")[0]);

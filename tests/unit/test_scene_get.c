@@ -1,6 +1,4 @@
 /* What a scene says, read back key by key. */
-#define _POSIX_C_SOURCE 200809L
-
 #include <sonject/sonject.h>
 
 #include <stdio.h>

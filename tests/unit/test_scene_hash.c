@@ -1,6 +1,4 @@
 /* What counts as the same inputs of a run. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "inject/scene_hash.h"
 #include "scene_keys.h"
@@ -100,7 +98,6 @@ static void test_what_no_key_names_counts(void **state)
     struct scene scene;
     sonject_object_params object;
     char one[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
-    (void)state;
     scene_init(&scene);
     object_init(&object);
     assert_int_equal(scene_append_object(&scene, &report, &object), SONJECT_OK);
@@ -149,7 +146,6 @@ static void test_nan_is_one_value_and_padding_none(void **state)
     struct scene scene;
     char one[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
     const uint64_t patterns[] = {UINT64_C(0x7FF8000000000000), UINT64_C(0xFFF8000000000001)};
-    (void)state;
     scene_init(&scene);
     memcpy(&scene.seabed.forward.lambert, &patterns[0], sizeof patterns[0]);
     hash_of(&scene, NULL, one);

@@ -1,6 +1,4 @@
 /* Heights of the seabed from a file, and what is said about files that are no heights. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 #include "swath/raster_file.h"
@@ -19,12 +17,6 @@ static void write_heights(struct scene_folder *folder, const struct raster_layou
     assert_int_equal(raster_file_write(&folder->report, file_in(folder, "heights.tif"), layout,
                                        NULL, NULL, 0, pixels),
                      SONJECT_OK);
-}
-
-static int remove_heights(void **state)
-{
-    (void)unlink(file_in(*state, "heights.tif"));
-    return remove_scene_folder(state);
 }
 
 static void expect_heights(struct scene_folder *folder, double first_along_track_m,
@@ -100,9 +92,7 @@ static void test_heights_among_features(void **state)
 
 static void test_what_is_refused(void **state)
 {
-    static const struct {
-        const char *text, *message;
-    } wrong[] = {
+    static const struct refusal wrong[] = {
         {RELIEF "  - heights: heights.tif\n",
          ":6:14: seabed.relief[0].heights: must be a section of 'key: value' lines, not a single "
          "value"},
@@ -125,8 +115,7 @@ static void test_what_is_refused(void **state)
     static const struct raster_layout layout = {ROWS, COLUMNS, 1, PIXEL_UINT8};
     struct scene_folder *folder = *state;
     write_heights(folder, &layout, pixels);
-    for (size_t i = 0; i < COUNT(wrong); i++)
-        expect_scene_refused(folder, wrong[i].text, wrong[i].message);
+    expect_all_refused(state, wrong, COUNT(wrong));
     assert_null(folder->scene.relief.heights_m);
 }
 
@@ -186,14 +175,6 @@ static void test_files_that_are_no_heights(void **state)
     expect_bad_file(folder, "unit: m", "there is no file");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, make_scene_folder, remove_heights)
-        IN_FOLDER(test_numbers_become_heights),
-        IN_FOLDER(test_heights_among_features),
-        IN_FOLDER(test_what_is_refused),
-        IN_FOLDER(test_files_that_are_no_heights),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_numbers_become_heights),
+             TEST(test_heights_among_features), TEST(test_what_is_refused),
+             TEST(test_files_that_are_no_heights))

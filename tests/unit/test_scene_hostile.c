@@ -1,6 +1,4 @@
 /* Scene files made to break the reader: bombs, nesting, sizes, cut and mutated files. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 

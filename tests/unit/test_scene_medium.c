@@ -1,6 +1,4 @@
 /* The water of scene files: layers, profiles, absorption. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 

@@ -1,7 +1,5 @@
 /* Meshes in scene files: how their numbers are meant, that one is kept however many shapes show it,
  * and what is said about those that cannot be read. */
-#define _POSIX_C_SOURCE 200809L
-
 #include <sys/stat.h>
 
 #include "claims.h"
@@ -50,7 +48,6 @@ static void test_units_and_axes(void **state)
         assert_int_equal(folder->scene.objects[0].shape, SHAPE_MESH);
         expect_size(folder, cases[i].size[0], cases[i].size[1], cases[i].size[2]);
     }
-    remove_file(folder, "corner.obj");
 }
 
 /* In all 24 ways to choose nose and up the mesh is turned, not mirrored: own y = up x nose. */
@@ -83,7 +80,6 @@ static void test_axes_turn(void **state)
             for (int axis = 0; axis < 3; axis++)
                 assert_true(wanted[axis][abs(axes[axis]) - 1] == (axes[axis] < 0 ? -1.0 : 1.0));
         }
-    remove_file(folder, "corner.obj");
 }
 
 /* Objects, parts and targets that name one file have one mesh; other options, or another content,
@@ -114,10 +110,6 @@ static void test_meshes_are_shared(void **state)
     assert_int_equal(read->objects[3].mesh, 2);
     assert_true(read->meshes[0].normals == NULL && read->meshes[2].normals != NULL);
     assert_int_equal(read->objects[4].mesh, 3);
-    remove_file(folder, "parts/corner.obj");
-    remove_file(folder, "parts/copy.obj");
-    remove_file(folder, "parts/target.yaml");
-    assert_int_equal(rmdir(file_in(folder, "parts")), 0);
 }
 
 /* Reads a scene of one mesh, which comes from the store and goes back to it; its vertices. */
@@ -168,16 +160,13 @@ static void test_meshes_are_kept_from_scene_to_scene(void **state)
         assert_true(store.meshes[i].options.unit_m > 1.5);
     mesh_store_clear(&store);
     assert_int_equal(store.bytes, 0);
-    remove_file(folder, "corner.obj");
 }
 
 #define MESH(keys) SCENE "  - shape: mesh\n    mesh: " keys "\n"
 
 static void test_what_is_refused(void **state)
 {
-    static const struct {
-        const char *text, *message;
-    } wrong[] = {
+    static const struct refusal wrong[] = {
         {SCENE "  - shape: mesh\n", ":5:5: objects[0].mesh: missing; a mesh needs it"},
         {SCENE "  - {shape: sphere, diameter: 1, mesh: corner.obj}\n",
          ":5:40: objects[0].mesh: a sphere has none; remove it"},
@@ -192,10 +181,8 @@ static void test_what_is_refused(void **state)
     };
     struct scene_folder *folder = *state;
     write_file(folder, "corner.obj", corner, sizeof corner - 1);
-    for (size_t i = 0; i < COUNT(wrong); i++)
-        expect_scene_refused(folder, wrong[i].text, wrong[i].message);
+    expect_all_refused(state, wrong, COUNT(wrong));
     assert_int_equal(folder->scene.mesh_count, 0);
-    remove_file(folder, "corner.obj");
 }
 
 /* One line that names scene file, line, key, mesh file and what is wrong with it. */
@@ -222,23 +209,11 @@ static void test_meshes_that_cannot_be_read(void **state)
     expect_bad_mesh(folder, "absent.obj", SONJECT_ERROR_INPUT, "there is no file");
     assert_int_equal(mkdir(file_in(folder, "folder.stl"), 0777), 0);
     expect_bad_mesh(folder, "folder.stl", SONJECT_ERROR_STORAGE, "s a directory");
-    assert_int_equal(rmdir(file_in(folder, "folder.stl")), 0);
     assert_int_equal(mkfifo(file_in(folder, "pipe.stl"), 0666), 0);
     expect_bad_mesh(folder, "pipe.stl", SONJECT_ERROR_INPUT, "not a regular file");
-    remove_file(folder, "pipe.stl");
-    static const struct {
-        const char *name;
-        const void *bytes;
-        size_t count;
-        const char *what;
-    } bad[] = {
-        {"a.stl", binary, sizeof binary, "the header says 2 triangles, the file holds 1"},
-    };
-    for (size_t i = 0; i < COUNT(bad); i++) {
-        write_file(folder, bad[i].name, bad[i].bytes, bad[i].count);
-        expect_bad_mesh(folder, bad[i].name, SONJECT_ERROR_INPUT, bad[i].what);
-        remove_file(folder, bad[i].name);
-    }
+    write_file(folder, "a.stl", binary, sizeof binary);
+    expect_bad_mesh(folder, "a.stl", SONJECT_ERROR_INPUT,
+                    "the header says 2 triangles, the file holds 1");
 }
 
 /* As many as a scene may have, and one more. */
@@ -259,7 +234,6 @@ static void test_too_many_meshes(void **state)
     expect_scene_refused(folder, text,
                          ":69:32: objects[64].mesh.file: meshes must be at most 64 in a scene; "
                          "split it");
-    remove_file(folder, "corner.obj");
 }
 
 /* A sheet is refused unless it is said to be one, wherever it was read before. */
@@ -276,7 +250,6 @@ static void test_open_meshes(void **state)
     write_scene(folder, both, sizeof both - 1);
     assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
     assert_non_null(strstr(folder->report.message, "objects[1].mesh.file"));
-    remove_file(folder, "sheet.obj");
 }
 
 /* A file in millimetres whose unit nobody gave, and one that is meant so. */
@@ -293,7 +266,6 @@ static void test_a_size_that_no_target_has_asks_for_the_unit(void **state)
     assert_non_null(strstr(folder->report.message, "unit: mm"));
     expect_scene_taken(folder, MESH("{file: bomb.obj, open: true, unit: m}"));
     expect_scene_taken(folder, MESH("{file: bomb.obj, open: true, unit: mm}"));
-    remove_file(folder, "bomb.obj");
 }
 
 static void hash_of(const struct scene *scene, char text[HASH_TEXT_CAPACITY])
@@ -322,8 +294,6 @@ static void test_the_hash_covers_the_mesh(void **state)
     expect_scene_taken(folder, text);
     hash_of(&folder->scene, other);
     assert_string_not_equal(first, other);
-    remove_file(folder, "corner.obj");
-    remove_file(folder, "copy.obj");
 }
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_units_and_axes),

@@ -1,6 +1,4 @@
 /* All mistakes of a scene file are told at once, each by one line, in its order. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 
@@ -59,7 +57,6 @@ static void test_a_targets_mistakes_stand_where_it_is_named(void **state)
     strcpy(target, file_in(folder, "t.yaml"));
     write_scene(folder, text, strlen(text));
     assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-    unlink(target);
     sprintf(expected,
             "%s:2:8: class: must be UTF-8 text without control characters\n"
             "%s:4:5: parts[0].diameter: missing; a sphere needs it\n"

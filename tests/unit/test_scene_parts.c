@@ -1,7 +1,5 @@
 /* Objects of parts in scene files: groups, surfaces that are inherited, files of targets, and what
  * is refused. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 
@@ -132,10 +130,7 @@ static void test_overrides_reach_parts(void **state)
 
 static void test_what_is_refused(void **state)
 {
-    static const struct {
-        const char *text;
-        const char *message;
-    } wrong[] = {
+    static const struct refusal wrong[] = {
         {OBJECT "parts:\n", ":5:11: objects[0].parts: must be a list; start each part with '- '"},
         {OBJECT "parts: []\n", ":5:12: objects[0].parts: is empty; give at least one part"},
         {OBJECT "parts: [{name: nothing}]\n",
@@ -159,8 +154,7 @@ static void test_what_is_refused(void **state)
          "surface "
          "returns more than it receives; it is 1"},
     };
-    for (size_t i = 0; i < COUNT(wrong); i++)
-        expect_scene_refused(*state, wrong[i].text, wrong[i].message);
+    expect_all_refused(state, wrong, COUNT(wrong));
 }
 
 static void test_too_many_parts(void **state)
@@ -195,7 +189,6 @@ static void test_targets_are_files(void **state)
                                     "  - target: target.yaml\n"
                                     "  - {name: other, class: mine, target: target.yaml, heading: "
                                     "90 deg, material: {roughness: 7 mm}, burial: 10 cm}\n");
-    remove_file(folder, "target.yaml");
     const sonject_object_params *objects = folder->scene.objects;
     assert_int_equal(folder->scene.part_count, 4);
     for (uint32_t i = 0; i < 4; i++) {
@@ -218,7 +211,6 @@ static void test_targets_may_have_one_shape(void **state)
     struct scene_folder *folder = *state;
     write_target(folder, "sonject_target: 1\nshape: torus\ndiameter: 1\nheight: 0.2\n");
     expect_scene_taken(folder, OBJECT "target: target.yaml\n");
-    remove_file(folder, "target.yaml");
     assert_int_equal(folder->scene.objects[0].shape, SHAPE_TORUS);
     assert_true(folder->scene.objects[0].height_m == 0.2);
     assert_int_equal(folder->scene.part_count, 0);
@@ -227,10 +219,7 @@ static void test_targets_may_have_one_shape(void **state)
 /* Messages about the target name its file. */
 static void test_targets_that_are_wrong(void **state)
 {
-    static const struct {
-        const char *text;
-        const char *message;
-    } wrong[] = {
+    static const struct refusal wrong[] = {
         {"", ":1:1: there is nothing in it"},
         {"~\n", ":1:1: there is nothing in it; start with 'sonject_target: 1'"},
         {"shape: sphere\ndiameter: 1\n",
@@ -254,7 +243,6 @@ static void test_targets_that_are_wrong(void **state)
     for (size_t i = 0; i < COUNT(wrong); i++) {
         write_target(folder, wrong[i].text);
         assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-        remove_file(folder, "target.yaml");
         const char *path = file_in(folder, "target.yaml");
         const size_t length = strlen(path);
         if (strncmp(folder->report.message, path, length) != 0 ||
@@ -287,7 +275,6 @@ static void test_scenes_that_name_targets_wrongly(void **state)
                          OBJECT "target: target.yaml\n    parts: [{shape: disc, diameter: 1}]\n",
                          ":5:5: objects[0]: more than one of shape, parts and target is there; "
                          "give one");
-    remove_file(folder, "target.yaml");
 }
 
 /* A file that is as long as no target is. */
@@ -307,7 +294,6 @@ static void test_large_targets_are_refused(void **state)
     const char *path = file_in(folder, "target.yaml");
     assert_memory_equal(folder->report.message, path, strlen(path));
     assert_non_null(strstr(folder->report.message, "larger than"));
-    remove_file(folder, "target.yaml");
 }
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_parts_belong_to_their_objects),

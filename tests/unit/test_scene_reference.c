@@ -1,7 +1,5 @@
 /* The references of scene and campaign files, tools/scenes/KEYS.md and tools/campaigns/KEYS.md, are
  * made of the tables of keys. Run with two files' names this program writes them. */
-#define _POSIX_C_SOURCE 200809L
-
 #include <jansson.h>
 
 #include "claims.h"
@@ -227,7 +225,6 @@ static void check_reference(const struct reference *reference)
 
 static void test_the_references_are_up_to_date(void **state)
 {
-    (void)state;
     for (size_t i = 0; i < COUNT(references); i++)
         check_reference(&references[i]);
 }

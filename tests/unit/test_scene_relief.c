@@ -1,6 +1,4 @@
 /* The seabed's relief in scene files: what is taken, what is refused, and what comes of it. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene/placement.h"
 #include "scene_folder.h"
@@ -159,9 +157,7 @@ static void test_irregular_ripples(void **state)
 /* What only shows when the scene is used. */
 static void test_refusals_in_use(void **state)
 {
-    static const struct {
-        const char *text, *message;
-    } cases[] = {
+    static const struct refusal cases[] = {
         {SEEN_FROM("port") "  - scour: {object: tin, width: 1 m, depth: 1 cm}\n" OBJECTS,
          "scour around 'tin': no object has that name"},
         {SEEN_FROM("port") "  - mound: {radius: 1 m, height: 2 m}\n", "rises by"},
@@ -183,15 +179,5 @@ static void test_refusals_in_use(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-#define IN_FOLDER(test)                                                                            \
-    cmocka_unit_test_setup_teardown(test, make_scene_folder, remove_scene_folder)
-        IN_FOLDER(test_features_lie_where_they_are_told),
-        IN_FOLDER(test_ripples),
-        IN_FOLDER(test_irregular_ripples),
-        IN_FOLDER(test_refusals_in_use),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_features_lie_where_they_are_told),
+             TEST(test_ripples), TEST(test_irregular_ripples), TEST(test_refusals_in_use))

@@ -1,7 +1,5 @@
 /* Keys that calls set: the same scene as a file that says so, and one that stays as it was where a
  * key is refused. */
-#define _POSIX_C_SOURCE 200809L
-
 #include <sonject/sonject.h>
 
 #include "inject/scene_hash.h"

@@ -1,14 +1,6 @@
 /* The law of speckle's logarithm, against closed forms. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
-
 #include "base/memory.h"
+#include "claims.h"
 #include "measure/first_return.h"
 #include "measure/speckle_law.h"
 
@@ -24,8 +16,7 @@ static void moments_of(const struct speckle_law *law, double *mean, double *vari
 /* Trigamma at whole numbers: pi^2 / 6 less the first squares' reciprocals. */
 static void variance_of_a_logarithm_is_trigamma(void **state)
 {
-    double exact = 3.14159265358979323846 * 3.14159265358979323846 / 6.0;
-    (void)state;
+    double exact = PI * PI / 6.0;
     for (int looks = 1; looks <= 12; looks++) {
         assert_true(fabs(log_gamma_variance(looks) - exact) < 1e-8);
         exact -= 1.0 / (looks * looks);
@@ -38,7 +29,6 @@ static void texture_adds_its_variance(void **state)
 {
     struct speckle_law law;
     double mean, variance;
-    (void)state;
     for (int looks = 1; looks <= 4; looks++)
         for (int k = 0; k < 4; k++) {
             const double shape = k == 0 ? INFINITY : 3.0 * k;
@@ -55,7 +45,6 @@ static void one_look_is_exponential(void **state)
 {
     struct speckle_law law;
     double density;
-    (void)state;
     speckle_law_init(&law, 1.0, 0.0);
     for (double x = 0.01; x < 6.0; x *= 1.37) {
         assert_true(fabs(speckle_law_below(&law, log(x), &density) - (1.0 - exp(-x))) < 2e-5);
@@ -75,7 +64,6 @@ static void a_nadir_lies_between_both_first_returns(void **state)
     struct report report = {{0}, NULL, NULL};
     struct first_returns returns;
     float *intensity = allocate_array(ROWS, COLUMNS * sizeof *intensity);
-    (void)state;
     for (int row = 0; row < ROWS; row++)
         for (int column = 0; column < COLUMNS; column++)
             intensity[row * COLUMNS + column] = abs(column - NADIR) < 60 + row / 2 ? 0.01f : 1.0f;
@@ -91,13 +79,5 @@ static void a_nadir_lies_between_both_first_returns(void **state)
     free(intensity);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(variance_of_a_logarithm_is_trigamma),
-        cmocka_unit_test(texture_adds_its_variance),
-        cmocka_unit_test(one_look_is_exponential),
-        cmocka_unit_test(a_nadir_lies_between_both_first_returns),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(variance_of_a_logarithm_is_trigamma), TEST(texture_adds_its_variance),
+             TEST(one_look_is_exponential), TEST(a_nadir_lies_between_both_first_returns))

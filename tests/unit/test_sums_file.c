@@ -1,7 +1,5 @@
 /* Files of tallies: what is written is read again, whatever is damaged is refused, chains of
  * checkpoints cover a shard once, and sums that do not go together are not added up. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "base/file.h"
 #include "claims.h"
 #include "temporary_folder.h"
@@ -445,9 +443,6 @@ static void test_only_what_goes_together_is_added_up(void **state)
     checkpoint_clear(&checkpoint);
     sums_file_close(&file);
 }
-
-#define IN_FOLDER(test)                                                                            \
-    cmocka_unit_test_setup_teardown(test, make_temporary_folder, remove_temporary_folder)
 
 TEST_PROGRAM(NULL, NULL, IN_FOLDER(test_what_is_written_is_read),
              IN_FOLDER(test_no_damage_goes_unseen), IN_FOLDER(test_what_makes_no_sense_is_refused),

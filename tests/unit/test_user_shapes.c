@@ -1,7 +1,5 @@
 /* Code of users' shapes before it meets a compiler: what is refused and where; scene files that
  * hold code, and that they need consent. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 #include "user/snippet.h"
