@@ -1,5 +1,6 @@
 /* Rays against a height field: 10^5 of them against an independent solver in double precision, from
  * 50 m and 500 m, down to 2 degrees; the plane's own bits where all is level. */
+#include "base/memory.h"
 #include "claims.h"
 #include "random_rays.h"
 #include "seabed.h"
@@ -90,13 +91,6 @@ static double clearance(const struct sea *sea, const struct line *line, double t
                          line->point[1] + t * line->direction[1]);
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 /* Where the line first comes through the surface from above beyond `begin`; INFINITY: nowhere.
  * Between two lines of the grid the clearance is a polynomial of degree 2, known by three values:
  * all crossings of grid lines are listed and sorted, and each piece is solved. */
@@ -116,7 +110,7 @@ static double reference_distance(const struct sea *sea, const struct line *line,
         }
     bool is_inside = false;
     cuts[count++] = begin;
-    qsort(cuts, count, sizeof *cuts, compare);
+    qsort(cuts, count, sizeof *cuts, compare_doubles);
     for (size_t i = 0; i + 1 < count; i++) {
         const double a = cuts[i];
         const double b = cuts[i + 1];

@@ -163,6 +163,21 @@ static inline void expect_all_refused(void **state, const struct refusal *wrong,
         expect_scene_refused(*state, wrong[i].text, wrong[i].message);
 }
 
+/* One line that names the scene's file, the place and key, ":6:18: objects[0].mesh.file", another
+ * file and what is wrong with it. */
+static inline void expect_bad_file(struct scene_folder *folder, const char *text, const char *key,
+                                   const char *name, sonject_status status, const char *what)
+{
+    char place[TEMPORARY_CAPACITY + 100];
+    const char *message = folder->report.message;
+    snprintf(place, sizeof place, "%s%s: ", folder->file, key);
+    write_scene(folder, text, strlen(text));
+    assert_int_equal(read_scene(folder, NULL, 0), status);
+    if (strncmp(message, place, strlen(place)) != 0 || !strstr(message, file_in(folder, name)) ||
+        !strstr(message, what) || strchr(message, '\n'))
+        fail_msg("'%s' is not '%s... %s ... %s'", message, place, name, what);
+}
+
 /* The text of an example scene, its end marked by a 0, for free(). name: "demo". */
 static inline char *example_scene(const char *name, size_t *bytes)
 {

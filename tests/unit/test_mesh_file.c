@@ -11,10 +11,9 @@ static struct report report;
 
 /* ---- files as bytes in memory ---- */
 
-/* A text or bytes that grow. */
 struct draft {
-    char *bytes;
-    size_t count, capacity;
+    char *bytes; /* a 0 follows that does not count */
+    size_t count;
 };
 
 enum format {
@@ -30,44 +29,10 @@ enum format {
 static const char *const draft_names[] = {"text.stl", "binary.STL", "sample.obj",
                                           "text.ply", "little.ply", "big.ply"};
 
-/* Appends; a 0 byte follows that does not count. */
-static void put(struct draft *draft, const void *bytes, size_t count)
-{
-    if (draft->count + count + 1 > draft->capacity) {
-        draft->capacity = 2 * (draft->count + count) + 64;
-        draft->bytes = realloc(draft->bytes, draft->capacity);
-        assert_non_null(draft->bytes);
-    }
-    memcpy(draft->bytes + draft->count, bytes, count);
-    draft->count += count;
-    draft->bytes[draft->count] = '\0';
-}
-
-#if defined(__GNUC__)
-__attribute__((format(printf, 2, 3)))
-#endif
-static void
-put_text(struct draft *draft, const char *format, ...)
-{
-    char text[512];
-    va_list arguments;
-    va_start(arguments, format);
-    const int length = vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    assert_in_range(length, 0, sizeof text - 1);
-    put(draft, text, (size_t)length);
-}
-
-static void put_reversed(struct draft *draft, const void *bytes, size_t count, int is_reversed)
+static void put_reversed(FILE *draft, const void *bytes, size_t count, int is_reversed)
 {
     for (size_t i = 0; i < count; i++)
-        put(draft, (const char *)bytes + (is_reversed ? count - 1 - i : i), 1);
-}
-
-static void clear_draft(struct draft *draft)
-{
-    free(draft->bytes);
-    memset(draft, 0, sizeof *draft);
+        fputc(((const unsigned char *)bytes)[is_reversed ? count - 1 - i : i], draft);
 }
 
 static float coordinate_of(const struct mesh_sample *sample, size_t corner, size_t axis)
@@ -75,81 +40,80 @@ static float coordinate_of(const struct mesh_sample *sample, size_t corner, size
     return (float)sample->positions[3 * (size_t)sample->corners[corner] + axis];
 }
 
-static void write_stl_text(struct draft *draft, const struct mesh_sample *sample)
+static void write_stl_text(FILE *draft, const struct mesh_sample *sample)
 {
-    put_text(draft, "solid a sample of facets\n");
+    fprintf(draft, "solid a sample of facets\n");
     for (size_t i = 0; i < sample->triangles; i++) {
-        put_text(draft, "  facet normal nan 0 0\r\n\touter loop\n");
+        fprintf(draft, "  facet normal nan 0 0\r\n\touter loop\n");
         for (size_t corner = 3 * i; corner < 3 * i + 3; corner++)
-            put_text(draft, "VERTEX %.9g %.9e %.9g\n", (double)coordinate_of(sample, corner, 0),
-                     (double)coordinate_of(sample, corner, 1),
-                     (double)coordinate_of(sample, corner, 2));
-        put_text(draft, "endloop\nendfacet\n");
+            fprintf(draft, "VERTEX %.9g %.9e %.9g\n", (double)coordinate_of(sample, corner, 0),
+                    (double)coordinate_of(sample, corner, 1),
+                    (double)coordinate_of(sample, corner, 2));
+        fprintf(draft, "endloop\nendfacet\n");
     }
-    put_text(draft, "endsolid a sample\n");
+    fprintf(draft, "endsolid a sample\n");
 }
 
-static void write_stl_binary(struct draft *draft, const struct mesh_sample *sample)
+static void write_stl_binary(FILE *draft, const struct mesh_sample *sample)
 {
     const char header[80] = "solid, says the header of a binary file";
     const uint32_t count = (uint32_t)sample->triangles;
-    put(draft, header, 80);
+    fwrite(header, 1, 80, draft);
     put_reversed(draft, &count, 4, machine_is_big_endian());
     for (size_t i = 0; i < sample->triangles; i++) {
         const float nothing = 0.0f;
         for (int axis = 0; axis < 3; axis++)
-            put(draft, &nothing, 4);
+            fwrite(&nothing, 1, 4, draft);
         for (size_t corner = 3 * i; corner < 3 * i + 3; corner++)
             for (size_t axis = 0; axis < 3; axis++) {
                 const float value = coordinate_of(sample, corner, axis);
                 put_reversed(draft, &value, 4, machine_is_big_endian());
             }
-        put(draft, "\0\0", 2);
+        fwrite("\0\0", 1, 2, draft);
     }
 }
 
-static void write_obj(struct draft *draft, const struct mesh_sample *sample)
+static void write_obj(FILE *draft, const struct mesh_sample *sample)
 {
-    put_text(draft, "# a sample\nmtllib none.mtl\no part\nv 1e3 1e3 1e3\n");
+    fprintf(draft, "# a sample\nmtllib none.mtl\no part\nv 1e3 1e3 1e3\n");
     for (size_t i = 0; i < sample->vertices; i++)
-        put_text(draft, "v %.17g %.17g %.17g 0.5 0.5 0.5\nvt 0 0\n", sample->positions[3 * i],
-                 sample->positions[3 * i + 1], sample->positions[3 * i + 2]);
+        fprintf(draft, "v %.17g %.17g %.17g 0.5 0.5 0.5\nvt 0 0\n", sample->positions[3 * i],
+                sample->positions[3 * i + 1], sample->positions[3 * i + 2]);
     for (size_t i = 0; i < sample->triangles; i++) {
         const uint32_t *corners = &sample->corners[3 * i];
         if (i % 2)
-            put_text(draft, "f %u/1 %u//3 \\\n %u/1/2 # a face\n", corners[0] + 2, corners[1] + 2,
-                     corners[2] + 2);
+            fprintf(draft, "f %u/1 %u//3 \\\n %u/1/2 # a face\n", corners[0] + 2, corners[1] + 2,
+                    corners[2] + 2);
         else
-            put_text(draft, "f %d %d %d\n", (int)corners[0] - (int)sample->vertices,
-                     (int)corners[1] - (int)sample->vertices,
-                     (int)corners[2] - (int)sample->vertices);
+            fprintf(draft, "f %d %d %d\n", (int)corners[0] - (int)sample->vertices,
+                    (int)corners[1] - (int)sample->vertices,
+                    (int)corners[2] - (int)sample->vertices);
     }
 }
 
-static void write_ply_header(struct draft *draft, const struct mesh_sample *sample,
-                             const char *format)
+static void write_ply_header(FILE *draft, const struct mesh_sample *sample, const char *format)
 {
-    put_text(draft,
-             "ply\nformat %s 1.0\ncomment a sample\nelement vertex %zu\nproperty float confidence\n"
-             "property double x\nproperty double y\nproperty double z\nelement camera 1\n"
-             "property short number\nelement face %zu\nproperty list uchar float weights\n"
-             "property list uchar int vertex_indices\nend_header\n",
-             format, sample->vertices, sample->triangles);
+    fprintf(draft,
+            "ply\nformat %s 1.0\ncomment a sample\nelement vertex %zu\nproperty float confidence\n"
+            "property double x\nproperty double y\nproperty double z\nelement camera 1\n"
+            "property short number\nelement face %zu\nproperty list uchar float weights\n"
+            "property list uchar int vertex_indices\nend_header\n",
+            format, sample->vertices, sample->triangles);
 }
 
-static void write_ply_text(struct draft *draft, const struct mesh_sample *sample)
+static void write_ply_text(FILE *draft, const struct mesh_sample *sample)
 {
     write_ply_header(draft, sample, "ascii");
     for (size_t i = 0; i < sample->vertices; i++)
-        put_text(draft, "0.5 %.17g %.17g %.17g\n", sample->positions[3 * i],
-                 sample->positions[3 * i + 1], sample->positions[3 * i + 2]);
-    put_text(draft, "7\n");
+        fprintf(draft, "0.5 %.17g %.17g %.17g\n", sample->positions[3 * i],
+                sample->positions[3 * i + 1], sample->positions[3 * i + 2]);
+    fprintf(draft, "7\n");
     for (size_t i = 0; i < sample->triangles; i++)
-        put_text(draft, "2 0.5 0.25 3 %u %u %u\n", sample->corners[3 * i],
-                 sample->corners[3 * i + 1], sample->corners[3 * i + 2]);
+        fprintf(draft, "2 0.5 0.25 3 %u %u %u\n", sample->corners[3 * i],
+                sample->corners[3 * i + 1], sample->corners[3 * i + 2]);
 }
 
-static void write_ply_binary(struct draft *draft, const struct mesh_sample *sample, int is_big)
+static void write_ply_binary(FILE *draft, const struct mesh_sample *sample, int is_big)
 {
     const int is_reversed = is_big != machine_is_big_endian();
     const float weight = 0.5f;
@@ -162,28 +126,37 @@ static void write_ply_binary(struct draft *draft, const struct mesh_sample *samp
     }
     put_reversed(draft, &camera, 2, is_reversed);
     for (size_t i = 0; i < sample->triangles; i++) {
-        put(draft, "\1", 1);
+        fputc(1, draft);
         put_reversed(draft, &weight, 4, is_reversed);
-        put(draft, "\3", 1);
+        fputc(3, draft);
         for (size_t corner = 0; corner < 3; corner++)
             put_reversed(draft, &sample->corners[3 * i + corner], 4, is_reversed);
     }
 }
 
-/* The sample in a format; to be given to clear_draft. */
+static FILE *begin_draft(struct draft *draft)
+{
+    FILE *out = open_memstream(&draft->bytes, &draft->count);
+    assert_non_null(out);
+    return out;
+}
+
+/* The sample in a format; its bytes are for free(). */
 static struct draft write_format(enum format format, const struct mesh_sample *sample)
 {
-    struct draft draft = {NULL, 0, 0};
+    struct draft draft;
+    FILE *out = begin_draft(&draft);
     if (format == STL_TEXT)
-        write_stl_text(&draft, sample);
+        write_stl_text(out, sample);
     else if (format == STL_BINARY)
-        write_stl_binary(&draft, sample);
+        write_stl_binary(out, sample);
     else if (format == OBJ)
-        write_obj(&draft, sample);
+        write_obj(out, sample);
     else if (format == PLY_AS_TEXT)
-        write_ply_text(&draft, sample);
+        write_ply_text(out, sample);
     else
-        write_ply_binary(&draft, sample, format == PLY_BIG);
+        write_ply_binary(out, sample, format == PLY_BIG);
+    assert_int_equal(fclose(out), 0);
     return draft;
 }
 
@@ -218,7 +191,7 @@ static void test_formats(void **state)
             assert_true(fabs((double)mesh.upper_m[axis] - 1.0) < 1e-6);
         }
         mesh_clear(&mesh);
-        clear_draft(&draft);
+        free(draft.bytes);
     }
     sample_clear(&sample);
 }
@@ -263,7 +236,7 @@ static void test_cut_short(void **state)
             assert_in_range(read, 1, 12); /* "endsolid" is there */
         else if (format == PLY_AS_TEXT)
             assert_in_range(read, 1, 2); /* the last line's end, or a digit of its last number */
-        clear_draft(&draft);
+        free(draft.bytes);
     }
     sample_clear(&sample);
 }
@@ -297,18 +270,17 @@ static void test_wrong_binary_files(void **state)
         expect_refusal(*state, "a.stl", draft.bytes,
                        headers[i].bytes ? headers[i].bytes : draft.count, headers[i].message);
     }
-    clear_draft(&draft);
+    free(draft.bytes);
     draft = write_format(PLY_LITTLE, &sample);
-    put(&draft, "\0", 1);
-    expect_refusal(*state, "a.ply", draft.bytes, draft.count, "more than its header says");
-    clear_draft(&draft);
+    expect_refusal(*state, "a.ply", draft.bytes, draft.count + 1, "more than its header says");
+    free(draft.bytes);
     sample.positions[9] = NAN;
     draft = write_format(STL_BINARY, &sample);
     expect_refusal(*state, "a.stl", draft.bytes, draft.count, "not a finite number");
-    clear_draft(&draft);
+    free(draft.bytes);
     draft = write_format(PLY_BIG, &sample);
     expect_refusal(*state, "a.ply", draft.bytes, draft.count, "vertex 4: a coordinate is not");
-    clear_draft(&draft);
+    free(draft.bytes);
     sample_clear(&sample);
 }
 
@@ -405,7 +377,7 @@ static void test_units_and_axes(void **state)
 #if defined(COUNTS_MEMORY)
 #include <malloc.h>
 
-static size_t memory, memory_peak;
+static long memory, memory_peak; /* bytes; what others made and this program frees counts, too */
 
 void *__real_malloc(size_t bytes);
 void *__real_calloc(size_t count, size_t bytes);
@@ -418,7 +390,7 @@ void __wrap_free(void *old);
 
 static void *counted(void *made)
 {
-    memory += made ? malloc_usable_size(made) : 0;
+    memory += made ? (long)malloc_usable_size(made) : 0;
     memory_peak = memory > memory_peak ? memory : memory_peak;
     return made;
 }
@@ -435,7 +407,7 @@ void *__wrap_calloc(size_t count, size_t bytes)
 
 void *__wrap_realloc(void *old, size_t bytes)
 {
-    const size_t before = old ? malloc_usable_size(old) : 0;
+    const long before = old ? (long)malloc_usable_size(old) : 0;
     void *made = __real_realloc(old, bytes);
     memory -= made ? before : 0;
     return counted(made);
@@ -443,22 +415,22 @@ void *__wrap_realloc(void *old, size_t bytes)
 
 void __wrap_free(void *old)
 {
-    memory -= old ? malloc_usable_size(old) : 0;
+    memory -= old ? (long)malloc_usable_size(old) : 0;
     __real_free(old);
 }
 
-static size_t begin_counting(void)
+static long begin_counting(void)
 {
     memory_peak = memory;
     return memory;
 }
 
 /* Nothing is left, and it never was more than the file's size allows. */
-static void expect_bounded(size_t before, size_t file_bytes)
+static void expect_bounded(long before, size_t file_bytes)
 {
     assert_int_equal(memory, before);
-    if (memory_peak - before > MEMORY_PER_BYTE * file_bytes + MEMORY_AT_ONCE)
-        fail_msg("%zu bytes of memory for %zu bytes of a file", memory_peak - before, file_bytes);
+    if ((size_t)(memory_peak - before) > MEMORY_PER_BYTE * file_bytes + MEMORY_AT_ONCE)
+        fail_msg("%ld bytes of memory for %zu bytes of a file", memory_peak - before, file_bytes);
 }
 #else
 #define begin_counting()                   0
@@ -501,7 +473,7 @@ static sonject_status expect_taken_or_explained(struct temporary_folder *folder,
     mesh_options_init(&options);
     options.smooth_angle_rad = 0.5;
     write_bytes(temporary_file(folder, name), bytes, count);
-    const size_t before = begin_counting();
+    const long before = begin_counting();
     const sonject_status status = mesh_load(&report, folder->file, &options, &mesh);
     if (status == SONJECT_OK) {
         expect_sound(&mesh);
@@ -523,17 +495,19 @@ static void test_dense_files(void **state)
 {
     static const char *const corners[] = {" 1", " 2", " 3", " 4"};
     for (int kind = 0; kind < 3; kind++) {
-        struct draft draft = {NULL, 0, 0};
-        put_text(&draft, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf");
+        struct draft draft;
+        FILE *out = begin_draft(&draft);
+        fprintf(out, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf");
         for (size_t i = 0; i < 20000; i++) {
             const size_t corner = kind == 0 ? 0 : kind == 1 ? i % 3 : throw(4);
-            put(&draft, corners[corner], 2);
+            fputs(corners[corner], out);
         }
-        put_text(&draft, "\n");
+        fprintf(out, "\n");
+        assert_int_equal(fclose(out), 0);
         const sonject_status status =
             expect_taken_or_explained(*state, "dense.obj", draft.bytes, draft.count);
         assert_int_equal(status, kind == 0 ? SONJECT_ERROR_INPUT : SONJECT_OK);
-        clear_draft(&draft);
+        free(draft.bytes);
     }
 }
 
@@ -546,19 +520,21 @@ static void test_promises(void **state)
     for (size_t i = 0; i < COUNT(counts); i++)
         for (size_t format = 0; format < 3; format++)
             for (int of_faces = 0; of_faces < 2; of_faces++) {
-                struct draft draft = {NULL, 0, 0};
-                put_text(&draft,
-                         "ply\nformat %s 1.0\nelement nothing %s\nelement vertex %s\n"
-                         "property char x\nproperty char y\nproperty char z\nelement face %s\n"
-                         "property list uchar char vertex_indices\nend_header\n",
-                         formats[format], counts[i], of_faces ? "3" : counts[i],
-                         of_faces ? counts[i] : "1");
+                struct draft draft;
+                FILE *out = begin_draft(&draft);
+                fprintf(out,
+                        "ply\nformat %s 1.0\nelement nothing %s\nelement vertex %s\n"
+                        "property char x\nproperty char y\nproperty char z\nelement face %s\n"
+                        "property list uchar char vertex_indices\nend_header\n",
+                        formats[format], counts[i], of_faces ? "3" : counts[i],
+                        of_faces ? counts[i] : "1");
                 for (int byte = 0; byte < 500; byte++)
-                    put(&draft, format == 0 ? "1 " : "\1", format == 0 ? 2 : 1);
+                    fputs(format == 0 ? "1 " : "\1", out);
+                assert_int_equal(fclose(out), 0);
                 assert_int_equal(
                     expect_taken_or_explained(*state, "promise.ply", draft.bytes, draft.count),
                     SONJECT_ERROR_INPUT);
-                clear_draft(&draft);
+                free(draft.bytes);
             }
 }
 

@@ -2,13 +2,8 @@
 #include "claims.h"
 #include "scene_folder.h"
 
-#define HEAD                                                                                       \
-    "sonject: 1\n"                                                                                 \
-    "input: {uniform: {rows: 4, columns: 5},\n"                                                    \
-    "        geometry: {row_spacing: 1, column_spacing: 1, first_slant_range: 40}}\n"              \
-    "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10}\n"
 #define TWO_BANDS                                                                                  \
-    HEAD "bands:\n"                                                                                \
+    BASE "bands:\n"                                                                                \
          "  low: {sonar: {bandwidth: 20 kHz}}\n"                                                   \
          "  high:\n"                                                                               \
          "    sonar: {frequency: 400 kHz}\n"                                                       \
@@ -46,7 +41,7 @@ static void what_is_set_beats_the_band(void **state)
                                         "sonar={altitude: 5, frequency: 90 kHz, bandwidth: 9 kHz}"};
     static const char *const within[] = {"band=one", "objects[0].heading=3 deg"};
     static const char *const own[] = {"band=one", "objects=[]"};
-    static const char scene[] = HEAD
+    static const char scene[] = BASE
         "objects: [{shape: sphere, diameter: 1, position: {row: 1, column: 1}}]\n"
         "bands: {one: {objects: [{shape: sphere, diameter: 2, position: {row: 1, column: 1}}]}}\n";
     struct scene_folder *folder = *state;
@@ -83,27 +78,27 @@ static void test_bands_that_are_left_are_named(void **state)
 {
     expect_names(*state, TWO_BANDS, NULL, 0, "low\nhigh\n");
     expect_names(*state, TWO_BANDS, high, 1, "");
-    expect_names(*state, HEAD, NULL, 0, "");
+    expect_names(*state, BASE, NULL, 0, "");
 }
 
 static void test_what_is_wrong_is_told(void **state)
 {
     static const struct refusal wrong[] = {
-        {TWO_BANDS, ":6:3: bands: choose one of low, high (--set band=low)"},
-        {TWO_BANDS "band: middle\n", ":10:7: band: 'middle' is not one of low, high"},
-        {HEAD "band: low\n", ":5:7: band: there are no bands to choose from"},
-        {HEAD "bands: {}\n", ":5:8: bands: must be a section of bands: their names, and keys"},
-        {HEAD "bands: {../up: {}}\n",
-         ":5:16: bands.../up: a band's name is that of a folder: 1 to 63 letters, "
+        {TWO_BANDS, ":5:3: bands: choose one of low, high (--set band=low)"},
+        {TWO_BANDS "band: middle\n", ":9:7: band: 'middle' is not one of low, high"},
+        {BASE "band: low\n", ":4:7: band: there are no bands to choose from"},
+        {BASE "bands: {}\n", ":4:8: bands: must be a section of bands: their names, and keys"},
+        {BASE "bands: {../up: {}}\n",
+         ":4:16: bands.../up: a band's name is that of a folder: 1 to 63 letters, "
          "digits, _ and -"},
-        {HEAD "bands: {low: 3}\nband: low\n",
-         ":5:14: bands.low: must be a section of the scene's keys that this band "
+        {BASE "bands: {low: 3}\nband: low\n",
+         ":4:14: bands.low: must be a section of the scene's keys that this band "
          "changes"},
-        {HEAD "bands: {low: {bands: {}}}\nband: low\n",
-         ":5:22: bands.low.bands: cannot be a band's own; remove it"},
+        {BASE "bands: {low: {bands: {}}}\nband: low\n",
+         ":4:22: bands.low.bands: cannot be a band's own; remove it"},
         /* the place is where it was written */
-        {HEAD "bands:\n  low: {sonar: {bandwidth: 3 kg}}\nband: low\n",
-         ":6:28: sonar.bandwidth: unit 'kg' is not one of Hz, kHz, MHz"},
+        {BASE "bands:\n  low: {sonar: {bandwidth: 3 kg}}\nband: low\n",
+         ":5:28: sonar.bandwidth: unit 'kg' is not one of Hz, kHz, MHz"},
     };
     expect_all_refused(state, wrong, COUNT(wrong));
 }

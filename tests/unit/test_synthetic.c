@@ -1,6 +1,7 @@
 /* Synthetic seabeds against the statistics that they promise. Tolerances are five standard errors:
  * with N independent cells an average of the intensity has the relative standard error 1 / sqrt(N),
  * a correlation 1 / sqrt(N). Seeds are fixed, so that a pass stays a pass. */
+#include "base/memory.h"
 #include "claims.h"
 #include "image/synthetic.h"
 
@@ -232,13 +233,6 @@ static void test_amplitude_is_that_of_complex_pixels(void **state)
                     1.0, 3e-7); /* two roundings of float */
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Mean intensities of 20 x 20 blocks: 267 cells each, 6 % standard error, so that 6 dB apart (a
  * factor of 4) the two sediments stand clear of each other. Blocks across a border lie between:
  * medians are hardly moved by them. */
@@ -264,8 +258,8 @@ static void test_patch_step(void **state)
             bright[bright_count++] = intensity;
     }
     assert_true(dark_count > 320 && bright_count > 320); /* neither sediment below a fifth */
-    qsort(dark, dark_count, sizeof *dark, ascending);
-    qsort(bright, bright_count, sizeof *bright, ascending);
+    qsort(dark, dark_count, sizeof *dark, compare_doubles);
+    qsort(bright, bright_count, sizeof *bright, compare_doubles);
     expect_near("darker sediment", dark[dark_count / 2], 1.0, 0.05);
     expect_near("brighter sediment", bright[bright_count / 2] / pow(10.0, 0.6), 1.0, 0.05);
 }

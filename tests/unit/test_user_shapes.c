@@ -97,13 +97,7 @@ static void test_equal_codes_are_one(void **state)
     user_shapes_clear(&shapes);
 }
 
-#undef BASE
-#define BASE                                                                                       \
-    "sonject: 1\n"                                                                                 \
-    "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
-    "first_slant_range: 40}}\n"                                                                    \
-    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"                                   \
-    "objects:\n"
+#define OBJECTS BASE "objects:\n"
 #define CODE                                                                                       \
     "    user:\n"                                                                                  \
     "      bounding_radius: 50 cm\n"                                                               \
@@ -133,12 +127,12 @@ static void expect_refused_with_consent(struct scene_folder *folder, const char 
 static void test_code_in_files_needs_consent(void **state)
 {
     struct scene_folder *folder = *state;
-    expect_scene_refused(folder, BASE "  - shape: user\n" CODE, ":7:7: objects[0]." NO_CONSENT);
-    expect_scene_refused(folder, BASE "  - parts:\n    - {shape: user, user: {}}\n",
+    expect_scene_refused(folder, OBJECTS "  - shape: user\n" CODE, ":7:7: objects[0]." NO_CONSENT);
+    expect_scene_refused(folder, OBJECTS "  - parts:\n    - {shape: user, user: {}}\n",
                          ":6:27: objects[0].parts[0]." NO_CONSENT);
     /* a target's file, in an object's or in that of parts */
-    write_scene(folder, BASE "  - target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml\n",
-                strlen(BASE "  - target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml\n"));
+    write_scene(folder, OBJECTS "  - target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml\n",
+                strlen(OBJECTS "  - target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml\n"));
     assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
     assert_non_null(strstr(folder->report.message, "boulder_relief.yaml:9:3: " NO_CONSENT));
 }
@@ -146,14 +140,15 @@ static void test_code_in_files_needs_consent(void **state)
 static void test_code_arrives_with_its_lines(void **state)
 {
     struct scene_folder *folder = *state;
-    assert_int_equal(read_with_consent(folder, BASE "  - shape: user\n" CODE "  - parts:\n"
-                                                    "    - shape: sphere\n"
-                                                    "      diameter: 1\n"
-                                                    "    - shape: user\n"
-                                                    "      user: {file: " SOURCE_ROOT
-                                                    "/tools/targets/boulder_relief.cl,\n"
-                                                    "        bounding_radius: 1, half_height: 0.25,"
-                                                    " open: true}\n"),
+    assert_int_equal(read_with_consent(folder,
+                                       OBJECTS "  - shape: user\n" CODE "  - parts:\n"
+                                               "    - shape: sphere\n"
+                                               "      diameter: 1\n"
+                                               "    - shape: user\n"
+                                               "      user: {file: " SOURCE_ROOT
+                                               "/tools/targets/boulder_relief.cl,\n"
+                                               "        bounding_radius: 1, half_height: 0.25,"
+                                               " open: true}\n"),
                      SONJECT_OK);
     const struct user_shapes *shapes = &folder->scene.user_shapes;
     assert_int_equal(shapes->count, 2);
@@ -169,16 +164,16 @@ static void test_code_arrives_with_its_lines(void **state)
     assert_true(shapes->shapes[1].half_width_m == 1.0);
     /* the line of an error in a block is that of the file */
     expect_refused_with_consent(folder,
-                                BASE "  - shape: user\n" CODE "        #include <more.cl>\n",
+                                OBJECTS "  - shape: user\n" CODE "        #include <more.cl>\n",
                                 "scene.yaml:12: " NOT_HERE);
 }
 
 static void test_wrong_sections_are_refused(void **state)
 {
-#define OF_USER(keys) BASE "  - {shape: user, user: {" keys "}}\n"
+#define OF_USER(keys) OBJECTS "  - {shape: user, user: {" keys "}}\n"
     static const char *const cases[][2] = {
-        {BASE "  - shape: user\n", "objects[0].user: missing; a user needs it"},
-        {BASE "  - diameter: 1\n    shape: sphere\n" CODE,
+        {OBJECTS "  - shape: user\n", "objects[0].user: missing; a user needs it"},
+        {OBJECTS "  - diameter: 1\n    shape: sphere\n" CODE,
          "objects[0].user: a sphere has none; remove it"},
         {OF_USER("bounding_radius: 1"),
          "objects[0].user: none of file and code is there; give one"},
