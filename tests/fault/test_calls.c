@@ -130,7 +130,8 @@ static void test_discovery_short_of_memory_says_so(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest discovery[] = {TEST(test_discovery_short_of_memory_says_so)};
+    const struct CMUnitTest discovery[] = {
+        cmocka_unit_test(test_discovery_short_of_memory_says_so)};
     const struct CMUnitTest with_device[] = {PIECE(work_inject), PIECE(work_run), PIECE(work_trace),
                                              PIECE(work_form)};
     /* the OpenCL calls of some are those of the others, and the last ones have none */

@@ -207,7 +207,7 @@ static void remove_results(const char *folder)
     assert_int_equal(remove_folder(path), 0);
 }
 
-static void test_a_host_stays_as_it_was(void **state)
+IN_FOLDER(test_a_host_stays_as_it_was)
 {
     struct temporary_folder *folder = *state;
     struct process_state before;
@@ -248,4 +248,4 @@ static void test_a_host_stays_as_it_was(void **state)
     (void)setlocale(LC_ALL, "C");
 }
 
-TEST_PROGRAM(NULL, NULL, IN_FOLDER(test_a_host_stays_as_it_was))
+TEST_PROGRAM(NULL, NULL)

@@ -82,7 +82,7 @@ static void expect_told(const char *path, const char *copy)
     print_message("%s: %ld calls\n", path, count);
 }
 
-static void test_written_formats(void **state)
+IN_FOLDER(test_written_formats)
 {
     static const struct {
         const char *name;
@@ -110,7 +110,7 @@ static void test_written_formats(void **state)
 }
 
 #ifdef FAILING_PREAD
-static void test_a_disk_under_the_decoder(void **state)
+IN_FOLDER(test_a_disk_under_the_decoder)
 {
     static float pixels[SIDE * SIDE];
     static const struct raster_layout layout = {SIDE, SIDE, 1, PIXEL_FLOAT32};
@@ -135,13 +135,4 @@ static void test_a_disk_under_the_decoder(void **state)
 }
 #endif
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        IN_FOLDER(test_written_formats),
-#ifdef FAILING_PREAD
-        IN_FOLDER(test_a_disk_under_the_decoder),
-#endif
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL)

@@ -47,7 +47,7 @@ static float *series_of(struct bench *bench, const sonject_element_layout *layou
 
 /* Within and beyond the window; the first strips have none. A GPU shares a line among hundreds of
  * work-items. CPUs from four lanes on: see test_bits.c. */
-static void test_same_bits(void **state)
+TEST(test_same_bits)
 {
     enum {
         STRIPS = 40,
@@ -118,7 +118,7 @@ static void hear_exactly(const sonject_element_layout *layout,
     }
 }
 
-static void test_delays_and_phases(void **state)
+TEST(test_delays_and_phases)
 {
     const float one = 0.03f;
     const float none = 0.0f;
@@ -159,9 +159,5 @@ static void test_delays_and_phases(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_delays_and_phases),
-    };
-    return bench_run_on_devices(tests, COUNT(tests));
+    return bench_run_on_devices(own_tests, own_test_count);
 }

@@ -138,7 +138,7 @@ static void compare(const struct solid *solid, const struct solid_row *row, cons
 }
 
 /* What the tests of this file, and of extents, are asked of. */
-static void test_every_shape_of_the_table_is_tested(void **state)
+TEST(test_every_shape_of_the_table_is_tested)
 {
     for (uint32_t shape = 0; shape < SHAPE_PARTS; shape++) {
         int rows = shape == SHAPE_MESH || shape == SHAPE_USER; /* which have tests of their own */
@@ -149,7 +149,7 @@ static void test_every_shape_of_the_table_is_tested(void **state)
     }
 }
 
-static void test_against_the_reference(void **state)
+TEST(test_against_the_reference)
 {
     static const double ranges[] = {50.0, 500.0};
     for (const struct solid_row *row = solid_rows; row < solid_rows + solid_row_count; row++) {
@@ -174,7 +174,7 @@ static void test_against_the_reference(void **state)
     }
 }
 
-static void test_ways_outwards_meet_hollow_solids_alone_again(void **state)
+TEST(test_ways_outwards_meet_hollow_solids_alone_again)
 {
     static const double reaches[] = {2.0, 100.0};
     for (const struct solid_row *row = solid_rows; row < solid_rows + solid_row_count; row++) {
@@ -196,7 +196,7 @@ static void test_ways_outwards_meet_hollow_solids_alone_again(void **state)
 
 /* Between near hits on one surface the normal turns by at most their distance over the least radius
  * of curvature. A tenth of that radius lengthens the way along the surface by 1e-3 at most. */
-static void test_surfaces_are_bent_no_more_than_is_said(void **state)
+TEST(test_surfaces_are_bent_no_more_than_is_said)
 {
     for (const struct solid_row *row = solid_rows; row < solid_rows + solid_row_count; row++) {
         /* near its axis, as lib/scene/shapes/shape.h says */
@@ -246,7 +246,7 @@ static void test_surfaces_are_bent_no_more_than_is_said(void **state)
 }
 
 /* From inside, the way out; through a ring's hole, its other side. */
-static void test_beyond_the_first(void **state)
+TEST(test_beyond_the_first)
 {
     for (const struct solid_row *row = solid_rows; row < solid_rows + solid_row_count; row++) {
         int compared = 0;
@@ -275,7 +275,7 @@ static void test_beyond_the_first(void **state)
     }
 }
 
-static void test_lanes(void **state)
+TEST(test_lanes)
 {
     for (const struct solid_row *row = solid_rows; row < solid_rows + solid_row_count; row++)
         for (int i = 0; i < 3000; i++) {
@@ -288,7 +288,7 @@ static void test_lanes(void **state)
 }
 
 /* Rays along and across the axes, or so close that rounding decides. */
-static void test_along_the_axes(void **state)
+TEST(test_along_the_axes)
 {
     for (const struct solid_row *row = solid_rows; row < solid_rows + solid_row_count; row++) {
         struct worst worst = {0.0, 0.0, 0, 0, 0};
@@ -318,7 +318,7 @@ static void test_along_the_axes(void **state)
     }
 }
 
-static void test_nearest_of_several(void **state)
+TEST(test_nearest_of_several)
 {
     struct solid solids[7];
     struct object_record objects[7];
@@ -369,7 +369,7 @@ static void test_nearest_of_several(void **state)
 
 /* What the fan's geometry promises, in double: a ray of elevation e through the neighbourhood of
  * the origin, at 500 m as at 5 m. */
-static void test_fan(void **state)
+TEST(test_fan)
 {
     static const double ranges[] = {5.0, 50.0, 500.0};
     for (size_t r = 0; r < 3; r++)
@@ -405,7 +405,7 @@ static void test_fan(void **state)
 }
 
 /* Buried parts are not met: the seabed comes first. */
-static void test_burial(void **state)
+TEST(test_burial)
 {
     struct fan_record fan;
     memset(&fan, 0, sizeof fan);
@@ -439,9 +439,4 @@ static void test_burial(void **state)
     assert_true(plane_distance(&fan, point, rising) == FAR_AWAY);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_every_shape_of_the_table_is_tested),
-             TEST(test_against_the_reference),
-             TEST(test_ways_outwards_meet_hollow_solids_alone_again),
-             TEST(test_surfaces_are_bent_no_more_than_is_said), TEST(test_beyond_the_first),
-             TEST(test_lanes), TEST(test_along_the_axes), TEST(test_nearest_of_several),
-             TEST(test_fan), TEST(test_burial))
+TEST_PROGRAM(NULL, NULL)

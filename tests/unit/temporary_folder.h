@@ -80,8 +80,7 @@ static inline int remove_temporary_folder(void **state)
     return result;
 }
 
-#define IN_FOLDER(test)                                                                            \
-    cmocka_unit_test_setup_teardown(test, make_temporary_folder, remove_temporary_folder)
+#define IN_FOLDER(name) TEST_WITH(name, make_temporary_folder, remove_temporary_folder)
 
 /* folder/name, valid until the next call. */
 static inline const char *temporary_file(struct temporary_folder *folder, const char *name)

@@ -91,6 +91,25 @@ static void expect_refused(void **state, const char *name, const char *message)
         fail_msg("the message is\n%s\nand not\n%s", report.message, expected);
 }
 
+/* A folder within a fresh one, since images are looked for beside it, too. */
+static int make_labels_folder(void **state)
+{
+    if (make_temporary_folder(state) != 0)
+        return 1;
+    struct temporary_folder *folder = *state;
+    strcat(folder->path, "/labels");
+    return mkdir(folder->path, 0700);
+}
+
+static int remove_labels_folder(void **state)
+{
+    struct temporary_folder *folder = *state;
+    *strrchr(folder->path, '/') = '\0';
+    return remove_temporary_folder(state);
+}
+
+#define WITH_LABELS(name) TEST_WITH(name, make_labels_folder, remove_labels_folder)
+
 struct wrong {
     const char *text, *message;
 };
@@ -119,7 +138,7 @@ static void expect_all_refused(void **state, const char *file, const char *read,
 
 #define FOUR(a, b, c, d) a ",\n" b ",\n" c ",\n" d
 
-static void test_coco(void **state)
+WITH_LABELS(test_coco)
 {
     const struct expected expected[] = {{"/b.npy", LABELLED_SHADOW, {20, 0, 2, 40}},
                                         {"/b.npy", LABELLED_BOTH, {25, 1, 5, 3}},
@@ -135,7 +154,7 @@ static void test_coco(void **state)
     expect_contacts(state, "labels.json", LABELLED_HIGHLIGHT, expected, COUNT(expected));
 }
 
-static void test_coco_that_is_wrong(void **state)
+WITH_LABELS(test_coco_that_is_wrong)
 {
     static const struct wrong wrong[] = {
         {"{\"images\": [],\n}", "%/l.json: damaged in line 2: string or '}' expected near '}'; "
@@ -195,7 +214,7 @@ static void test_coco_that_is_wrong(void **state)
 
 /* ---- CSV. */
 
-static void test_tables(void **state)
+WITH_LABELS(test_tables)
 {
     const struct expected expected[] = {{"/a.npy", LABELLED_SHADOW, {1, 2, 3, 4}},
                                         {"/a.npy", LABELLED_BOTH, {6, 2, 3, 4}},
@@ -214,7 +233,7 @@ static void test_tables(void **state)
     expect_contacts(state, "labels.CSV", LABELLED_HIGHLIGHT, expected, COUNT(expected));
 }
 
-static void test_tables_that_are_wrong(void **state)
+WITH_LABELS(test_tables_that_are_wrong)
 {
 #define T "image,row,column,rows,columns,part\n"
     static const struct wrong wrong[] = {
@@ -242,7 +261,7 @@ static void test_tables_that_are_wrong(void **state)
     expect_all_refused(state, "l.csv", "l.csv", wrong, COUNT(wrong));
 }
 
-static void test_so_many_contacts_and_no_more(void **state)
+WITH_LABELS(test_so_many_contacts_and_no_more)
 {
     enum {
         MOST = 100000
@@ -272,7 +291,7 @@ static void test_so_many_contacts_and_no_more(void **state)
 
 /* ---- YOLO. */
 
-static void test_yolo(void **state)
+WITH_LABELS(test_yolo)
 {
     /* fractions: x 8 to 16 of 40, y 3 to 9 of 30; then the whole image */
     static const char text[] = "1 0.3 0.2 0.2 0.2\r\n\n 0\t0.5 0.5 1 1 \n";
@@ -298,7 +317,7 @@ static void test_yolo(void **state)
     expect_contacts(state, "", LABELLED_BOTH, expected, 3);
 }
 
-static void test_yolo_that_is_wrong(void **state)
+WITH_LABELS(test_yolo_that_is_wrong)
 {
 #define NO_LINE                                                                                    \
     " is not a class's number and four fractions, of the box's centre and sides, x before y"
@@ -349,7 +368,7 @@ static void test_yolo_that_is_wrong(void **state)
 }
 
 /* Labels in data/labels/train, with images in data/images/train, or elsewhere about them. */
-static void test_where_images_are_looked_for(void **state)
+WITH_LABELS(test_where_images_are_looked_for)
 {
     static const char *const folders[] = {"labels",           "labels/train", "labels/train/images",
                                           "labels/images",    "images",       "images/train",
@@ -380,7 +399,7 @@ static void test_where_images_are_looked_for(void **state)
 #define OBJECT(name, box) "<object><name>" name "</name>" box "</object>"
 #define SIZE              "<size><width>40</width><height>30</height><depth>1</depth></size>\n"
 
-static void test_voc(void **state)
+WITH_LABELS(test_voc)
 {
     const struct expected expected[] = {{"/a&b.npy", LABELLED_SHADOW, {0, 0, 1, 1}},
                                         {"/a&b.npy", LABELLED_SHADOW, {2, 1, 8, 39}},
@@ -404,7 +423,7 @@ static void test_voc(void **state)
     expect_contacts(state, "", LABELLED_BOTH, expected, COUNT(expected));
 }
 
-static void test_voc_that_is_wrong(void **state)
+WITH_LABELS(test_voc_that_is_wrong)
 {
 #define VOC(text) "<annotation>\n<filename>a.npy</filename>\n" SIZE text "</annotation>"
 #define NEEDS     "%/a.xml:4: an object needs a name, and a bndbox of xmin, ymin, xmax, ymax"
@@ -442,7 +461,7 @@ static void test_voc_that_is_wrong(void **state)
 
 /* ---- What sonject writes itself. */
 
-static void test_own_labels_are_read_as_they_were_written(void **state)
+WITH_LABELS(test_own_labels_are_read_as_they_were_written)
 {
     static const sonject_box boxes[] = {
         {0, 0, 30, 40}, {0, 39, 1, 1}, {7, 3, 11, 13}, {13, 17, 9, 7}, {29, 0, 1, 23}};
@@ -492,7 +511,7 @@ static void test_own_labels_are_read_as_they_were_written(void **state)
 
 /* ---- Highlights and shadows. */
 
-static void test_highlight_and_shadow_are_one_contact(void **state)
+WITH_LABELS(test_highlight_and_shadow_are_one_contact)
 {
 #define H "a.npy,highlight,"
 #define S "a.npy,shadow,"
@@ -564,7 +583,7 @@ static void test_highlight_and_shadow_are_one_contact(void **state)
 
 /* ---- Quantiles. */
 
-static void test_quantiles(void **state)
+WITH_LABELS(test_quantiles)
 {
     struct report report;
     struct contact_set set;
@@ -587,7 +606,7 @@ static void test_quantiles(void **state)
     contact_set_clear(&set);
 }
 
-static void test_quantiles_that_are_wrong(void **state)
+WITH_LABELS(test_quantiles_that_are_wrong)
 {
 #define Q "quantiles: [0.1, 0.5]\ncontacts: 12\n"
     static const struct wrong wrong[] = {
@@ -627,31 +646,4 @@ static void test_quantiles_that_are_wrong(void **state)
                    "%/q.yml:3:15: shadow_range: must be a list of 1 to 32 numbers that rise");
 }
 
-/* A folder within a fresh one, since images are looked for beside it, too. */
-static int make_labels_folder(void **state)
-{
-    if (make_temporary_folder(state) != 0)
-        return 1;
-    struct temporary_folder *folder = *state;
-    strcat(folder->path, "/labels");
-    return mkdir(folder->path, 0700);
-}
-
-static int remove_labels_folder(void **state)
-{
-    struct temporary_folder *folder = *state;
-    *strrchr(folder->path, '/') = '\0';
-    return remove_temporary_folder(state);
-}
-
-#define WITH_LABELS(test)                                                                          \
-    cmocka_unit_test_setup_teardown(test, make_labels_folder, remove_labels_folder)
-
-TEST_PROGRAM(NULL, NULL, WITH_LABELS(test_coco), WITH_LABELS(test_coco_that_is_wrong),
-             WITH_LABELS(test_tables), WITH_LABELS(test_tables_that_are_wrong),
-             WITH_LABELS(test_so_many_contacts_and_no_more), WITH_LABELS(test_yolo),
-             WITH_LABELS(test_yolo_that_is_wrong), WITH_LABELS(test_where_images_are_looked_for),
-             WITH_LABELS(test_voc), WITH_LABELS(test_voc_that_is_wrong),
-             WITH_LABELS(test_own_labels_are_read_as_they_were_written),
-             WITH_LABELS(test_highlight_and_shadow_are_one_contact), WITH_LABELS(test_quantiles),
-             WITH_LABELS(test_quantiles_that_are_wrong))
+TEST_PROGRAM(NULL, NULL)

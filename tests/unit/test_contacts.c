@@ -60,7 +60,7 @@ static void expect_pulls(const char *what, const struct pulls *pulls)
 }
 
 /* From a highlight of levels that come and go to a shadow, all through a point response. */
-static void test_ends_in_speckle(void **state)
+TEST(test_ends_in_speckle)
 {
     const double deviation = 0.42;
     double means[PIXELS];
@@ -82,7 +82,7 @@ static void test_ends_in_speckle(void **state)
 }
 
 /* From a shadow to the seabed, through penumbras of several widths. */
-static void test_steps_in_speckle(void **state)
+TEST(test_steps_in_speckle)
 {
     double means[PIXELS];
     const double lobe_bias[PIXELS] = {0.0};
@@ -109,7 +109,7 @@ static void test_steps_in_speckle(void **state)
 
 /* Twice the level in the first third: told where 6 samples a pixel tell it, but not where one level
  * is all there is: e^10 times as likely is one in some 200 (see contact_ruler.c). */
-static void test_changes_in_shadows(void **state)
+TEST(test_changes_in_shadows)
 {
     double means[PIXELS];
     const double lobe_bias[PIXELS] = {0.0};
@@ -133,7 +133,7 @@ static void test_changes_in_shadows(void **state)
 }
 
 /* All dark, all lit, nothing but zeros, and a single pixel. */
-static void test_profiles_without_an_edge(void **state)
+TEST(test_profiles_without_an_edge)
 {
     double means[PIXELS] = {0.0};
     const double lobe_bias[PIXELS] = {0.0};
@@ -190,7 +190,7 @@ static size_t find(const float *intensity, double contrast, size_t most,
  * fainter than what is asked for. Half of the image is 20 dB brighter: contrasts are against what
  * is around.
  */
-static void test_contacts_are_found(void **state)
+TEST(test_contacts_are_found)
 {
     static float intensity[ROWS * COLUMNS];
     struct contact_place places[10];
@@ -221,7 +221,7 @@ static void test_contacts_are_found(void **state)
 }
 
 /* A side lobe 30 dB under its contact, in its columns, is none; elsewhere it is one. */
-static void test_side_lobes_are_no_contacts(void **state)
+TEST(test_side_lobes_are_no_contacts)
 {
     static float intensity[ROWS * COLUMNS];
     struct contact_place places[4];
@@ -236,7 +236,7 @@ static void test_side_lobes_are_no_contacts(void **state)
 }
 
 /* Plain speckle has no contacts of 12 dB: a mean of 9 is over 16 once in e-50; nor has the dark. */
-static void test_nothing_is_found_in_speckle(void **state)
+TEST(test_nothing_is_found_in_speckle)
 {
     static float intensity[ROWS * COLUMNS];
     struct contact_place places[1];
@@ -250,7 +250,7 @@ static void test_nothing_is_found_in_speckle(void **state)
 
 /* A contact with little but black around it, as at the end of a recording, has no seabed that it
  * could be measured against; the others are found all the same. */
-static void test_contacts_amid_black_are_passed_over(void **state)
+TEST(test_contacts_amid_black_are_passed_over)
 {
     static float intensity[ROWS * COLUMNS];
     struct contact_place places[3];
@@ -268,7 +268,7 @@ static void test_contacts_amid_black_are_passed_over(void **state)
 }
 
 /* A few dark pixels behind a highlight are speckle, and no shadow. */
-static void test_dark_speckle_is_no_shadow(void **state)
+TEST(test_dark_speckle_is_no_shadow)
 {
     static float intensity[ROWS * COLUMNS];
     struct contact_image image;
@@ -289,7 +289,7 @@ static void test_dark_speckle_is_no_shadow(void **state)
 }
 
 /* Images of any size, bright pixels at any place of them, boxes of any size. */
-static void test_small_images(void **state)
+TEST(test_small_images)
 {
     random_state = 5;
     for (size_t rows = 1; rows < 40; rows += rows < 8 ? 1 : 7)
@@ -345,7 +345,7 @@ static void take_box(struct contact_image *image, const struct window_box *box)
  * (99.5 %) and 0.527 (0.5 %). A draw knows them to some 0.25 dB, for windows overlap; so many to
  * 0.04 dB. A second contact near by is nobody's seabed, and where there is no part there is no
  * answer. */
-static void parts_are_seen_by_the_quantiles_of_speckle(void **state)
+TEST(parts_are_seen_by_the_quantiles_of_speckle)
 {
     enum {
         SEEN = 40
@@ -378,9 +378,4 @@ static void parts_are_seen_by_the_quantiles_of_speckle(void **state)
     assert_true(fabs(mean.shadow_db - 10.0 * log10(0.05 / 0.527)) < 0.16);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_ends_in_speckle), TEST(test_steps_in_speckle),
-             TEST(test_changes_in_shadows), TEST(test_profiles_without_an_edge),
-             TEST(test_contacts_are_found), TEST(test_side_lobes_are_no_contacts),
-             TEST(test_nothing_is_found_in_speckle), TEST(test_contacts_amid_black_are_passed_over),
-             TEST(test_dark_speckle_is_no_shadow), TEST(test_small_images),
-             TEST(parts_are_seen_by_the_quantiles_of_speckle))
+TEST_PROGRAM(NULL, NULL)

@@ -94,7 +94,7 @@ static void write_chunk(const char *path, hid_t type, const hsize_t sides[2],
 }
 
 /* A chunk of 64 MB that is stored unpacked in 100 bytes, behind which HDF5 1.10 reads on. */
-static void a_file_that_ends_the_decoder_ends_one_call(void **state)
+TEST(a_file_that_ends_the_decoder_ends_one_call)
 {
     static const hsize_t sides[2] = {4096, 2048};
     struct host host;
@@ -109,7 +109,7 @@ static void a_file_that_ends_the_decoder_ends_one_call(void **state)
     end(&host);
 }
 
-static void what_was_open_in_a_dead_decoder_is_refused(void **state)
+TEST(what_was_open_in_a_dead_decoder_is_refused)
 {
     struct host host;
     struct swath_file *files[2];
@@ -127,7 +127,7 @@ static void what_was_open_in_a_dead_decoder_is_refused(void **state)
     end(&host);
 }
 
-static void more_samples_than_a_file_can_hold_are_refused(void **state)
+TEST(more_samples_than_a_file_can_hold_are_refused)
 {
     struct host host;
     const char *path = begin(&host, *state);
@@ -145,7 +145,7 @@ static rlim_t limit_of(const struct host *host, enum __rlimit_resource resource)
     return limits.rlim_cur;
 }
 
-static void the_child_has_limits_and_nothing_of_the_host(void **state)
+TEST(the_child_has_limits_and_nothing_of_the_host)
 {
     struct host host;
     char list[64];
@@ -164,7 +164,7 @@ static void the_child_has_limits_and_nothing_of_the_host(void **state)
     end(&host);
 }
 
-static void the_child_ends_with_its_host(void **state)
+TEST(the_child_ends_with_its_host)
 {
     struct host host;
     int ends[2];
@@ -199,7 +199,7 @@ static int stop_now(void *user, double fraction, const char *stage)
 }
 
 /* A child that is stopped answers never; the host asks its caller meanwhile, and ends it. */
-static void a_caller_may_end_the_wait_for_the_child(void **state)
+TEST(a_caller_may_end_the_wait_for_the_child)
 {
     struct host host;
     struct swath_file *file;
@@ -218,7 +218,7 @@ static void a_caller_may_end_the_wait_for_the_child(void **state)
 }
 
 /* Calls with a progress function lend it to those who wait. */
-static void a_run_may_be_ended_while_its_image_is_read(void **state)
+TEST(a_run_may_be_ended_while_its_image_is_read)
 {
     static const char text[] =
         "sonject: 1\n"
@@ -248,10 +248,4 @@ static void a_run_may_be_ended_while_its_image_is_read(void **state)
     expect_no_child();
 }
 
-TEST_PROGRAM(make_temporary_folder, remove_temporary_folder,
-             TEST(a_file_that_ends_the_decoder_ends_one_call),
-             TEST(what_was_open_in_a_dead_decoder_is_refused),
-             TEST(more_samples_than_a_file_can_hold_are_refused),
-             TEST(the_child_has_limits_and_nothing_of_the_host), TEST(the_child_ends_with_its_host),
-             TEST(a_caller_may_end_the_wait_for_the_child),
-             TEST(a_run_may_be_ended_while_its_image_is_read))
+TEST_PROGRAM(make_temporary_folder, remove_temporary_folder)

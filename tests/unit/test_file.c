@@ -19,7 +19,7 @@ static void expect_text(char *text, const char *expected)
     free(text);
 }
 
-static void test_paths(void **state)
+TEST(test_paths)
 {
     expect_text(path_join("folder", "name"), "folder/name");
     expect_text(path_join("folder/", "name"), "folder/name");
@@ -44,7 +44,7 @@ static void expect_part(const char *path, const char *extension)
     free(part);
 }
 
-static void test_part_names_keep_the_extension_and_differ(void **state)
+TEST(test_part_names_keep_the_extension_and_differ)
 {
     char *names[64];
     expect_part("/a/image.tif", ".tif");
@@ -61,7 +61,7 @@ static void test_part_names_keep_the_extension_and_differ(void **state)
         free(names[i]);
 }
 
-static void test_a_file_is_written_and_read(void **state)
+IN_FOLDER(test_a_file_is_written_and_read)
 {
     struct temporary_folder *folder = *state;
     struct report report = {{0}, NULL, NULL};
@@ -96,7 +96,7 @@ static void expect_message(const struct report *report, const char *path, const 
         fail_msg("'%s' does not name '%s' and '%s'", report->message, path, reason);
 }
 
-static void test_what_cannot_be_read_or_written(void **state)
+IN_FOLDER(test_what_cannot_be_read_or_written)
 {
     struct temporary_folder *folder = *state;
     struct report report = {{0}, NULL, NULL};
@@ -119,7 +119,7 @@ static void test_what_cannot_be_read_or_written(void **state)
 }
 
 /* A limit on the size of files is as near as a test gets to a full disk. */
-static void test_a_full_disk_leaves_the_old_file(void **state)
+IN_FOLDER(test_a_full_disk_leaves_the_old_file)
 {
     struct temporary_folder *folder = *state;
     struct report report = {{0}, NULL, NULL};
@@ -145,7 +145,7 @@ static void test_a_full_disk_leaves_the_old_file(void **state)
     free(bytes);
 }
 
-static void test_publishing(void **state)
+IN_FOLDER(test_publishing)
 {
     struct temporary_folder *folder = *state;
     struct report report = {{0}, NULL, NULL};
@@ -186,7 +186,7 @@ static char *orphaned_part(const char *path)
     return strdup(name);
 }
 
-static void test_only_parts_of_dead_processes_are_tidied_away(void **state)
+IN_FOLDER(test_only_parts_of_dead_processes_are_tidied_away)
 {
     struct temporary_folder *folder = *state;
     char path[TEMPORARY_CAPACITY + 300];
@@ -231,7 +231,7 @@ static void alter(const char *path, bool keeps_time)
     assert_int_equal(utimensat(AT_FDCWD, path, keeps_time ? kept : later, 0), 0);
 }
 
-static void test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too(void **state)
+IN_FOLDER(test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too)
 {
     struct temporary_folder *folder = *state;
     struct report report = {{0}, NULL, NULL};
@@ -258,7 +258,7 @@ static void test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too
     }
 }
 
-static void test_a_list_of_files_reaches_nothing_outside_of_its_folder(void **state)
+IN_FOLDER(test_a_list_of_files_reaches_nothing_outside_of_its_folder)
 {
     struct temporary_folder *folder = *state;
     struct report report = {{0}, NULL, NULL};
@@ -283,7 +283,7 @@ static void test_a_list_of_files_reaches_nothing_outside_of_its_folder(void **st
     }
 }
 
-static void test_folders_are_made_with_their_parents(void **state)
+IN_FOLDER(test_folders_are_made_with_their_parents)
 {
     struct temporary_folder *folder = *state;
     struct report report = {{0}, NULL, NULL};
@@ -300,7 +300,7 @@ static void test_folders_are_made_with_their_parents(void **state)
 }
 
 /* The examples of FIPS 180-4, and lengths about the end of a block, by another program. */
-static void test_sha256_is_that_of_the_standard(void **state)
+IN_FOLDER(test_sha256_is_that_of_the_standard)
 {
     static const struct {
         const char *text, *digest;
@@ -325,12 +325,4 @@ static void test_sha256_is_that_of_the_standard(void **state)
                      SONJECT_ERROR_STORAGE);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_paths), TEST(test_part_names_keep_the_extension_and_differ),
-             IN_FOLDER(test_a_file_is_written_and_read),
-             IN_FOLDER(test_what_cannot_be_read_or_written),
-             IN_FOLDER(test_a_full_disk_leaves_the_old_file), IN_FOLDER(test_publishing),
-             IN_FOLDER(test_only_parts_of_dead_processes_are_tidied_away),
-             IN_FOLDER(test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too),
-             IN_FOLDER(test_a_list_of_files_reaches_nothing_outside_of_its_folder),
-             IN_FOLDER(test_folders_are_made_with_their_parents),
-             IN_FOLDER(test_sha256_is_that_of_the_standard))
+TEST_PROGRAM(NULL, NULL)

@@ -47,7 +47,7 @@ static void show(const struct draws_of_world *draws, uint64_t seed, uint64_t ind
     of[EXTENT_SHADOW_LEVEL] = contact->drawn[FITTED_FLOOR] + noise(seed, 6, index, 1.0);
 }
 
-static void draws_reach_what_made_the_contacts(void **state)
+TEST(draws_reach_what_made_the_contacts)
 {
     const struct draws_of_world hidden = {{-0.3, -1.0, -1.5, 13.0, -14.0},
                                           {0.4, 0.4, 0.5, 5.0, 0.0}};
@@ -127,7 +127,7 @@ static double move_by_copies(size_t copies)
 
 /* Four witnesses who say the same for the same reason are no four; independent ones would move it
  * four fifths of the way. */
-static void copies_of_an_extent_count_little(void **state)
+TEST(copies_of_an_extent_count_little)
 {
     const double one = move_by_copies(1);
     const double four = move_by_copies(4);
@@ -138,7 +138,7 @@ static void copies_of_an_extent_count_little(void **state)
 
 /* Of a round that has been stretched since those of the largest contacts have hardly moved: they
  * alone are no sample. */
-static void rounds_are_compared_whole(void **state)
+TEST(rounds_are_compared_whole)
 {
     const struct draws_of_world world = {{0.0, 0.0, -1.0, 10.0, -15.0}, {0.5, 0.5, 0.5, 5.0, 0.0}};
     static struct drawn_contact made[2 * CONTACTS];
@@ -167,7 +167,7 @@ static void rounds_are_compared_whole(void **state)
     }
 }
 
-static void a_median_has_the_error_of_statistics(void **state)
+TEST(a_median_has_the_error_of_statistics)
 {
     /* of a normal distribution: sqrt(pi / 2) of the mean's */
     const double error = quantile_error(0.5, 2.0 * 0.67449 * 3.0, 100.0);
@@ -178,7 +178,7 @@ static void a_median_has_the_error_of_statistics(void **state)
 }
 
 /* Of ten values drawn between 0 and 1, in as many samples too low as too high. */
-static void quantiles_of_few_are_in_the_middle(void **state)
+TEST(quantiles_of_few_are_in_the_middle)
 {
     enum {
         SAMPLES = 4000,
@@ -200,7 +200,7 @@ static void quantiles_of_few_are_in_the_middle(void **state)
 }
 
 /* The least and the largest of ten are known but roughly, not infinitely ill. */
-static void ends_of_published_quantiles_have_errors(void **state)
+TEST(ends_of_published_quantiles_have_errors)
 {
     for (int end = 0; end <= 1; end++) {
         const double error = quantile_error(end, 1.0, 10.0);
@@ -253,7 +253,7 @@ static const char moved_file[] =
     "draw: {injection.noise_floor: -15 dB}\n"
     "visible: {highlight: 1.2 dB, shadow: -2.3 dB, otherwise: redraw}\n";
 
-static void a_fitted_file_is_the_users_own_with_other_numbers(void **state)
+TEST(a_fitted_file_is_the_users_own_with_other_numbers)
 {
     struct scene_folder *folder = *state;
     struct report *report = &folder->report;
@@ -317,7 +317,7 @@ static const char flow_file[] = "{sonject_campaign: 1, scene: s.yaml, images: 10
                                 " targets: [{class: tin, object: {shape: sphere, diameter: 1},\n"
                                 "  draw: {level.over_seabed: 12 dB}}]}\n";
 
-static void what_is_in_braces_stays_so(void **state)
+TEST(what_is_in_braces_stays_so)
 {
     struct scene_folder *folder = *state;
     char unchanged[200];
@@ -334,7 +334,7 @@ static void what_is_in_braces_stays_so(void **state)
     free(text);
 }
 
-static void what_overrides_give_is_not_written_over(void **state)
+TEST(what_overrides_give_is_not_written_over)
 {
     static const char *const overrides[] = {"visible={highlight: 3 dB, shadow: -1 dB}",
                                             "chip.range_over_altitude=[2, 9]",
@@ -348,9 +348,4 @@ static void what_overrides_give_is_not_written_over(void **state)
     }
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(draws_reach_what_made_the_contacts),
-             TEST(copies_of_an_extent_count_little), TEST(rounds_are_compared_whole),
-             TEST(a_median_has_the_error_of_statistics), TEST(quantiles_of_few_are_in_the_middle),
-             TEST(ends_of_published_quantiles_have_errors),
-             TEST(a_fitted_file_is_the_users_own_with_other_numbers),
-             TEST(what_is_in_braces_stays_so), TEST(what_overrides_give_is_not_written_over))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

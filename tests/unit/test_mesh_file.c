@@ -172,7 +172,7 @@ static sonject_status load(struct temporary_folder *folder, const char *name, co
     return mesh_load(&report, folder->file, &options, mesh);
 }
 
-static void test_formats(void **state)
+TEST(test_formats)
 {
     struct mesh_sample sample;
     sample_sphere(&sample, 3);
@@ -214,7 +214,7 @@ static sonject_status read_part(enum format format, const char *bytes, size_t co
 
 /* Every file that ends too soon is refused, with its name in the message, or (text that loses only
  * its last line) read. */
-static void test_cut_short(void **state)
+TEST(test_cut_short)
 {
     struct mesh_sample sample;
     sample_box(&sample);
@@ -252,7 +252,7 @@ static void expect_refusal(struct temporary_folder *folder, const char *name, co
 }
 
 /* Headers that promise more than the file holds take no memory; a coordinate that is none. */
-static void test_wrong_binary_files(void **state)
+TEST(test_wrong_binary_files)
 {
     static const struct {
         const char *number; /* of triangles */
@@ -284,7 +284,7 @@ static void test_wrong_binary_files(void **state)
     sample_clear(&sample);
 }
 
-static void test_bad_content(void **state)
+TEST(test_bad_content)
 {
     static const struct {
         const char *name, *text, *message;
@@ -340,7 +340,7 @@ static void test_bad_content(void **state)
     assert_int_equal(mesh_load(&report, "/nowhere/a.stl", &options, &mesh), SONJECT_ERROR_STORAGE);
 }
 
-static void test_units_and_axes(void **state)
+TEST(test_units_and_axes)
 {
     struct mesh_sample sample;
     struct mesh_options options;
@@ -491,7 +491,7 @@ static sonject_status expect_taken_or_explained(struct temporary_folder *folder,
 }
 
 /* The most triangles that few bytes can make, all alike, in a row or strewn. */
-static void test_dense_files(void **state)
+TEST(test_dense_files)
 {
     static const char *const corners[] = {" 1", " 2", " 3", " 4"};
     for (int kind = 0; kind < 3; kind++) {
@@ -512,7 +512,7 @@ static void test_dense_files(void **state)
 }
 
 /* PLY with lists of one byte an entry, and headers that promise what no file holds. */
-static void test_promises(void **state)
+TEST(test_promises)
 {
     static const char *const counts[] = {
         "4294967295", "9223372036854775807", "18446744073709551615", "68719476736", "-5", "1e9"};
@@ -538,6 +538,4 @@ static void test_promises(void **state)
             }
 }
 
-TEST_PROGRAM(make_temporary_folder, remove_temporary_folder, TEST(test_formats),
-             TEST(test_cut_short), TEST(test_wrong_binary_files), TEST(test_bad_content),
-             TEST(test_units_and_axes), TEST(test_dense_files), TEST(test_promises))
+TEST_PROGRAM(make_temporary_folder, remove_temporary_folder)

@@ -66,7 +66,7 @@ static bool are_apart(struct span one, struct span other)
     return span_overlap(one, other).count == 0;
 }
 
-static void test_regions_hold_all_echoes_once(void **state)
+TEST(test_regions_hold_all_echoes_once)
 {
     struct multibounce multibounce;
     lay_echoes(&multibounce);
@@ -94,7 +94,7 @@ static void test_regions_hold_all_echoes_once(void **state)
 }
 
 /* However few strips are read at a time. */
-static void test_regions_are_read_whole(void **state)
+TEST(test_regions_are_read_whole)
 {
     struct multibounce multibounce;
     lay_echoes(&multibounce);
@@ -121,4 +121,4 @@ static void test_regions_are_read_whole(void **state)
     multibounce_end(&multibounce);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_regions_hold_all_echoes_once), TEST(test_regions_are_read_whole))
+TEST_PROGRAM(NULL, NULL)

@@ -27,7 +27,7 @@ static void expect_taken(void **state, const char *text, bool is_depth)
     profile_table_clear(&table);
 }
 
-static void test_every_way_to_write_a_table(void **state)
+TEST(test_every_way_to_write_a_table)
 {
     expect_taken(state, "height_m,sound_speed_mps\n12,1490.5\n15.5,1.5e3\n", false);
     expect_taken(state, "height_m,sound_speed_mps\n12,1490.5\n15.5,1.5e3", false);
@@ -52,7 +52,7 @@ static void test_every_way_to_write_a_table(void **state)
     expect_taken(state, "a;\"depth_m\";sound_speed_mps\n\"x;12;1490.5\ny\"z;15.5;1500\n", true);
 }
 
-static void test_heights_rise_however_the_table_runs(void **state)
+TEST(test_heights_rise_however_the_table_runs)
 {
     static const struct {
         const char *text;
@@ -95,7 +95,7 @@ static void expect_refused(void **state, const void *bytes, size_t count, const 
 
 #define H "height_m,sound_speed_mps\n"
 
-static void test_tables_that_are_wrong(void **state)
+TEST(test_tables_that_are_wrong)
 {
     static const struct {
         const char *text, *message;
@@ -148,7 +148,7 @@ static void test_tables_that_are_wrong(void **state)
     expect_refused(state, "\x89PNG\r\n\x1A\n", 8, ":1: not UTF-8 text; is this a table?");
 }
 
-static void test_limits(void **state)
+TEST(test_limits)
 {
     char *text = calloc(PROFILE_BYTES_MAX + 2, 1);
     assert_non_null(text);
@@ -181,7 +181,7 @@ static void test_limits(void **state)
     free(text);
 }
 
-static void test_files_that_cannot_be_read(void **state)
+TEST(test_files_that_cannot_be_read)
 {
     struct temporary_folder *folder = *state;
     struct report report = {{0}, NULL, NULL};
@@ -248,7 +248,7 @@ static void expect_layers(const struct profile *profile, size_t expected)
     free(layers);
 }
 
-static void test_profiles_become_thin_layers(void **state)
+TEST(test_profiles_become_thin_layers)
 {
     /* 1490 to 1520 m/s: 30 / (1490 / 20000) = 402.7 layers, and one below and above */
     const struct profile thermocline = {{0, 12, 16, 25}, {1490, 1490, 1520, 1520}, 4};
@@ -268,7 +268,7 @@ static void test_profiles_become_thin_layers(void **state)
 }
 
 /* Samples as close as heights may be, as far up as they may be, and the steepest that fits. */
-static void test_steep_profiles_keep_rising(void **state)
+TEST(test_steep_profiles_keep_rising)
 {
     const double heights[] = {999999.0, 999999.0000011}, speeds[] = {1400.0, 1660.0};
     struct report report = {{0}, NULL, NULL};
@@ -280,7 +280,4 @@ static void test_steep_profiles_keep_rising(void **state)
     free(layers);
 }
 
-TEST_PROGRAM(make_temporary_folder, remove_temporary_folder, TEST(test_every_way_to_write_a_table),
-             TEST(test_heights_rise_however_the_table_runs), TEST(test_tables_that_are_wrong),
-             TEST(test_limits), TEST(test_files_that_cannot_be_read),
-             TEST(test_profiles_become_thin_layers), TEST(test_steep_profiles_keep_rising))
+TEST_PROGRAM(make_temporary_folder, remove_temporary_folder)

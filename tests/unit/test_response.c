@@ -31,7 +31,7 @@ static void expect_refused_table(struct scene_folder *folder, const char *key, c
 #define MOTION "motion: {file: table.csv}"
 #define YAW    "motion: {yaw: {advance: 1, file: table.csv}}"
 
-static void test_hostile_tables(void **state)
+TEST(test_hostile_tables)
 {
     static const struct {
         const char *key, *table, *message;
@@ -64,7 +64,7 @@ static void test_hostile_tables(void **state)
         expect_refused_table(*state, cases[i].key, cases[i].table, cases[i].message);
 }
 
-static void test_hostile_keys(void **state)
+TEST(test_hostile_keys)
 {
     static const struct {
         const char *key, *message;
@@ -92,7 +92,7 @@ static void test_hostile_keys(void **state)
 }
 
 /* The cubic goes through the samples, is exact for parabolas, and the largest sample is 1. */
-static void test_interpolation(void **state)
+TEST(test_interpolation)
 {
     double x[9], real_part[9], imaginary_part[9];
     struct report report = {{0}, NULL, NULL};
@@ -128,7 +128,7 @@ static void test_interpolation(void **state)
 }
 
 /* A peak of any phase becomes 1. */
-static void test_normalisation(void **state)
+TEST(test_normalisation)
 {
     const double x[] = {-1.0, 0.0, 0.5, 1.0};
     const double real_part[] = {1.0, 3.0, 0.0, 0.0};
@@ -146,5 +146,4 @@ static void test_normalisation(void **state)
     response_table_clear(&table);
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_hostile_tables),
-             TEST(test_hostile_keys), TEST(test_interpolation), TEST(test_normalisation))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

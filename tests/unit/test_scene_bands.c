@@ -12,7 +12,7 @@
 static const char *const low[] = {"band=low"};
 static const char *const high[] = {"band=high"};
 
-static void test_a_band_changes_its_keys_alone(void **state)
+TEST(test_a_band_changes_its_keys_alone)
 {
     struct scene_folder *folder = *state;
     write_scene(folder, TWO_BANDS, strlen(TWO_BANDS));
@@ -26,14 +26,14 @@ static void test_a_band_changes_its_keys_alone(void **state)
     assert_true(folder->scene.seabed.lambert == 0.01);
 }
 
-static void test_a_band_may_stand_in_the_file(void **state)
+TEST(test_a_band_may_stand_in_the_file)
 {
     struct scene_folder *folder = *state;
     expect_scene_taken(folder, TWO_BANDS "band: high\n");
     assert_true(folder->scene.sonar.centre_frequency_hz == 400e3);
 }
 
-static void what_is_set_beats_the_band(void **state)
+TEST(what_is_set_beats_the_band)
 {
     static const char *const set[] = {"band=high", "sonar.frequency=300 kHz",
                                       "seabed.lambert=-10 dB", "bands.high.sonar.bandwidth=25 kHz"};
@@ -74,14 +74,14 @@ static void expect_names(struct scene_folder *folder, const char *text,
     free(names);
 }
 
-static void test_bands_that_are_left_are_named(void **state)
+TEST(test_bands_that_are_left_are_named)
 {
     expect_names(*state, TWO_BANDS, NULL, 0, "low\nhigh\n");
     expect_names(*state, TWO_BANDS, high, 1, "");
     expect_names(*state, BASE, NULL, 0, "");
 }
 
-static void test_what_is_wrong_is_told(void **state)
+TEST(test_what_is_wrong_is_told)
 {
     static const struct refusal wrong[] = {
         {TWO_BANDS, ":5:3: bands: choose one of low, high (--set band=low)"},
@@ -103,6 +103,4 @@ static void test_what_is_wrong_is_told(void **state)
     expect_all_refused(state, wrong, COUNT(wrong));
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_a_band_changes_its_keys_alone),
-             TEST(test_a_band_may_stand_in_the_file), TEST(what_is_set_beats_the_band),
-             TEST(test_bands_that_are_left_are_named), TEST(test_what_is_wrong_is_told))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

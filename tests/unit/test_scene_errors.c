@@ -9,7 +9,7 @@
 #define KNOWN_MATERIALS                                                                            \
     "steel, concrete, rubber, wood, rock, gravel, coarse sand, medium sand, fine sand, silt, clay"
 
-static void test_unknown_keys(void **state)
+TEST(test_unknown_keys)
 {
     static const struct refusal wrong[] = {
         {BASE "medum: {}\n", ":4:1: medum: unknown key; did you mean 'medium'?"},
@@ -28,7 +28,7 @@ static void test_unknown_keys(void **state)
     expect_all_refused(state, wrong, COUNT(wrong));
 }
 
-static void test_missing_keys(void **state)
+TEST(test_missing_keys)
 {
     static const struct refusal wrong[] = {
         {INPUT SONAR, ":1:1: sonject: missing; add it (version of the format, 1)"},
@@ -57,7 +57,7 @@ static void test_missing_keys(void **state)
     expect_all_refused(state, wrong, COUNT(wrong));
 }
 
-static void test_wrong_values(void **state)
+TEST(test_wrong_values)
 {
     static const struct refusal wrong[] = {
         {BASE "medium:\n  sound_speed: 1500 knots\n",
@@ -148,7 +148,7 @@ static void test_wrong_values(void **state)
     expect_all_refused(state, wrong, COUNT(wrong));
 }
 
-static void test_keys_that_exclude_or_need_each_other(void **state)
+TEST(test_keys_that_exclude_or_need_each_other)
 {
     static const char geometry[] =
         ", geometry: {row_spacing: 1, column_spacing: 1, first_slant_range: 40}}\n";
@@ -266,7 +266,7 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
     expect_all_refused(state, wrong, COUNT(wrong));
 }
 
-static void test_yaml_that_is_not_wanted(void **state)
+TEST(test_yaml_that_is_not_wanted)
 {
     static const struct refusal wrong[] = {
         {"", ":1:1: there is nothing in it"},
@@ -302,7 +302,7 @@ static void test_yaml_that_is_not_wanted(void **state)
     expect_all_refused(state, wrong, COUNT(wrong));
 }
 
-static void test_overrides_that_are_wrong(void **state)
+TEST(test_overrides_that_are_wrong)
 {
     static const struct {
         const char *override;
@@ -357,7 +357,7 @@ static void test_overrides_that_are_wrong(void **state)
     }
 }
 
-static void test_a_missing_file_is_named(void **state)
+TEST(test_a_missing_file_is_named)
 {
     struct report report = {{0}, NULL, NULL};
     struct scene scene;
@@ -368,7 +368,4 @@ static void test_a_missing_file_is_named(void **state)
                         "/tmp/absent-scene.yaml: there is no such scene file; check its name");
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_unknown_keys),
-             TEST(test_missing_keys), TEST(test_wrong_values),
-             TEST(test_keys_that_exclude_or_need_each_other), TEST(test_yaml_that_is_not_wanted),
-             TEST(test_overrides_that_are_wrong), TEST(test_a_missing_file_is_named))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

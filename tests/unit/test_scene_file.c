@@ -48,7 +48,7 @@ static void expect_not_the_default(struct scene_folder *folder, const struct key
         fail_msg("%s: %s is there without the key, too", key->path, key->value);
 }
 
-static void test_every_key_arrives(void **state)
+TEST(test_every_key_arrives)
 {
     for (size_t i = 0; i < COUNT(cases); i++) {
         expect_case(*state, &cases[i]);
@@ -57,7 +57,7 @@ static void test_every_key_arrives(void **state)
 }
 
 /* So that a key cannot be added to the tables without a case above. */
-static void test_every_key_has_a_case(void **state)
+TEST(test_every_key_has_a_case)
 {
     json_t *keys = list_keys();
     size_t i;
@@ -71,7 +71,7 @@ static void test_every_key_has_a_case(void **state)
     json_decref(keys);
 }
 
-static void test_defaults_stay_where_nothing_is_said(void **state)
+TEST(test_defaults_stay_where_nothing_is_said)
 {
     struct scene_folder *folder = *state;
     struct scene defaults;
@@ -90,7 +90,7 @@ static void test_defaults_stay_where_nothing_is_said(void **state)
     assert_int_equal(folder->scene.sonar.taylor_terms, 5);
 }
 
-static void test_words_and_forms(void **state)
+TEST(test_words_and_forms)
 {
     struct scene_folder *folder = *state;
     const char *overrides[] = {"sonar.response={taylor: {sidelobes: 30 dB, terms: 4}}",
@@ -111,7 +111,7 @@ static void test_words_and_forms(void **state)
 }
 
 /* A name fills in all of a material; keys beside it change it; a seabed keeps its backscatter. */
-static void test_named_materials(void **state)
+TEST(test_named_materials)
 {
     struct scene_folder *folder = *state;
     const char *overrides[] = {"objects[0].material={name: concrete, roughness: 7 mm}",
@@ -147,7 +147,7 @@ static void test_named_materials(void **state)
     assert_true(material->density_ratio == expected.density_ratio);
 }
 
-static void test_a_fluid_replaces_a_constant_reflection(void **state)
+TEST(test_a_fluid_replaces_a_constant_reflection)
 {
     struct scene_folder *folder = *state;
     const char *fluid = "objects[0].material={name: steel, fluid: {density: 8, speed: 4}}";
@@ -156,7 +156,7 @@ static void test_a_fluid_replaces_a_constant_reflection(void **state)
     assert_int_equal(folder->scene.objects[0].material.reflection_kind, SONJECT_REFLECTION_FLUID);
 }
 
-static void test_paths_are_meant_from_where_they_stand(void **state)
+TEST(test_paths_are_meant_from_where_they_stand)
 {
     struct scene_folder *folder = *state;
     const char *absolute = "input.path=/data/a #1: b.tif";
@@ -172,7 +172,7 @@ static void test_paths_are_meant_from_where_they_stand(void **state)
     assert_string_equal(folder->scene.input_path, "data/swath.tif");
 }
 
-static void test_overrides_change_and_add(void **state)
+TEST(test_overrides_change_and_add)
 {
     struct scene_folder *folder = *state;
     const char *overrides[] = {"objects[0].heading=30 deg", "objects[1]={shape: plane, length: 1}",
@@ -191,7 +191,7 @@ static void test_overrides_change_and_add(void **state)
     assert_int_equal(folder->scene.object_count, 0);
 }
 
-static void test_sections_may_be_empty(void **state)
+TEST(test_sections_may_be_empty)
 {
     char text[1000];
     struct scene_folder *folder = *state;
@@ -206,7 +206,7 @@ static void test_sections_may_be_empty(void **state)
     assert_int_equal(folder->scene.object_count, 0);
 }
 
-static void test_byte_order_mark_and_line_ends(void **state)
+TEST(test_byte_order_mark_and_line_ends)
 {
     char text[1000] = "\xEF\xBB\xBF";
     size_t length = 3;
@@ -219,9 +219,4 @@ static void test_byte_order_mark_and_line_ends(void **state)
     expect_scene_taken(*state, text);
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_every_key_arrives),
-             TEST(test_every_key_has_a_case), TEST(test_defaults_stay_where_nothing_is_said),
-             TEST(test_words_and_forms), TEST(test_named_materials),
-             TEST(test_a_fluid_replaces_a_constant_reflection),
-             TEST(test_paths_are_meant_from_where_they_stand), TEST(test_overrides_change_and_add),
-             TEST(test_sections_may_be_empty), TEST(test_byte_order_mark_and_line_ends))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

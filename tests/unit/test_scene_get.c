@@ -31,7 +31,7 @@ static void expect(sonject_context *context, const sonject_scene *scene, const c
     sonject_text_release(&json);
 }
 
-static void values_are_numbers_texts_sections_and_lists(void **state)
+TEST(values_are_numbers_texts_sections_and_lists)
 {
     static const struct {
         const char *key, *value, *json;
@@ -74,7 +74,7 @@ static void values_are_numbers_texts_sections_and_lists(void **state)
     }
 }
 
-static void the_whole_is_in_the_order_of_the_text(void **state)
+TEST(the_whole_is_in_the_order_of_the_text)
 {
     sonject_context *context = *state;
     sonject_scene *scene = NULL;
@@ -89,8 +89,41 @@ static void the_whole_is_in_the_order_of_the_text(void **state)
     sonject_scene_release(&scene);
 }
 
+TEST(a_table_in_memory_is_told_by_its_numbers)
+{
+    static const double values[] = {0, 0.1, 1, 2e-4};
+    sonject_context *context = *state;
+    sonject_scene *scene = read_text(context, HEAD);
+    EXPECT_OK(&context->report, sonject_scene_set_table(scene, "sonar.motion.file",
+                                                        "along_track_m, sway_m", values, 2, 2));
+    expect(context, scene, "sonar.motion",
+           "{\"file\": {\"columns\": \"along_track_m, sway_m\", \"values\": [[0.0, "
+           "0.10000000000000001], [1.0, 0.00020000000000000001]]}}");
+    set(context, scene, "seabed.relief", "[{heights: {unit: m}}]");
+    EXPECT_OK(&context->report,
+              sonject_scene_set_table(scene, "seabed.relief[0].heights.file", NULL, values, 1, 1));
+    expect(context, scene, "seabed.relief[0].heights",
+           "{\"unit\": \"m\", \"file\": {\"columns\": null, \"values\": [[0.0]]}}");
+    sonject_scene_release(&scene);
+}
+
+TEST(keys_that_are_none_are_refused)
+{
+    char *json = "set before";
+    sonject_context *context = *state;
+    sonject_scene *scene = read_text(context, HEAD);
+    assert_int_equal(sonject_scene_get(scene, "sonar.altitud", &json), SONJECT_ERROR_INPUT);
+    assert_null(json);
+    assert_string_equal(sonject_context_message(context),
+                        "sonar.altitud: there is no such key; did you mean 'altitude'?");
+    assert_int_equal(sonject_scene_get(scene, NULL, &json), SONJECT_ERROR_ARGUMENT);
+    assert_int_equal(sonject_scene_get(scene, "sonar", NULL), SONJECT_ERROR_ARGUMENT);
+    assert_int_equal(sonject_scene_get(NULL, "sonar", &json), SONJECT_ERROR_ARGUMENT);
+    sonject_scene_release(&scene);
+}
+
 /* Names of the text are meant from its folder, names that are set from the working folder. */
-static void names_of_files_are_absolute(void **state)
+TEST(names_of_files_are_absolute)
 {
     char folder[1024], expected[1100];
     char *text = NULL;
@@ -122,40 +155,4 @@ static void names_of_files_are_absolute(void **state)
     sonject_scene_release(&scene);
 }
 
-static void a_table_in_memory_is_told_by_its_numbers(void **state)
-{
-    static const double values[] = {0, 0.1, 1, 2e-4};
-    sonject_context *context = *state;
-    sonject_scene *scene = read_text(context, HEAD);
-    EXPECT_OK(&context->report, sonject_scene_set_table(scene, "sonar.motion.file",
-                                                        "along_track_m, sway_m", values, 2, 2));
-    expect(context, scene, "sonar.motion",
-           "{\"file\": {\"columns\": \"along_track_m, sway_m\", \"values\": [[0.0, "
-           "0.10000000000000001], [1.0, 0.00020000000000000001]]}}");
-    set(context, scene, "seabed.relief", "[{heights: {unit: m}}]");
-    EXPECT_OK(&context->report,
-              sonject_scene_set_table(scene, "seabed.relief[0].heights.file", NULL, values, 1, 1));
-    expect(context, scene, "seabed.relief[0].heights",
-           "{\"unit\": \"m\", \"file\": {\"columns\": null, \"values\": [[0.0]]}}");
-    sonject_scene_release(&scene);
-}
-
-static void keys_that_are_none_are_refused(void **state)
-{
-    char *json = "set before";
-    sonject_context *context = *state;
-    sonject_scene *scene = read_text(context, HEAD);
-    assert_int_equal(sonject_scene_get(scene, "sonar.altitud", &json), SONJECT_ERROR_INPUT);
-    assert_null(json);
-    assert_string_equal(sonject_context_message(context),
-                        "sonar.altitud: there is no such key; did you mean 'altitude'?");
-    assert_int_equal(sonject_scene_get(scene, NULL, &json), SONJECT_ERROR_ARGUMENT);
-    assert_int_equal(sonject_scene_get(scene, "sonar", NULL), SONJECT_ERROR_ARGUMENT);
-    assert_int_equal(sonject_scene_get(NULL, "sonar", &json), SONJECT_ERROR_ARGUMENT);
-    sonject_scene_release(&scene);
-}
-
-TEST_PROGRAM(make_context, release_context, TEST(values_are_numbers_texts_sections_and_lists),
-             TEST(the_whole_is_in_the_order_of_the_text),
-             TEST(a_table_in_memory_is_told_by_its_numbers), TEST(keys_that_are_none_are_refused),
-             TEST(names_of_files_are_absolute))
+TEST_PROGRAM(make_context, release_context)

@@ -64,7 +64,7 @@ static void change(const struct scene *scene, const struct key_case *key)
 
 /* Two scenes that differ in one key: it is there in one alone or, where it must be, has two values.
  */
-static void test_every_key_counts(void **state)
+TEST(test_every_key_counts)
 {
     struct scene_folder *folder = *state;
     char one[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
@@ -91,7 +91,7 @@ static void test_every_key_counts(void **state)
 }
 
 /* What C alone can say, and what tables hold. */
-static void test_what_no_key_names_counts(void **state)
+TEST(test_what_no_key_names_counts)
 {
     const double numbers[] = {-2.0, -1.0, 1.0, 2.0};
     struct report report = {{0}, NULL, NULL};
@@ -141,7 +141,7 @@ static void test_what_no_key_names_counts(void **state)
 }
 
 /* The seabed's own mu0 is a NaN of any sign and payload; what is between members is nothing. */
-static void test_nan_is_one_value_and_padding_none(void **state)
+TEST(test_nan_is_one_value_and_padding_none)
 {
     struct scene scene;
     char one[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
@@ -162,5 +162,4 @@ static void test_nan_is_one_value_and_padding_none(void **state)
     scene_clear(&scene);
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_every_key_counts),
-             TEST(test_what_no_key_names_counts), TEST(test_nan_is_one_value_and_padding_none))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

@@ -37,7 +37,7 @@ static void expect_heights(struct scene_folder *folder, double first_along_track
 }
 
 /* Binary fractions throughout, so that no height is rounded. */
-static void test_numbers_become_heights(void **state)
+TEST(test_numbers_become_heights)
 {
     static const double numbers[ROWS * COLUMNS] = {0, 1, 2, 3, 4, 50, 60, 70, 255, 100, 9, 11};
     static const enum pixel_type types[] = {PIXEL_UINT8, PIXEL_UINT16, PIXEL_FLOAT32};
@@ -74,7 +74,7 @@ static void test_numbers_become_heights(void **state)
 }
 
 /* Heights add to what else there is. */
-static void test_heights_among_features(void **state)
+TEST(test_heights_among_features)
 {
     static const float flat[ROWS * COLUMNS] = {0.0f};
     static const struct raster_layout layout = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
@@ -90,7 +90,7 @@ static void test_heights_among_features(void **state)
     assert_non_null(folder->scene.relief.heights_m);
 }
 
-static void test_what_is_refused(void **state)
+TEST(test_what_is_refused)
 {
     static const struct refusal wrong[] = {
         {RELIEF "  - heights: heights.tif\n",
@@ -128,7 +128,7 @@ static void expect_bad_heights(struct scene_folder *folder, const char *keys, co
     assert_null(folder->scene.relief.heights_m);
 }
 
-static void test_files_that_are_no_heights(void **state)
+TEST(test_files_that_are_no_heights)
 {
     static const float hole[ROWS * COLUMNS] = {[6] = NAN};
     static const float deep[ROWS * COLUMNS] = {[11] = -9999.0f};
@@ -169,6 +169,4 @@ static void test_files_that_are_no_heights(void **state)
     expect_bad_heights(folder, "unit: m", "there is no file");
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_numbers_become_heights),
-             TEST(test_heights_among_features), TEST(test_what_is_refused),
-             TEST(test_files_that_are_no_heights))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

@@ -118,7 +118,7 @@ static void expect_repeated_saying(void **state, const char *head, const char *m
     free(text);
 }
 
-static void test_alias_bomb(void **state)
+TEST(test_alias_bomb)
 {
     char text[2000] = "a: &a [x,x,x,x,x,x,x,x,x]\n";
     for (char name = 'b'; name <= 'j'; name++)
@@ -127,7 +127,7 @@ static void test_alias_bomb(void **state)
     expect_saying(*state, text, strlen(text), ":1:4: a: anchors");
 }
 
-static void test_deep_nesting(void **state)
+TEST(test_deep_nesting)
 {
     expect_repeated_saying(state, "a: ", "[", 33, "", "nested too deeply");
     expect_repeated_saying(state, "a: ", "[", 500000, "", "nested too deeply");
@@ -136,14 +136,14 @@ static void test_deep_nesting(void **state)
     expect_repeated_saying(state, "", "? ", 500000, "x", "plain words");
 }
 
-static void test_too_many_values(void **state)
+TEST(test_too_many_values)
 {
     expect_repeated_saying(state, "a: [", "1,", 99998, "1]", "unknown key");
     expect_repeated_saying(state, "a: [", "1,", 99999, "1]", "one value too many");
     expect_repeated_saying(state, "sonject: 1\nobjects: [", "{},", 251, "]", "input: missing");
 }
 
-static void test_too_many_keys(void **state)
+TEST(test_too_many_keys)
 {
     char *text = malloc(20000);
     char *end = text;
@@ -154,7 +154,7 @@ static void test_too_many_keys(void **state)
     free(text);
 }
 
-static void test_too_many_objects(void **state)
+TEST(test_too_many_objects)
 {
     static const char head[] = BASE "objects:\n";
     static const char object[] = "  - {shape: sphere, diameter: 1}\n";
@@ -164,7 +164,7 @@ static void test_too_many_objects(void **state)
     expect_repeated_saying(state, head, object, 251, "", "has 251 entries; at most 250");
 }
 
-static void test_too_large_a_file(void **state)
+TEST(test_too_large_a_file)
 {
     struct scene_folder *folder = *state;
     char *text = repeated("# ", "x", 1024 * 1024, "");
@@ -174,7 +174,7 @@ static void test_too_large_a_file(void **state)
     assert_memory_equal(folder->report.message, folder->file, strlen(folder->file));
 }
 
-static void test_long_words(void **state)
+TEST(test_long_words)
 {
     struct scene_folder *folder = *state;
     expect_repeated_saying(state, "", "k", 1000, ": 1", ": unknown key");
@@ -185,7 +185,7 @@ static void test_long_words(void **state)
 }
 
 /* A number of half a million digits is still a number. */
-static void test_long_numbers(void **state)
+TEST(test_long_numbers)
 {
     static const char head[] =
         START INPUT "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10.";
@@ -198,7 +198,7 @@ static void test_long_numbers(void **state)
     expect_repeated_saying(state, head, "k", 1000, "}\n", "kkk...' is not one of m, km, cm, mm");
 }
 
-static void test_other_encodings(void **state)
+TEST(test_other_encodings)
 {
     static const char utf16[] = "\xFF\xFEs\0o\0n\0";
     static const char zero[] = "sonject: 1\n\0input: 1\n";
@@ -208,7 +208,7 @@ static void test_other_encodings(void **state)
     expect_saying(*state, "\xEF\xBB", 2, "not UTF-8");
 }
 
-static void test_an_example_cut_at_every_length(void **state)
+TEST(test_an_example_cut_at_every_length)
 {
     size_t bytes;
     size_t taken = 0;
@@ -292,7 +292,7 @@ static size_t lead_to_targets(char *text, size_t bytes)
     return bytes;
 }
 
-static void test_mutated_examples(void **state)
+TEST(test_mutated_examples)
 {
     struct dice dice = {UINT64_C(0x9E3779B97F4A7C15)};
     const size_t wanted = mutations_wanted();
@@ -314,8 +314,4 @@ static void test_mutated_examples(void **state)
     }
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_alias_bomb), TEST(test_deep_nesting),
-             TEST(test_too_many_values), TEST(test_too_many_keys), TEST(test_too_many_objects),
-             TEST(test_too_large_a_file), TEST(test_long_words), TEST(test_long_numbers),
-             TEST(test_other_encodings), TEST(test_an_example_cut_at_every_length),
-             TEST(test_mutated_examples))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

@@ -15,7 +15,7 @@ static void expect_layer(const struct scene *scene, size_t i, double bottom, dou
                  layer->density);
 }
 
-static void test_layers(void **state)
+TEST(test_layers)
 {
     struct scene_folder *folder = *state;
     expect_scene_taken(folder, BASE "medium:\n"
@@ -49,7 +49,7 @@ static void expect_corners(struct scene_folder *folder, const char *text)
     expect_layer(scene, 5, 12.0, 1490.25, 1.0);
 }
 
-static void test_profiles(void **state)
+TEST(test_profiles)
 {
     struct scene_folder *folder = *state;
     expect_corners(folder, BASE "medium: {profile: {file: " CAST "}}\n");
@@ -64,7 +64,7 @@ static void test_profiles(void **state)
 }
 
 /* Beside the scene file; of an override, where the user is. */
-static void test_files_are_looked_for_beside_the_scene(void **state)
+TEST(test_files_are_looked_for_beside_the_scene)
 {
     struct scene_folder *folder = *state;
     static const char warm[] = "height_m sound_speed_mps\n1 1500\n2 warm\n";
@@ -96,7 +96,7 @@ static void test_files_are_looked_for_beside_the_scene(void **state)
     assert_int_equal(read_scene(folder, &there, 1), SONJECT_OK);
 }
 
-static void test_absorption(void **state)
+TEST(test_absorption)
 {
     struct scene_folder *folder = *state;
     const double *absorption = &folder->scene.medium.absorption_db_per_m;
@@ -121,7 +121,7 @@ static void test_absorption(void **state)
 #define LAYERS  MEDIUM "  layers:\n"
 #define PROFILE MEDIUM "  profile: "
 
-static void test_what_is_wrong(void **state)
+TEST(test_what_is_wrong)
 {
     static const struct refusal wrong[] = {
         {MEDIUM "  sound_speed: 1500\n  layers: [{bottom: 0, sound_speed: 1500}]\n",
@@ -186,7 +186,7 @@ static void test_what_is_wrong(void **state)
     assert_null(((struct scene_folder *)*state)->scene.water_layers);
 }
 
-static void test_too_many_of_them(void **state)
+TEST(test_too_many_of_them)
 {
     struct scene_folder *folder = *state;
     const size_t capacity = 300000;
@@ -207,6 +207,4 @@ static void test_too_many_of_them(void **state)
     free(text);
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_layers), TEST(test_profiles),
-             TEST(test_files_are_looked_for_beside_the_scene), TEST(test_absorption),
-             TEST(test_what_is_wrong), TEST(test_too_many_of_them))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

@@ -23,7 +23,7 @@ static void expect_size(const struct scene_folder *folder, double x, double y, d
     }
 }
 
-static void test_units_and_axes(void **state)
+TEST(test_units_and_axes)
 {
     static const struct {
         const char *keys;
@@ -51,7 +51,7 @@ static void test_units_and_axes(void **state)
 }
 
 /* In all 24 ways to choose nose and up the mesh is turned, not mirrored: own y = up x nose. */
-static void test_axes_turn(void **state)
+TEST(test_axes_turn)
 {
     static const char *const names[] = {"x", "y", "z", "-x", "-y", "-z"};
     struct scene_folder *folder = *state;
@@ -84,7 +84,7 @@ static void test_axes_turn(void **state)
 
 /* Objects, parts and targets that name one file have one mesh; other options, or another content,
  * make another one. Names are counted from the file that they stand in. */
-static void test_meshes_are_shared(void **state)
+TEST(test_meshes_are_shared)
 {
     static const char target[] = "sonject_target: 1\nshape: mesh\nmesh: corner.obj\n";
     static const char scene[] =
@@ -131,7 +131,7 @@ static const float *read_stored(const struct scene_folder *folder, struct mesh_s
     return vertices;
 }
 
-static void test_meshes_are_kept_from_scene_to_scene(void **state)
+TEST(test_meshes_are_kept_from_scene_to_scene)
 {
     struct scene_folder *folder = *state;
     struct mesh_store store;
@@ -164,7 +164,7 @@ static void test_meshes_are_kept_from_scene_to_scene(void **state)
 
 #define MESH(keys) SCENE "  - shape: mesh\n    mesh: " keys "\n"
 
-static void test_what_is_refused(void **state)
+TEST(test_what_is_refused)
 {
     static const struct refusal wrong[] = {
         {SCENE "  - shape: mesh\n", ":5:5: objects[0].mesh: missing; a mesh needs it"},
@@ -194,7 +194,7 @@ static void expect_bad_mesh(struct scene_folder *folder, const char *name, sonje
     assert_int_equal(folder->scene.mesh_count, 0);
 }
 
-static void test_meshes_that_cannot_be_read(void **state)
+TEST(test_meshes_that_cannot_be_read)
 {
     static const char binary[84 + 50] = {[80] = 2};
     struct scene_folder *folder = *state;
@@ -209,7 +209,7 @@ static void test_meshes_that_cannot_be_read(void **state)
 }
 
 /* As many as a scene may have, and one more. */
-static void test_too_many_meshes(void **state)
+TEST(test_too_many_meshes)
 {
     char text[16384] = SCENE;
     size_t length = strlen(text);
@@ -229,7 +229,7 @@ static void test_too_many_meshes(void **state)
 }
 
 /* A sheet is refused unless it is said to be one, wherever it was read before. */
-static void test_open_meshes(void **state)
+TEST(test_open_meshes)
 {
     static const char sheet[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     static const char both[] = SCENE "  - {shape: mesh, mesh: {file: sheet.obj, open: true}}\n"
@@ -244,7 +244,7 @@ static void test_open_meshes(void **state)
 }
 
 /* A file in millimetres whose unit nobody gave, and one that is meant so. */
-static void test_a_size_that_no_target_has_asks_for_the_unit(void **state)
+TEST(test_a_size_that_no_target_has_asks_for_the_unit)
 {
     static const char sheet[] = "v 0 0 0\nv 1500 0 0\nv 0 700 0\nf 1 2 3\n";
     struct scene_folder *folder = *state;
@@ -266,7 +266,7 @@ static void hash_of(const struct scene *scene, char text[HASH_TEXT_CAPACITY])
 }
 
 /* What a result depends on: the mesh's content, not where it lies. */
-static void test_the_hash_covers_the_mesh(void **state)
+TEST(test_the_hash_covers_the_mesh)
 {
     static const char text[] = MESH("{file: corner.obj, smooth: 30 deg}");
     char first[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
@@ -287,9 +287,4 @@ static void test_the_hash_covers_the_mesh(void **state)
     assert_string_not_equal(first, other);
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_units_and_axes),
-             TEST(test_axes_turn), TEST(test_meshes_are_shared),
-             TEST(test_meshes_are_kept_from_scene_to_scene), TEST(test_what_is_refused),
-             TEST(test_meshes_that_cannot_be_read), TEST(test_too_many_meshes),
-             TEST(test_open_meshes), TEST(test_a_size_that_no_target_has_asks_for_the_unit),
-             TEST(test_the_hash_covers_the_mesh))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

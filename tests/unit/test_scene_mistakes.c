@@ -3,7 +3,7 @@
 #include "scene_folder.h"
 
 /* Each is one mistake, whatever else is wrong. */
-static void test_mistakes_do_not_hide_each_other_nor_add_any(void **state)
+TEST(test_mistakes_do_not_hide_each_other_nor_add_any)
 {
     static const struct {
         const char *right, *wrong;
@@ -41,7 +41,7 @@ static void test_mistakes_do_not_hide_each_other_nor_add_any(void **state)
     }
 }
 
-static void test_a_targets_mistakes_stand_where_it_is_named(void **state)
+TEST(test_a_targets_mistakes_stand_where_it_is_named)
 {
     struct scene_folder *folder = *state;
     char target[TEMPORARY_CAPACITY + 64];
@@ -70,7 +70,7 @@ static void test_a_targets_mistakes_stand_where_it_is_named(void **state)
     assert_string_equal(folder->report.message, expected);
 }
 
-static void test_lines_beyond_fifty_are_counted(void **state)
+TEST(test_lines_beyond_fifty_are_counted)
 {
     struct scene_folder *folder = *state;
     char text[4000] = BASE "seabed:\n";
@@ -87,7 +87,7 @@ static void test_lines_beyond_fifty_are_counted(void **state)
     assert_true(told == 50 || (told < 50 && strlen(message) > REPORT_CAPACITY - REPORT_LINE));
 }
 
-static void test_broken_yaml_ends_the_reading(void **state)
+TEST(test_broken_yaml_ends_the_reading)
 {
     struct scene_folder *folder = *state;
     static const char text[] = "sonject: 5\nsonar: {frequency: 1 m}\ninput: [\n";
@@ -96,7 +96,4 @@ static void test_broken_yaml_ends_the_reading(void **state)
     assert_int_equal(lines_of(folder->report.message, strlen(folder->report.message)), 1);
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder,
-             TEST(test_mistakes_do_not_hide_each_other_nor_add_any),
-             TEST(test_a_targets_mistakes_stand_where_it_is_named),
-             TEST(test_lines_beyond_fifty_are_counted), TEST(test_broken_yaml_ends_the_reading))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

@@ -19,7 +19,7 @@ static void expect_vector(const double vector[3], double x, double y, double z)
             fail_msg("(%g, %g, %g) is not (%g, %g, %g)", vector[0], vector[1], vector[2], x, y, z);
 }
 
-static void test_parts_belong_to_their_objects(void **state)
+TEST(test_parts_belong_to_their_objects)
 {
     struct scene_folder *folder = *state;
     expect_scene_taken(folder, BASE
@@ -43,7 +43,7 @@ static void test_parts_belong_to_their_objects(void **state)
 
 /* A group turned to its own y: what lies ahead of its origin comes to lie across the object; what
  * is raised there, ahead of that, still points up. */
-static void test_groups_place_and_turn(void **state)
+TEST(test_groups_place_and_turn)
 {
     struct scene_folder *folder = *state;
     expect_scene_taken(folder, OBJECT "parts:\n"
@@ -66,7 +66,7 @@ static void test_groups_place_and_turn(void **state)
 }
 
 /* Of the object, the group, and what a part changes of it, wherever the keys stand. */
-static void test_surfaces_are_inherited(void **state)
+TEST(test_surfaces_are_inherited)
 {
     struct scene_folder *folder = *state;
     expect_scene_taken(folder, OBJECT "parts:\n"
@@ -100,7 +100,7 @@ static void nested_object(char *text, size_t capacity, int levels)
     snprintf(text + length, capacity - length, "}]\n");
 }
 
-static void test_nesting_is_bounded(void **state)
+TEST(test_nesting_is_bounded)
 {
     struct scene_folder *folder = *state;
     char text[2000];
@@ -113,7 +113,7 @@ static void test_nesting_is_bounded(void **state)
                          "parts[0].parts[0].parts: nested too deeply; parts may be 8 levels deep");
 }
 
-static void test_overrides_reach_parts(void **state)
+TEST(test_overrides_reach_parts)
 {
     struct scene_folder *folder = *state;
     const char *overrides[] = {"objects[0].parts[1].parts[0].diameter=70 cm",
@@ -128,7 +128,7 @@ static void test_overrides_reach_parts(void **state)
     assert_int_equal(part_at(folder, 2)->shape.shape, SHAPE_DISC);
 }
 
-static void test_what_is_refused(void **state)
+TEST(test_what_is_refused)
 {
     static const struct refusal wrong[] = {
         {OBJECT "parts:\n", ":5:11: objects[0].parts: must be a list; start each part with '- '"},
@@ -157,7 +157,7 @@ static void test_what_is_refused(void **state)
     expect_all_refused(state, wrong, COUNT(wrong));
 }
 
-static void test_too_many_parts(void **state)
+TEST(test_too_many_parts)
 {
     static const char part[] = "  - {shape: sphere, diameter: 1}\n";
     char *text = malloc(2000 + 1001 * sizeof part);
@@ -178,7 +178,7 @@ static void write_target(struct scene_folder *folder, const char *text)
     write_file(folder, "target.yaml", text, strlen(text));
 }
 
-static void test_targets_are_files(void **state)
+TEST(test_targets_are_files)
 {
     struct scene_folder *folder = *state;
     write_target(folder, "sonject_target: 1\nname: twin\nclass: clutter\n"
@@ -206,7 +206,7 @@ static void test_targets_are_files(void **state)
     assert_true(objects[0].shape == SHAPE_PARTS && objects[1].shape == SHAPE_PARTS);
 }
 
-static void test_targets_may_have_one_shape(void **state)
+TEST(test_targets_may_have_one_shape)
 {
     struct scene_folder *folder = *state;
     write_target(folder, "sonject_target: 1\nshape: torus\ndiameter: 1\nheight: 0.2\n");
@@ -217,7 +217,7 @@ static void test_targets_may_have_one_shape(void **state)
 }
 
 /* Messages about the target name its file. */
-static void test_targets_that_are_wrong(void **state)
+TEST(test_targets_that_are_wrong)
 {
     static const struct refusal wrong[] = {
         {"", ":1:1: there is nothing in it"},
@@ -254,7 +254,7 @@ static void test_targets_that_are_wrong(void **state)
     }
 }
 
-static void test_scenes_that_name_targets_wrongly(void **state)
+TEST(test_scenes_that_name_targets_wrongly)
 {
     struct scene_folder *folder = *state;
     char message[TEMPORARY_CAPACITY + 100];
@@ -278,7 +278,7 @@ static void test_scenes_that_name_targets_wrongly(void **state)
 }
 
 /* A file that is as long as no target is. */
-static void test_large_targets_are_refused(void **state)
+TEST(test_large_targets_are_refused)
 {
     struct scene_folder *folder = *state;
     const size_t bytes = 1024 * 1024 + 2;
@@ -296,9 +296,4 @@ static void test_large_targets_are_refused(void **state)
     assert_non_null(strstr(folder->report.message, "larger than"));
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_parts_belong_to_their_objects),
-             TEST(test_groups_place_and_turn), TEST(test_surfaces_are_inherited),
-             TEST(test_nesting_is_bounded), TEST(test_overrides_reach_parts),
-             TEST(test_what_is_refused), TEST(test_too_many_parts), TEST(test_targets_are_files),
-             TEST(test_targets_may_have_one_shape), TEST(test_targets_that_are_wrong),
-             TEST(test_scenes_that_name_targets_wrongly), TEST(test_large_targets_are_refused))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

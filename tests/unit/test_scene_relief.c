@@ -64,7 +64,7 @@ static void take(struct scene_folder *folder, struct ground *ground, const char 
 }
 
 /* Both sides of the track see the same ground. */
-static void test_features_lie_where_they_are_told(void **state)
+TEST(test_features_lie_where_they_are_told)
 {
     static const char *const texts[] = {
         SEEN_FROM(
@@ -99,7 +99,7 @@ static void test_features_lie_where_they_are_told(void **state)
 }
 
 /* Crest to crest, trough to crest, level at the edges; the same ground from both sides. */
-static void test_ripples(void **state)
+TEST(test_ripples)
 {
     static const char *const texts[] = {
         SEEN_FROM(
@@ -129,7 +129,7 @@ static void test_ripples(void **state)
     }
 }
 
-static void test_irregular_ripples(void **state)
+TEST(test_irregular_ripples)
 {
     struct ground one, same, other;
     take(*state, &one,
@@ -155,7 +155,7 @@ static void test_irregular_ripples(void **state)
 }
 
 /* What only shows when the scene is used. */
-static void test_refusals_in_use(void **state)
+TEST(test_refusals_in_use)
 {
     static const struct refusal cases[] = {
         {SEEN_FROM("port") "  - scour: {object: tin, width: 1 m, depth: 1 cm}\n" OBJECTS,
@@ -179,5 +179,4 @@ static void test_refusals_in_use(void **state)
     }
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_features_lie_where_they_are_told),
-             TEST(test_ripples), TEST(test_irregular_ripples), TEST(test_refusals_in_use))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

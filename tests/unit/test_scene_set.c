@@ -47,7 +47,7 @@ static void expect_same(sonject_context *context, sonject_scene *first, sonject_
     sonject_scene_release(&second);
 }
 
-static void a_scene_that_is_set_is_that_of_a_text_that_says_so(void **state)
+TEST(a_scene_that_is_set_is_that_of_a_text_that_says_so)
 {
     sonject_scene *scene = NULL;
     EXPECT_OK(&((sonject_context *)*state)->report, sonject_scene_create(*state, &scene));
@@ -67,7 +67,7 @@ static void a_scene_that_is_set_is_that_of_a_text_that_says_so(void **state)
                                        "rad}\n  - {shape: sphere, diameter: 1}\n"));
 }
 
-static void what_is_set_replaces_what_was_used_before(void **state)
+TEST(what_is_set_replaces_what_was_used_before)
 {
     sonject_scene *scene = read_text(*state, HEAD);
     assert_true(use(*state, scene)->input_kind == SONJECT_INPUT_MEMORY);
@@ -80,7 +80,7 @@ static void what_is_set_replaces_what_was_used_before(void **state)
     sonject_scene_release(&scene);
 }
 
-static void a_call_beats_all_that_was_given_with_the_text(void **state)
+TEST(a_call_beats_all_that_was_given_with_the_text)
 {
     static const char *const given[] = {"sonar.altitude=5",
                                         "sonar={frequency: 100e3, bandwidth: 30e3, altitude: 6}"};
@@ -96,7 +96,7 @@ static void a_call_beats_all_that_was_given_with_the_text(void **state)
     sonject_scene_release(&scene);
 }
 
-static void keys_that_are_none_are_refused_at_once(void **state)
+TEST(keys_that_are_none_are_refused_at_once)
 {
     static const struct {
         const char *key, *value, *message;
@@ -128,7 +128,7 @@ static void keys_that_are_none_are_refused_at_once(void **state)
                                         "diameter: 2}]\n"));
 }
 
-static void values_are_checked_by_the_call_that_uses_the_scene(void **state)
+TEST(values_are_checked_by_the_call_that_uses_the_scene)
 {
     sonject_context *context = *state;
     sonject_scene *scene = read_text(context, HEAD);
@@ -149,7 +149,7 @@ static void values_are_checked_by_the_call_that_uses_the_scene(void **state)
 }
 
 /* Code in a target's file is a program as much as in the scene's own. */
-static void a_target_is_that_of_a_file_and_its_code_needs_consent(void **state)
+TEST(a_target_is_that_of_a_file_and_its_code_needs_consent)
 {
     static const char relief[] = "{target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml}";
     sonject_context *context = *state;
@@ -171,7 +171,7 @@ static void a_target_is_that_of_a_file_and_its_code_needs_consent(void **state)
     sonject_scene_release(&careful);
 }
 
-static void the_text_of_a_scene_is_the_scene(void **state)
+TEST(the_text_of_a_scene_is_the_scene)
 {
     sonject_context *context = *state;
     char *text = NULL;
@@ -184,7 +184,7 @@ static void the_text_of_a_scene_is_the_scene(void **state)
     sonject_text_release(&text);
 }
 
-static void a_table_in_memory_is_that_of_a_file(void **state)
+TEST(a_table_in_memory_is_that_of_a_file)
 {
     static const double response[] = {-0.2, 0, 0.1, -0.1, 0.5, 0.2, 0, 1, 0, 0.2, 0.1, 0};
     static const double motion[] = {0, 1e-4, 1, 2e-4};
@@ -237,7 +237,7 @@ static void a_table_in_memory_is_that_of_a_file(void **state)
     assert_int_equal(close_temporary_folder(&folder), 0);
 }
 
-static void heights_in_memory_are_a_relief(void **state)
+TEST(heights_in_memory_are_a_relief)
 {
     static const double heights[] = {0.1f, 0.2f, 0.3f, 0, 0, 0.25};
     sonject_context *context = *state;
@@ -254,7 +254,7 @@ static void heights_in_memory_are_a_relief(void **state)
     sonject_scene_release(&scene);
 }
 
-static void tables_that_are_none_are_refused(void **state)
+TEST(tables_that_are_none_are_refused)
 {
     static const double values[8] = {0, 1, 2, 3, 4, 5, 6, 7};
     static const struct {
@@ -291,12 +291,4 @@ static void tables_that_are_none_are_refused(void **state)
     }
 }
 
-TEST_PROGRAM(make_context, release_context,
-             TEST(a_scene_that_is_set_is_that_of_a_text_that_says_so),
-             TEST(what_is_set_replaces_what_was_used_before),
-             TEST(a_call_beats_all_that_was_given_with_the_text),
-             TEST(keys_that_are_none_are_refused_at_once),
-             TEST(values_are_checked_by_the_call_that_uses_the_scene),
-             TEST(a_target_is_that_of_a_file_and_its_code_needs_consent),
-             TEST(the_text_of_a_scene_is_the_scene), TEST(a_table_in_memory_is_that_of_a_file),
-             TEST(heights_in_memory_are_a_relief), TEST(tables_that_are_none_are_refused))
+TEST_PROGRAM(make_context, release_context)

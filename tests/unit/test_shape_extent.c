@@ -44,7 +44,7 @@ static bool random_point(const struct shape_size *size, const struct body *body,
 }
 
 /* No point reaches further, and some reach nearly as far: corners are rarely drawn. */
-static void test_clouds_of_points(void **state)
+TEST(test_clouds_of_points)
 {
     for (int i = 0; i < 3 * solid_row_count; i++) {
         const struct solid_row *row = &solid_rows[i / 3];
@@ -96,7 +96,7 @@ static void expect_extent(const sonject_object_params *object, double x, double 
 }
 
 /* A sphere, a box's corner, a ring. */
-static void test_closed_forms(void **state)
+TEST(test_closed_forms)
 {
     const double s = sqrt(0.5);
     sonject_object_params object;
@@ -114,7 +114,7 @@ static void test_closed_forms(void **state)
 }
 
 /* A cylinder with round ends lies within the sphere through its tips. */
-static void test_bounding_radius(void **state)
+TEST(test_bounding_radius)
 {
     struct shape_size size;
     sonject_object_params object;
@@ -180,7 +180,7 @@ static sonject_status place(struct placement *placement, double *burial_m, struc
 }
 
 /* Whatever the shape, pose and side of the sonar: its lowest point is as deep as asked for. */
-static void test_objects_rest_on_the_seabed(void **state)
+TEST(test_objects_rest_on_the_seabed)
 {
     for (int side = 0; side < 2; side++)
         for (int i = 0; i < 3 * solid_row_count; i++) {
@@ -211,7 +211,7 @@ static void test_objects_rest_on_the_seabed(void **state)
         }
 }
 
-static void test_nothing_stands_prouder_than_it_is_high(void **state)
+TEST(test_nothing_stands_prouder_than_it_is_high)
 {
     struct report report = {{0}, NULL, NULL};
     struct patch_view view;
@@ -260,7 +260,7 @@ static void compare_extents(const struct mesh *mesh, const sonject_object_params
     }
 }
 
-static void test_extents_of_meshes(void **state)
+TEST(test_extents_of_meshes)
 {
     struct mesh mesh;
     struct mesh_sample sample;
@@ -285,7 +285,7 @@ static void test_extents_of_meshes(void **state)
 }
 
 /* Of a user's shape the lesser of a box and a sphere is known. */
-static void test_extents_of_user_shapes(void **state)
+TEST(test_extents_of_user_shapes)
 {
     static const double upward[3] = {0.0, 0.0, 1.0}, slanting[3] = {0.6, 0.0, 0.8};
     const struct user_shape shape = {
@@ -300,7 +300,4 @@ static void test_extents_of_user_shapes(void **state)
     assert_true(fabs(shape_extent(&size, SHAPE_USER, slanting) - 1.0) < 1e-9); /* the sphere's */
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_clouds_of_points), TEST(test_closed_forms),
-             TEST(test_bounding_radius), TEST(test_objects_rest_on_the_seabed),
-             TEST(test_nothing_stands_prouder_than_it_is_high), TEST(test_extents_of_meshes),
-             TEST(test_extents_of_user_shapes))
+TEST_PROGRAM(NULL, NULL)

@@ -78,7 +78,7 @@ static void expect_sums(const struct sums_file *file, uint64_t record, const int
     free(all.values);
 }
 
-static void test_what_is_written_is_read(void **state)
+IN_FOLDER(test_what_is_written_is_read)
 {
     struct temporary_folder *folder = *state;
     struct sums_file file;
@@ -130,7 +130,7 @@ static void expect_refused(const char *path, const unsigned char *bytes, size_t 
                  strstr(report.message, "not sums as this version")));
 }
 
-static void test_no_damage_goes_unseen(void **state)
+IN_FOLDER(test_no_damage_goes_unseen)
 {
     struct temporary_folder *folder = *state;
     struct sums_file file;
@@ -196,7 +196,7 @@ static struct draft draft_of(struct sums_head head)
     return draft;
 }
 
-static void test_what_makes_no_sense_is_refused(void **state)
+IN_FOLDER(test_what_makes_no_sense_is_refused)
 {
     struct temporary_folder *folder = *state;
     const char *path = temporary_file(folder, "draft.sums");
@@ -245,7 +245,7 @@ static void test_what_makes_no_sense_is_refused(void **state)
     }
 }
 
-static void test_runs_stay_within_their_sums(void **state)
+IN_FOLDER(test_runs_stay_within_their_sums)
 {
     struct temporary_folder *folder = *state;
     const char *path = temporary_file(folder, "draft.sums");
@@ -285,7 +285,7 @@ struct chain_case {
     bool is_complete;
 };
 
-static void test_chains_cover_a_shard_once(void **state)
+IN_FOLDER(test_chains_cover_a_shard_once)
 {
     static const struct chain_case cases[] = {
         {{{0, 0, false}}, 0, 0, 0, false},
@@ -341,7 +341,7 @@ static void expect_folder(const char *path, uint64_t shard, size_t most, bool dr
     sums_folder_clear(&all);
 }
 
-static void test_a_folder_gives_what_is_its_own(void **state)
+IN_FOLDER(test_a_folder_gives_what_is_its_own)
 {
     struct temporary_folder *folder = *state;
     uint64_t shards = 7;
@@ -396,7 +396,7 @@ static sonject_status add_both(const char *folder, int64_t *total)
     return status;
 }
 
-static void test_only_what_goes_together_is_added_up(void **state)
+IN_FOLDER(test_only_what_goes_together_is_added_up)
 {
     struct temporary_folder *folder = *state;
     static const int64_t first[] = {3, INT64_MAX - 5};
@@ -444,8 +444,4 @@ static void test_only_what_goes_together_is_added_up(void **state)
     sums_file_close(&file);
 }
 
-TEST_PROGRAM(NULL, NULL, IN_FOLDER(test_what_is_written_is_read),
-             IN_FOLDER(test_no_damage_goes_unseen), IN_FOLDER(test_what_makes_no_sense_is_refused),
-             IN_FOLDER(test_runs_stay_within_their_sums), IN_FOLDER(test_chains_cover_a_shard_once),
-             IN_FOLDER(test_a_folder_gives_what_is_its_own),
-             IN_FOLDER(test_only_what_goes_together_is_added_up))
+TEST_PROGRAM(NULL, NULL)

@@ -29,7 +29,7 @@ static void expect_code_taken(const char *code)
 
 #define NOT_HERE "#include is not possible here; write here what is in that file"
 
-static void test_code_that_is_not_whole_is_refused_with_its_line(void **state)
+TEST(test_code_that_is_not_whole_is_refused_with_its_line)
 {
     static const char *const cases[][2] = {
         {GOOD "#include \"more.cl\"\n", "my.cl:3: " NOT_HERE},
@@ -41,7 +41,7 @@ static void test_code_that_is_not_whole_is_refused_with_its_line(void **state)
         expect_code_refused(cases[i][0], cases[i][1]);
 }
 
-static void test_sound_code_is_taken(void **state)
+TEST(test_sound_code_is_taken)
 {
     static const char *const codes[] = {
         GOOD,
@@ -53,7 +53,7 @@ static void test_sound_code_is_taken(void **state)
         expect_code_taken(codes[i]);
 }
 
-static void test_size_and_names_are_limited(void **state)
+TEST(test_size_and_names_are_limited)
 {
     struct report report = {{0}, NULL, NULL};
     struct user_snippet snippet;
@@ -83,7 +83,7 @@ static void append(struct user_shapes *shapes, const char *name, const char *cod
     EXPECT_OK(&report, user_shapes_append(shapes, &report, &params));
 }
 
-static void test_equal_codes_are_one(void **state)
+TEST(test_equal_codes_are_one)
 {
     struct user_shapes shapes;
     memset(&shapes, 0, sizeof shapes);
@@ -124,7 +124,7 @@ static void expect_refused_with_consent(struct scene_folder *folder, const char 
     "user: is code that would run with your rights; if you trust who wrote it, use "               \
     "--allow-user-shapes"
 
-static void test_code_in_files_needs_consent(void **state)
+TEST(test_code_in_files_needs_consent)
 {
     struct scene_folder *folder = *state;
     expect_scene_refused(folder, OBJECTS "  - shape: user\n" CODE, ":7:7: objects[0]." NO_CONSENT);
@@ -137,7 +137,7 @@ static void test_code_in_files_needs_consent(void **state)
     assert_non_null(strstr(folder->report.message, "boulder_relief.yaml:9:3: " NO_CONSENT));
 }
 
-static void test_code_arrives_with_its_lines(void **state)
+TEST(test_code_arrives_with_its_lines)
 {
     struct scene_folder *folder = *state;
     assert_int_equal(read_with_consent(folder,
@@ -168,7 +168,7 @@ static void test_code_arrives_with_its_lines(void **state)
                                 "scene.yaml:12: " NOT_HERE);
 }
 
-static void test_wrong_sections_are_refused(void **state)
+TEST(test_wrong_sections_are_refused)
 {
 #define OF_USER(keys) OBJECTS "  - {shape: user, user: {" keys "}}\n"
     static const char *const cases[][2] = {
@@ -191,8 +191,4 @@ static void test_wrong_sections_are_refused(void **state)
         expect_refused_with_consent(folder, cases[i][0], cases[i][1]);
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder,
-             TEST(test_code_that_is_not_whole_is_refused_with_its_line),
-             TEST(test_sound_code_is_taken), TEST(test_size_and_names_are_limited),
-             TEST(test_equal_codes_are_one), TEST(test_code_in_files_needs_consent),
-             TEST(test_code_arrives_with_its_lines), TEST(test_wrong_sections_are_refused))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)
