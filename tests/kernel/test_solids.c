@@ -1,7 +1,8 @@
 /* Where rays meet shapes, against polynomials solved in double precision. Rays come
- * from sonars at 50 m and 500 m, many of them grazing. */
+ * from sonars at 50 m and 500 m, many of them grazing. The same bits in all lanes:
+ * test_many_objects.c, test_bits.c. */
+#include "claims.h"
 #include "fan.h"
-#include "ray_claims.h"
 #include "reference_solids.h"
 #include "scene/shapes/shape.h"
 
@@ -174,6 +175,22 @@ TEST(test_against_the_reference)
     }
 }
 
+/* Whether a way from where a ray meets a convex object, straight back or any, started as far off
+ * the surface as the tracer does (2e-5 m), meets it again; -1: it does not lead outwards, or
+ * nothing is met. */
+static int meets_itself(const struct object_record *object, const struct ray *ray,
+                        bool is_straight_back)
+{
+    const float distance = object_distance(object, ray->p, ray->d, -200.0f);
+    if (distance > 0.5f * FAR_AWAY)
+        return -1;
+    const struct vector3 n = object_normal(object, ray->p, ray->d, distance);
+    const struct vector3 start = along3(along3(ray->p, ray->d, distance), n, 2.0e-5f);
+    const struct point back = is_straight_back ? scaled(ray->direction, -1.0) : random_direction();
+    const struct vector3 way = {(float)back.x, (float)back.y, (float)back.z};
+    return dot3(way, n) <= 0.0f ? -1 : object_distance(object, start, way, 0.0f) < 0.5f * FAR_AWAY;
+}
+
 TEST(test_ways_outwards_meet_hollow_solids_alone_again)
 {
     static const double reaches[] = {2.0, 100.0};
@@ -273,18 +290,6 @@ TEST(test_beyond_the_first)
         const int is_flat = row->shape == SHAPE_PLANE || row->shape == SHAPE_DISC;
         assert_true(is_flat || compared > RAYS / 50);
     }
-}
-
-TEST(test_lanes)
-{
-    for (const struct solid_row *row = solid_rows; row < solid_rows + solid_row_count; row++)
-        for (int i = 0; i < 3000; i++) {
-            const struct solid solid = random_solid(row, 2.0);
-            struct ray single[LANES];
-            for (int lane = 0; lane < LANES; lane++)
-                single[lane] = ray_towards(aim(&solid), 100.0);
-            expect_same_in_all_lanes(&solid.record, single, -100.0f);
-        }
 }
 
 /* Rays along and across the axes, or so close that rounding decides. */
