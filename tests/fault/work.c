@@ -4,6 +4,7 @@
 
 #include <jansson.h>
 
+#include "swath/raster_file.h"
 #include "work.h"
 
 #define ROWS    24
@@ -55,18 +56,11 @@ static void fill_pixels(float pixels[ROWS * COLUMNS])
 
 static void write_image(const char *path)
 {
-    unsigned char header[128] = "\x93NUMPY\x01";
+    static const struct raster_layout layout = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
+    struct report report = {{0}, NULL, NULL};
     float pixels[ROWS * COLUMNS];
-    FILE *file = fopen(path, "wb");
     fill_pixels(pixels);
-    memset(header + 10, ' ', sizeof header - 10);
-    header[8] = sizeof header - 10;
-    memcpy(header + 10, "{'descr': '<f4', 'fortran_order': False, 'shape': (24, 32)}", 59);
-    header[sizeof header - 1] = '\n';
-    assert_non_null(file);
-    assert_int_equal(fwrite(header, 1, sizeof header, file), sizeof header);
-    assert_int_equal(fwrite(pixels, sizeof *pixels, ROWS * COLUMNS, file), ROWS * COLUMNS);
-    assert_int_equal(fclose(file), 0);
+    EXPECT_OK(&report, raster_format_write(&report, path, &layout, NULL, 0, pixels));
 }
 
 static void set_path(struct work *work, char path[WORK_PATH], const char *name)
