@@ -524,8 +524,7 @@ static inline bool has_case(const char *path)
 }
 
 /* Reads the case's scene with a value of its key; NULL: without the key. */
-static inline sonject_status read_case(struct scene_folder *folder, const struct key_case *key,
-                                       const char *value)
+static inline sonject_status read_case(const struct key_case *key, const char *value)
 {
     char override[1400];
     const char *overrides[2];
@@ -539,8 +538,8 @@ static inline sonject_status read_case(struct scene_folder *folder, const struct
         write_override(override, sizeof override, key, value);
         overrides[count++] = override;
     }
-    write_scene(folder, text, strlen(text));
-    return read_scene_with(folder, overrides, count, true);
+    write_scene(text, strlen(text));
+    return read_scene_with(overrides, count, true);
 }
 
 #endif

@@ -255,7 +255,6 @@ static const char moved_file[] =
 
 TEST(a_fitted_file_is_the_users_own_with_other_numbers)
 {
-    struct scene_folder *folder = *state;
     struct report *report = &folder->report;
     /* lengths halve; widths and heights fall to a quarter; levels spread to twice their width */
     const struct draw_move moves[FITTED_KINDS] = {{0.0, log(0.5), 1.0},
@@ -267,9 +266,8 @@ TEST(a_fitted_file_is_the_users_own_with_other_numbers)
     struct fit_draws draws;
     char *text;
     memset(&draws, 0, sizeof draws);
-    write_file(folder, "campaign.yaml", block_file, strlen(block_file));
-    EXPECT_OK(report,
-              campaign_read(report, file_in(folder, "campaign.yaml"), NULL, NULL, 0, &campaign));
+    write_file("campaign.yaml", block_file, strlen(block_file));
+    EXPECT_OK(report, campaign_read(report, file_in("campaign.yaml"), NULL, NULL, 0, &campaign));
     EXPECT_OK(report, fit_draws_find(&draws, report, &campaign));
     assert_string_equal(draws.unchanged.characters, "targets[0].draw.heading\n");
     draws.level_db[0] = 18.0;
@@ -286,8 +284,7 @@ TEST(a_fitted_file_is_the_users_own_with_other_numbers)
     campaign_clear(&campaign);
 }
 
-static char *fitted_text(struct scene_folder *folder, const char *file, const char *override,
-                         char unchanged[200])
+static char *fitted_text(const char *file, const char *override, char unchanged[200])
 {
     static struct campaign campaign;
     static const struct draw_move moves[FITTED_KINDS] = {
@@ -297,8 +294,8 @@ static char *fitted_text(struct scene_folder *folder, const char *file, const ch
     struct fit_draws draws;
     char *text = NULL;
     memset(&draws, 0, sizeof draws);
-    write_file(folder, "campaign.yaml", file, strlen(file));
-    EXPECT_OK(report, campaign_read(report, file_in(folder, "campaign.yaml"), NULL, &override,
+    write_file("campaign.yaml", file, strlen(file));
+    EXPECT_OK(report, campaign_read(report, file_in("campaign.yaml"), NULL, &override,
                                     override ? 1 : 0, &campaign));
     EXPECT_OK(report, fit_draws_find(&draws, report, &campaign));
     snprintf(unchanged, 200, "%s", draws.unchanged.characters ? draws.unchanged.characters : "");
@@ -319,9 +316,8 @@ static const char flow_file[] = "{sonject_campaign: 1, scene: s.yaml, images: 10
 
 TEST(what_is_in_braces_stays_so)
 {
-    struct scene_folder *folder = *state;
     char unchanged[200];
-    char *text = fitted_text(folder, flow_file, NULL, unchanged);
+    char *text = fitted_text(flow_file, NULL, unchanged);
     assert_string_equal(text,
                         "{visible: {highlight: 1.2 dB, shadow: -2.3 dB, otherwise: redraw}, "
                         "sonject_campaign: 1, scene: s.yaml, images: 10,\n"
@@ -339,10 +335,9 @@ TEST(what_overrides_give_is_not_written_over)
     static const char *const overrides[] = {"visible={highlight: 3 dB, shadow: -1 dB}",
                                             "chip.range_over_altitude=[2, 9]",
                                             "chip={rows: 64, columns: 64}"};
-    struct scene_folder *folder = *state;
     for (size_t i = 0; i < COUNT(overrides); i++) {
         char unchanged[200];
-        assert_null(fitted_text(folder, flow_file, overrides[i], unchanged));
+        assert_null(fitted_text(flow_file, overrides[i], unchanged));
         assert_non_null(strstr(folder->report.message, "gives what a fit writes"));
         assert_memory_equal(folder->report.message, "--set ", 6);
     }

@@ -14,12 +14,11 @@ static const char *const high[] = {"band=high"};
 
 TEST(test_a_band_changes_its_keys_alone)
 {
-    struct scene_folder *folder = *state;
-    write_scene(folder, TWO_BANDS, strlen(TWO_BANDS));
-    assert_int_equal(read_scene(folder, low, 1), SONJECT_OK);
+    write_scene(TWO_BANDS, strlen(TWO_BANDS));
+    assert_int_equal(read_scene(low, 1), SONJECT_OK);
     assert_true(folder->scene.sonar.centre_frequency_hz == 100e3);
     assert_true(folder->scene.sonar.bandwidth_hz == 20e3);
-    assert_int_equal(read_scene(folder, high, 1), SONJECT_OK);
+    assert_int_equal(read_scene(high, 1), SONJECT_OK);
     assert_true(folder->scene.sonar.centre_frequency_hz == 400e3);
     assert_true(folder->scene.sonar.bandwidth_hz == 30e3);
     assert_true(folder->scene.sonar.altitude_m == 10.0);
@@ -28,8 +27,7 @@ TEST(test_a_band_changes_its_keys_alone)
 
 TEST(test_a_band_may_stand_in_the_file)
 {
-    struct scene_folder *folder = *state;
-    expect_scene_taken(folder, TWO_BANDS "band: high\n");
+    expect_scene_taken(TWO_BANDS "band: high\n");
     assert_true(folder->scene.sonar.centre_frequency_hz == 400e3);
 }
 
@@ -44,25 +42,24 @@ TEST(what_is_set_beats_the_band)
     static const char scene[] = BASE
         "objects: [{shape: sphere, diameter: 1, position: {row: 1, column: 1}}]\n"
         "bands: {one: {objects: [{shape: sphere, diameter: 2, position: {row: 1, column: 1}}]}}\n";
-    struct scene_folder *folder = *state;
-    write_scene(folder, TWO_BANDS, strlen(TWO_BANDS));
-    assert_int_equal(read_scene(folder, set, COUNT(set)), SONJECT_OK);
+    write_scene(TWO_BANDS, strlen(TWO_BANDS));
+    assert_int_equal(read_scene(set, COUNT(set)), SONJECT_OK);
     assert_true(folder->scene.sonar.centre_frequency_hz == 300e3);
     assert_true(folder->scene.sonar.bandwidth_hz == 25e3);
     assert_true(folder->scene.seabed.lambert == 0.1);
-    assert_int_equal(read_scene(folder, whole, COUNT(whole)), SONJECT_OK);
+    assert_int_equal(read_scene(whole, COUNT(whole)), SONJECT_OK);
     assert_true(folder->scene.sonar.centre_frequency_hz == 90e3);
     assert_true(folder->scene.sonar.altitude_m == 5.0);
-    write_scene(folder, scene, strlen(scene));
-    assert_int_equal(read_scene(folder, own, COUNT(own)), SONJECT_OK);
+    write_scene(scene, strlen(scene));
+    assert_int_equal(read_scene(own, COUNT(own)), SONJECT_OK);
     assert_int_equal(folder->scene.object_count, 0);
-    assert_int_equal(read_scene(folder, within, COUNT(within)), SONJECT_ERROR_INPUT);
+    assert_int_equal(read_scene(within, COUNT(within)), SONJECT_ERROR_INPUT);
     assert_non_null(
         strstr(folder->report.message, "the band has its own objects: set the whole of it"));
 }
 
-static void expect_names(struct scene_folder *folder, const char *text,
-                         const char *const *overrides, size_t count, const char *expected)
+static void expect_names(const char *text, const char *const *overrides, size_t count,
+                         const char *expected)
 {
     char *names;
     const struct scene_source source = {.path = folder->file,
@@ -76,9 +73,9 @@ static void expect_names(struct scene_folder *folder, const char *text,
 
 TEST(test_bands_that_are_left_are_named)
 {
-    expect_names(*state, TWO_BANDS, NULL, 0, "low\nhigh\n");
-    expect_names(*state, TWO_BANDS, high, 1, "");
-    expect_names(*state, BASE, NULL, 0, "");
+    expect_names(TWO_BANDS, NULL, 0, "low\nhigh\n");
+    expect_names(TWO_BANDS, high, 1, "");
+    expect_names(BASE, NULL, 0, "");
 }
 
 TEST(test_what_is_wrong_is_told)
@@ -100,7 +97,7 @@ TEST(test_what_is_wrong_is_told)
         {BASE "bands:\n  low: {sonar: {bandwidth: 3 kg}}\nband: low\n",
          ":5:28: sonar.bandwidth: unit 'kg' is not one of Hz, kHz, MHz"},
     };
-    expect_all_refused(state, wrong, COUNT(wrong));
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder)

@@ -25,7 +25,7 @@ TEST(test_unknown_keys)
          "length, width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, "
          "position, heading, pitch, roll, burial, level, material, fouling, parts"},
     };
-    expect_all_refused(state, wrong, COUNT(wrong));
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
 TEST(test_missing_keys)
@@ -54,7 +54,7 @@ TEST(test_missing_keys)
         {BASE "objects: [{}]\n",
          ":4:11: objects[0]: none of shape, parts and target is there; give one"},
     };
-    expect_all_refused(state, wrong, COUNT(wrong));
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
 TEST(test_wrong_values)
@@ -145,7 +145,7 @@ TEST(test_wrong_values)
          ":7:11: objects[0].name: longer than 63 bytes; shorten it"},
         {"- a\n", ":1:1: must be a section of 'key: value' lines, not a list"},
     };
-    expect_all_refused(state, wrong, COUNT(wrong));
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
 TEST(test_keys_that_exclude_or_need_each_other)
@@ -261,9 +261,9 @@ TEST(test_keys_that_exclude_or_need_each_other)
     for (size_t i = 0; i < COUNT(inputs); i++) {
         char text[1000];
         snprintf(text, sizeof text, "%s%s%s%s", START, inputs[i].text, geometry, SONAR);
-        expect_scene_refused(*state, text, inputs[i].message);
+        expect_scene_refused(text, inputs[i].message);
     }
-    expect_all_refused(state, wrong, COUNT(wrong));
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
 TEST(test_yaml_that_is_not_wanted)
@@ -299,7 +299,7 @@ TEST(test_yaml_that_is_not_wanted)
         {START "# \xC3\xA9\xE2\x82 broken\n",
          ":2:5: not UTF-8 text (invalid trailing UTF-8 octet); save the file as UTF-8"},
     };
-    expect_all_refused(state, wrong, COUNT(wrong));
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
 TEST(test_overrides_that_are_wrong)
@@ -347,11 +347,10 @@ TEST(test_overrides_that_are_wrong)
         {"input.path=\xFF", "--set input.path: not UTF-8 text on one line"},
         {"objects[0].name=a\nb", "--set objects[0].name: not UTF-8 text on one line"},
     };
-    struct scene_folder *folder = *state;
     const char text[] = BASE "objects: [{shape: sphere, diameter: 1}]\n";
-    write_scene(folder, text, strlen(text));
+    write_scene(text, strlen(text));
     for (size_t i = 0; i < COUNT(wrong); i++) {
-        if (read_scene(folder, &wrong[i].override, 1) != SONJECT_ERROR_INPUT)
+        if (read_scene(&wrong[i].override, 1) != SONJECT_ERROR_INPUT)
             fail_msg("%s was taken", wrong[i].override);
         assert_string_equal(folder->report.message, wrong[i].message);
     }

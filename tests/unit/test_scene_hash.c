@@ -66,17 +66,16 @@ static void change(const struct scene *scene, const struct key_case *key)
  */
 TEST(test_every_key_counts)
 {
-    struct scene_folder *folder = *state;
     char one[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
     for (size_t i = 0; i < COUNT(cases); i++) {
         const struct key_case *key = &cases[i];
         const char *second = second_value(key->path);
-        const bool has_one = read_case(folder, key, second) == SONJECT_OK;
+        const bool has_one = read_case(key, second) == SONJECT_OK;
         if (second && !has_one)
             fail_msg("%s: %s", key->path, folder->report.message);
         if (has_one)
             hash_of(&folder->scene, "image", one);
-        if (read_case(folder, key, key->value) != SONJECT_OK)
+        if (read_case(key, key->value) != SONJECT_OK)
             fail_msg("%s: %s", key->path, folder->report.message);
         hash_of(&folder->scene, "image", other);
         if (is_without_effect(key->path))

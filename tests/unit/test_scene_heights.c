@@ -11,16 +11,14 @@
 #define ROWS    3
 #define COLUMNS 4
 
-static void write_heights(struct scene_folder *folder, const struct raster_layout *layout,
-                          const void *pixels)
+static void write_heights(const struct raster_layout *layout, const void *pixels)
 {
-    assert_int_equal(raster_file_write(&folder->report, file_in(folder, "heights.tif"), layout,
-                                       NULL, NULL, 0, pixels),
-                     SONJECT_OK);
+    assert_int_equal(
+        raster_file_write(&folder->report, file_in("heights.tif"), layout, NULL, NULL, 0, pixels),
+        SONJECT_OK);
 }
 
-static void expect_heights(struct scene_folder *folder, double first_along_track_m,
-                           const float heights_m[ROWS * COLUMNS])
+static void expect_heights(double first_along_track_m, const float heights_m[ROWS * COLUMNS])
 {
     const struct relief_features *relief = &folder->scene.relief;
     sonject_relief_params grid;
@@ -50,7 +48,6 @@ TEST(test_numbers_become_heights)
         {HEIGHTS("unit: 125 mm, positive: down, offset: 10 m, first_along_track: -7 m"), -0.125,
          10.0, -7.0},
     };
-    struct scene_folder *folder = *state;
     for (size_t type = 0; type < COUNT(types); type++) {
         const struct raster_layout layout = {ROWS, COLUMNS, 1, types[type]};
         uint8_t bytes[ROWS * COLUMNS];
@@ -62,13 +59,13 @@ TEST(test_numbers_become_heights)
             words[i] = (uint16_t)numbers[i];
             floats[i] = (float)numbers[i];
         }
-        write_heights(folder, &layout, pixels[type]);
+        write_heights(&layout, pixels[type]);
         for (size_t i = 0; i < COUNT(cases); i++) {
             float heights[ROWS * COLUMNS];
             for (size_t j = 0; j < COUNT(numbers); j++)
                 heights[j] = (float)(cases[i].offset + cases[i].scale * numbers[j]);
-            expect_scene_taken(folder, cases[i].text);
-            expect_heights(folder, cases[i].first_along_track_m, heights);
+            expect_scene_taken(cases[i].text);
+            expect_heights(cases[i].first_along_track_m, heights);
         }
     }
 }
@@ -78,9 +75,8 @@ TEST(test_heights_among_features)
 {
     static const float flat[ROWS * COLUMNS] = {0.0f};
     static const struct raster_layout layout = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
-    struct scene_folder *folder = *state;
-    write_heights(folder, &layout, flat);
-    expect_scene_taken(folder, RELIEF
+    write_heights(&layout, flat);
+    expect_scene_taken(RELIEF
                        "  - mound: {radius: 1 m, height: 10 cm}\n"
                        "  - heights: {file: heights.tif, unit: m, row_spacing: 1, column_spacing: "
                        "1, first_ground_range: 0}\n"
@@ -113,17 +109,16 @@ TEST(test_what_is_refused)
     };
     static const uint8_t pixels[ROWS * COLUMNS] = {0};
     static const struct raster_layout layout = {ROWS, COLUMNS, 1, PIXEL_UINT8};
-    struct scene_folder *folder = *state;
-    write_heights(folder, &layout, pixels);
-    expect_all_refused(state, wrong, COUNT(wrong));
+    write_heights(&layout, pixels);
+    expect_all_refused(wrong, COUNT(wrong));
     assert_null(folder->scene.relief.heights_m);
 }
 
-static void expect_bad_heights(struct scene_folder *folder, const char *keys, const char *what)
+static void expect_bad_heights(const char *keys, const char *what)
 {
     char text[1000];
     snprintf(text, sizeof text, HEIGHTS("%s"), keys);
-    expect_bad_file(folder, text, ":6:21: seabed.relief[0].heights.file", "heights.tif",
+    expect_bad_file(text, ":6:21: seabed.relief[0].heights.file", "heights.tif",
                     SONJECT_ERROR_INPUT, what);
     assert_null(folder->scene.relief.heights_m);
 }
@@ -138,7 +133,6 @@ TEST(test_files_that_are_no_heights)
     static const struct raster_layout line = {1, COLUMNS, 1, PIXEL_FLOAT32};
     static const struct raster_layout wide = {2, 16385, 1, PIXEL_UINT8};
     static const struct raster_layout large = {4096, 4097, 1, PIXEL_UINT8};
-    struct scene_folder *folder = *state;
     uint8_t *many = calloc(4096, 4097);
     assert_non_null(many);
     const struct {
@@ -156,17 +150,17 @@ TEST(test_files_that_are_no_heights)
         {&large, many, "unit: m", "has 4096 rows and 4097 columns"},
     };
     for (size_t i = 0; i < COUNT(files); i++) {
-        write_heights(folder, files[i].layout, files[i].pixels);
-        expect_bad_heights(folder, files[i].keys, files[i].what);
+        write_heights(files[i].layout, files[i].pixels);
+        expect_bad_heights(files[i].keys, files[i].what);
     }
     free(many);
-    write_heights(folder, &plain, hole);
-    assert_int_equal(truncate(file_in(folder, "heights.tif"), 90), 0);
-    expect_bad_heights(folder, "unit: m", "");
-    assert_int_equal(truncate(file_in(folder, "heights.tif"), 0), 0);
-    expect_bad_heights(folder, "unit: m", "");
-    assert_int_equal(unlink(file_in(folder, "heights.tif")), 0);
-    expect_bad_heights(folder, "unit: m", "there is no file");
+    write_heights(&plain, hole);
+    assert_int_equal(truncate(file_in("heights.tif"), 90), 0);
+    expect_bad_heights("unit: m", "");
+    assert_int_equal(truncate(file_in("heights.tif"), 0), 0);
+    expect_bad_heights("unit: m", "");
+    assert_int_equal(unlink(file_in("heights.tif")), 0);
+    expect_bad_heights("unit: m", "there is no file");
 }
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder)

@@ -12,7 +12,7 @@
 static const char corner[] = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n"
                              "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
-static void expect_size(const struct scene_folder *folder, double x, double y, double z)
+static void expect_size(double x, double y, double z)
 {
     const double expected[3] = {x, y, z};
     const struct mesh *mesh = &folder->scene.meshes[folder->scene.objects[0].mesh];
@@ -39,14 +39,13 @@ TEST(test_units_and_axes)
         {"{file: corner.obj, up: -z, nose: y}", {2.0, 1.0, 3.0}},
         {"{file: corner.obj, nose: -z, up: x, unit: mm}", {0.003, 0.002, 0.001}},
     };
-    struct scene_folder *folder = *state;
-    write_file(folder, "corner.obj", corner, sizeof corner - 1);
+    write_file("corner.obj", corner, sizeof corner - 1);
     for (size_t i = 0; i < COUNT(cases); i++) {
         char text[1000];
         snprintf(text, sizeof text, SCENE "  - shape: mesh\n    mesh: %s\n", cases[i].keys);
-        expect_scene_taken(folder, text);
+        expect_scene_taken(text);
         assert_int_equal(folder->scene.objects[0].shape, SHAPE_MESH);
-        expect_size(folder, cases[i].size[0], cases[i].size[1], cases[i].size[2]);
+        expect_size(cases[i].size[0], cases[i].size[1], cases[i].size[2]);
     }
 }
 
@@ -54,8 +53,7 @@ TEST(test_units_and_axes)
 TEST(test_axes_turn)
 {
     static const char *const names[] = {"x", "y", "z", "-x", "-y", "-z"};
-    struct scene_folder *folder = *state;
-    write_file(folder, "corner.obj", corner, sizeof corner - 1);
+    write_file("corner.obj", corner, sizeof corner - 1);
     for (int nose = 0; nose < 6; nose++)
         for (int up = 0; up < 6; up++) {
             char text[1000];
@@ -63,12 +61,12 @@ TEST(test_axes_turn)
                      SCENE "  - {shape: mesh, mesh: {file: corner.obj, nose: %s, up: %s}}\n",
                      names[nose], names[up]);
             if (nose % 3 == up % 3) {
-                expect_scene_refused(folder, text,
+                expect_scene_refused(text,
                                      ":5:25: objects[0].mesh: nose and up are the same axis of the "
                                      "file; give both, such as nose: x, up: y");
                 continue;
             }
-            expect_scene_taken(folder, text);
+            expect_scene_taken(text);
             const int *axes = folder->scene.meshes[0].options.axes;
             double n[3] = {0.0, 0.0, 0.0};
             double u[3] = {0.0, 0.0, 0.0};
@@ -95,12 +93,11 @@ TEST(test_meshes_are_shared)
               "      - {shape: mesh, mesh: {file: parts/corner.obj, unit: cm}}\n"
               "  - {shape: mesh, mesh: {file: parts/corner.obj, smooth: 40 deg}}\n"
               "  - {shape: mesh, mesh: {file: parts/copy.obj, up: z}}\n";
-    struct scene_folder *folder = *state;
-    assert_int_equal(mkdir(file_in(folder, "parts"), 0777), 0);
-    write_file(folder, "parts/corner.obj", corner, sizeof corner - 1);
-    write_file(folder, "parts/copy.obj", corner, sizeof corner - 1);
-    write_file(folder, "parts/target.yaml", target, sizeof target - 1);
-    expect_scene_taken(folder, scene);
+    assert_int_equal(mkdir(file_in("parts"), 0777), 0);
+    write_file("parts/corner.obj", corner, sizeof corner - 1);
+    write_file("parts/copy.obj", corner, sizeof corner - 1);
+    write_file("parts/target.yaml", target, sizeof target - 1);
+    expect_scene_taken(scene);
     const struct scene *read = &folder->scene;
     assert_int_equal(read->mesh_count, 4);
     assert_int_equal(read->objects[0].mesh, 0);
@@ -113,8 +110,7 @@ TEST(test_meshes_are_shared)
 }
 
 /* Reads a scene of one mesh, which comes from the store and goes back to it; its vertices. */
-static const float *read_stored(const struct scene_folder *folder, struct mesh_store *store,
-                                const char *keys)
+static const float *read_stored(struct mesh_store *store, const char *keys)
 {
     struct report report = {{0}, NULL, NULL};
     struct scene scene;
@@ -133,26 +129,25 @@ static const float *read_stored(const struct scene_folder *folder, struct mesh_s
 
 TEST(test_meshes_are_kept_from_scene_to_scene)
 {
-    struct scene_folder *folder = *state;
     struct mesh_store store;
     memset(&store, 0, sizeof store);
-    write_file(folder, "corner.obj", corner, sizeof corner - 1);
-    const float *first = read_stored(folder, &store, "corner.obj");
-    assert_ptr_equal(read_stored(folder, &store, "corner.obj"), first);
+    write_file("corner.obj", corner, sizeof corner - 1);
+    const float *first = read_stored(&store, "corner.obj");
+    assert_ptr_equal(read_stored(&store, "corner.obj"), first);
     assert_int_equal(store.count, 1);
     const uint64_t bytes = store.bytes;
     /* with other options, and once the file has changed, it is another mesh */
-    assert_ptr_not_equal(read_stored(folder, &store, "{file: corner.obj, unit: cm}"), first);
+    assert_ptr_not_equal(read_stored(&store, "{file: corner.obj, unit: cm}"), first);
     assert_int_equal(store.count, 2);
-    write_file(folder, "corner.obj", corner, sizeof corner - 2);
-    assert_ptr_not_equal(read_stored(folder, &store, "corner.obj"), first);
+    write_file("corner.obj", corner, sizeof corner - 2);
+    assert_ptr_not_equal(read_stored(&store, "corner.obj"), first);
     assert_int_equal(store.count, 3);
     assert_int_equal(store.bytes, 3 * bytes);
     /* where it is full, the oldest gives way */
     for (int i = 0; i < MESH_STORE_MESHES; i++) {
         char keys[64];
         snprintf(keys, sizeof keys, "{file: corner.obj, unit: %d}", i + 2);
-        (void)read_stored(folder, &store, keys);
+        (void)read_stored(&store, keys);
     }
     assert_int_equal(store.count, MESH_STORE_MESHES);
     assert_int_equal(store.bytes, MESH_STORE_MESHES * bytes);
@@ -179,33 +174,29 @@ TEST(test_what_is_refused)
         {MESH("{file: corner.obj, unit: -1}"),
          ":6:36: objects[0].mesh.unit: must be a length of 1e-9 to 1e9 m, not -1 m"},
     };
-    struct scene_folder *folder = *state;
-    write_file(folder, "corner.obj", corner, sizeof corner - 1);
-    expect_all_refused(state, wrong, COUNT(wrong));
+    write_file("corner.obj", corner, sizeof corner - 1);
+    expect_all_refused(wrong, COUNT(wrong));
     assert_int_equal(folder->scene.mesh_count, 0);
 }
 
-static void expect_bad_mesh(struct scene_folder *folder, const char *name, sonject_status status,
-                            const char *what)
+static void expect_bad_mesh(const char *name, sonject_status status, const char *what)
 {
     char text[1000];
     snprintf(text, sizeof text, MESH("{file: %s}"), name);
-    expect_bad_file(folder, text, ":6:18: objects[0].mesh.file", name, status, what);
+    expect_bad_file(text, ":6:18: objects[0].mesh.file", name, status, what);
     assert_int_equal(folder->scene.mesh_count, 0);
 }
 
 TEST(test_meshes_that_cannot_be_read)
 {
     static const char binary[84 + 50] = {[80] = 2};
-    struct scene_folder *folder = *state;
-    expect_bad_mesh(folder, "absent.obj", SONJECT_ERROR_INPUT, "there is no file");
-    assert_int_equal(mkdir(file_in(folder, "folder.stl"), 0777), 0);
-    expect_bad_mesh(folder, "folder.stl", SONJECT_ERROR_STORAGE, "s a directory");
-    assert_int_equal(mkfifo(file_in(folder, "pipe.stl"), 0666), 0);
-    expect_bad_mesh(folder, "pipe.stl", SONJECT_ERROR_INPUT, "not a regular file");
-    write_file(folder, "a.stl", binary, sizeof binary);
-    expect_bad_mesh(folder, "a.stl", SONJECT_ERROR_INPUT,
-                    "the header says 2 triangles, the file holds 1");
+    expect_bad_mesh("absent.obj", SONJECT_ERROR_INPUT, "there is no file");
+    assert_int_equal(mkdir(file_in("folder.stl"), 0777), 0);
+    expect_bad_mesh("folder.stl", SONJECT_ERROR_STORAGE, "s a directory");
+    assert_int_equal(mkfifo(file_in("pipe.stl"), 0666), 0);
+    expect_bad_mesh("pipe.stl", SONJECT_ERROR_INPUT, "not a regular file");
+    write_file("a.stl", binary, sizeof binary);
+    expect_bad_mesh("a.stl", SONJECT_ERROR_INPUT, "the header says 2 triangles, the file holds 1");
 }
 
 /* As many as a scene may have, and one more. */
@@ -213,17 +204,16 @@ TEST(test_too_many_meshes)
 {
     char text[16384] = SCENE;
     size_t length = strlen(text);
-    struct scene_folder *folder = *state;
-    write_file(folder, "corner.obj", corner, sizeof corner - 1);
+    write_file("corner.obj", corner, sizeof corner - 1);
     for (int i = 0; i <= SCENE_MESHES_MAX; i++) {
         if (i == SCENE_MESHES_MAX)
-            expect_scene_taken(folder, text);
+            expect_scene_taken(text);
         length +=
             (size_t)snprintf(text + length, sizeof text - length,
                              "  - {shape: mesh, mesh: {file: corner.obj, unit: %d mm}}\n", i + 1);
     }
     assert_int_equal(folder->scene.mesh_count, SCENE_MESHES_MAX);
-    expect_scene_refused(folder, text,
+    expect_scene_refused(text,
                          ":69:32: objects[64].mesh.file: meshes must be at most 64 in a scene; "
                          "split it");
 }
@@ -234,12 +224,11 @@ TEST(test_open_meshes)
     static const char sheet[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     static const char both[] = SCENE "  - {shape: mesh, mesh: {file: sheet.obj, open: true}}\n"
                                      "  - {shape: mesh, mesh: {file: sheet.obj}}\n";
-    struct scene_folder *folder = *state;
-    write_file(folder, "sheet.obj", sheet, sizeof sheet - 1);
-    expect_bad_mesh(folder, "sheet.obj", SONJECT_ERROR_INPUT, "does not enclose a volume");
-    expect_scene_taken(folder, MESH("{file: sheet.obj, open: true}"));
+    write_file("sheet.obj", sheet, sizeof sheet - 1);
+    expect_bad_mesh("sheet.obj", SONJECT_ERROR_INPUT, "does not enclose a volume");
+    expect_scene_taken(MESH("{file: sheet.obj, open: true}"));
     assert_false(folder->scene.meshes[0].topology.is_closed);
-    expect_bad_file(folder, both, ":6:32: objects[1].mesh.file", "sheet.obj", SONJECT_ERROR_INPUT,
+    expect_bad_file(both, ":6:32: objects[1].mesh.file", "sheet.obj", SONJECT_ERROR_INPUT,
                     "does not enclose a volume");
 }
 
@@ -247,16 +236,15 @@ TEST(test_open_meshes)
 TEST(test_a_size_that_no_target_has_asks_for_the_unit)
 {
     static const char sheet[] = "v 0 0 0\nv 1500 0 0\nv 0 700 0\nf 1 2 3\n";
-    struct scene_folder *folder = *state;
-    write_file(folder, "bomb.obj", sheet, sizeof sheet - 1);
-    expect_bad_mesh(folder, "bomb.obj", SONJECT_ERROR_INPUT, "does not enclose");
+    write_file("bomb.obj", sheet, sizeof sheet - 1);
+    expect_bad_mesh("bomb.obj", SONJECT_ERROR_INPUT, "does not enclose");
     expect_scene_refused(
-        folder, MESH("{file: bomb.obj, open: true}"),
+        MESH("{file: bomb.obj, open: true}"),
         ":6:18: objects[0].mesh.file: the mesh is 1.5e+03 m long if its numbers are "
         "metres, and sonars are for targets of 1 cm to 100 m: give its unit, such as "
         "unit: mm, or unit: m if that is right");
-    expect_scene_taken(folder, MESH("{file: bomb.obj, open: true, unit: m}"));
-    expect_scene_taken(folder, MESH("{file: bomb.obj, open: true, unit: mm}"));
+    expect_scene_taken(MESH("{file: bomb.obj, open: true, unit: m}"));
+    expect_scene_taken(MESH("{file: bomb.obj, open: true, unit: mm}"));
 }
 
 static void hash_of(const struct scene *scene, char text[HASH_TEXT_CAPACITY])
@@ -271,18 +259,17 @@ TEST(test_the_hash_covers_the_mesh)
     static const char text[] = MESH("{file: corner.obj, smooth: 30 deg}");
     char first[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
     char changed[sizeof corner];
-    struct scene_folder *folder = *state;
-    write_file(folder, "corner.obj", corner, sizeof corner - 1);
-    write_file(folder, "copy.obj", corner, sizeof corner - 1);
-    expect_scene_taken(folder, text);
+    write_file("corner.obj", corner, sizeof corner - 1);
+    write_file("copy.obj", corner, sizeof corner - 1);
+    expect_scene_taken(text);
     hash_of(&folder->scene, first);
-    expect_scene_taken(folder, MESH("{file: copy.obj, smooth: 30 deg}"));
+    expect_scene_taken(MESH("{file: copy.obj, smooth: 30 deg}"));
     hash_of(&folder->scene, other);
     assert_string_equal(first, other);
     memcpy(changed, corner, sizeof corner);
     *strchr(changed, '3') = '4'; /* of as many bytes */
-    write_file(folder, "corner.obj", changed, sizeof changed - 1);
-    expect_scene_taken(folder, text);
+    write_file("corner.obj", changed, sizeof changed - 1);
+    expect_scene_taken(text);
     hash_of(&folder->scene, other);
     assert_string_not_equal(first, other);
 }

@@ -24,7 +24,6 @@ TEST(test_mistakes_do_not_hide_each_other_nor_add_any)
         {"material: steel}\n", "material: {fluid: {density: 2}, roughness: 3}}\n"},
     };
     static const size_t lines_of_last = 3; /* no speed, no fluid without it, the roughness */
-    struct scene_folder *folder = *state;
     for (unsigned set = 0; set < 1u << COUNT(pieces); set++) {
         char text[2000] = "sonject: 1\n";
         size_t expected = 0;
@@ -33,8 +32,8 @@ TEST(test_mistakes_do_not_hide_each_other_nor_add_any)
             strcat(text, is_wrong ? pieces[i].wrong : pieces[i].right);
             expected += !is_wrong ? 0 : i + 1 < COUNT(pieces) ? 1 : lines_of_last - 1;
         }
-        write_scene(folder, text, strlen(text));
-        read_scene(folder, NULL, 0);
+        write_scene(text, strlen(text));
+        read_scene(NULL, 0);
         if (lines_of(folder->report.message, strlen(folder->report.message)) != expected)
             fail_msg("%zu mistakes in\n%s\nare told as\n%s", expected, text,
                      folder->report.message);
@@ -43,7 +42,6 @@ TEST(test_mistakes_do_not_hide_each_other_nor_add_any)
 
 TEST(test_a_targets_mistakes_stand_where_it_is_named)
 {
-    struct scene_folder *folder = *state;
     char target[TEMPORARY_CAPACITY + 64];
     char expected[10 * TEMPORARY_CAPACITY];
     static const char text[] = BASE "objects:\n"
@@ -53,10 +51,10 @@ TEST(test_a_targets_mistakes_stand_where_it_is_named)
                                     "seabed: {lambert: loud}\n";
     static const char described[] =
         "sonject_target: 1\nclass: \"a\\tb\"\nparts:\n  - {shape: sphere}\n  - {shape: shpere}\n";
-    write_file(folder, "t.yaml", described, strlen(described));
-    strcpy(target, file_in(folder, "t.yaml"));
-    write_scene(folder, text, strlen(text));
-    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    write_file("t.yaml", described, strlen(described));
+    strcpy(target, file_in("t.yaml"));
+    write_scene(text, strlen(text));
+    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
     sprintf(expected,
             "%s:2:8: class: must be UTF-8 text without control characters\n"
             "%s:4:5: parts[0].diameter: missing; a sphere needs it\n"
@@ -72,12 +70,11 @@ TEST(test_a_targets_mistakes_stand_where_it_is_named)
 
 TEST(test_lines_beyond_fifty_are_counted)
 {
-    struct scene_folder *folder = *state;
     char text[4000] = BASE "seabed:\n";
     for (int i = 0; i < 60; i++)
         sprintf(text + strlen(text), "  unheard_of_%d: 1\n", i);
-    write_scene(folder, text, strlen(text));
-    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    write_scene(text, strlen(text));
+    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
     /* fifty, or, where the folder's name is long, as many as there is room for */
     const char *message = folder->report.message;
     const int told = (int)lines_of(message, strlen(message)) - 1;
@@ -89,10 +86,9 @@ TEST(test_lines_beyond_fifty_are_counted)
 
 TEST(test_broken_yaml_ends_the_reading)
 {
-    struct scene_folder *folder = *state;
     static const char text[] = "sonject: 5\nsonar: {frequency: 1 m}\ninput: [\n";
-    write_scene(folder, text, strlen(text));
-    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    write_scene(text, strlen(text));
+    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
     assert_int_equal(lines_of(folder->report.message, strlen(folder->report.message)), 1);
 }
 

@@ -5,7 +5,7 @@
 
 #define OBJECT BASE "objects:\n  - " /* five lines, its keys begin in column 5 */
 
-static const struct scene_part *part_at(const struct scene_folder *folder, uint32_t index)
+static const struct scene_part *part_at(uint32_t index)
 {
     assert_true(index < folder->scene.part_count);
     return &folder->scene.parts[index];
@@ -21,8 +21,7 @@ static void expect_vector(const double vector[3], double x, double y, double z)
 
 TEST(test_parts_belong_to_their_objects)
 {
-    struct scene_folder *folder = *state;
-    expect_scene_taken(folder, BASE
+    expect_scene_taken(BASE
                        "objects:\n"
                        "  - parts: [{shape: sphere, diameter: 1}, {shape: disc, diameter: 2}]\n"
                        "  - {shape: sphere, diameter: 3}\n"
@@ -32,11 +31,11 @@ TEST(test_parts_belong_to_their_objects)
     assert_int_equal(folder->scene.object_count, 3);
     assert_int_equal(folder->scene.part_count, 3);
     for (uint32_t i = 0; i < 3; i++) {
-        assert_int_equal(part_at(folder, i)->object, objects[i]);
-        assert_true(part_at(folder, i)->shape.diameter_m == diameters[i]);
-        expect_vector(part_at(folder, i)->centre, 0.0, 0.0, 0.0);
+        assert_int_equal(part_at(i)->object, objects[i]);
+        assert_true(part_at(i)->shape.diameter_m == diameters[i]);
+        expect_vector(part_at(i)->centre, 0.0, 0.0, 0.0);
     }
-    assert_string_equal(part_at(folder, 2)->shape.name, "last");
+    assert_string_equal(part_at(2)->shape.name, "last");
     assert_int_equal(folder->scene.objects[0].shape, SHAPE_PARTS);
     assert_int_equal(folder->scene.objects[1].shape, SHAPE_SPHERE);
 }
@@ -45,47 +44,45 @@ TEST(test_parts_belong_to_their_objects)
  * is raised there, ahead of that, still points up. */
 TEST(test_groups_place_and_turn)
 {
-    struct scene_folder *folder = *state;
-    expect_scene_taken(folder, OBJECT "parts:\n"
-                                      "    - at: {along: 10, up: 1}\n"
-                                      "      heading: 90 deg\n"
-                                      "      parts:\n"
-                                      "      - at: {along: 2}\n"
-                                      "        pitch: 90 deg\n"
-                                      "        parts:\n"
-                                      "        - {shape: cylinder, length: 1, diameter: 1,\n"
-                                      "           at: {along: 0.5}, heading: 90 deg}\n"
-                                      "    - {shape: sphere, diameter: 1}\n");
-    const struct scene_part *cylinder = part_at(folder, 0);
+    expect_scene_taken(OBJECT "parts:\n"
+                              "    - at: {along: 10, up: 1}\n"
+                              "      heading: 90 deg\n"
+                              "      parts:\n"
+                              "      - at: {along: 2}\n"
+                              "        pitch: 90 deg\n"
+                              "        parts:\n"
+                              "        - {shape: cylinder, length: 1, diameter: 1,\n"
+                              "           at: {along: 0.5}, heading: 90 deg}\n"
+                              "    - {shape: sphere, diameter: 1}\n");
+    const struct scene_part *cylinder = part_at(0);
     expect_vector(cylinder->centre, 10.0, 2.0, 1.5);
     expect_vector(cylinder->axes[0], -1.0, 0.0, 0.0);
     expect_vector(cylinder->axes[1], 0.0, 0.0, -1.0);
     expect_vector(cylinder->axes[2], 0.0, -1.0, 0.0);
-    expect_vector(part_at(folder, 1)->centre, 0.0, 0.0, 0.0);
-    expect_vector(part_at(folder, 1)->axes[0], 1.0, 0.0, 0.0);
+    expect_vector(part_at(1)->centre, 0.0, 0.0, 0.0);
+    expect_vector(part_at(1)->axes[0], 1.0, 0.0, 0.0);
 }
 
 /* Of the object, the group, and what a part changes of it, wherever the keys stand. */
 TEST(test_surfaces_are_inherited)
 {
-    struct scene_folder *folder = *state;
-    expect_scene_taken(folder, OBJECT "parts:\n"
-                                      "    - {shape: sphere, diameter: 1}\n"
-                                      "    - parts: [{shape: sphere, diameter: 1},\n"
-                                      "        {shape: sphere, diameter: 1, material: concrete}]\n"
-                                      "      material: rubber\n"
-                                      "    - {shape: sphere, diameter: 1, material: {roughness: "
-                                      "7 mm}}\n"
-                                      "    material: {reflection: 0.75, roughness: 2 mm}\n");
+    expect_scene_taken(OBJECT "parts:\n"
+                              "    - {shape: sphere, diameter: 1}\n"
+                              "    - parts: [{shape: sphere, diameter: 1},\n"
+                              "        {shape: sphere, diameter: 1, material: concrete}]\n"
+                              "      material: rubber\n"
+                              "    - {shape: sphere, diameter: 1, material: {roughness: "
+                              "7 mm}}\n"
+                              "    material: {reflection: 0.75, roughness: 2 mm}\n");
     sonject_material_params named;
-    assert_true(part_at(folder, 0)->shape.material.reflection == 0.75);
-    assert_true(part_at(folder, 0)->shape.material.roughness_m == 0.002);
+    assert_true(part_at(0)->shape.material.reflection == 0.75);
+    assert_true(part_at(0)->shape.material.roughness_m == 0.002);
     assert_true(material_named("rubber", &named));
-    assert_true(part_at(folder, 1)->shape.material.density_ratio == named.density_ratio);
+    assert_true(part_at(1)->shape.material.density_ratio == named.density_ratio);
     assert_true(material_named("concrete", &named));
-    assert_true(part_at(folder, 2)->shape.material.density_ratio == named.density_ratio);
-    assert_true(part_at(folder, 3)->shape.material.reflection == 0.75);
-    assert_true(part_at(folder, 3)->shape.material.roughness_m == 0.007);
+    assert_true(part_at(2)->shape.material.density_ratio == named.density_ratio);
+    assert_true(part_at(3)->shape.material.reflection == 0.75);
+    assert_true(part_at(3)->shape.material.roughness_m == 0.007);
 }
 
 /* The text of `levels` lists of parts within each other. */
@@ -102,30 +99,28 @@ static void nested_object(char *text, size_t capacity, int levels)
 
 TEST(test_nesting_is_bounded)
 {
-    struct scene_folder *folder = *state;
     char text[2000];
     nested_object(text, sizeof text, 8);
-    expect_scene_taken(folder, text);
-    expect_vector(part_at(folder, 0)->centre, 0.0, 0.0, 8.0);
+    expect_scene_taken(text);
+    expect_vector(part_at(0)->centre, 0.0, 0.0, 8.0);
     nested_object(text, sizeof text, 9);
-    expect_scene_refused(folder, text,
+    expect_scene_refused(text,
                          ":4:195: objects[0].parts[0].parts[0].parts[0].parts[0].parts[0].parts[0]."
                          "parts[0].parts[0].parts: nested too deeply; parts may be 8 levels deep");
 }
 
 TEST(test_overrides_reach_parts)
 {
-    struct scene_folder *folder = *state;
     const char *overrides[] = {"objects[0].parts[1].parts[0].diameter=70 cm",
                                "objects[0].parts[2]={shape: disc, diameter: 1}"};
     const char text[] = OBJECT "parts: [{shape: sphere, diameter: 1},\n"
                                "      {parts: [{shape: sphere, diameter: 1}]}]\n";
-    write_scene(folder, text, strlen(text));
-    if (read_scene(folder, overrides, COUNT(overrides)) != SONJECT_OK)
+    write_scene(text, strlen(text));
+    if (read_scene(overrides, COUNT(overrides)) != SONJECT_OK)
         fail_msg("%s", folder->report.message);
     assert_int_equal(folder->scene.part_count, 3);
-    assert_true(part_at(folder, 1)->shape.diameter_m == 0.7);
-    assert_int_equal(part_at(folder, 2)->shape.shape, SHAPE_DISC);
+    assert_true(part_at(1)->shape.diameter_m == 0.7);
+    assert_int_equal(part_at(2)->shape.shape, SHAPE_DISC);
 }
 
 TEST(test_what_is_refused)
@@ -154,7 +149,7 @@ TEST(test_what_is_refused)
          "surface "
          "returns more than it receives; it is 1"},
     };
-    expect_all_refused(state, wrong, COUNT(wrong));
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
 TEST(test_too_many_parts)
@@ -165,34 +160,33 @@ TEST(test_too_many_parts)
     char *end = text + sprintf(text, "%sobjects:\n- parts:\n", BASE);
     for (int i = 0; i < 1000; i++)
         end += sprintf(end, "%s", part);
-    expect_scene_taken(*state, text);
+    expect_scene_taken(text);
     sprintf(end, "%s", part);
-    expect_scene_refused(*state, text,
+    expect_scene_refused(text,
                          ":1006:5: objects[0].parts[1000]: is one part too many: a scene may have "
                          "1000; split it");
     free(text);
 }
 
-static void write_target(struct scene_folder *folder, const char *text)
+static void write_target(const char *text)
 {
-    write_file(folder, "target.yaml", text, strlen(text));
+    write_file("target.yaml", text, strlen(text));
 }
 
 TEST(test_targets_are_files)
 {
-    struct scene_folder *folder = *state;
-    write_target(folder, "sonject_target: 1\nname: twin\nclass: clutter\n"
-                         "material: {reflection: 0.75, roughness: 2 mm}\n"
-                         "parts: [{shape: sphere, diameter: 1, at: {along: 1}},\n"
-                         "  {shape: disc, diameter: 2, material: {reflection: 0.875}}]\n");
-    expect_scene_taken(folder, BASE "objects:\n"
-                                    "  - target: target.yaml\n"
-                                    "  - {name: other, class: mine, target: target.yaml, heading: "
-                                    "90 deg, material: {roughness: 7 mm}, burial: 10 cm}\n");
+    write_target("sonject_target: 1\nname: twin\nclass: clutter\n"
+                 "material: {reflection: 0.75, roughness: 2 mm}\n"
+                 "parts: [{shape: sphere, diameter: 1, at: {along: 1}},\n"
+                 "  {shape: disc, diameter: 2, material: {reflection: 0.875}}]\n");
+    expect_scene_taken(BASE "objects:\n"
+                            "  - target: target.yaml\n"
+                            "  - {name: other, class: mine, target: target.yaml, heading: "
+                            "90 deg, material: {roughness: 7 mm}, burial: 10 cm}\n");
     const sonject_object_params *objects = folder->scene.objects;
     assert_int_equal(folder->scene.part_count, 4);
     for (uint32_t i = 0; i < 4; i++) {
-        const struct scene_part *part = part_at(folder, i);
+        const struct scene_part *part = part_at(i);
         assert_int_equal(part->object, i / 2);
         assert_true(part->shape.diameter_m == (i % 2 ? 2.0 : 1.0));
         assert_true(part->shape.material.reflection == (i % 2 ? 0.875 : 0.75));
@@ -208,9 +202,8 @@ TEST(test_targets_are_files)
 
 TEST(test_targets_may_have_one_shape)
 {
-    struct scene_folder *folder = *state;
-    write_target(folder, "sonject_target: 1\nshape: torus\ndiameter: 1\nheight: 0.2\n");
-    expect_scene_taken(folder, OBJECT "target: target.yaml\n");
+    write_target("sonject_target: 1\nshape: torus\ndiameter: 1\nheight: 0.2\n");
+    expect_scene_taken(OBJECT "target: target.yaml\n");
     assert_int_equal(folder->scene.objects[0].shape, SHAPE_TORUS);
     assert_true(folder->scene.objects[0].height_m == 0.2);
     assert_int_equal(folder->scene.part_count, 0);
@@ -237,13 +230,12 @@ TEST(test_targets_that_are_wrong)
          "width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, material, "
          "fouling, parts"},
     };
-    struct scene_folder *folder = *state;
     static const char scene[] = OBJECT "target: target.yaml\n";
-    write_scene(folder, scene, strlen(scene));
+    write_scene(scene, strlen(scene));
     for (size_t i = 0; i < COUNT(wrong); i++) {
-        write_target(folder, wrong[i].text);
-        assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-        const char *path = file_in(folder, "target.yaml");
+        write_target(wrong[i].text);
+        assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
+        const char *path = file_in("target.yaml");
         const size_t length = strlen(path);
         if (strncmp(folder->report.message, path, length) != 0 ||
             strcmp(folder->report.message + length, wrong[i].message) != 0)
@@ -256,23 +248,21 @@ TEST(test_targets_that_are_wrong)
 
 TEST(test_scenes_that_name_targets_wrongly)
 {
-    struct scene_folder *folder = *state;
     char message[TEMPORARY_CAPACITY + 100];
     snprintf(message, sizeof message,
              ":5:13: objects[0].target: there is no file %s/absent.yaml; check its name",
              folder->folder.path);
-    expect_scene_refused(folder, OBJECT "target: absent.yaml\n", message);
-    expect_scene_refused(folder, OBJECT "target:\n",
+    expect_scene_refused(OBJECT "target: absent.yaml\n", message);
+    expect_scene_refused(OBJECT "target:\n",
                          ":5:12: objects[0].target: has no value; write one or remove the key");
-    write_target(folder, "sonject_target: 1\nparts: [{shape: sphere, diameter: 1}]\n");
-    expect_scene_refused(folder, OBJECT "target: target.yaml\n    diameter: 1\n",
+    write_target("sonject_target: 1\nparts: [{shape: sphere, diameter: 1}]\n");
+    expect_scene_refused(OBJECT "target: target.yaml\n    diameter: 1\n",
                          ":6:15: objects[0].diameter: the target's file tells the shape; remove "
                          "it");
-    expect_scene_refused(folder, OBJECT "target: target.yaml\n    shape: sphere\n",
+    expect_scene_refused(OBJECT "target: target.yaml\n    shape: sphere\n",
                          ":5:5: objects[0]: more than one of shape, parts and target is there; "
                          "give one");
-    expect_scene_refused(folder,
-                         OBJECT "target: target.yaml\n    parts: [{shape: disc, diameter: 1}]\n",
+    expect_scene_refused(OBJECT "target: target.yaml\n    parts: [{shape: disc, diameter: 1}]\n",
                          ":5:5: objects[0]: more than one of shape, parts and target is there; "
                          "give one");
 }
@@ -280,18 +270,17 @@ TEST(test_scenes_that_name_targets_wrongly)
 /* A file that is as long as no target is. */
 TEST(test_large_targets_are_refused)
 {
-    struct scene_folder *folder = *state;
     const size_t bytes = 1024 * 1024 + 2;
     char *text = malloc(bytes + 1);
     assert_non_null(text);
     memset(text, '#', bytes);
     text[bytes] = 0;
-    write_target(folder, text);
+    write_target(text);
     free(text);
     static const char scene[] = OBJECT "target: target.yaml\n";
-    write_scene(folder, scene, strlen(scene));
-    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-    const char *path = file_in(folder, "target.yaml");
+    write_scene(scene, strlen(scene));
+    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
+    const char *path = file_in("target.yaml");
     assert_memory_equal(folder->report.message, path, strlen(path));
     assert_non_null(strstr(folder->report.message, "larger than"));
 }

@@ -23,7 +23,7 @@ struct ground {
     struct placements placements;
 };
 
-static sonject_status lay(struct scene_folder *folder, struct ground *ground)
+static sonject_status lay(struct ground *ground)
 {
     struct scene *scene = &folder->scene;
     memset(ground, 0, sizeof *ground);
@@ -56,10 +56,10 @@ static void expect_height(const char *what, double height, double expected, doub
         fail_msg("%s: height %.5f m, not %.5f", what, height, expected);
 }
 
-static void take(struct scene_folder *folder, struct ground *ground, const char *text)
+static void take(struct ground *ground, const char *text)
 {
-    expect_scene_taken(folder, text);
-    if (lay(folder, ground) != SONJECT_OK)
+    expect_scene_taken(text);
+    if (lay(ground) != SONJECT_OK)
         fail_msg("%s", folder->report.message);
 }
 
@@ -80,7 +80,7 @@ TEST(test_features_lie_where_they_are_told)
                          "  - scour: {width: 50 cm, depth: 10 cm}\n" OBJECTS};
     for (int side = 0; side < 2; side++) {
         struct ground ground;
-        take(*state, &ground, texts[side]);
+        take(&ground, texts[side]);
         const struct placed_object *can = &ground.placements.objects[0];
         expect_height("top of the mound", height_at(&ground, 3.0, 43.0), 0.3, 1e-4);
         expect_height("half its radius", height_at(&ground, 3.5, 43.0), 0.15, 1e-3);
@@ -109,7 +109,7 @@ TEST(test_ripples)
                                "sharpness: 0.5, phase: 20 deg}\n"};
     for (int side = 0; side < 2; side++) {
         struct ground ground;
-        take(*state, &ground, texts[side]);
+        take(&ground, texts[side]);
         for (int i = 0; i < 50; i++) {
             const double along = 1.5 + 0.14 * i;
             const double range = 42.0 + 0.12 * i;
@@ -132,13 +132,13 @@ TEST(test_ripples)
 TEST(test_irregular_ripples)
 {
     struct ground one, same, other;
-    take(*state, &one,
+    take(&one,
          SEEN_FROM(
              "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 4}\n");
-    take(*state, &same,
+    take(&same,
          SEEN_FROM(
              "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 4}\n");
-    take(*state, &other,
+    take(&other,
          SEEN_FROM(
              "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 5}\n");
     const struct relief *relief = one.placements.relief;
@@ -147,7 +147,7 @@ TEST(test_irregular_ripples)
     assert_true(memcmp(relief->heights, other.placements.relief->heights, bytes) != 0);
     /* no higher than the water's layers and the checks are told */
     double lowest, highest;
-    relief_features_bounds(&((struct scene_folder *)*state)->scene.relief, &lowest, &highest);
+    relief_features_bounds(&folder->scene.relief, &lowest, &highest);
     assert_true(relief->lowest_m >= lowest && relief->highest_m <= highest);
     ground_clear(&one);
     ground_clear(&same);
@@ -168,11 +168,10 @@ TEST(test_refusals_in_use)
                            "  forward: medium sand\n",
          "cannot be smooth"},
     };
-    struct scene_folder *folder = *state;
     for (size_t i = 0; i < COUNT(cases); i++) {
         struct ground ground;
-        expect_scene_taken(folder, cases[i].text);
-        assert_int_equal(lay(folder, &ground), SONJECT_ERROR_INPUT);
+        expect_scene_taken(cases[i].text);
+        assert_int_equal(lay(&ground), SONJECT_ERROR_INPUT);
         if (!strstr(folder->report.message, cases[i].message))
             fail_msg("'%s' does not say '%s'", folder->report.message, cases[i].message);
         ground_clear(&ground);

@@ -105,16 +105,15 @@ TEST(test_equal_codes_are_one)
     "      code: |\n"                                                                              \
     "        " DISTANCE "        " NORMAL
 
-static sonject_status read_with_consent(struct scene_folder *folder, const char *text)
+static sonject_status read_with_consent(const char *text)
 {
-    write_scene(folder, text, strlen(text));
-    return read_scene_with(folder, NULL, 0, true);
+    write_scene(text, strlen(text));
+    return read_scene_with(NULL, 0, true);
 }
 
-static void expect_refused_with_consent(struct scene_folder *folder, const char *text,
-                                        const char *message)
+static void expect_refused_with_consent(const char *text, const char *message)
 {
-    assert_int_equal(read_with_consent(folder, text), SONJECT_ERROR_INPUT);
+    assert_int_equal(read_with_consent(text), SONJECT_ERROR_INPUT);
     const size_t length = strlen(folder->report.message);
     assert_true(length >= strlen(message));
     assert_string_equal(folder->report.message + length - strlen(message), message);
@@ -126,22 +125,19 @@ static void expect_refused_with_consent(struct scene_folder *folder, const char 
 
 TEST(test_code_in_files_needs_consent)
 {
-    struct scene_folder *folder = *state;
-    expect_scene_refused(folder, OBJECTS "  - shape: user\n" CODE, ":7:7: objects[0]." NO_CONSENT);
-    expect_scene_refused(folder, OBJECTS "  - parts:\n    - {shape: user, user: {}}\n",
+    expect_scene_refused(OBJECTS "  - shape: user\n" CODE, ":7:7: objects[0]." NO_CONSENT);
+    expect_scene_refused(OBJECTS "  - parts:\n    - {shape: user, user: {}}\n",
                          ":6:27: objects[0].parts[0]." NO_CONSENT);
     /* a target's file, in an object's or in that of parts */
-    write_scene(folder, OBJECTS "  - target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml\n",
+    write_scene(OBJECTS "  - target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml\n",
                 strlen(OBJECTS "  - target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml\n"));
-    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
     assert_non_null(strstr(folder->report.message, "boulder_relief.yaml:9:3: " NO_CONSENT));
 }
 
 TEST(test_code_arrives_with_its_lines)
 {
-    struct scene_folder *folder = *state;
-    assert_int_equal(read_with_consent(folder,
-                                       OBJECTS "  - shape: user\n" CODE "  - parts:\n"
+    assert_int_equal(read_with_consent(OBJECTS "  - shape: user\n" CODE "  - parts:\n"
                                                "    - shape: sphere\n"
                                                "      diameter: 1\n"
                                                "    - shape: user\n"
@@ -163,8 +159,7 @@ TEST(test_code_arrives_with_its_lines)
     assert_true(shapes->shapes[1].half_height_m == 0.25 && shapes->shapes[1].is_open);
     assert_true(shapes->shapes[1].half_width_m == 1.0);
     /* the line of an error in a block is that of the file */
-    expect_refused_with_consent(folder,
-                                OBJECTS "  - shape: user\n" CODE "        #include <more.cl>\n",
+    expect_refused_with_consent(OBJECTS "  - shape: user\n" CODE "        #include <more.cl>\n",
                                 "scene.yaml:12: " NOT_HERE);
 }
 
@@ -186,9 +181,8 @@ TEST(test_wrong_sections_are_refused)
         {OF_USER("bounding_radius: 1, code: x"),
          "scene.yaml:5: there is no function shape_distance in it; write one"},
     };
-    struct scene_folder *folder = *state;
     for (size_t i = 0; i < COUNT(cases); i++)
-        expect_refused_with_consent(folder, cases[i][0], cases[i][1]);
+        expect_refused_with_consent(cases[i][0], cases[i][1]);
 }
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder)
