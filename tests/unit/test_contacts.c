@@ -171,11 +171,10 @@ static size_t find(const float *intensity, double contrast, size_t most,
     struct contact_image image;
     struct contact_search search;
     size_t count = 0;
-    assert_int_equal(contact_image_create(&image, &report, intensity, ROWS, COLUMNS), SONJECT_OK);
-    assert_int_equal(contact_search_begin(&search, &report, &image), SONJECT_OK);
+    EXPECT_OK(&report, contact_image_create(&image, &report, intensity, ROWS, COLUMNS));
+    EXPECT_OK(&report, contact_search_begin(&search, &report, &image));
     while (count < most) {
-        assert_int_equal(contact_search_next(&search, &report, &image, contrast, &places[count]),
-                         SONJECT_OK);
+        EXPECT_OK(&report, contact_search_next(&search, &report, &image, contrast, &places[count]));
         if (places[count].box.rows == 0)
             break;
         count++;
@@ -281,8 +280,8 @@ TEST(test_dark_speckle_is_no_shadow)
     for (size_t row = 68; row < 72; row++)
         for (size_t column = 130; column < 134; column++)
             intensity[row * COLUMNS + column] = 0.01f;
-    assert_int_equal(contact_image_create(&image, &report, intensity, ROWS, COLUMNS), SONJECT_OK);
-    assert_int_equal(measure_contact_sizes(&image, &report, &place, &sizes), SONJECT_OK);
+    EXPECT_OK(&report, contact_image_create(&image, &report, intensity, ROWS, COLUMNS));
+    EXPECT_OK(&report, measure_contact_sizes(&image, &report, &place, &sizes));
     assert_true(sizes.highlight.pixels > 0 && sizes.shadow.pixels == 0);
     assert_true(isnan(sizes.shadow_columns.pixels) && isnan(sizes.dim_columns.pixels));
     contact_image_clear(&image);
@@ -309,8 +308,7 @@ TEST(test_small_images)
                 place.box.rows -= place.box.first_row;
                 place.box.columns -= place.box.first_column;
                 place.bright = place.box;
-                assert_int_equal(contact_image_create(&image, &report, intensity, rows, columns),
-                                 SONJECT_OK);
+                EXPECT_OK(&report, contact_image_create(&image, &report, intensity, rows, columns));
                 const sonject_status status =
                     measure_contact_sizes(&image, &report, &place, &sizes);
                 assert_true(status == SONJECT_OK || status == SONJECT_ERROR_INPUT);

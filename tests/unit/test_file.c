@@ -72,17 +72,17 @@ CLEAN(test_a_file_is_written_and_read)
     assert_non_null(written);
     for (size_t i = 0; i < length; i++)
         written[i] = (char)(i * 7 % 251);
-    assert_int_equal(file_write_whole(&report, path, "old", 3), SONJECT_OK);
-    assert_int_equal(file_write_whole(&report, path, written, length), SONJECT_OK);
-    assert_int_equal(file_read_whole(&report, path, length, &read, &count), SONJECT_OK);
+    EXPECT_OK(&report, file_write_whole(&report, path, "old", 3));
+    EXPECT_OK(&report, file_write_whole(&report, path, written, length));
+    EXPECT_OK(&report, file_read_whole(&report, path, length, &read, &count));
     assert_int_equal(count, length);
     assert_memory_equal(read, written, length);
     assert_int_equal(read[length], 0);
     assert_int_equal(count_entries(folder->path), 1);
     free(read);
     free(written);
-    assert_int_equal(file_write_whole(&report, path, "", 0), SONJECT_OK);
-    assert_int_equal(file_read_whole(&report, path, 0, &read, &count), SONJECT_OK);
+    EXPECT_OK(&report, file_write_whole(&report, path, "", 0));
+    EXPECT_OK(&report, file_read_whole(&report, path, 0, &read, &count));
     assert_int_equal(count, 0);
     assert_int_equal(read[0], 0);
     free(read);
@@ -145,7 +145,7 @@ CLEAN(test_publishing)
     char *part = file_part_name(path);
     write_bytes(part, "new", 3);
     assert_false(file_exists(path));
-    assert_int_equal(file_publish(&report, part, path), SONJECT_OK);
+    EXPECT_OK(&report, file_publish(&report, part, path));
     assert_true(file_exists(path));
     assert_false(file_exists(part));
     /* a part that is not there, and a name that a folder has: the part goes, the message names the
@@ -200,7 +200,7 @@ CLEAN(test_only_parts_of_dead_processes_are_tidied_away)
 static bool holds(const json_t *entry, const char *path, bool hashes_all)
 {
     bool is_same = false;
-    assert_int_equal(file_entry_holds(&report, entry, path, hashes_all, &is_same), SONJECT_OK);
+    EXPECT_OK(&report, file_entry_holds(&report, entry, path, hashes_all, &is_same));
     return is_same;
 }
 
@@ -229,7 +229,7 @@ CLEAN(test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too)
         json_t *entry;
         write_bytes(path, "", 0);
         assert_int_equal(truncate(path, sizes[i]), 0);
-        assert_int_equal(file_entry(&report, path, "image.tif", true, &entry), SONJECT_OK);
+        EXPECT_OK(&report, file_entry(&report, path, "image.tif", true, &entry));
         alter(path, true);
         assert_int_equal(holds(entry, path, false), is_large);
         assert_false(holds(entry, path, true));
@@ -258,9 +258,9 @@ CLEAN(test_a_list_of_files_reaches_nothing_outside_of_its_folder)
         json_t *list = json_array();
         json_t *entry;
         write_bytes(path, "", 0);
-        assert_int_equal(file_entry(&report, path, names[i], true, &entry), SONJECT_OK);
+        EXPECT_OK(&report, file_entry(&report, path, names[i], true, &entry));
         json_array_append_new(list, entry);
-        assert_int_equal(file_list_check(list, &report, folder->path, true, &changed), SONJECT_OK);
+        EXPECT_OK(&report, file_list_check(list, &report, folder->path, true, &changed));
         assert_string_equal(changed, names[i]);
         file_list_discard(list, NULL, folder->path);
         assert_true(file_exists(file_in("kept")));
@@ -271,8 +271,8 @@ CLEAN(test_a_list_of_files_reaches_nothing_outside_of_its_folder)
 CLEAN(test_folders_are_made_with_their_parents)
 {
     const char *path = file_in("a//b/c/");
-    assert_int_equal(folder_make(&report, path), SONJECT_OK);
-    assert_int_equal(folder_make(&report, path), SONJECT_OK);
+    EXPECT_OK(&report, folder_make(&report, path));
+    EXPECT_OK(&report, folder_make(&report, path));
     assert_true(file_exists(path));
     write_bytes(file_in("file"), "", 0);
     assert_int_equal(folder_make(&report, file_in("file")), SONJECT_ERROR_STORAGE);
@@ -298,7 +298,7 @@ CLEAN(test_sha256_is_that_of_the_standard)
     for (size_t i = 0; i < COUNT(cases); i++) {
         const char *path = file_in("file");
         write_bytes(path, cases[i].text, strlen(cases[i].text));
-        assert_int_equal(file_sha256(&report, path, digest), SONJECT_OK);
+        EXPECT_OK(&report, file_sha256(&report, path, digest));
         assert_string_equal(digest, cases[i].digest);
     }
     assert_int_equal(file_sha256(&report, file_in("absent"), digest), SONJECT_ERROR_STORAGE);

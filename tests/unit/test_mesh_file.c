@@ -353,9 +353,8 @@ TEST(test_units_and_axes)
     options.axes[0] = 1;
     options.axes[1] = -3;
     options.axes[2] = 2;
-    assert_int_equal(mesh_from_arrays(&report, "box", sample.positions, sample.vertices,
-                                      sample.corners, sample.triangles, &options, &mesh),
-                     SONJECT_OK);
+    EXPECT_OK(&report, mesh_from_arrays(&report, "box", sample.positions, sample.vertices,
+                                        sample.corners, sample.triangles, &options, &mesh));
     assert_true(fabs(mesh.centre_m[2] - 1000.0) < 1e-9);
     assert_true(fabs((double)mesh.upper_m[0] - 1.0e-3) < 1e-9);
     assert_true(fabs((double)mesh.upper_m[1] - 0.3e-3) < 1e-9);

@@ -247,9 +247,8 @@ TEST(test_crowded_vertex)
     struct mesh_options options;
     mesh_options_init(&options);
     options.smooth_angle_rad = 0.5;
-    assert_int_equal(mesh_from_arrays(&report, "cone", cone.positions, cone.vertices, cone.corners,
-                                      cone.triangles, &options, &mesh),
-                     SONJECT_OK);
+    EXPECT_OK(&report, mesh_from_arrays(&report, "cone", cone.positions, cone.vertices,
+                                        cone.corners, cone.triangles, &options, &mesh));
     assert_true(mesh.topology.is_closed);
     mesh_clear(&mesh);
     sample_clear(&cone);
@@ -263,9 +262,8 @@ TEST(test_normals)
     float *normals;
     sample_sphere(&sample, 5);
     struct mesh mesh = prepare(&sample);
-    assert_int_equal(mesh_smooth_normals(&report, mesh.vertices, mesh.vertex_count, mesh.corners,
-                                         mesh.triangle_count, 0.3, &normals),
-                     SONJECT_OK);
+    EXPECT_OK(&report, mesh_smooth_normals(&report, mesh.vertices, mesh.vertex_count, mesh.corners,
+                                           mesh.triangle_count, 0.3, &normals));
     double worst = 0.0;
     for (size_t i = 0; i < 3 * mesh.triangle_count; i++) {
         const float *vertex = &mesh.vertices[3 * (size_t)mesh.corners[i]];
@@ -281,10 +279,9 @@ TEST(test_normals)
     sample_box(&sample);
     mesh = prepare(&sample);
     for (int is_mixed = 0; is_mixed < 2; is_mixed++) {
-        assert_int_equal(mesh_smooth_normals(&report, mesh.vertices, mesh.vertex_count,
-                                             mesh.corners, mesh.triangle_count,
-                                             is_mixed ? 1.6 : 1.5, &normals),
-                         SONJECT_OK);
+        EXPECT_OK(&report,
+                  mesh_smooth_normals(&report, mesh.vertices, mesh.vertex_count, mesh.corners,
+                                      mesh.triangle_count, is_mixed ? 1.6 : 1.5, &normals));
         for (size_t i = 0; i < 36; i++) {
             float most = 0.0f;
             for (size_t axis = 0; axis < 3; axis++)

@@ -70,7 +70,7 @@ TEST(test_regions_hold_all_echoes_once)
 {
     struct multibounce multibounce;
     lay_echoes(&multibounce);
-    assert_int_equal(multibounce_find_regions(&multibounce, &report), SONJECT_OK);
+    EXPECT_OK(&report, multibounce_find_regions(&multibounce, &report));
     double cells = 0.0;
     for (size_t i = 0; i < multibounce.region_count; i++) {
         const struct multibounce_region *one = &multibounce.regions[i];
@@ -98,7 +98,7 @@ TEST(test_regions_are_read_whole)
 {
     struct multibounce multibounce;
     lay_echoes(&multibounce);
-    assert_int_equal(multibounce_find_regions(&multibounce, &report), SONJECT_OK);
+    EXPECT_OK(&report, multibounce_find_regions(&multibounce, &report));
     double real_sum = 0.0, imaginary_sum = 0.0;
     for (size_t i = 0; i < multibounce.region_count; i++) {
         const struct multibounce_region *region = &multibounce.regions[i];

@@ -146,7 +146,7 @@ CLEAN(test_limits)
     for (int i = 0; i < PROFILE_SAMPLES_MAX; i++)
         length += (size_t)sprintf(text + length, "%d,1500\n", i);
     struct profile_table table;
-    assert_int_equal(read_bytes(text, length, &table), SONJECT_OK);
+    EXPECT_OK(&report, read_bytes(text, length, &table));
     assert_int_equal(table.count, PROFILE_SAMPLES_MAX);
     profile_table_clear(&table);
     length += (size_t)sprintf(text + length, "%d,1500\n", PROFILE_SAMPLES_MAX);

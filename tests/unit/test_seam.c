@@ -55,8 +55,7 @@ static struct seam seam_with(enum flaw flaw, uint64_t seed)
         else if (influence[i] && flaw == FLAW_LEVEL)
             pixels[i] *= 1.122f;
     }
-    assert_int_equal(measure_seam(&report, pixels, influence, labels, ROWS, COLUMNS, &seam),
-                     SONJECT_OK);
+    EXPECT_OK(&report, measure_seam(&report, pixels, influence, labels, ROWS, COLUMNS, &seam));
     print_message("flaw %d: %.3f +- %.3f of %zu and %zu\n", (int)flaw, seam.auc, seam.error,
                   seam.patches, seam.background);
     free(pixels);
@@ -104,14 +103,12 @@ TEST(test_too_little)
     float *pixels = seabed(1.6, 1);
     uint8_t *influence = calloc(PIXELS, 1);
     assert_non_null(influence);
-    assert_int_equal(measure_seam(&report, pixels, influence, NULL, ROWS, COLUMNS, &seam),
-                     SONJECT_OK);
+    EXPECT_OK(&report, measure_seam(&report, pixels, influence, NULL, ROWS, COLUMNS, &seam));
     assert_true(isnan(seam.auc) && isnan(seam.error) && seam.patches == 0);
     memset(influence, 1, PIXELS);
-    assert_int_equal(measure_seam(&report, pixels, influence, NULL, ROWS, COLUMNS, &seam),
-                     SONJECT_OK);
+    EXPECT_OK(&report, measure_seam(&report, pixels, influence, NULL, ROWS, COLUMNS, &seam));
     assert_true(isnan(seam.auc) && seam.patches == 0);
-    assert_int_equal(measure_seam(&report, pixels, influence, NULL, 5, 7, &seam), SONJECT_OK);
+    EXPECT_OK(&report, measure_seam(&report, pixels, influence, NULL, 5, 7, &seam));
     assert_true(isnan(seam.auc));
     free(pixels);
     free(influence);

@@ -47,9 +47,8 @@ TEST(test_a_point_spreads_with_the_deviation_asked_for)
         float *point = make_map(rows, columns, 0.0f);
         float *mean = make_map(rows, columns, -1.0f);
         point[50 * columns + 70] = 1.0f;
-        assert_int_equal(local_mean(&report, point, rows, columns, deviations[test][0],
-                                    deviations[test][1], mean),
-                         SONJECT_OK);
+        EXPECT_OK(&report, local_mean(&report, point, rows, columns, deviations[test][0],
+                                      deviations[test][1], mean));
         double sum = 0.0;
         double row_variance = 0.0;
         double column_variance = 0.0;
@@ -137,7 +136,7 @@ TEST(test_a_bright_echo_leaves_no_trace)
     float *map = make_map(1, columns, 1e-6f);
     float *mean = make_map(1, columns, 0.0f);
     map[20] = 1e12f;
-    assert_int_equal(local_mean(&report, map, 1, columns, 1.0, 3.0, mean), SONJECT_OK);
+    EXPECT_OK(&report, local_mean(&report, map, 1, columns, 1.0, 3.0, mean));
     for (size_t i = 60; i < columns; i++)
         expect_near((double)mean[i], 1e-6, 1e-12);
     free(map);
@@ -183,8 +182,7 @@ static struct shadow_floor floor_of(const struct made_shadows *made)
             states[row * columns + i] = i < made->water;
             intensity[row * columns + i] = (float)(seabed * share) * speckle(&random);
         }
-    assert_int_equal(shadow_floor_find(&report, intensity, states, rows, columns, &found),
-                     SONJECT_OK);
+    EXPECT_OK(&report, shadow_floor_find(&report, intensity, states, rows, columns, &found));
     free(intensity);
     free(states);
     return found;
@@ -219,7 +217,7 @@ TEST(test_what_is_no_shadow_amid_the_seabed_tells_none)
 static double distance_of(const float *a, const float *b, size_t count)
 {
     double distance = -1.0;
-    assert_int_equal(histogram_distance(&report, a, b, count, &distance), SONJECT_OK);
+    EXPECT_OK(&report, histogram_distance(&report, a, b, count, &distance));
     return distance;
 }
 
@@ -269,9 +267,8 @@ static void add_seabed(double shape, double row_width, double column_width, uint
 static struct speckle_statistics measure(const float *intensity, const uint8_t *excluded)
 {
     struct speckle_statistics statistics;
-    assert_int_equal(
-        measure_speckle(&report, intensity, excluded, ROWS, COLUMNS, COLUMNS, &statistics),
-        SONJECT_OK);
+    EXPECT_OK(&report,
+              measure_speckle(&report, intensity, excluded, ROWS, COLUMNS, COLUMNS, &statistics));
     return statistics;
 }
 

@@ -36,10 +36,10 @@ static void write_sums(const char *place, struct sums_head head, const int64_t *
                        size_t count)
 {
     struct sums_writer writer;
-    assert_int_equal(sums_writer_begin(&writer, &report, NULL, place), SONJECT_OK);
-    assert_int_equal(sums_writer_sums(&writer, values, count), SONJECT_OK);
-    assert_int_equal(sums_writer_sums(&writer, sums, SUMS), SONJECT_OK);
-    assert_int_equal(sums_writer_publish(&writer, &head, &source), SONJECT_OK);
+    EXPECT_OK(&report, sums_writer_begin(&writer, &report, NULL, place));
+    EXPECT_OK(&report, sums_writer_sums(&writer, values, count));
+    EXPECT_OK(&report, sums_writer_sums(&writer, sums, SUMS));
+    EXPECT_OK(&report, sums_writer_publish(&writer, &head, &source));
     sums_writer_clear(&writer);
 }
 
@@ -70,7 +70,7 @@ static void expect_sums(const struct sums_file *file, uint64_t record, const int
 {
     struct collected all = {calloc(count, sizeof(int64_t)), 0};
     assert_non_null(all.values);
-    assert_int_equal(sums_file_runs(file, &report, record, count, collect, &all), SONJECT_OK);
+    EXPECT_OK(&report, sums_file_runs(file, &report, record, count, collect, &all));
     assert_memory_equal(all.values, values, count * sizeof *values);
     assert_int_equal(all.runs, runs);
     free(all.values);
@@ -89,7 +89,7 @@ CLEAN(test_what_is_written_is_read)
     write_sums(folder->path, head, values, many);
     assert_int_equal(count_entries(folder->path), 1);
     const char *path = file_in("shard-2-of-3-4-9.sums");
-    assert_int_equal(sums_file_open(&file, &report, path), SONJECT_OK);
+    EXPECT_OK(&report, sums_file_open(&file, &report, path));
     head.records = 2;
     assert_memory_equal(&file.head, &head, sizeof head);
     assert_string_equal(file.scene.path, source.path);
@@ -143,7 +143,7 @@ CLEAN(test_no_damage_goes_unseen)
     bytes[count] = 0;
     expect_refused(path, bytes, count + 1);
     write_bytes(path, bytes, count);
-    assert_int_equal(sums_file_open(&file, &report, path), SONJECT_OK);
+    EXPECT_OK(&report, sums_file_open(&file, &report, path));
     sums_file_close(&file);
     free(bytes);
     /* what is not there, and what is no file, is not damaged */
@@ -203,7 +203,7 @@ CLEAN(test_what_makes_no_sense_is_refused)
     struct sums_file file;
     struct draft draft = draft_of(sound);
     write_bytes(path, draft.bytes, draft.count);
-    assert_int_equal(sums_file_open(&file, &report, path), SONJECT_OK);
+    EXPECT_OK(&report, sums_file_open(&file, &report, path));
     assert_null(file.scene.text);
     sums_file_close(&file);
 
@@ -255,7 +255,7 @@ CLEAN(test_runs_stay_within_their_sums)
         add_block(&draft, BLOCK_SUMS, blocks[i], sizeof blocks[i]);
         add_block(&draft, BLOCK_HEAD, &head, sizeof head);
         write_bytes(path, draft.bytes, draft.count);
-        assert_int_equal(sums_file_open(&file, &report, path), SONJECT_OK);
+        EXPECT_OK(&report, sums_file_open(&file, &report, path));
         assert_int_equal(sums_file_runs(&file, &report, 0, 4, collect, &all),
                          i == 0 ? SONJECT_OK : SONJECT_ERROR_INPUT);
         assert_int_equal(all.runs, i == 0);
@@ -297,15 +297,15 @@ CLEAN(test_chains_cover_a_shard_once)
         struct sums_folder all;
         struct sums_chain chain;
         const char *path = file_in("work");
-        assert_int_equal(folder_make(&report, path), SONJECT_OK);
+        EXPECT_OK(&report, folder_make(&report, path));
         for (size_t k = 0; k < cases[i].count; k++) {
             const struct span_of_file *file = &cases[i].files[k];
             write_sums(path, head_of(2, 3, file->first, file->last, file->is_last), sums, SUMS);
         }
         write_sums(path, head_of(1, 3, 0, 99, true), sums, SUMS); /* another's */
-        assert_int_equal(sums_folder_read(&all, &report, path, 0, SIZE_MAX, false), SONJECT_OK);
+        EXPECT_OK(&report, sums_folder_read(&all, &report, path, 0, SIZE_MAX, false));
         assert_int_equal(all.count, cases[i].count + 1);
-        assert_int_equal(sums_chain_find(&chain, &report, &all, 2), SONJECT_OK);
+        EXPECT_OK(&report, sums_chain_find(&chain, &report, &all, 2));
         assert_int_equal(chain.next, cases[i].next);
         assert_int_equal(chain.count, cases[i].in_chain);
         assert_int_equal(chain.is_complete, cases[i].is_complete);
@@ -341,9 +341,9 @@ CLEAN(test_a_folder_gives_what_is_its_own)
     write_bytes(damaged, sums, sizeof sums);
     write_bytes(file_in("shard.sums.7-00.part.sums"), sums, sizeof sums);
     expect_folder(folder->path, 0, 1, false, SONJECT_OK, 1);
-    assert_int_equal(sums_folder_shards(&report, folder->path, 3, &shards), SONJECT_OK);
+    EXPECT_OK(&report, sums_folder_shards(&report, folder->path, 3, &shards));
     assert_int_equal(shards, 0);
-    assert_int_equal(sums_folder_shards(&report, folder->path, 1, &shards), SONJECT_OK);
+    EXPECT_OK(&report, sums_folder_shards(&report, folder->path, 1, &shards));
     assert_int_equal(shards, 3);
     /* what is damaged is refused; its own shard may drop it */
     expect_folder(folder->path, 0, SIZE_MAX, false, SONJECT_ERROR_INPUT, 1);
@@ -367,10 +367,10 @@ static sonject_status add_both(int64_t *total)
     struct trace_counts counts;
     const int64_t *added;
     memset(&counts, 0, sizeof counts);
-    assert_int_equal(sums_folder_read(&all, &report, folder->path, 0, SIZE_MAX, false), SONJECT_OK);
+    EXPECT_OK(&report, sums_folder_read(&all, &report, folder->path, 0, SIZE_MAX, false));
     assert_int_equal(all.count, 2);
     const struct sums_file *files[] = {&all.files[0], &all.files[1]};
-    assert_int_equal(checkpoint_begin_adding(&checkpoint, &report, files, 2), SONJECT_OK);
+    EXPECT_OK(&report, checkpoint_begin_adding(&checkpoint, &report, files, 2));
     sonject_status status = checkpoint_sums(&checkpoint, NULL, 2, &added);
     if (status == SONJECT_OK) {
         memcpy(total, added, 2 * sizeof *total);
@@ -404,9 +404,9 @@ CLEAN(test_only_what_goes_together_is_added_up)
     struct trace_counts counts;
     struct sums_file file;
     memset(&counts, 0, sizeof counts);
-    assert_int_equal(sums_file_open(&file, &report, file_in("shard-1-of-2-0-9.sums")), SONJECT_OK);
+    EXPECT_OK(&report, sums_file_open(&file, &report, file_in("shard-1-of-2-0-9.sums")));
     const struct sums_file *files[] = {&file};
-    assert_int_equal(checkpoint_begin_adding(&checkpoint, &report, files, 1), SONJECT_OK);
+    EXPECT_OK(&report, checkpoint_begin_adding(&checkpoint, &report, files, 1));
     checkpoint.record = 2;
     assert_int_equal(checkpoint_finish(&checkpoint, &counts), SONJECT_ERROR_INPUT);
     assert_non_null(strstr(report.message, "traced other rays"));
@@ -417,12 +417,12 @@ CLEAN(test_only_what_goes_together_is_added_up)
     assert_non_null(hash);
     hash_end(hash, nothing);
     strcpy(file.head.launches, nothing);
-    assert_int_equal(checkpoint_begin_adding(&checkpoint, &report, files, 1), SONJECT_OK);
+    EXPECT_OK(&report, checkpoint_begin_adding(&checkpoint, &report, files, 1));
     assert_int_equal(checkpoint_finish(&checkpoint, &counts), SONJECT_ERROR_INPUT);
     checkpoint_clear(&checkpoint);
-    assert_int_equal(checkpoint_begin_adding(&checkpoint, &report, files, 1), SONJECT_OK);
+    EXPECT_OK(&report, checkpoint_begin_adding(&checkpoint, &report, files, 1));
     checkpoint.record = 2;
-    assert_int_equal(checkpoint_finish(&checkpoint, &counts), SONJECT_OK);
+    EXPECT_OK(&report, checkpoint_finish(&checkpoint, &counts));
     assert_int_equal(counts.rays, 100);
     checkpoint_clear(&checkpoint);
     sums_file_close(&file);
