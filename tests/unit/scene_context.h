@@ -25,4 +25,14 @@ static void set(sonject_scene *scene, const char *key, const char *value)
     EXPECT_OK(&context->report, sonject_scene_set(scene, key, value));
 }
 
+/* A scene of a text, as of a file of that name, which may be NULL. */
+static sonject_scene *read_text(const char *path, const char *text)
+{
+    sonject_scene *scene = NULL;
+    const sonject_scene_read_params params = {
+        .struct_size = sizeof params, .text = text, .allows_user_shapes = 1};
+    EXPECT_OK(&context->report, sonject_scene_read(context, path, &params, &scene));
+    return scene;
+}
+
 #endif

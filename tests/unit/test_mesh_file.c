@@ -5,9 +5,8 @@
 #include "claims.h"
 #include "kernel/mesh_samples.h"
 #include "mesh_arrays.h"
-#include "temporary_folder.h"
 
-static struct report report;
+#include "clean_folder.h"
 
 /* ---- files as bytes in memory ---- */
 
@@ -162,14 +161,14 @@ static struct draft write_format(enum format format, const struct mesh_sample *s
 
 /* ---- files that are read, or end too soon ---- */
 
-static sonject_status load(struct temporary_folder *folder, const char *name, const void *bytes,
-                           size_t count, struct mesh *mesh)
+static sonject_status load(const char *name, const void *bytes, size_t count, struct mesh *mesh)
 {
     struct mesh_options options;
     mesh_options_init(&options);
     report.message[0] = '\0';
-    write_bytes(temporary_file(folder, name), bytes, count);
-    return mesh_load(&report, folder->file, &options, mesh);
+    const char *path = file_in(name);
+    write_bytes(path, bytes, count);
+    return mesh_load(&report, path, &options, mesh);
 }
 
 TEST(test_formats)
@@ -179,7 +178,7 @@ TEST(test_formats)
     for (int format = 0; format < FORMATS; format++) {
         struct draft draft = write_format((enum format)format, &sample);
         struct mesh mesh;
-        EXPECT_OK(&report, load(*state, draft_names[format], draft.bytes, draft.count, &mesh));
+        EXPECT_OK(&report, load(draft_names[format], draft.bytes, draft.count, &mesh));
         assert_int_equal(mesh.triangle_count, 512);
         assert_int_equal(mesh.vertex_count, 258); /* closed: 2 + triangles / 2 */
         assert_true(mesh.topology.is_closed);
@@ -241,11 +240,10 @@ TEST(test_cut_short)
     sample_clear(&sample);
 }
 
-static void expect_refusal(struct temporary_folder *folder, const char *name, const void *bytes,
-                           size_t count, const char *message)
+static void expect_refusal(const char *name, const void *bytes, size_t count, const char *message)
 {
     struct mesh mesh;
-    const sonject_status status = load(folder, name, bytes, count, &mesh);
+    const sonject_status status = load(name, bytes, count, &mesh);
     if (status != SONJECT_ERROR_INPUT || !strstr(report.message, message))
         fail_msg("%s: status %d, '%s' lacks '%s'", name, (int)status, report.message, message);
     assert_null(mesh.vertices);
@@ -267,19 +265,19 @@ TEST(test_wrong_binary_files)
     struct draft draft = write_format(STL_BINARY, &sample);
     for (size_t i = 0; i < COUNT(headers); i++) {
         memcpy(draft.bytes + 80, headers[i].number, 4);
-        expect_refusal(*state, "a.stl", draft.bytes,
-                       headers[i].bytes ? headers[i].bytes : draft.count, headers[i].message);
+        expect_refusal("a.stl", draft.bytes, headers[i].bytes ? headers[i].bytes : draft.count,
+                       headers[i].message);
     }
     free(draft.bytes);
     draft = write_format(PLY_LITTLE, &sample);
-    expect_refusal(*state, "a.ply", draft.bytes, draft.count + 1, "more than its header says");
+    expect_refusal("a.ply", draft.bytes, draft.count + 1, "more than its header says");
     free(draft.bytes);
     sample.positions[9] = NAN;
     draft = write_format(STL_BINARY, &sample);
-    expect_refusal(*state, "a.stl", draft.bytes, draft.count, "not a finite number");
+    expect_refusal("a.stl", draft.bytes, draft.count, "not a finite number");
     free(draft.bytes);
     draft = write_format(PLY_BIG, &sample);
-    expect_refusal(*state, "a.ply", draft.bytes, draft.count, "vertex 4: a coordinate is not");
+    expect_refusal("a.ply", draft.bytes, draft.count, "vertex 4: a coordinate is not");
     free(draft.bytes);
     sample_clear(&sample);
 }
@@ -325,15 +323,14 @@ TEST(test_bad_content)
          "cut short"},
     };
     for (size_t i = 0; i < COUNT(cases); i++)
-        expect_refusal(*state, cases[i].name, cases[i].text, strlen(cases[i].text),
-                       cases[i].message);
+        expect_refusal(cases[i].name, cases[i].text, strlen(cases[i].text), cases[i].message);
     static const char polygon[] = "v 0 0 0\nv 2 0 0\nv 3 1 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4 5\n";
     struct mesh mesh;
-    EXPECT_OK(&report, load(*state, "a.obj", polygon, sizeof polygon - 1, &mesh)); /* a fan */
+    EXPECT_OK(&report, load("a.obj", polygon, sizeof polygon - 1, &mesh)); /* a fan */
     assert_int_equal(mesh.triangle_count, 3);
     assert_int_equal(mesh.topology.open_edges, 5);
     mesh_clear(&mesh);
-    assert_int_equal(load(*state, "a.glb", "glTF", 4, &mesh), SONJECT_ERROR_UNSUPPORTED);
+    assert_int_equal(load("a.glb", "glTF", 4, &mesh), SONJECT_ERROR_UNSUPPORTED);
     assert_non_null(strstr(report.message, "a.glb: meshes are read from STL, OBJ and PLY"));
     struct mesh_options options;
     mesh_options_init(&options);
@@ -464,16 +461,16 @@ static void expect_sound(const struct mesh *mesh)
     assert_int_equal(found, mesh->triangle_count);
 }
 
-static sonject_status expect_taken_or_explained(struct temporary_folder *folder, const char *name,
-                                                const char *bytes, size_t count)
+static sonject_status expect_taken_or_explained(const char *name, const char *bytes, size_t count)
 {
     struct mesh_options options;
     struct mesh mesh;
     mesh_options_init(&options);
     options.smooth_angle_rad = 0.5;
-    write_bytes(temporary_file(folder, name), bytes, count);
+    const char *path = file_in(name);
+    write_bytes(path, bytes, count);
     const long before = begin_counting();
-    const sonject_status status = mesh_load(&report, folder->file, &options, &mesh);
+    const sonject_status status = mesh_load(&report, path, &options, &mesh);
     if (status == SONJECT_OK) {
         expect_sound(&mesh);
         mesh_clear(&mesh);
@@ -485,7 +482,7 @@ static sonject_status expect_taken_or_explained(struct temporary_folder *folder,
         assert_int_equal(mesh.triangle_count, 0);
     }
     expect_bounded(before, count);
-    assert_int_equal(unlink(folder->file), 0); /* to write it anew is slower */
+    assert_int_equal(unlink(path), 0); /* to write it anew is slower */
     return status;
 }
 
@@ -504,7 +501,7 @@ TEST(test_dense_files)
         fprintf(out, "\n");
         assert_int_equal(fclose(out), 0);
         const sonject_status status =
-            expect_taken_or_explained(*state, "dense.obj", draft.bytes, draft.count);
+            expect_taken_or_explained("dense.obj", draft.bytes, draft.count);
         assert_int_equal(status, kind == 0 ? SONJECT_ERROR_INPUT : SONJECT_OK);
         free(draft.bytes);
     }
@@ -530,11 +527,10 @@ TEST(test_promises)
                 for (int byte = 0; byte < 500; byte++)
                     fputs(format == 0 ? "1 " : "\1", out);
                 assert_int_equal(fclose(out), 0);
-                assert_int_equal(
-                    expect_taken_or_explained(*state, "promise.ply", draft.bytes, draft.count),
-                    SONJECT_ERROR_INPUT);
+                assert_int_equal(expect_taken_or_explained("promise.ply", draft.bytes, draft.count),
+                                 SONJECT_ERROR_INPUT);
                 free(draft.bytes);
             }
 }
 
-TEST_PROGRAM(make_temporary_folder, remove_temporary_folder)
+TEST_PROGRAM(begin, remove_temporary_folder)

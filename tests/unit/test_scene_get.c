@@ -12,14 +12,7 @@
     "  channel: 1, calibration: auto, path: a.npy}\n"                                              \
     "sonar: {frequency: 100 kHz, bandwidth: 30e3, altitude: \"10 m\"}\n"
 
-/* A scene of the text's file, named after a folder that is not there. */
-static sonject_scene *read_text(const char *text)
-{
-    sonject_scene *scene = NULL;
-    const sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
-    EXPECT_OK(&context->report, sonject_scene_read(context, "away/scene.yaml", &params, &scene));
-    return scene;
-}
+#define AWAY "away/scene.yaml" /* a folder that is not there */
 
 static void expect(const sonject_scene *scene, const char *key, const char *expected)
 {
@@ -61,7 +54,7 @@ TEST(values_are_numbers_texts_sections_and_lists)
         {"bands.low", "{sonar: {frequency: 10 kHz}}", "{\"sonar\": {\"frequency\": 10000.0}}"},
     };
     for (size_t i = 0; i < COUNT(cases); i++) {
-        sonject_scene *scene = read_text(HEAD);
+        sonject_scene *scene = read_text(AWAY, HEAD);
         set(scene, "objects[0]", "{}");
         if (strstr(cases[i].key, "relief"))
             set(scene, "seabed.relief[0]", "{}");
@@ -89,7 +82,7 @@ TEST(the_whole_is_in_the_order_of_the_text)
 TEST(a_table_in_memory_is_told_by_its_numbers)
 {
     static const double values[] = {0, 0.1, 1, 2e-4};
-    sonject_scene *scene = read_text(HEAD);
+    sonject_scene *scene = read_text(AWAY, HEAD);
     EXPECT_OK(&context->report, sonject_scene_set_table(scene, "sonar.motion.file",
                                                         "along_track_m, sway_m", values, 2, 2));
     expect(scene, "sonar.motion",
@@ -106,7 +99,7 @@ TEST(a_table_in_memory_is_told_by_its_numbers)
 TEST(keys_that_are_none_are_refused)
 {
     char *json = "set before";
-    sonject_scene *scene = read_text(HEAD);
+    sonject_scene *scene = read_text(AWAY, HEAD);
     assert_int_equal(sonject_scene_get(scene, "sonar.altitud", &json), SONJECT_ERROR_INPUT);
     assert_null(json);
     assert_string_equal(sonject_context_message(context),
@@ -122,7 +115,7 @@ TEST(names_of_files_are_absolute)
 {
     char folder[1024], expected[1100];
     char *text = NULL;
-    sonject_scene *scene = read_text(HEAD);
+    sonject_scene *scene = read_text(AWAY, HEAD);
     assert_non_null(getcwd(folder, sizeof folder));
     snprintf(expected, sizeof expected, "\"%s/away/a.npy\"", folder);
     expect(scene, "input.path", expected);

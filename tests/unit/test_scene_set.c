@@ -14,15 +14,6 @@
     "input: {geometry: {row_spacing: 0.1, column_spacing: 0.1, first_slant_range: 40}}\n"          \
     "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
 
-static sonject_scene *read_text(const char *text)
-{
-    sonject_scene *scene = NULL;
-    sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
-    params.allows_user_shapes = 1;
-    EXPECT_OK(&context->report, sonject_scene_read(context, NULL, &params, &scene));
-    return scene;
-}
-
 static const struct scene *use(const sonject_scene *scene)
 {
     const struct scene *used = NULL;
@@ -60,13 +51,14 @@ TEST(a_scene_that_is_set_is_that_of_a_text_that_says_so)
     set(scene, "objects[1]", "{shape: sphere, diameter: 1}");
     set(scene, "objects[0]", "{\"shape\": \"sphere\", \"diameter\": 0.5}");
     set(scene, "objects[0].heading", "0.1 rad");
-    expect_same(scene, read_text(HEAD "objects:\n  - {shape: sphere, diameter: 0.5, heading: 0.1 "
-                                      "rad}\n  - {shape: sphere, diameter: 1}\n"));
+    expect_same(scene,
+                read_text(NULL, HEAD "objects:\n  - {shape: sphere, diameter: 0.5, heading: 0.1 "
+                                     "rad}\n  - {shape: sphere, diameter: 1}\n"));
 }
 
 TEST(what_is_set_replaces_what_was_used_before)
 {
-    sonject_scene *scene = read_text(HEAD);
+    sonject_scene *scene = read_text(NULL, HEAD);
     assert_true(use(scene)->input_kind == SONJECT_INPUT_MEMORY);
     set(scene, "sonar.altitude", "0.1000000000000000055511151231257827");
     assert_true(use(scene)->sonar.altitude_m == 0.1);
@@ -109,7 +101,7 @@ TEST(keys_that_are_none_are_refused_at_once)
         {"", "3", NULL},
         {"objects[0]", "{shape: ", NULL},
     };
-    sonject_scene *scene = read_text(HEAD "objects: [{shape: sphere, diameter: 1}]\n");
+    sonject_scene *scene = read_text(NULL, HEAD "objects: [{shape: sphere, diameter: 1}]\n");
     for (size_t i = 0; i < COUNT(cases); i++) {
         assert_int_equal(sonject_scene_set(scene, cases[i].key, cases[i].value),
                          SONJECT_ERROR_INPUT);
@@ -118,13 +110,14 @@ TEST(keys_that_are_none_are_refused_at_once)
     }
     assert_int_equal(sonject_scene_set(scene, NULL, "3"), SONJECT_ERROR_ARGUMENT);
     set(scene, "objects[1]", "{shape: sphere, diameter: 2}");
-    expect_same(scene, read_text(HEAD "objects: [{shape: sphere, diameter: 1}, {shape: sphere, "
-                                      "diameter: 2}]\n"));
+    expect_same(scene,
+                read_text(NULL, HEAD "objects: [{shape: sphere, diameter: 1}, {shape: sphere, "
+                                     "diameter: 2}]\n"));
 }
 
 TEST(values_are_checked_by_the_call_that_uses_the_scene)
 {
-    sonject_scene *scene = read_text(HEAD);
+    sonject_scene *scene = read_text(NULL, HEAD);
     uint32_t count;
     set(scene, "sonar.altitude", "-3 m");
     set(scene, "surface.depth", "ten");
@@ -148,14 +141,15 @@ TEST(a_target_is_that_of_a_file_and_its_code_needs_consent)
     sonject_scene *careful = NULL;
     sonject_scene_read_params params = {.struct_size = sizeof params, .text = HEAD};
     uint32_t count;
-    sonject_scene *scene = read_text(HEAD);
+    sonject_scene *scene = read_text(NULL, HEAD);
     set(scene, "objects[0]",
         "{target: " SOURCE_ROOT "/tools/targets/crab_pot_frame.yaml, burial: {fraction: 0.25}}");
     set(scene, "objects[1]", relief);
-    expect_same(scene, read_text(HEAD "objects:\n  - {target: " SOURCE_ROOT
-                                      "/tools/targets/crab_pot_frame.yaml, burial: {fraction: "
-                                      "0.25}}\n  - {target: " SOURCE_ROOT
-                                      "/tools/targets/boulder_relief.yaml}\n"));
+    expect_same(scene,
+                read_text(NULL, HEAD "objects:\n  - {target: " SOURCE_ROOT
+                                     "/tools/targets/crab_pot_frame.yaml, burial: {fraction: "
+                                     "0.25}}\n  - {target: " SOURCE_ROOT
+                                     "/tools/targets/boulder_relief.yaml}\n"));
     EXPECT_OK(&context->report, sonject_scene_read(context, NULL, &params, &careful));
     set(careful, "objects[0]", relief);
     assert_int_equal(sonject_scene_object_count(careful, &count), SONJECT_ERROR_INPUT);
@@ -165,12 +159,12 @@ TEST(a_target_is_that_of_a_file_and_its_code_needs_consent)
 TEST(the_text_of_a_scene_is_the_scene)
 {
     char *text = NULL;
-    sonject_scene *scene = read_text(HEAD);
+    sonject_scene *scene = read_text(NULL, HEAD);
     set(scene, "objects[0]",
         "{name: \"a \\\"b\\\"\", shape: user, user: {bounding_radius: 1, code: \"" CODE "\"}}");
     set(scene, "objects[0].position", "{row: 3, column: 4}");
     EXPECT_OK(&context->report, sonject_scene_text(scene, &text));
-    expect_same(scene, read_text(text));
+    expect_same(scene, read_text(NULL, text));
     sonject_text_release(&text);
 }
 
@@ -212,7 +206,7 @@ TEST(a_table_in_memory_is_that_of_a_file)
         assert_int_equal(fclose(file), 0);
         sonject_scene *scenes[2];
         for (int k = 0; k < 2; k++) {
-            scenes[k] = read_text(HEAD);
+            scenes[k] = read_text(NULL, HEAD);
             if (cases[i].beside)
                 set(scenes[k], cases[i].beside, cases[i].value);
         }
@@ -229,7 +223,7 @@ TEST(a_table_in_memory_is_that_of_a_file)
 TEST(heights_in_memory_are_a_relief)
 {
     static const double heights[] = {0.1f, 0.2f, 0.3f, 0, 0, 0.25};
-    sonject_scene *scene = read_text(HEAD);
+    sonject_scene *scene = read_text(NULL, HEAD);
     set(scene, "seabed.relief[0].heights",
         "{unit: m, row_spacing: 2, column_spacing: 3, first_ground_range: 40}");
     EXPECT_OK(&context->report,
@@ -260,7 +254,7 @@ TEST(tables_that_are_none_are_refused)
          "medium.profile.file, given as an array:1: sound_speed_mps: must be 100...10000"},
     };
     for (size_t i = 0; i < COUNT(cases); i++) {
-        sonject_scene *scene = read_text(HEAD);
+        sonject_scene *scene = read_text(NULL, HEAD);
         uint32_t count;
         const sonject_status status =
             sonject_scene_set_table(scene, cases[i].key, cases[i].columns, values, 4, 2);
