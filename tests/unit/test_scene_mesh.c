@@ -165,8 +165,6 @@ TEST(test_what_is_refused)
         {SCENE "  - shape: mesh\n", ":5:5: objects[0].mesh: missing; a mesh needs it"},
         {SCENE "  - {shape: sphere, diameter: 1, mesh: corner.obj}\n",
          ":5:40: objects[0].mesh: a sphere has none; remove it"},
-        {SCENE "  - {mesh: corner.obj}\n",
-         ":5:5: objects[0]: none of shape, parts and target is there; give one"},
         {SCENE "  - {shape: mesh, mesh: corner.obj, length: 1}\n",
          ":5:45: objects[0].length: a mesh has none; remove it"},
         {MESH("{unit: mm}"), ":6:11: objects[0].mesh.file: missing; add it (of triangles: STL, OBJ "

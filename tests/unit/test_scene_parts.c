@@ -259,9 +259,6 @@ TEST(test_scenes_that_name_targets_wrongly)
     expect_scene_refused(OBJECT "target: target.yaml\n    diameter: 1\n",
                          ":6:15: objects[0].diameter: the target's file tells the shape; remove "
                          "it");
-    expect_scene_refused(OBJECT "target: target.yaml\n    shape: sphere\n",
-                         ":5:5: objects[0]: more than one of shape, parts and target is there; "
-                         "give one");
     expect_scene_refused(OBJECT "target: target.yaml\n    parts: [{shape: disc, diameter: 1}]\n",
                          ":5:5: objects[0]: more than one of shape, parts and target is there; "
                          "give one");
