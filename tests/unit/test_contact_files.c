@@ -228,6 +228,8 @@ WITH_LABELS(test_tables_that_are_wrong)
         {"image,row,box_row,column,rows,part\n",
          "%/l.csv:1: box_column: there is no such column; there must be image, row, column, rows, "
          "columns, or those of sonject's contacts.csv"},
+        {"image,row,column,rows,columns,row\n",
+         "%/l.csv:1: row: two columns of this name; rename one"},
         {T "a.npy,1,2,3,,\n", "%/l.csv:2: columns: '' is not a number"},
         {T "a.npy,,,,,\n", "%/l.csv:2: row: '' is not a number"},
         {T "a.npy,1,2 m,3,4,\n", "%/l.csv:2: column: '2 m' is not a number"},
