@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <sys/stat.h>
 
+#include "fault/faults.h"
 #include "swath/raster_file.h"
 #include "swath/swath_file.h"
 #include "unit/temporary_folder.h"
@@ -12,10 +13,8 @@
 #define SIDE       16
 #define MARK_ERROR 0x20 /* _IO_ERR_SEEN of glibc, whose call this is */
 
-size_t __real_fread(void *bytes, size_t size, size_t count, FILE *file);
-size_t __wrap_fread(void *bytes, size_t size, size_t count, FILE *file);
-ssize_t __real_read(int descriptor, void *bytes, size_t count);
-ssize_t __wrap_read(int descriptor, void *bytes, size_t count);
+WRAPPED(size_t, fread, void *bytes, size_t size, size_t count, FILE *file);
+WRAPPED(ssize_t, read, int descriptor, void *bytes, size_t count);
 
 static long calls, due; /* 0: none fails */
 
