@@ -1,5 +1,5 @@
-/* Pictures: size, grey levels, colours, ticks and text. The drawn panels are found by their frames,
- * so that margins may change. */
+/* Pictures: size, grey levels, colours, ticks and text. The drawn panels are where they are told to
+ * be, within their frames, so that margins may change. */
 #include "claims.h"
 #include "image/canvas.h"
 #include "image/plot.h"
@@ -30,27 +30,6 @@ static bool is_frame(uint32_t x, uint32_t y)
     return pixel[0] == FRAME_GREY && pixel[1] == FRAME_GREY && pixel[2] == FRAME_GREY;
 }
 
-/* The topmost line of frame colour is the first panel's upper edge: no tick or text has it and lies
- * above. */
-static void find_first_panel(void)
-{
-    uint32_t x = 0;
-    uint32_t y = 0;
-    while (!is_frame(x, y)) {
-        if (++x == picture.width) {
-            x = 0;
-            y++;
-        }
-        assert_true(y < picture.height);
-    }
-    picture.x = x + 1;
-    picture.y = y + 1;
-    for (picture.panel_width = 0; is_frame(picture.x + picture.panel_width + 1, y);)
-        picture.panel_width++;
-    for (picture.panel_height = 0; is_frame(x, picture.y + picture.panel_height + 1);)
-        picture.panel_height++;
-}
-
 static void draw(const struct plot_frame *frame, const struct plot_panel *panels, uint32_t count)
 {
     struct report report;
@@ -62,14 +41,21 @@ static void draw(const struct plot_frame *frame, const struct plot_panel *panels
                                  &picture.width, places),
                      SONJECT_OK);
     assert_non_null(picture.rgb);
-    find_first_panel();
+    picture.x = places[0].left;
+    picture.y = places[0].top;
+    picture.panel_height = places[0].height;
+    picture.panel_width = places[0].width;
     for (uint32_t i = 0; i < count; i++) {
+        const uint32_t left = places[i].left - 1, right = places[i].left + picture.panel_width;
+        const uint32_t top = picture.y - 1, bottom = picture.y + picture.panel_height;
         assert_int_equal(places[i].top, picture.y);
         assert_int_equal(places[i].width, picture.panel_width);
         assert_int_equal(places[i].height, picture.panel_height);
-        assert_true(is_frame(places[i].left - 1, picture.y));
+        for (uint32_t x = left; x <= right; x++)
+            assert_true(is_frame(x, top) && is_frame(x, bottom));
+        assert_true(!is_frame(left - 1, top) && !is_frame(right + 1, top));
+        assert_true(is_frame(left, bottom) && is_frame(right, picture.y));
     }
-    assert_int_equal(places[0].left, picture.x);
 }
 
 static void draw_one(const struct plot_frame *frame)
