@@ -50,16 +50,10 @@ TEST(test_numbers_become_heights)
     };
     for (size_t type = 0; type < COUNT(types); type++) {
         const struct raster_layout layout = {ROWS, COLUMNS, 1, types[type]};
-        uint8_t bytes[ROWS * COLUMNS];
-        uint16_t words[ROWS * COLUMNS];
-        float floats[ROWS * COLUMNS];
-        const void *const pixels[] = {bytes, words, floats};
-        for (size_t i = 0; i < COUNT(numbers); i++) {
-            bytes[i] = (uint8_t)numbers[i];
-            words[i] = (uint16_t)numbers[i];
-            floats[i] = (float)numbers[i];
-        }
-        write_heights(&layout, pixels[type]);
+        float pixels[ROWS * COLUMNS]; /* room for any type's */
+        for (size_t i = 0; i < COUNT(numbers); i++)
+            assert_true(pixel_store(types[type], pixels, i, numbers[i]));
+        write_heights(&layout, pixels);
         for (size_t i = 0; i < COUNT(cases); i++) {
             float heights[ROWS * COLUMNS];
             for (size_t j = 0; j < COUNT(numbers); j++)
