@@ -4,6 +4,7 @@
 #include "claims.h"
 #include "fan.h"
 #include "reference_solids.h"
+#include "scene/placement.h"
 #include "scene/shapes/shape.h"
 
 #define RAYS 16000 /* 20 at each of 800 solids: what fails for one in a hundred is met 8 times */
@@ -36,15 +37,10 @@ static void random_sizes(sonject_object_params *params, const struct solid_row *
 static void turn_at_random(struct object_record *record)
 {
     const double heading = uniform(-PI, PI), pitch = uniform(-1.5, 1.5), roll = uniform(-PI, PI);
-    const double cp = cos(pitch), sp = sin(pitch);
-    const double nose[3] = {cos(heading) * cp, sin(heading) * cp, sp};
-    const double side[3] = {-sin(heading), cos(heading), 0.0};
-    const double up[3] = {-cos(heading) * sp, -sin(heading) * sp, cp};
-    for (int i = 0; i < 3; i++) {
-        record->axes[i] = (float)nose[i];
-        record->axes[3 + i] = (float)(side[i] * cos(roll) + up[i] * sin(roll));
-        record->axes[6 + i] = (float)(up[i] * cos(roll) - side[i] * sin(roll));
-    }
+    double axes[3][3];
+    turn_axes(axes, heading, pitch, roll);
+    for (int i = 0; i < 9; i++)
+        record->axes[i] = (float)axes[i / 3][i % 3];
 }
 
 static void make_record(struct solid *solid, double reach)

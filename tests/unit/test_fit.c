@@ -52,7 +52,6 @@ TEST(draws_reach_what_made_the_contacts)
     const struct draws_of_world hidden = {{-0.3, -1.0, -1.5, 13.0, -14.0},
                                           {0.4, 0.4, 0.5, 5.0, 0.0}};
     struct draws_of_world now = {{0.3, -0.6, -0.8, 30.0, -22.0}, {0.6, 0.4, 0.5, 3.0, 0.0}};
-    struct report report = {.message = ""};
     static struct drawn_contact made[ROUNDS * CONTACTS];
     static struct contact_extents real[CONTACTS];
     struct quantile_goal goals[EXTENT_KINDS];
@@ -62,7 +61,7 @@ TEST(draws_reach_what_made_the_contacts)
         show(&hidden, 1, i, &contact);
         real[i] = contact.shown;
     }
-    EXPECT_OK(&report, quantile_goals(&report, real, CONTACTS, goals));
+    EXPECT_OK(&folder->report, quantile_goals(&folder->report, real, CONTACTS, goals));
     assert_int_equal(goals[EXTENT_SHADOW_ALONG].levels, 9);
     assert_int_equal(goals[EXTENT_AXIS_LENGTH].levels, 0); /* nobody shows it */
     for (uint32_t round = 0; round < ROUNDS; round++) {
@@ -72,7 +71,7 @@ TEST(draws_reach_what_made_the_contacts)
             show(&now, 10 + round, i, &made[round * CONTACTS + i]);
             made[round * CONTACTS + i].round = round;
         }
-        EXPECT_OK(&report, fit_moves(&report, made, count, goals, &prior, moves));
+        EXPECT_OK(&folder->report, fit_moves(&folder->report, made, count, goals, &prior, moves));
         for (size_t k = 0; k < FITTED_KINDS; k++) {
             prior.shift[k] += moves[k].shift;
             prior.stretch[k] += log(moves[k].stretch);
@@ -94,18 +93,19 @@ TEST(draws_reach_what_made_the_contacts)
     assert_true(fabs(now.half[FITTED_LEVEL] - 5.0) < 1.0);
 }
 
+static const struct draws_of_world world = {{0.0, 0.0, -1.0, 10.0, -15.0},
+                                            {0.5, 0.5, 0.5, 5.0, 0.0}};
+static const struct move_prior unmoved = {.contacts = CONTACTS};
+
 /* How far heights are moved where copies of one extent ask for 0.2 more and another one for none.
  */
 static double move_by_copies(size_t copies)
 {
     static const enum extent alike[] = {EXTENT_SHADOW_HEIGHT, EXTENT_AXIS_LENGTH, EXTENT_AXIS_WIDTH,
                                         EXTENT_HIGHLIGHT_ROWS};
-    const struct draws_of_world world = {{0.0, 0.0, -1.0, 10.0, -15.0}, {0.5, 0.5, 0.5, 5.0, 0.0}};
     static struct drawn_contact made[CONTACTS];
     static struct contact_extents real[CONTACTS];
-    struct report report = {.message = ""};
     struct quantile_goal goals[EXTENT_KINDS];
-    const struct move_prior prior = {.contacts = CONTACTS};
     struct draw_move moves[FITTED_KINDS];
     for (uint64_t i = 0; i < CONTACTS; i++) {
         show(&world, 1, i, &made[i]);
@@ -120,8 +120,8 @@ static double move_by_copies(size_t copies)
         }
         made[i].round = 0;
     }
-    EXPECT_OK(&report, quantile_goals(&report, real, CONTACTS, goals));
-    EXPECT_OK(&report, fit_moves(&report, made, CONTACTS, goals, &prior, moves));
+    EXPECT_OK(&folder->report, quantile_goals(&folder->report, real, CONTACTS, goals));
+    EXPECT_OK(&folder->report, fit_moves(&folder->report, made, CONTACTS, goals, &unmoved, moves));
     return moves[FITTED_HEIGHT].shift;
 }
 
@@ -140,12 +140,9 @@ TEST(copies_of_an_extent_count_little)
  * alone are no sample. */
 TEST(rounds_are_compared_whole)
 {
-    const struct draws_of_world world = {{0.0, 0.0, -1.0, 10.0, -15.0}, {0.5, 0.5, 0.5, 5.0, 0.0}};
     static struct drawn_contact made[2 * CONTACTS];
     static struct contact_extents real[CONTACTS];
-    struct report report = {.message = ""};
     struct quantile_goal goals[EXTENT_KINDS];
-    const struct move_prior prior = {.contacts = CONTACTS};
     struct draw_move moves[FITTED_KINDS];
     for (uint64_t i = 0; i < CONTACTS; i++) {
         struct drawn_contact *old = &made[i], *now = &made[CONTACTS + i];
@@ -159,8 +156,9 @@ TEST(rounds_are_compared_whole)
                             0.4 * (now->drawn[k] - world.centre[k] - world.half[k]);
         old->round = 0;
     }
-    EXPECT_OK(&report, quantile_goals(&report, real, CONTACTS, goals));
-    EXPECT_OK(&report, fit_moves(&report, made, (size_t)2 * CONTACTS, goals, &prior, moves));
+    EXPECT_OK(&folder->report, quantile_goals(&folder->report, real, CONTACTS, goals));
+    EXPECT_OK(&folder->report,
+              fit_moves(&folder->report, made, (size_t)2 * CONTACTS, goals, &unmoved, moves));
     for (size_t k = 0; k < FITTED_LEVEL; k++) {
         print_message("%zu: %.4f\n", k, moves[k].shift);
         assert_true(fabs(moves[k].shift) < 0.01);

@@ -1,8 +1,8 @@
 /* Synthetic seabeds against the statistics that they promise. Tolerances are five standard errors:
  * with N independent cells an average of the intensity has the relative standard error 1 / sqrt(N),
  * a correlation 1 / sqrt(N). Seeds are fixed, so that a pass stays a pass. */
-#include "base/memory.h"
 #include "claims.h"
+#include "image/statistics.h"
 #include "image/synthetic.h"
 
 #define SPACING     0.025
@@ -258,10 +258,8 @@ TEST(test_patch_step)
             bright[bright_count++] = intensity;
     }
     assert_true(dark_count > 320 && bright_count > 320); /* neither sediment below a fifth */
-    qsort(dark, dark_count, sizeof *dark, compare_doubles);
-    qsort(bright, bright_count, sizeof *bright, compare_doubles);
-    expect_near("darker sediment", dark[dark_count / 2], 1.0, 0.05);
-    expect_near("brighter sediment", bright[bright_count / 2] / pow(10.0, 0.6), 1.0, 0.05);
+    expect_near("darker sediment", median_of(dark, dark_count), 1.0, 0.05);
+    expect_near("brighter sediment", median_of(bright, bright_count) / pow(10.0, 0.6), 1.0, 0.05);
 }
 
 /* Correlation of the intensities of pixels that far apart. */
