@@ -1,5 +1,4 @@
-/* A fresh folder with one scene file, for the tests of scene files. To be included after cmocka.h.
- */
+/* A fresh folder with one scene file, for the tests of scene files; included after claims.h. */
 #ifndef SCENE_FOLDER_H
 #define SCENE_FOLDER_H
 
