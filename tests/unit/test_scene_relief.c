@@ -11,6 +11,10 @@
     "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"                                   \
     "seabed:\n"                                                                                    \
     "  relief:\n"
+#define FEATURES                                                                                   \
+    "  - mound: {position: {along_track: 3 m, slant_range: 43 m}, radius: 1 m, height: 30 cm}\n"   \
+    "  - pit: {position: {row: 280, column: 240}, radius: 1 m, depth: 20 cm}\n"
+#define RIPPLES(more) "  - ripples: {wavelength: 80 cm, height: 6 cm, " more "}\n"
 #define OBJECTS                                                                                    \
     "objects:\n"                                                                                   \
     "  - {name: can, shape: cylinder, length: 2 m, diameter: 0.5 m, heading: 90 deg, burial: "     \
@@ -67,17 +71,8 @@ static void take(struct ground *ground, const char *text)
 TEST(test_features_lie_where_they_are_told)
 {
     static const char *const texts[] = {
-        SEEN_FROM(
-            "port") "  - mound: {position: {along_track: 3 m, slant_range: 43 m}, radius: 1 m, "
-                    "height: 30 cm}\n"
-                    "  - pit: {position: {row: 280, column: 240}, radius: 1 m, depth: 20 cm}\n"
-                    "  - scour: {object: can, width: 50 cm, depth: 10 cm}\n" OBJECTS,
-        SEEN_FROM(
-            "starboard") "  - mound: {position: {along_track: 3 m, slant_range: 43 m}, radius: 1 "
-                         "m, height: 30 cm}\n"
-                         "  - pit: {position: {row: 280, column: 240}, radius: 1 m, depth: 20 "
-                         "cm}\n"
-                         "  - scour: {width: 50 cm, depth: 10 cm}\n" OBJECTS};
+        SEEN_FROM("port") FEATURES "  - scour: {object: can, width: 50 cm, depth: 10 cm}\n" OBJECTS,
+        SEEN_FROM("starboard") FEATURES "  - scour: {width: 50 cm, depth: 10 cm}\n" OBJECTS};
     for (int side = 0; side < 2; side++) {
         struct ground ground;
         take(&ground, texts[side]);
@@ -101,12 +96,8 @@ TEST(test_features_lie_where_they_are_told)
 /* Crest to crest, trough to crest, level at the edges; the same ground from both sides. */
 TEST(test_ripples)
 {
-    static const char *const texts[] = {
-        SEEN_FROM(
-            "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, heading: 30 deg, sharpness: "
-                    "0.5, phase: 20 deg}\n",
-        SEEN_FROM("starboard") "  - ripples: {wavelength: 80 cm, height: 6 cm, heading: 30 deg, "
-                               "sharpness: 0.5, phase: 20 deg}\n"};
+#define WAVES RIPPLES("heading: 30 deg, sharpness: 0.5, phase: 20 deg")
+    static const char *const texts[] = {SEEN_FROM("port") WAVES, SEEN_FROM("starboard") WAVES};
     for (int side = 0; side < 2; side++) {
         struct ground ground;
         take(&ground, texts[side]);
@@ -132,15 +123,9 @@ TEST(test_ripples)
 TEST(test_irregular_ripples)
 {
     struct ground one, same, other;
-    take(&one,
-         SEEN_FROM(
-             "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 4}\n");
-    take(&same,
-         SEEN_FROM(
-             "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 4}\n");
-    take(&other,
-         SEEN_FROM(
-             "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 5}\n");
+    take(&one, SEEN_FROM("port") RIPPLES("irregularity: 1, seed: 4"));
+    take(&same, SEEN_FROM("port") RIPPLES("irregularity: 1, seed: 4"));
+    take(&other, SEEN_FROM("port") RIPPLES("irregularity: 1, seed: 5"));
     const struct relief *relief = one.placements.relief;
     const size_t bytes = (size_t)relief->rows * relief->columns * sizeof(float);
     assert_memory_equal(relief->heights, same.placements.relief->heights, bytes);
