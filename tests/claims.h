@@ -17,14 +17,37 @@
 #define COUNT(list) (sizeof(list) / sizeof(list)[0])
 #define PI          3.14159265358979323846
 
-#define TEST(function) cmocka_unit_test(function)
+/* TEST(name) { ... } is run by the program, in the file's order, with `state` as CMocka gives it;
+ * TEST_WITH: between what is made for it and what removes that. */
+#define TEST(name) TEST_WITH(name, NULL, NULL)
+#define TEST_WITH(name, before, after)                                                             \
+    static void name(void **state);                                                                \
+    __attribute__((constructor)) static void add_##name(void)                                      \
+    {                                                                                              \
+        add_test((struct CMUnitTest){#name, name, before, after, NULL});                           \
+    }                                                                                              \
+    static void name(void **state)
 
-/* The program: tests, with what is made before all and removed after them, or NULL. */
-#define TEST_PROGRAM(before, after, ...)                                                           \
+static struct CMUnitTest own_tests[32];
+static size_t own_test_count;
+
+static inline void add_test(struct CMUnitTest test)
+{
+    if (own_test_count == COUNT(own_tests))
+        abort();
+    own_tests[own_test_count++] = test;
+}
+
+static inline int run_own_tests(CMFixtureFunction before, CMFixtureFunction after)
+{
+    return _cmocka_run_group_tests("tests", own_tests, own_test_count, before, after);
+}
+
+/* The program, with what is made before all tests and removed after them, or NULL. */
+#define TEST_PROGRAM(before, after)                                                                \
     int main(void)                                                                                 \
     {                                                                                              \
-        const struct CMUnitTest tests[] = {__VA_ARGS__};                                           \
-        return cmocka_run_group_tests(tests, before, after);                                       \
+        return run_own_tests(before, after);                                                       \
     }
 
 /* Knuth's numbers of 64 bits, whose upper ones are random: the next, the same for the same state.

@@ -5,6 +5,11 @@
 
 #include <stdbool.h>
 
+/* A call as the linker names what was meant and what is called instead. */
+#define WRAPPED(type, name, ...)                                                                   \
+    type __real_##name(__VA_ARGS__);                                                               \
+    type __wrap_##name(__VA_ARGS__)
+
 enum fault_kind {
     FAULT_MEMORY,   /* allocations */
     FAULT_OPENCL,   /* calls of OpenCL other than releases */

@@ -11,24 +11,15 @@
 
 #define MARK_ERROR 0x20 /* _IO_ERR_SEEN of glibc, whose call this is */
 
-int __real_open64(const char *path, int flags, ...);
-ssize_t __real_write(int descriptor, const void *bytes, size_t count);
-int __real_close(int descriptor);
-int __real_fsync(int descriptor);
-int __real_rename(const char *from, const char *to);
-int __real_mkdir(const char *path, mode_t mode);
-FILE *__real_fopen64(const char *path, const char *mode);
-size_t __real_fwrite(const void *bytes, size_t size, size_t count, FILE *file);
-int __real_fclose(FILE *file);
-int __wrap_open64(const char *path, int flags, ...);
-ssize_t __wrap_write(int descriptor, const void *bytes, size_t count);
-int __wrap_close(int descriptor);
-int __wrap_fsync(int descriptor);
-int __wrap_rename(const char *from, const char *to);
-int __wrap_mkdir(const char *path, mode_t mode);
-FILE *__wrap_fopen64(const char *path, const char *mode);
-size_t __wrap_fwrite(const void *bytes, size_t size, size_t count, FILE *file);
-int __wrap_fclose(FILE *file);
+WRAPPED(int, open64, const char *path, int flags, ...);
+WRAPPED(ssize_t, write, int descriptor, const void *bytes, size_t count);
+WRAPPED(int, close, int descriptor);
+WRAPPED(int, fsync, int descriptor);
+WRAPPED(int, rename, const char *from, const char *to);
+WRAPPED(int, mkdir, const char *path, mode_t mode);
+WRAPPED(FILE *, fopen64, const char *path, const char *mode);
+WRAPPED(size_t, fwrite, const void *bytes, size_t size, size_t count, FILE *file);
+WRAPPED(int, fclose, FILE *file);
 
 /* With errno set. usual: what such a call says on a full disk. */
 static bool fails(int usual)

@@ -5,15 +5,10 @@
 
 #include <jansson.h>
 
-/* As the linker names what was meant and what is called instead. */
-void *__real_malloc(size_t bytes);
-void *__real_calloc(size_t count, size_t bytes);
-void *__real_realloc(void *block, size_t bytes);
-void __real_free(void *block);
-void *__wrap_malloc(size_t bytes);
-void *__wrap_calloc(size_t count, size_t bytes);
-void *__wrap_realloc(void *block, size_t bytes);
-void __wrap_free(void *block);
+WRAPPED(void *, malloc, size_t bytes);
+WRAPPED(void *, calloc, size_t count, size_t bytes);
+WRAPPED(void *, realloc, void *block, size_t bytes);
+WRAPPED(void, free, void *block);
 
 static bool is_out_of_memory(void)
 {

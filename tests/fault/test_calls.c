@@ -3,8 +3,6 @@
  * whole, and the next call works.
  *
  * SONJECT_FAULT_POINTS: how many n are tried of each piece of work (0: all). KIND: the calls. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 
 #define CL_TARGET_OPENCL_VERSION 120
@@ -114,7 +112,6 @@ static void test_piece(void **state)
 
 static void test_discovery_short_of_memory_says_so(void **state)
 {
-    (void)state;
     for (long n = 1; n <= 2; n++) { /* platforms, devices */
         fault_arm(FAULT_OPENCL, n, false, CL_OUT_OF_HOST_MEMORY);
         const sonject_status status = work_do(&work, &work_inject);
@@ -133,7 +130,8 @@ static void test_discovery_short_of_memory_says_so(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest discovery[] = {TEST(test_discovery_short_of_memory_says_so)};
+    const struct CMUnitTest discovery[] = {
+        cmocka_unit_test(test_discovery_short_of_memory_says_so)};
     const struct CMUnitTest with_device[] = {PIECE(work_inject), PIECE(work_run), PIECE(work_trace),
                                              PIECE(work_form)};
     /* the OpenCL calls of some are those of the others, and the last ones have none */

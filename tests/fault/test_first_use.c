@@ -2,8 +2,6 @@
  * contexts hold; and two threads that go on, each with a context of its own, with the same images
  * as one. This process makes no call of the library, so that each of its children is the first to
  * use the driver. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 
 #include <pthread.h>
@@ -109,7 +107,7 @@ static int inject_together(void)
     return failures;
 }
 
-static void test_threads_may_be_the_first_to_use_a_device(void **state)
+TEST(test_threads_may_be_the_first_to_use_a_device)
 {
     for (int run = 0; run < RUNS; run++)
         assert_int_equal(exit_of(inject_together), 0);
@@ -178,7 +176,7 @@ static int fork_after_listing(void)
     return fork_after(list);
 }
 
-static void test_a_child_of_a_process_that_used_opencl_is_refused(void **state)
+TEST(test_a_child_of_a_process_that_used_opencl_is_refused)
 {
     assert_int_equal(exit_of(fork_after_injecting), 0);
     assert_int_equal(exit_of(fork_after_listing), 0);
@@ -202,7 +200,7 @@ static int fork_native(void)
     return inject_in_parents();
 }
 
-static void test_children_inject_on_native_as_their_parent_does(void **state)
+TEST(test_children_inject_on_native_as_their_parent_does)
 {
     assert_int_equal(exit_of(fork_native), 0);
 }
@@ -216,7 +214,7 @@ static int fork_before_injecting(void)
     return failed + inject_in_parents();
 }
 
-static void test_parent_and_child_may_both_inject_where_none_did_before(void **state)
+TEST(test_parent_and_child_may_both_inject_where_none_did_before)
 {
     assert_int_equal(exit_of(fork_before_injecting), 0);
 }
@@ -253,7 +251,7 @@ static int hold_contexts(void)
                                                                 : 0;
 }
 
-static void test_a_hundred_contexts_hold_less_than_two(void **state)
+TEST(test_a_hundred_contexts_hold_less_than_two)
 {
     if (pages() == 0)
         skip();
@@ -305,14 +303,9 @@ static int inject_side_by_side(void)
     return failed;
 }
 
-static void test_two_threads_give_what_one_gives(void **state)
+TEST(test_two_threads_give_what_one_gives)
 {
     assert_int_equal(exit_of(inject_side_by_side), 0);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_threads_may_be_the_first_to_use_a_device),
-             TEST(test_a_child_of_a_process_that_used_opencl_is_refused),
-             TEST(test_children_inject_on_native_as_their_parent_does),
-             TEST(test_parent_and_child_may_both_inject_where_none_did_before),
-             TEST(test_a_hundred_contexts_hold_less_than_two),
-             TEST(test_two_threads_give_what_one_gives))
+TEST_PROGRAM(NULL, NULL)

@@ -202,21 +202,12 @@ static uint64_t digest_of_truth(const char *folder)
 
 static void remove_results(const char *folder)
 {
-    char path[TEMPORARY_CAPACITY + 300];
+    char path[TEMPORARY_CAPACITY + 16];
     snprintf(path, sizeof path, "%s/results", folder);
-    DIR *list = opendir(path);
-    assert_non_null(list);
-    for (const struct dirent *entry = readdir(list); entry; entry = readdir(list)) {
-        snprintf(path, sizeof path, "%s/results/%s", folder, entry->d_name);
-        if (is_entry(entry))
-            (void)unlink(path);
-    }
-    closedir(list);
-    snprintf(path, sizeof path, "%s/results", folder);
-    assert_int_equal(rmdir(path), 0);
+    assert_int_equal(remove_folder(path), 0);
 }
 
-static void test_a_host_stays_as_it_was(void **state)
+IN_FOLDER(test_a_host_stays_as_it_was)
 {
     struct temporary_folder *folder = *state;
     struct process_state before;
@@ -257,6 +248,4 @@ static void test_a_host_stays_as_it_was(void **state)
     (void)setlocale(LC_ALL, "C");
 }
 
-TEST_PROGRAM(NULL, NULL,
-             cmocka_unit_test_setup_teardown(test_a_host_stays_as_it_was, make_temporary_folder,
-                                             remove_temporary_folder))
+TEST_PROGRAM(NULL, NULL)

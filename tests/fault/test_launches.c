@@ -66,7 +66,7 @@ static void *run(void *argument)
     return NULL;
 }
 
-static void test_pocl_runs_one_kernel_at_a_time(void **state)
+TEST(test_pocl_runs_one_kernel_at_a_time)
 {
     static struct runner runners[THREADS];
     pthread_t threads[THREADS];
@@ -81,4 +81,4 @@ static void test_pocl_runs_one_kernel_at_a_time(void **state)
     assert_int_equal(most, 1);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_pocl_runs_one_kernel_at_a_time))
+TEST_PROGRAM(NULL, NULL)

@@ -1,12 +1,11 @@
 /* A disk that cannot be read is no damaged file: whichever of a reader's calls fails, the status is
  * STORAGE, and the message has the name of the file (or of the copy) and the system's words. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 
 #include <errno.h>
 #include <sys/stat.h>
 
+#include "fault/faults.h"
 #include "swath/raster_file.h"
 #include "swath/swath_file.h"
 #include "unit/temporary_folder.h"
@@ -14,10 +13,8 @@
 #define SIDE       16
 #define MARK_ERROR 0x20 /* _IO_ERR_SEEN of glibc, whose call this is */
 
-size_t __real_fread(void *bytes, size_t size, size_t count, FILE *file);
-size_t __wrap_fread(void *bytes, size_t size, size_t count, FILE *file);
-ssize_t __real_read(int descriptor, void *bytes, size_t count);
-ssize_t __wrap_read(int descriptor, void *bytes, size_t count);
+WRAPPED(size_t, fread, void *bytes, size_t size, size_t count, FILE *file);
+WRAPPED(ssize_t, read, int descriptor, void *bytes, size_t count);
 
 static long calls, due; /* 0: none fails */
 
@@ -84,7 +81,7 @@ static void expect_told(const char *path, const char *copy)
     print_message("%s: %ld calls\n", path, count);
 }
 
-static void test_written_formats(void **state)
+IN_FOLDER(test_written_formats)
 {
     static const struct {
         const char *name;
@@ -112,7 +109,7 @@ static void test_written_formats(void **state)
 }
 
 #ifdef FAILING_PREAD
-static void test_a_disk_under_the_decoder(void **state)
+IN_FOLDER(test_a_disk_under_the_decoder)
 {
     static float pixels[SIDE * SIDE];
     static const struct raster_layout layout = {SIDE, SIDE, 1, PIXEL_FLOAT32};
@@ -137,15 +134,4 @@ static void test_a_disk_under_the_decoder(void **state)
 }
 #endif
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_written_formats, make_temporary_folder,
-                                        remove_temporary_folder),
-#ifdef FAILING_PREAD
-        cmocka_unit_test_setup_teardown(test_a_disk_under_the_decoder, make_temporary_folder,
-                                        remove_temporary_folder),
-#endif
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL)

@@ -1,11 +1,10 @@
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 
 #include <sys/stat.h>
 
 #include <jansson.h>
 
+#include "swath/raster_file.h"
 #include "work.h"
 
 #define ROWS    24
@@ -57,18 +56,11 @@ static void fill_pixels(float pixels[ROWS * COLUMNS])
 
 static void write_image(const char *path)
 {
-    unsigned char header[128] = "\x93NUMPY\x01";
+    static const struct raster_layout layout = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
+    struct report report = {{0}, NULL, NULL};
     float pixels[ROWS * COLUMNS];
-    FILE *file = fopen(path, "wb");
     fill_pixels(pixels);
-    memset(header + 10, ' ', sizeof header - 10);
-    header[8] = sizeof header - 10;
-    memcpy(header + 10, "{'descr': '<f4', 'fortran_order': False, 'shape': (24, 32)}", 59);
-    header[sizeof header - 1] = '\n';
-    assert_non_null(file);
-    assert_int_equal(fwrite(header, 1, sizeof header, file), sizeof header);
-    assert_int_equal(fwrite(pixels, sizeof *pixels, ROWS * COLUMNS, file), ROWS * COLUMNS);
-    assert_int_equal(fclose(file), 0);
+    EXPECT_OK(&report, raster_format_write(&report, path, &layout, NULL, 0, pixels));
 }
 
 static void set_path(struct work *work, char path[WORK_PATH], const char *name)
@@ -129,26 +121,9 @@ int work_prepare(struct work *work)
     return work_do(work, &seabed) != SONJECT_OK;
 }
 
-static void empty_folder(const char *path)
-{
-    char file[WORK_PATH + 300];
-    DIR *list = opendir(path);
-    if (!list)
-        return;
-    for (const struct dirent *entry = readdir(list); entry; entry = readdir(list)) {
-        snprintf(file, sizeof file, "%s/%s", path, entry->d_name);
-        if (is_entry(entry) && unlink(file) != 0)
-            empty_folder(file);
-    }
-    closedir(list);
-    (void)rmdir(path);
-}
-
 int work_remove(struct work *work)
 {
-    empty_folder(work->folder->path);
-    free(work->folder);
-    return 0;
+    return remove_temporary_folder((void **)&work->folder);
 }
 
 static sonject_status read_scene(struct work *work, sonject_context *context, sonject_scene *scene)
@@ -356,7 +331,7 @@ void work_expect(struct work *work)
 {
     work->expected_digest = work->digest;
     work->expected_count = list_results(work, work->expected);
-    empty_folder(work->results);
+    (void)remove_folder(work->results);
 }
 
 static void check_file(const struct work *work, const struct work_file *file)
@@ -384,5 +359,5 @@ void work_check_results(struct work *work, bool is_done)
     }
     if (is_done)
         assert_int_equal(count, work->expected_count);
-    empty_folder(work->results);
+    (void)remove_folder(work->results);
 }

@@ -1,15 +1,11 @@
 #include "mesh_samples.h"
 
 #include "claims.h"
-
-static uint64_t state = 88172645463325252u;
+#include "random_rays.h"
 
 double sample_uniform(double low, double high)
 {
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return low + (high - low) * ((double)(state >> 11) + 0.5) / 9007199254740992.0;
+    return uniform(low, high);
 }
 
 void sample_direction(double direction[3])

@@ -511,12 +511,12 @@ static void compare_energies(struct bench *bench, const struct scene_case *scene
     free(map);
 }
 
-static void test_rough_tallies(void **state)
+TEST(test_rough_tallies)
 {
     on_scenes_with(ROUGH, compare_energies);
 }
 
-static void test_chain_tallies(void **state)
+TEST(test_chain_tallies)
 {
     on_scenes_with(CHAINS, compare_energies);
 }
@@ -534,7 +534,7 @@ static void compare_glints(struct bench *bench, const struct scene_case *scene)
     assert_true(alive >= count);
 }
 
-static void test_smooth_tallies(void **state)
+TEST(test_smooth_tallies)
 {
     on_scenes_with(GLINTS, compare_glints);
 }
@@ -565,7 +565,7 @@ static void compare_images(struct bench *bench, const struct scene_case *scene)
     assert_true(alive >= 3 * pairs);
 }
 
-static void test_image_tallies(void **state)
+TEST(test_image_tallies)
 {
     on_scenes_with(IMAGES, compare_images);
 }
@@ -607,7 +607,7 @@ static void compare_tiles(struct bench *bench, const struct scene_case *scene)
     free(tiles[1]);
 }
 
-static void test_tiles_by_all_ways(void **state)
+TEST(test_tiles_by_all_ways)
 {
     on_scenes_with(TILES, compare_tiles);
 }
@@ -632,7 +632,7 @@ static bool take_one_core(struct bench *bench, sonject_context_params *params)
 }
 
 /* One core of a device instead of all. */
-static void test_one_core(void **state)
+TEST(test_one_core)
 {
     const struct scene_case *scene = &scenes[2];
     struct bench bench;
@@ -665,9 +665,5 @@ static void test_one_core(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        TEST(test_rough_tallies),     TEST(test_smooth_tallies), TEST(test_image_tallies),
-        TEST(test_tiles_by_all_ways), TEST(test_chain_tallies),  TEST(test_one_core),
-    };
-    return bench_run_on_devices(tests, COUNT(tests));
+    return bench_run_on_devices(own_tests, own_test_count);
 }

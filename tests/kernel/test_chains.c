@@ -65,7 +65,7 @@ static void raw_energies(const struct fan_record *fan, const int64_t *tallies,
 /* In a closed diffuse sphere with the sonar at its centre every bounce keeps the albedo, whatever
  * the direction; so the orders' energies are a geometric series. A strip of millimetres is off the
  * centre by so little that cosines differ by 1e-5. */
-static void test_closed_sphere(void **state)
+TEST(test_closed_sphere)
 {
     const float lambert = 0.25f;
     const double albedo = PI * (double)lambert;
@@ -135,7 +135,7 @@ static double energy_sent_on(const struct chain_record *chains, const struct cha
 
 /* A step from the sea surface brings, on average, what the surface sends on, whether directions are
  * led to the target or not: no more than came. 4 standard errors and 0.2 % of the quadrature. */
-static void test_sea_surface_keeps_energy(void **state)
+TEST(test_sea_surface_keeps_energy)
 {
     static const float cosines[] = {1.0f, 0.6f, 0.2f, 0.05f};
     for (int variant = 0; variant < 3 * 4 * 2; variant++) {
@@ -297,7 +297,7 @@ static void expect_sky(const struct targets *targets, const struct chain_record 
     assert_true(chi_squared < parts + 4.0 * sqrt(2.0 * parts));
 }
 
-static void test_directions_are_weighed_as_they_are_drawn(void **state)
+TEST(test_directions_are_weighed_as_they_are_drawn)
 {
     for (uint32_t variant = 0; variant < 4 * 3 * 2 * 2; variant++) {
         const int inside = (int)variant % 4;
@@ -319,7 +319,7 @@ static void test_directions_are_weighed_as_they_are_drawn(void **state)
 
 /* What Lambert's law sends into a cone above the horizon is mu cos times pi r^2/d^2. A direction is
  * rounded by 1e-7 of the distance, which must not take it out of the cone that it was drawn in. */
-static void test_far_and_small_targets_get_their_share(void **state)
+TEST(test_far_and_small_targets_get_their_share)
 {
     static const float radii[] = {0.15f, 0.05f, 0.02f, 0.005f};
     static const float distances[] = {0.7f, 5.0f, 30.0f};
@@ -345,6 +345,4 @@ static void test_far_and_small_targets_get_their_share(void **state)
     }
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_closed_sphere), TEST(test_sea_surface_keeps_energy),
-             TEST(test_directions_are_weighed_as_they_are_drawn),
-             TEST(test_far_and_small_targets_get_their_share))
+TEST_PROGRAM(NULL, NULL)

@@ -24,7 +24,7 @@ static float random_over_octaves(double low, double high)
     return (float)(random_word() & 1 ? -value : value);
 }
 
-static void test_nearest_integer(void **state)
+TEST(test_nearest_integer)
 {
     static const float edges[] = {0.0f, 0.25f,       0.49999997f, 0.50000006f,
                                   1.0f, 4194303.25f, 4194302.75f, 1048575.9f};
@@ -55,7 +55,7 @@ static void compare_sine(float cycles, struct worst *worst)
         worst->sine_relative = fmax(worst->sine_relative, error / fabs(sin(2.0 * PI * turn)));
 }
 
-static void test_sine_and_cosine(void **state)
+TEST(test_sine_and_cosine)
 {
     struct worst worst = {0.0, 0.0, 0.0};
     for (int eighth = -64; eighth <= 64; eighth++) {
@@ -80,7 +80,7 @@ static void test_sine_and_cosine(void **state)
     assert_true(sine == 0.0f && cosine == 1.0f);
 }
 
-static void test_sinc(void **state)
+TEST(test_sinc)
 {
     double worst = 0.0;
     assert_true(sinc_of_cycles(0.0f) == 1.0f);
@@ -100,7 +100,7 @@ static void compare_exponential(float value, double *worst)
     *worst = fmax(*worst, fabs(exponential_of_negative(value) - expected) / expected);
 }
 
-static void test_exponential(void **state)
+TEST(test_exponential)
 {
     double worst = 0.0;
     assert_true(exponential_of_negative(0.0f) == 1.0f);
@@ -129,7 +129,7 @@ static void compare_logarithm(float value, double *worst)
     *worst = fmax(*worst, fabs(natural_logarithm(value) - expected) / allowed);
 }
 
-static void test_logarithm(void **state)
+TEST(test_logarithm)
 {
     double worst = 0.0;
     assert_true(natural_logarithm(1.0f) == 0.0f);
@@ -151,7 +151,7 @@ static void test_logarithm(void **state)
     assert_true(worst < 1.0);
 }
 
-static void test_cube_root(void **state)
+TEST(test_cube_root)
 {
     double worst = 0.0;
     for (int i = 0; i < POINTS; i++) {
@@ -162,7 +162,7 @@ static void test_cube_root(void **state)
     assert_true(worst < 3e-7);
 }
 
-static void test_smaller_larger_magnitude(void **state)
+TEST(test_smaller_larger_magnitude)
 {
     for (int i = 0; i < 1000; i++) {
         const float a = random_over_octaves(-60.0, 60.0);
@@ -174,6 +174,4 @@ static void test_smaller_larger_magnitude(void **state)
     assert_int_equal(signbit(magnitude(-0.0f)), 0);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_nearest_integer), TEST(test_sine_and_cosine), TEST(test_sinc),
-             TEST(test_exponential), TEST(test_logarithm), TEST(test_cube_root),
-             TEST(test_smaller_larger_magnitude))
+TEST_PROGRAM(NULL, NULL)

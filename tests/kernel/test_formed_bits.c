@@ -170,7 +170,7 @@ static void compare_patch(struct bench *bench)
 }
 
 /* Fine grids in corners too, partly outside the patch, as a glint's is. */
-static void test_images(void **state)
+TEST(test_images)
 {
     const struct line_grid far_corner = {7, 26, {600, 90}, {26 * (COLUMNS - 3), 200}};
     struct bench bench;
@@ -181,7 +181,7 @@ static void test_images(void **state)
 }
 
 /* A pulse that is complex; a beam that differs from range to range, motion from row to row. */
-static void test_images_of_varied_responses(void **state)
+TEST(test_images_of_varied_responses)
 {
     static const double x[] = {-0.06, -0.03, -0.01, 0.0, 0.02, 0.05};
     static const double a[] = {0.0, 0.3, 0.9, 1.0, 0.5, 0.0};
@@ -202,6 +202,5 @@ static void test_images_of_varied_responses(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {TEST(test_images), TEST(test_images_of_varied_responses)};
-    return bench_run_on_devices(tests, COUNT(tests));
+    return bench_run_on_devices(own_tests, own_test_count);
 }

@@ -52,7 +52,7 @@ static sonject_object_params *open_fouled(struct bench *bench, double albedo_db,
 #define POINTS 16
 static const float lags[] = {0.0f, 0.5f, 1.0f, 2.0f};
 
-static void test_albedo_is_as_asked(void **state)
+TEST(test_albedo_is_as_asked)
 {
     static const double levels[] = {2.0, 4.0, 8.0};
     for (size_t l = 0; l < COUNT(levels); l++) {
@@ -90,7 +90,7 @@ static void test_albedo_is_as_asked(void **state)
     }
 }
 
-static void test_slopes_are_as_asked(void **state)
+TEST(test_slopes_are_as_asked)
 {
     struct bench bench;
     struct fouled fouled;
@@ -131,7 +131,7 @@ static double height_at(const struct fouled *fouled, double x, double y, double 
 }
 
 /* n less the height's gradient along the surface, which central differences tell to 1e-6. */
-static void test_facets_are_the_reliefs(void **state)
+TEST(test_facets_are_the_reliefs)
 {
     struct bench bench;
     struct fouled fouled;
@@ -161,7 +161,7 @@ static void test_facets_are_the_reliefs(void **state)
     bench_close(&bench);
 }
 
-static void test_cosine(void **state)
+TEST(test_cosine)
 {
     double worst = 0.0;
     for (int i = -40000; i <= 40000; i++) {
@@ -172,7 +172,7 @@ static void test_cosine(void **state)
 }
 
 /* All parts of an object show the same field, whichever way it lies; other objects another. */
-static void test_the_field_is_the_objects(void **state)
+TEST(test_the_field_is_the_objects)
 {
     struct bench bench;
     struct fouled parts[2], other;
@@ -208,12 +208,4 @@ static void test_the_field_is_the_objects(void **state)
     bench_close(&bench);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(test_albedo_is_as_asked),       TEST(test_slopes_are_as_asked),
-        TEST(test_facets_are_the_reliefs),   TEST(test_cosine),
-        TEST(test_the_field_is_the_objects),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL)

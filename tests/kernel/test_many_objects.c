@@ -145,7 +145,7 @@ static void compare_searches(const struct searched *searched, enum ray_kind kind
     compare_answers("eight lanes in a loop", &found, &expected);
 }
 
-static void test_tree_is_the_loop(void **state)
+TEST(test_tree_is_the_loop)
 {
     static const uint32_t counts[] = {17, 41, 250};
     static float input[SEARCH_INPUTS * RAYS];
@@ -165,7 +165,7 @@ static void test_tree_is_the_loop(void **state)
 
 /* Every hit lies inside the box that the tree has for the object: the margin is never used up, for
  * rays that graze it as for others. */
-static void test_hits_are_in_their_spheres(void **state)
+TEST(test_hits_are_in_their_spheres)
 {
     struct searched searched;
     searched_begin(&searched, 250);
@@ -229,7 +229,7 @@ static size_t compare_smooth(struct bench *bench, uint32_t number)
     return filled;
 }
 
-static void test_parts_out_of_the_way_change_no_glint(void **state)
+TEST(test_parts_out_of_the_way_change_no_glint)
 {
     for (int has_relief = 0; has_relief < 2; has_relief++) {
         struct bench bench;
@@ -251,10 +251,5 @@ static void test_parts_out_of_the_way_change_no_glint(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_tree_is_the_loop),
-        cmocka_unit_test(test_hits_are_in_their_spheres),
-        cmocka_unit_test(test_parts_out_of_the_way_change_no_glint),
-    };
-    return bench_run_on_devices(tests, COUNT(tests));
+    return bench_run_on_devices(own_tests, own_test_count);
 }

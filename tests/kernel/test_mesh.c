@@ -209,7 +209,7 @@ static void compare_with_reference(const struct mesh *mesh, struct flight *rays)
     assert_true(undecided < RAYS / 150);
 }
 
-static void test_rays_meet_the_nearest_triangle(void **state)
+TEST(test_rays_meet_the_nearest_triangle)
 {
     struct mesh_sample samples[4];
     sample_sphere(&samples[0], 3);
@@ -254,7 +254,7 @@ static void cross_surface(const struct mesh *mesh, struct point inside)
     }
 }
 
-static void test_nothing_leaks_through_a_closed_mesh(void **state)
+TEST(test_nothing_leaks_through_a_closed_mesh)
 {
     static const struct point middles[] = {
         {0.0, 0.0, 0.0}, {0.01, -0.02, 0.003}, {0.3, 0.1, -0.2}, {0.0, 0.0, 0.2999}};
@@ -276,7 +276,7 @@ static void test_nothing_leaks_through_a_closed_mesh(void **state)
 
 /* Rays from 400 m, some of them grazing, on a fine sphere against its equation: they meet it
  * between the sphere and the largest one inside. */
-static void test_a_fine_sphere_is_a_sphere(void **state)
+TEST(test_a_fine_sphere_is_a_sphere)
 {
     struct mesh_sample sample;
     struct mesh mesh;
@@ -323,7 +323,7 @@ static void test_a_fine_sphere_is_a_sphere(void **state)
     mesh_clear(&mesh);
 }
 
-static void test_smooth_normals_show_the_side_that_was_met(void **state)
+TEST(test_smooth_normals_show_the_side_that_was_met)
 {
     struct mesh_sample sample;
     struct mesh mesh;
@@ -380,7 +380,7 @@ static uint32_t lay_shadow_rays(const struct flight *rays, enum probe_output sta
 }
 
 /* A sphere of facets lets sound past wherever the smooth surface does, if it starts lifted. */
-static void test_lifted_rays_pass_the_facets(void **state)
+TEST(test_lifted_rays_pass_the_facets)
 {
     struct mesh_sample sample;
     struct mesh mesh;
@@ -418,7 +418,7 @@ static void lay_mixed(const struct mesh *mesh)
 }
 
 /* Rays with a reach: what lies beyond is not met, at it is. */
-static void test_reach_ends_at_what_is_met(void **state)
+TEST(test_reach_ends_at_what_is_met)
 {
     static float nearest[RAYS];
     struct mesh_sample sample;
@@ -457,7 +457,7 @@ static void expect_same(const char *what, const struct flight *found, const stru
                 fail_msg("%s: plane %d of ray %u differs", what, plane, (unsigned)ray);
 }
 
-static void test_lanes_meet_what_one_ray_meets(void **state)
+TEST(test_lanes_meet_what_one_ray_meets)
 {
     struct mesh_sample sample;
     struct mesh mesh;
@@ -497,7 +497,7 @@ static void expect_same_in_any_order(const struct mesh *mesh)
                                 &flight.output[plane][ray], sizeof(float));
 }
 
-static void test_packet_order_never_changes_hits(void **state)
+TEST(test_packet_order_never_changes_hits)
 {
     struct mesh_sample sample;
     struct mesh mesh;
@@ -515,8 +515,4 @@ static void test_packet_order_never_changes_hits(void **state)
     mesh_clear(&mesh);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_rays_meet_the_nearest_triangle),
-             TEST(test_nothing_leaks_through_a_closed_mesh), TEST(test_a_fine_sphere_is_a_sphere),
-             TEST(test_smooth_normals_show_the_side_that_was_met),
-             TEST(test_lifted_rays_pass_the_facets), TEST(test_reach_ends_at_what_is_met),
-             TEST(test_lanes_meet_what_one_ray_meets), TEST(test_packet_order_never_changes_hits))
+TEST_PROGRAM(NULL, NULL)

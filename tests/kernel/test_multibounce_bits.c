@@ -141,7 +141,7 @@ static void compare_variant(struct bench *bench, const struct variant *variant)
     assert_true(impulses > 2000);
 }
 
-static void test_multibounce_tallies(void **state)
+TEST(test_multibounce_tallies)
 {
     uint32_t widths[BENCH_WIDTHS];
     struct bench bench;
@@ -165,8 +165,5 @@ static void test_multibounce_tallies(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_multibounce_tallies),
-    };
-    return bench_run_on_devices(tests, COUNT(tests));
+    return bench_run_on_devices(own_tests, own_test_count);
 }

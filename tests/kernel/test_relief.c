@@ -1,5 +1,6 @@
 /* Rays against a height field: 10^5 of them against an independent solver in double precision, from
  * 50 m and 500 m, down to 2 degrees; the plane's own bits where all is level. */
+#include "base/memory.h"
 #include "claims.h"
 #include "random_rays.h"
 #include "seabed.h"
@@ -90,13 +91,6 @@ static double clearance(const struct sea *sea, const struct line *line, double t
                          line->point[1] + t * line->direction[1]);
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 /* Where the line first comes through the surface from above beyond `begin`; INFINITY: nowhere.
  * Between two lines of the grid the clearance is a polynomial of degree 2, known by three values:
  * all crossings of grid lines are listed and sorted, and each piece is solved. */
@@ -116,7 +110,7 @@ static double reference_distance(const struct sea *sea, const struct line *line,
         }
     bool is_inside = false;
     cuts[count++] = begin;
-    qsort(cuts, count, sizeof *cuts, compare);
+    qsort(cuts, count, sizeof *cuts, compare_doubles);
     for (size_t i = 0; i + 1 < count; i++) {
         const double a = cuts[i];
         const double b = cuts[i + 1];
@@ -237,7 +231,7 @@ static void fan_ray_from(double range, struct vector3 *point, struct vector3 *di
     direction->z = (float)d[2];
 }
 
-static void test_primary_rays(void **state)
+TEST(test_primary_rays)
 {
     static const double ranges[] = {50.0, 500.0};
     struct sea sea;
@@ -264,7 +258,7 @@ static void test_primary_rays(void **state)
 }
 
 /* From points of the surface all around: what leaves it must not meet it again at once. */
-static void test_rays_from_the_surface(void **state)
+TEST(test_rays_from_the_surface)
 {
     struct sea sea;
     struct errors errors = {0.0, 0.0, 0, 0, 0};
@@ -303,7 +297,7 @@ static void test_rays_from_the_surface(void **state)
 }
 
 /* Rays along the grid's own lines and through its points find the surface. */
-static void test_rays_on_grid_lines(void **state)
+TEST(test_rays_on_grid_lines)
 {
     struct sea sea;
     sea_init(&sea, varied, 0.03125, 6.5);
@@ -353,7 +347,7 @@ static bool is_level_at(const struct sea *sea, struct vector3 place)
 
 /* All heights 0, and where a mound ends, whatever is next to it: the plane's distances, normals and
  * bits. */
-static void test_level_ground_is_the_plane(void **state)
+TEST(test_level_ground_is_the_plane)
 {
     for (int has_mound = 0; has_mound < 2; has_mound++) {
         struct sea sea;
@@ -383,7 +377,7 @@ static double ripples_alone(double x, double y)
 }
 
 /* Normals are those of the smooth surface, not of the cells: 24 points a wavelength. */
-static void test_normals(void **state)
+TEST(test_normals)
 {
     struct sea sea;
     double worst = 0.0;
@@ -415,6 +409,4 @@ static void test_normals(void **state)
     sea_clear(&sea);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_primary_rays), TEST(test_rays_from_the_surface),
-             TEST(test_rays_on_grid_lines), TEST(test_level_ground_is_the_plane),
-             TEST(test_normals))
+TEST_PROGRAM(NULL, NULL)

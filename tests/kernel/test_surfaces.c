@@ -216,7 +216,7 @@ static struct vector3 random_direction(double least_cosine)
     return direction_at(acos(cosine), 2.0 * PI * random_fraction());
 }
 
-static void test_formulas(void **state)
+TEST(test_formulas)
 {
     for (int kind = 0; kind < KINDS; kind++) {
         const struct surface_record surface = rough_kind(kind);
@@ -348,7 +348,7 @@ static void expect_directions_as_density(const struct surface_record *surface, i
                 4.0 * sqrt(share * (1.0 - share) / SAMPLES) + 1e-5);
 }
 
-static void test_directions(void **state)
+TEST(test_directions)
 {
     static const double angles[] = {0.0, 45.0, 80.0};
     for (int kind = 0; kind < KINDS; kind++) {
@@ -388,7 +388,7 @@ static double albedo(const struct surface_record *surface, double angle)
 
 static const double furnace_angles[] = {0.0, 10.0, 30.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9};
 
-static void test_rough_furnace(void **state)
+TEST(test_rough_furnace)
 {
     for (int kind = 0; kind < KINDS; kind++) {
         const struct surface_record surface = rough_kind(kind);
@@ -408,7 +408,7 @@ static void test_rough_furnace(void **state)
     }
 }
 
-static void test_furnace_over_smooth_part(void **state)
+TEST(test_furnace_over_smooth_part)
 {
     for (int smooth = 0; smooth < SMOOTH_KINDS; smooth++) {
         double most = 0.0, most_of_all = 0.0;
@@ -432,7 +432,7 @@ static void test_furnace_over_smooth_part(void **state)
     }
 }
 
-static void test_reciprocity(void **state)
+TEST(test_reciprocity)
 {
     double worst = 0.0;
     for (int smooth = -1; smooth < SMOOTH_KINDS; smooth++)
@@ -484,7 +484,7 @@ static double reflection_off(const struct surface_record *surface, float cosine)
            reflection_error(surface, (double)cosine);
 }
 
-static void test_fluid_reflection(void **state)
+TEST(test_fluid_reflection)
 {
     static const struct {
         double density, speed, loss;
@@ -519,7 +519,7 @@ static double modulus_at_grazing(const struct surface_record *surface, double gr
     return hypot((double)first, (double)second);
 }
 
-static void test_critical_angle(void **state)
+TEST(test_critical_angle)
 {
     const struct surface_record sand = fluid(2.231, 1.2503, 0.0);
     const double critical = acos(1.0 / 1.2503); /* grazing: cos = 1 / speed ratio */
@@ -543,7 +543,7 @@ static void test_critical_angle(void **state)
     assert_true(modulus_at_grazing(&lossy, 0.9 * critical, &real_part) < 0.97);
 }
 
-static void test_intromission_angle(void **state)
+TEST(test_intromission_angle)
 {
     const double m = 1.149, index = 1.0 / 0.9873;
     /* m cos = s where sin^2 = (m^2 - n^2) / (m^2 - 1) */
@@ -560,7 +560,7 @@ static void test_intromission_angle(void **state)
     assert_true(real_part > 1e-3);
 }
 
-static void test_grazing_limit(void **state)
+TEST(test_grazing_limit)
 {
     static const double speeds[] = {0.9873, 1.2503, 4.0};
     for (size_t i = 0; i < COUNT(speeds); i++)
@@ -574,7 +574,7 @@ static void test_grazing_limit(void **state)
         }
 }
 
-static void test_specular_part(void **state)
+TEST(test_specular_part)
 {
     const struct surface_record none = rough_kind(0);
     for (int smooth = 0; smooth < SMOOTH_KINDS; smooth++) {
@@ -607,7 +607,7 @@ static void test_specular_part(void **state)
 }
 
 /* A sediment's rough part is its own, at every angle, and the specular part gives way to it. */
-static void test_rough_part_apart(void **state)
+TEST(test_rough_part_apart)
 {
     const struct surface_record rough_part = rough(0.05, 1.0, 0.0, 0.1);
     for (int smooth = 0; smooth < SMOOTH_KINDS; smooth++) {
@@ -630,7 +630,4 @@ static void test_rough_part_apart(void **state)
     }
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_formulas), TEST(test_directions), TEST(test_rough_furnace),
-             TEST(test_furnace_over_smooth_part), TEST(test_reciprocity),
-             TEST(test_fluid_reflection), TEST(test_critical_angle), TEST(test_intromission_angle),
-             TEST(test_grazing_limit), TEST(test_specular_part), TEST(test_rough_part_apart))
+TEST_PROGRAM(NULL, NULL)

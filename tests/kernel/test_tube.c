@@ -15,7 +15,7 @@ static struct tube closing_at(float along, float across, int is_skew)
     return tube;
 }
 
-static void test_each_line_turns_the_phase(void **state)
+TEST(test_each_line_turns_the_phase)
 {
     static const struct {
         float along, across, distance;
@@ -41,4 +41,4 @@ static void test_each_line_turns_the_phase(void **state)
         }
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_each_line_turns_the_phase))
+TEST_PROGRAM(NULL, NULL)

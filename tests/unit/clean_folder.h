@@ -26,6 +26,6 @@ static inline int begin(void **state)
     return result;
 }
 
-#define CLEAN(test) cmocka_unit_test_setup_teardown(test, begin, remove_temporary_folder)
+#define CLEAN(name) TEST_WITH(name, begin, remove_temporary_folder)
 
 #endif

@@ -3,7 +3,6 @@
 #define SONJECT_TESTS_FILE_DRAFTS_H
 
 #define _GNU_SOURCE
-#define _FILE_OFFSET_BITS 64
 
 #include <zlib.h>
 

@@ -3,9 +3,6 @@
 #ifndef SONJECT_TESTS_IMAGE_DRAFTS_H
 #define SONJECT_TESTS_IMAGE_DRAFTS_H
 
-#define _POSIX_C_SOURCE   200809L
-#define _FILE_OFFSET_BITS 64
-
 #include <tiffio.h>
 
 #include "base/byte_order.h"

@@ -7,24 +7,32 @@
 #include "api/handles.h"
 #include "claims.h"
 
+static sonject_context *context;
+
 static int make_context(void **state)
 {
-    sonject_context *context = NULL;
-    const sonject_status status = sonject_context_create(NULL, &context);
-    *state = context;
-    return status != SONJECT_OK;
+    return sonject_context_create(NULL, &context) != SONJECT_OK;
 }
 
 static int release_context(void **state)
 {
-    sonject_context *context = *state;
     sonject_context_release(&context);
     return 0;
 }
 
-static void set(sonject_context *context, sonject_scene *scene, const char *key, const char *value)
+static void set(sonject_scene *scene, const char *key, const char *value)
 {
     EXPECT_OK(&context->report, sonject_scene_set(scene, key, value));
+}
+
+/* A scene of a text, as of a file of that name, which may be NULL. */
+static sonject_scene *read_text(const char *path, const char *text)
+{
+    sonject_scene *scene = NULL;
+    const sonject_scene_read_params params = {
+        .struct_size = sizeof params, .text = text, .allows_user_shapes = 1};
+    EXPECT_OK(&context->report, sonject_scene_read(context, path, &params, &scene));
+    return scene;
 }
 
 #endif

@@ -1,5 +1,4 @@
-/* A fresh folder with one scene file, for the tests of scene files. To be included after cmocka.h,
- * by files that begin with #define _POSIX_C_SOURCE 200809L. */
+/* A fresh folder with one scene file, for the tests of scene files; included after claims.h. */
 #ifndef SCENE_FOLDER_H
 #define SCENE_FOLDER_H
 
@@ -47,23 +46,23 @@ struct scene_folder {
     struct scene scene; /* of the last reading, cleared before the next */
 };
 
-/* Set-up and tear-down of a cmocka group; *state is the struct scene_folder. */
+static struct scene_folder *folder; /* of the program's tests */
+
+/* Set-up and tear-down of a cmocka group. */
 static inline int make_scene_folder(void **state)
 {
-    struct scene_folder *folder = calloc(1, sizeof *folder);
+    folder = calloc(1, sizeof *folder);
     if (!folder || !open_temporary_folder(&folder->folder))
         return 1;
     snprintf(folder->file, sizeof folder->file, "%s/scene.yaml", folder->folder.path);
     folder->host.decoder = &folder->decoder;
     folder->report.host = &folder->host;
     scene_init(&folder->scene);
-    *state = folder;
     return 0;
 }
 
 static inline int remove_scene_folder(void **state)
 {
-    struct scene_folder *folder = *state;
     scene_clear(&folder->scene);
     decoder_stop(&folder->decoder);
     const int result = close_temporary_folder(&folder->folder);
@@ -72,31 +71,24 @@ static inline int remove_scene_folder(void **state)
 }
 
 /* The path of a file of the folder; valid until the next one. */
-static inline const char *file_in(struct scene_folder *folder, const char *name)
+static inline const char *file_in(const char *name)
 {
     return temporary_file(&folder->folder, name);
 }
 
-static inline void write_file(struct scene_folder *folder, const char *name, const void *bytes,
-                              size_t count)
+static inline void write_file(const char *name, const void *bytes, size_t count)
 {
-    write_bytes(file_in(folder, name), bytes, count);
+    write_bytes(file_in(name), bytes, count);
 }
 
-static inline void remove_file(struct scene_folder *folder, const char *name)
+static inline void write_scene(const char *text, size_t bytes)
 {
-    assert_int_equal(unlink(file_in(folder, name)), 0);
-}
-
-static inline void write_scene(struct scene_folder *folder, const char *text, size_t bytes)
-{
-    write_file(folder, "scene.yaml", text, bytes);
+    write_file("scene.yaml", text, bytes);
 }
 
 /* Reads the file that is there, with users' code if that is allowed. overrides may be NULL if count
  * is 0. */
-static inline sonject_status read_scene_with(struct scene_folder *folder,
-                                             const char *const *overrides, size_t count,
+static inline sonject_status read_scene_with(const char *const *overrides, size_t count,
                                              bool allows_user_shapes)
 {
     scene_clear(&folder->scene);
@@ -105,16 +97,15 @@ static inline sonject_status read_scene_with(struct scene_folder *folder,
                            &folder->scene);
 }
 
-static inline sonject_status read_scene(struct scene_folder *folder, const char *const *overrides,
-                                        size_t count)
+static inline sonject_status read_scene(const char *const *overrides, size_t count)
 {
-    return read_scene_with(folder, overrides, count, false);
+    return read_scene_with(overrides, count, false);
 }
 
-static inline void expect_scene_taken(struct scene_folder *folder, const char *text)
+static inline void expect_scene_taken(const char *text)
 {
-    write_scene(folder, text, strlen(text));
-    if (read_scene(folder, NULL, 0) != SONJECT_OK)
+    write_scene(text, strlen(text));
+    if (read_scene(NULL, 0) != SONJECT_OK)
         fail_msg("refused: %s", folder->report.message);
 }
 
@@ -138,12 +129,11 @@ static inline const char *shape_words(void)
 }
 
 /* message: all of what follows the file name, ":2:3: sonar.altitude: ...", in each of its lines. */
-static inline void expect_scene_refused(struct scene_folder *folder, const char *text,
-                                        const char *message)
+static inline void expect_scene_refused(const char *text, const char *message)
 {
     char expected[REPORT_CAPACITY] = "";
-    write_scene(folder, text, strlen(text));
-    if (read_scene(folder, NULL, 0) != SONJECT_ERROR_INPUT)
+    write_scene(text, strlen(text));
+    if (read_scene(NULL, 0) != SONJECT_ERROR_INPUT)
         fail_msg("not refused: %s", text);
     for (const char *line = message, *end; *line; line = *end ? end + 1 : end) {
         end = line + strcspn(line, "\n");
@@ -155,6 +145,32 @@ static inline void expect_scene_refused(struct scene_folder *folder, const char 
     }
     if (strcmp(folder->report.message, expected) != 0)
         fail_msg("the message is\n%s\nand not\n%s", folder->report.message, expected);
+}
+
+/* Scenes that are refused, and the messages as above. */
+struct refusal {
+    const char *text, *message;
+};
+
+static inline void expect_all_refused(const struct refusal *wrong, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        expect_scene_refused(wrong[i].text, wrong[i].message);
+}
+
+/* One line that names the scene's file, the place and key, ":6:18: objects[0].mesh.file", another
+ * file and what is wrong with it. */
+static inline void expect_bad_file(const char *text, const char *key, const char *name,
+                                   sonject_status status, const char *what)
+{
+    char place[TEMPORARY_CAPACITY + 100];
+    const char *message = folder->report.message;
+    snprintf(place, sizeof place, "%s%s: ", folder->file, key);
+    write_scene(text, strlen(text));
+    assert_int_equal(read_scene(NULL, 0), status);
+    if (strncmp(message, place, strlen(place)) != 0 || !strstr(message, file_in(name)) ||
+        !strstr(message, what) || strchr(message, '\n'))
+        fail_msg("'%s' is not '%s... %s ... %s'", message, place, name, what);
 }
 
 /* The text of an example scene, its end marked by a 0, for free(). name: "demo". */

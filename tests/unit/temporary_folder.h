@@ -1,5 +1,4 @@
-/* A fresh folder for files that tests write. To be included after cmocka.h, by files that begin
- * with #define _POSIX_C_SOURCE 200809L. */
+/* A fresh folder for files that tests write. To be included after cmocka.h. */
 #ifndef TEMPORARY_FOLDER_H
 #define TEMPORARY_FOLDER_H
 
@@ -45,20 +44,25 @@ static inline int count_entries(const char *path)
     return count;
 }
 
-/* Removes the files in the folder and the folder; 0, or else if a folder is left in it. */
-static inline int close_temporary_folder(const struct temporary_folder *folder)
+/* A folder with all that is in it; 0, or else if it is not there. */
+static inline int remove_folder(const char *folder)
 {
-    DIR *list = opendir(folder->path);
     char path[TEMPORARY_CAPACITY + 300];
+    DIR *list = opendir(folder);
     if (!list)
         return 1;
-    for (const struct dirent *entry = readdir(list); entry; entry = readdir(list)) {
-        snprintf(path, sizeof path, "%s/%s", folder->path, entry->d_name);
-        if (is_entry(entry))
-            (void)unlink(path);
-    }
+    for (const struct dirent *entry = readdir(list); entry; entry = readdir(list))
+        if (is_entry(entry) &&
+            snprintf(path, sizeof path, "%s/%s", folder, entry->d_name) < (int)sizeof path &&
+            unlink(path) != 0)
+            (void)remove_folder(path);
     closedir(list);
-    return rmdir(folder->path);
+    return rmdir(folder);
+}
+
+static inline int close_temporary_folder(const struct temporary_folder *folder)
+{
+    return remove_folder(folder->path);
 }
 
 /* Set-up and tear-down of a cmocka test; *state is the struct temporary_folder. */
@@ -75,6 +79,8 @@ static inline int remove_temporary_folder(void **state)
     free(*state);
     return result;
 }
+
+#define IN_FOLDER(name) TEST_WITH(name, make_temporary_folder, remove_temporary_folder)
 
 /* folder/name, valid until the next call. */
 static inline const char *temporary_file(struct temporary_folder *folder, const char *name)

@@ -38,7 +38,7 @@ static void check_moments(const char *text, double mean, double variance, double
     distribution_clear(&distribution);
 }
 
-static void test_moments_are_those_of_the_distributions(void **state)
+TEST(test_moments_are_those_of_the_distributions)
 {
     check_moments("{uniform: [-2 cm, 4 cm]}", 1.0, 3.0, 1.8);
     /* mean (b - a) / ln(b / a), mean square (b^2 - a^2) / (2 ln(b / a)) */
@@ -52,7 +52,7 @@ static void test_moments_are_those_of_the_distributions(void **state)
     check_moments("{normal: {mean: 0, deviation: 1, minimum: 6}}", 6.1584826, 0.0239876, 8.04);
 }
 
-static void test_weights_are_frequencies(void **state)
+TEST(test_weights_are_frequencies)
 {
     struct distribution distribution;
     char text[DISTRIBUTION_TEXT_CAPACITY];
@@ -68,7 +68,7 @@ static void test_weights_are_frequencies(void **state)
     distribution_clear(&distribution);
 }
 
-static void test_ends_are_reached_and_not_left(void **state)
+TEST(test_ends_are_reached_and_not_left)
 {
     struct distribution distribution;
     char text[DISTRIBUTION_TEXT_CAPACITY];
@@ -88,7 +88,7 @@ static void test_ends_are_reached_and_not_left(void **state)
     distribution_clear(&distribution);
 }
 
-static void test_permutations_hit_all_once(void **state)
+TEST(test_permutations_hit_all_once)
 {
     for (uint64_t count = 1; count < 300; count += 1 + count / 7) {
         uint8_t hits[300] = {0};
@@ -104,7 +104,7 @@ static void test_permutations_hit_all_once(void **state)
     }
 }
 
-static void test_strata_hold_one_each(void **state)
+TEST(test_strata_hold_one_each)
 {
     uint8_t hits[1000] = {0};
     double products = 0.0;
@@ -118,7 +118,7 @@ static void test_strata_hold_one_each(void **state)
     assert_true(fabs(products / 1000) < 5.0 / 12.0 / sqrt(1000));
 }
 
-static void test_shares_are_whole_and_add_up(void **state)
+TEST(test_shares_are_whole_and_add_up)
 {
     const double weights[] = {1.0, 0.0, 2.0, 0.5, 0.1};
     uint64_t shares[5];
@@ -200,19 +200,14 @@ static void check_places(int quality)
     crop_places_clear(&swath.room);
 }
 
-static void test_images_lie_wherever_edges_contacts_and_ranges_let_them(void **state)
+TEST(test_images_lie_wherever_edges_contacts_and_ranges_let_them)
 {
     check_places(0);
 }
 
-static void test_images_of_a_jpeg_lie_at_its_blocks_within_these(void **state)
+TEST(test_images_of_a_jpeg_lie_at_its_blocks_within_these)
 {
     check_places(75);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_moments_are_those_of_the_distributions),
-             TEST(test_weights_are_frequencies), TEST(test_ends_are_reached_and_not_left),
-             TEST(test_permutations_hit_all_once), TEST(test_strata_hold_one_each),
-             TEST(test_shares_are_whole_and_add_up),
-             TEST(test_images_lie_wherever_edges_contacts_and_ranges_let_them),
-             TEST(test_images_of_a_jpeg_lie_at_its_blocks_within_these))
+TEST_PROGRAM(NULL, NULL)

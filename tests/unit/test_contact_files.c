@@ -1,47 +1,35 @@
 /* Labels of contacts: each format, as others and as sonject itself write it, what highlight and
  * shadow of one contact are, and labels that are wrong. Images are of 30 rows and 40 columns. */
-#define _POSIX_C_SOURCE 200809L
-
 #include <sys/stat.h>
 
 #include "base/report.h"
 #include "claims.h"
+#include "clean_folder.h"
 #include "dataset/contact_files.h"
 #include "dataset/labels.h"
-#include "temporary_folder.h"
+#include "swath/raster_file.h"
 
 #define ROWS_OF_IMAGE    30
 #define COLUMNS_OF_IMAGE 40
 
 /* All labels and images of a test are in a folder of its own. */
-static void put(void **state, const char *name, const char *text)
+static void put(const char *name, const char *text)
 {
-    write_bytes(temporary_file(*state, name), text, strlen(text));
+    write_bytes(file_in(name), text, strlen(text));
 }
 
-static void put_image(void **state, const char *name)
+static void put_image(const char *name)
 {
-    enum {
-        HEAD = 128
-    };
-    static char bytes[HEAD + 4 * ROWS_OF_IMAGE * COLUMNS_OF_IMAGE];
-    memset(bytes, ' ', HEAD);
-    memcpy(bytes, "\x93NUMPY\1\0v\0", 10);
-    const int length = snprintf(bytes + 10, HEAD - 10,
-                                "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d), }",
-                                ROWS_OF_IMAGE, COLUMNS_OF_IMAGE);
-    bytes[10 + length] = ' ';
-    bytes[HEAD - 1] = '\n';
-    write_bytes(temporary_file(*state, name), bytes, sizeof bytes);
+    static const float pixels[ROWS_OF_IMAGE * COLUMNS_OF_IMAGE];
+    const struct raster_layout layout = {ROWS_OF_IMAGE, COLUMNS_OF_IMAGE, 1, PIXEL_FLOAT32};
+    EXPECT_OK(&report, raster_format_write(&report, file_in(name), &layout, NULL, 0, pixels));
 }
 
 /* name: of a file; "": the folder. */
-static sonject_status read_set(void **state, const char *name, uint32_t part, struct report *report,
-                               struct contact_set *set)
+static sonject_status read_set(const char *name, uint32_t part, struct contact_set *set)
 {
-    struct temporary_folder *folder = *state;
-    memset(report, 0, sizeof *report);
-    return contact_set_read(report, *name ? temporary_file(folder, name) : folder->path, part, set);
+    report.message[0] = '\0';
+    return contact_set_read(&report, *name ? file_in(name) : folder->path, part, set);
 }
 
 struct expected {
@@ -50,12 +38,11 @@ struct expected {
     sonject_box box;
 };
 
-static void expect_contacts(void **state, const char *name, uint32_t part,
-                            const struct expected *expected, size_t count)
+static void expect_contacts(const char *name, uint32_t part, const struct expected *expected,
+                            size_t count)
 {
-    struct report report;
     struct contact_set set;
-    EXPECT_OK(&report, read_set(state, name, part, &report, &set));
+    EXPECT_OK(&report, read_set(name, part, &set));
     assert_string_equal(report.message, "");
     assert_int_equal(set.count, count);
     assert_int_equal(set.quantiles.count, 0);
@@ -77,20 +64,49 @@ static void expect_contacts(void **state, const char *name, uint32_t part,
 }
 
 /* message: all of it, with % for the folder. */
-static void expect_refused(void **state, const char *name, const char *message)
+static void expect_refused(const char *name, const char *message)
 {
-    struct temporary_folder *folder = *state;
-    struct report report;
     struct contact_set set;
     char expected[REPORT_CAPACITY] = "";
     for (const char *c = message; *c; c++)
         sprintf(expected + strlen(expected), *c == '%' ? "%s" : "%.1s",
                 *c == '%' ? folder->path : c);
-    if (read_set(state, name, LABELLED_BOTH, &report, &set) != SONJECT_ERROR_INPUT)
+    if (read_set(name, LABELLED_BOTH, &set) != SONJECT_ERROR_INPUT)
         fail_msg("not refused, though %s", message);
     contact_set_clear(&set);
     if (strcmp(report.message, expected) != 0)
         fail_msg("the message is\n%s\nand not\n%s", report.message, expected);
+}
+
+/* A folder within a fresh one, since images are looked for beside it, too. */
+static int make_labels_folder(void **state)
+{
+    if (begin(state) != 0)
+        return 1;
+    strcat(folder->path, "/labels");
+    return mkdir(folder->path, 0700);
+}
+
+static int remove_labels_folder(void **state)
+{
+    *strrchr(folder->path, '/') = '\0';
+    return remove_temporary_folder(state);
+}
+
+#define WITH_LABELS(name) TEST_WITH(name, make_labels_folder, remove_labels_folder)
+
+struct wrong {
+    const char *text, *message;
+};
+
+/* Each in a file, and what is read: that, or "", the folder. */
+static void expect_all_refused(const char *file, const char *read, const struct wrong *wrong,
+                               size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        put(file, wrong[i].text);
+        expect_refused(read, wrong[i].message);
+    }
 }
 
 /* ---- COCO. */
@@ -105,38 +121,26 @@ static void expect_refused(void **state, const char *name, const char *message)
 #define ANNOTATION(image, category, box)                                                           \
     "{\"image_id\": " image ", \"category_id\": " category ", \"bbox\": " box "}"
 
-static void test_coco(void **state)
+#define FOUR(a, b, c, d) a ",\n" b ",\n" c ",\n" d
+
+WITH_LABELS(test_coco)
 {
     const struct expected expected[] = {{"/b.npy", LABELLED_SHADOW, {20, 0, 2, 40}},
                                         {"/b.npy", LABELLED_BOTH, {25, 1, 5, 3}},
                                         {"/a.npy", LABELLED_HIGHLIGHT, {2, 3, 4, 5}},
                                         {"/a.npy", LABELLED_HIGHLIGHT, {6, 100, 1, 1}}};
-    put_image(state, "a.npy");
-    put_image(state, "b.npy");
-    put(state, "labels.json",
-        ANNOTATIONS(ANNOTATION("7", "5", "[1, 25, 3, 5]") ",\n" ANNOTATION(
-            "\"x\"", "1",
-            "[100.2, 6.4, 0.1, 0.1]") ",\n" ANNOTATION("7", "2",
-                                                       "[-0.6, 20, 41.5, 2]") ",\n" ANNOTATION("\"x"
-                                                                                               "\"",
-                                                                                               "4",
-                                                                                               "[2."
-                                                                                               "6, "
-                                                                                               "2."
-                                                                                               "4, "
-                                                                                               "5."
-                                                                                               "3, "
-                                                                                               "3."
-                                                                                               "7"
-                                                                                               "]")));
-    expect_contacts(state, "labels.json", LABELLED_HIGHLIGHT, expected, COUNT(expected));
+    put_image("a.npy");
+    put_image("b.npy");
+    put("labels.json", ANNOTATIONS(FOUR(ANNOTATION("7", "5", "[1, 25, 3, 5]"),
+                                        ANNOTATION("\"x\"", "1", "[100.2, 6.4, 0.1, 0.1]"),
+                                        ANNOTATION("7", "2", "[-0.6, 20, 41.5, 2]"),
+                                        ANNOTATION("\"x\"", "4", "[2.6, 2.4, 5.3, 3.7]"))));
+    expect_contacts("labels.json", LABELLED_HIGHLIGHT, expected, COUNT(expected));
 }
 
-static void test_coco_that_is_wrong(void **state)
+WITH_LABELS(test_coco_that_is_wrong)
 {
-    static const struct {
-        const char *text, *message;
-    } wrong[] = {
+    static const struct wrong wrong[] = {
         {"{\"images\": [],\n}", "%/l.json: damaged in line 2: string or '}' expected near '}'; "
                                 "mend it, or remove it and run that again"},
         {"[]", "%/l.json: damaged: no JSON object; remove it and run that again"},
@@ -183,46 +187,40 @@ static void test_coco_that_is_wrong(void **state)
          "\"annotations\": [" ANNOTATION("7", "1", "[1, 2, 3, 4]") "]}",
          "%/l.json: annotations[0]: its image's width or height is not a whole number of pixels"},
     };
-    put_image(state, "a.npy");
-    put_image(state, "b.npy");
-    for (size_t i = 0; i < COUNT(wrong); i++) {
-        put(state, "l.json", wrong[i].text);
-        expect_refused(state, "l.json", wrong[i].message);
-    }
-    expect_refused(state, "none.json", "%/none.json: there is no such file or folder of labels");
-    expect_refused(state, "b.npy",
+    put_image("a.npy");
+    put_image("b.npy");
+    expect_all_refused("l.json", "l.json", wrong, COUNT(wrong));
+    expect_refused("none.json", "%/none.json: there is no such file or folder of labels");
+    expect_refused("b.npy",
                    "%/b.npy: no labels: neither .json (COCO), .csv, .yaml (quantiles) nor a folder "
                    "of .txt (YOLO) or .xml (VOC)");
 }
 
 /* ---- CSV. */
 
-static void test_tables(void **state)
+WITH_LABELS(test_tables)
 {
     const struct expected expected[] = {{"/a.npy", LABELLED_SHADOW, {1, 2, 3, 4}},
                                         {"/a.npy", LABELLED_BOTH, {6, 2, 3, 4}},
                                         {"/a.npy", LABELLED_HIGHLIGHT, {9, 2, 3, 4}},
                                         {"/b \"2\", 3.npy", LABELLED_HIGHLIGHT, {0, 0, 1, 500}}};
-    put_image(state, "a.npy");
-    put_image(state, "b \"2\", 3.npy");
-    put(state, "labels.csv",
-        "image,row,column,rows,columns,part # comment\n\n"
-        "a.npy,9,2,3,4,\na.npy,0.6,2.3,3,4,Shadow\n\"a.npy\",6,2,3,4,both\n"
-        "\"b \"\"2\"\", 3.npy\",0,0,1,500,\"highlight\"\n");
-    expect_contacts(state, "labels.csv", LABELLED_HIGHLIGHT, expected, COUNT(expected));
-    put(state, "labels.CSV",
+    put_image("a.npy");
+    put_image("b \"2\", 3.npy");
+    put("labels.csv", "image,row,column,rows,columns,part # comment\n\n"
+                      "a.npy,9,2,3,4,\na.npy,0.6,2.3,3,4,Shadow\n\"a.npy\",6,2,3,4,both\n"
+                      "\"b \"\"2\"\", 3.npy\",0,0,1,500,\"highlight\"\n");
+    expect_contacts("labels.csv", LABELLED_HIGHLIGHT, expected, COUNT(expected));
+    put("labels.CSV",
         "class;rows;columns;row;column;image\nshadow;3;4;1;2;a.npy\nechoes and shadows;3;4;6;2;"
         "a.npy\nrock;3;4;9;2;a.npy\n;1;500;0;0;b \"2\", 3.npy\n");
-    expect_contacts(state, "labels.CSV", LABELLED_HIGHLIGHT, expected, COUNT(expected));
+    expect_contacts("labels.CSV", LABELLED_HIGHLIGHT, expected, COUNT(expected));
 }
 
-static void test_tables_that_are_wrong(void **state)
+WITH_LABELS(test_tables_that_are_wrong)
 {
 #define T "image,row,column,rows,columns,part\n"
-    static const struct {
-        const char *text, *message;
-    } wrong[] = {
-        {"", "%/l.csv: there is nothing in it"},
+    static const struct wrong wrong[] = {
+        /* what is wrong with any table: test_profile_table.c */
         {T, "%/l.csv: holds no contacts"},
         {"image,row,column,rows,part\n",
          "%/l.csv:1: columns: there is no such column; there must be image, row, column, rows, "
@@ -232,7 +230,6 @@ static void test_tables_that_are_wrong(void **state)
          "columns, or those of sonject's contacts.csv"},
         {"image,row,column,rows,columns,row\n",
          "%/l.csv:1: row: two columns of this name; rename one"},
-        {T "a.npy,1,2,3,4\n", "%/l.csv:2: has 5 columns, but 6 have names"},
         {T "a.npy,1,2,3,,\n", "%/l.csv:2: columns: '' is not a number"},
         {T "a.npy,,,,,\n", "%/l.csv:2: row: '' is not a number"},
         {T "a.npy,1,2 m,3,4,\n", "%/l.csv:2: column: '2 m' is not a number"},
@@ -245,34 +242,29 @@ static void test_tables_that_are_wrong(void **state)
         {T "a.npy,1,2,inf,4,\n",
          "%/l.csv:2: the box, rows 1 to inf and columns 2 to 6, is not in the image"},
     };
-    put_image(state, "a.npy");
-    for (size_t i = 0; i < COUNT(wrong); i++) {
-        put(state, "l.csv", wrong[i].text);
-        expect_refused(state, "l.csv", wrong[i].message);
-    }
+    put_image("a.npy");
+    expect_all_refused("l.csv", "l.csv", wrong, COUNT(wrong));
 }
 
-static void test_so_many_contacts_and_no_more(void **state)
+WITH_LABELS(test_so_many_contacts_and_no_more)
 {
     enum {
         MOST = 100000
     };
-    struct report report;
     struct contact_set set;
-    put_image(state, "a.npy");
+    put_image("a.npy");
     for (int more = 0; more < 2; more++) {
-        FILE *file = open_new_file(temporary_file(*state, "l.csv"));
+        FILE *file = open_new_file(file_in("l.csv"));
         assert_non_null(file);
         fprintf(file, "image,row,column,rows,columns\n");
         for (int i = 0; i < MOST + more; i++)
             fprintf(file, "a.npy,%d,0,1,1\n", i);
         fclose(file);
         if (more) {
-            expect_refused(state, "l.csv",
-                           "%/l.csv:100002: more than 100000 contacts; leave some out");
+            expect_refused("l.csv", "%/l.csv:100002: more than 100000 contacts; leave some out");
             continue;
         }
-        EXPECT_OK(&report, read_set(state, "l.csv", LABELLED_BOTH, &report, &set));
+        EXPECT_OK(&report, read_set("l.csv", LABELLED_BOTH, &set));
         assert_int_equal(set.count, MOST);
         assert_int_equal(set.contacts[MOST - 1].box.first_row, MOST - 1);
         assert_int_equal(set.image_count, 1);
@@ -282,39 +274,37 @@ static void test_so_many_contacts_and_no_more(void **state)
 
 /* ---- YOLO. */
 
-static void test_yolo(void **state)
+WITH_LABELS(test_yolo)
 {
     /* fractions: x 8 to 16 of 40, y 3 to 9 of 30; then the whole image */
     static const char text[] = "1 0.3 0.2 0.2 0.2\r\n\n 0\t0.5 0.5 1 1 \n";
     struct expected expected[] = {{"/a.b.npy", LABELLED_HIGHLIGHT, {20, 10, 2, 4}},
                                   {"/a.npy", LABELLED_HIGHLIGHT, {0, 0, 30, 40}},
                                   {"/a.npy", LABELLED_HIGHLIGHT, {3, 8, 6, 8}}};
-    put_image(state, "a.npy");
-    put_image(state, "a.b.npy");
-    put(state, "a.txt", text);
-    put(state, "a.b.txt", "1 0.3 0.7 0.1 0.06666666667");
-    put(state, "empty.txt", "\n");
-    put(state, "a.jgw", "no image\n");
-    expect_contacts(state, "", LABELLED_HIGHLIGHT, expected, 3);
-    put(state, "classes.txt", "echo\r\nx\n");
-    expect_contacts(state, "", LABELLED_HIGHLIGHT, expected, 3);
-    (void)unlink(temporary_file(*state, "classes.txt"));
-    put(state, "data.yaml", "train: images\nnc: 2\nnames: [rock, both_echo_and_shadow]\n");
+    put_image("a.npy");
+    put_image("a.b.npy");
+    put("a.txt", text);
+    put("a.b.txt", "1 0.3 0.7 0.1 0.06666666667");
+    put("empty.txt", "\n");
+    put("a.jgw", "no image\n");
+    expect_contacts("", LABELLED_HIGHLIGHT, expected, 3);
+    put("classes.txt", "echo\r\nx\n");
+    expect_contacts("", LABELLED_HIGHLIGHT, expected, 3);
+    (void)unlink(file_in("classes.txt"));
+    put("data.yaml", "train: images\nnc: 2\nnames: [rock, both_echo_and_shadow]\n");
     for (int i = 0; i < 3; i++)
         expected[i].part = LABELLED_BOTH;
-    expect_contacts(state, "", LABELLED_BOTH, expected, 3);
-    put(state, "data.yaml", "names:\n  1: shadows\n  0: rock\n");
+    expect_contacts("", LABELLED_BOTH, expected, 3);
+    put("data.yaml", "names:\n  1: shadows\n  0: rock\n");
     expected[0].part = expected[2].part = LABELLED_SHADOW;
-    expect_contacts(state, "", LABELLED_BOTH, expected, 3);
+    expect_contacts("", LABELLED_BOTH, expected, 3);
 }
 
-static void test_yolo_that_is_wrong(void **state)
+WITH_LABELS(test_yolo_that_is_wrong)
 {
 #define NO_LINE                                                                                    \
     " is not a class's number and four fractions, of the box's centre and sides, x before y"
-    static const struct {
-        const char *text, *message;
-    } wrong[] = {
+    static const struct wrong wrong[] = {
         {"", "%: holds no contacts"},
         {"0 0.5 0.5 0.2 0.2\n0 0.5 0.5 0.2\n", "%/a.txt:2: '0 0.5 0.5 0.2'" NO_LINE},
         {"0 0.5 0.5 0.2 0.2 0.9\n", "%/a.txt:1: '0 0.5 0.5 0.2 0.2 0.9'" NO_LINE},
@@ -327,44 +317,40 @@ static void test_yolo_that_is_wrong(void **state)
         {"0 20 15 8 6\n", "%/a.txt:1: the box, rows 360 to 540 and columns 640 to 960, is not in "
                           "the image of 30 rows and 40 columns"},
     };
-    put_image(state, "a.npy");
-    put(state, "classes.txt", "mine\nshadow\n");
-    for (size_t i = 0; i < COUNT(wrong); i++) {
-        put(state, "a.txt", wrong[i].text);
-        expect_refused(state, "", wrong[i].message);
-    }
-    write_bytes(temporary_file(*state, "a.txt"), "0 0.5 0.5\0 0.2 0.2\n", 19);
-    expect_refused(state, "", "%/a.txt: is no text");
-    put(state, "a.txt", "0 0.5 0.5 0.2 0.2\n");
-    put(state, "classes.txt", "mi\x01ne\n");
-    expect_refused(state, "", "%/classes.txt: class 0 is no text");
-    (void)unlink(temporary_file(*state, "classes.txt"));
-    put(state, "data.yaml", "names: [[a]]\n");
-    expect_refused(state, "", "%/data.yaml:1:9: names: a class's name must be a text");
-    put(state, "data.yaml", "names: [a\n");
-    expect_refused(state, "",
+    put_image("a.npy");
+    put("classes.txt", "mine\nshadow\n");
+    expect_all_refused("a.txt", "", wrong, COUNT(wrong));
+    write_bytes(file_in("a.txt"), "0 0.5 0.5\0 0.2 0.2\n", 19);
+    expect_refused("", "%/a.txt: is no text");
+    put("a.txt", "0 0.5 0.5 0.2 0.2\n");
+    put("classes.txt", "mi\x01ne\n");
+    expect_refused("", "%/classes.txt: class 0 is no text");
+    (void)unlink(file_in("classes.txt"));
+    put("data.yaml", "names: [[a]]\n");
+    expect_refused("", "%/data.yaml:1:9: names: a class's name must be a text");
+    put("data.yaml", "names: [a\n");
+    expect_refused("",
                    "%/data.yaml:2:1: names: not valid YAML (while parsing a flow sequence: did not "
                    "find expected ',' or ']'); check indentation, colons, quotes and brackets");
-    (void)unlink(temporary_file(*state, "data.yaml"));
-    (void)unlink(temporary_file(*state, "a.npy"));
-    struct report report;
+    (void)unlink(file_in("data.yaml"));
+    (void)unlink(file_in("a.npy"));
     struct contact_set set;
-    put(state, "a.npz", "no image");
-    assert_int_equal(read_set(state, "", LABELLED_BOTH, &report, &set), SONJECT_ERROR_INPUT);
+    put("a.npz", "no image");
+    assert_int_equal(read_set("", LABELLED_BOTH, &set), SONJECT_ERROR_INPUT);
     assert_non_null(strstr(report.message, "/a.npz: is of no format that sonject knows"));
     contact_set_clear(&set);
-    (void)unlink(temporary_file(*state, "a.npz"));
-    expect_refused(state, "",
+    (void)unlink(file_in("a.npz"));
+    expect_refused("",
                    "%/a.txt:1: there is no image of that name, neither beside the labels nor in "
                    "'images' below or beside them");
-    (void)unlink(temporary_file(*state, "a.txt"));
-    expect_refused(state, "",
+    (void)unlink(file_in("a.txt"));
+    expect_refused("",
                    "%: no labels: neither .json (COCO), .csv, .yaml (quantiles) nor a folder of "
                    ".txt (YOLO) or .xml (VOC)");
 }
 
 /* Labels in data/labels/train, with images in data/images/train, or elsewhere about them. */
-static void test_where_images_are_looked_for(void **state)
+WITH_LABELS(test_where_images_are_looked_for)
 {
     static const char *const folders[] = {"labels",           "labels/train", "labels/train/images",
                                           "labels/images",    "images",       "images/train",
@@ -375,20 +361,16 @@ static void test_where_images_are_looked_for(void **state)
     static const char *const labels[] = {"labels/train/a.txt", "labels/train/l.csv"};
     struct expected expected = {NULL, LABELLED_BOTH, {3, 8, 6, 8}};
     for (size_t i = 0; i < COUNT(folders); i++)
-        assert_int_equal(mkdir(temporary_file(*state, folders[i]), 0700), 0);
-    put(state, labels[0], "0 0.3 0.2 0.2 0.2\n");
-    put(state, labels[1], "image,row,column,rows,columns\na.npy,3,8,6,8\n");
+        assert_int_equal(mkdir(file_in(folders[i]), 0700), 0);
+    put(labels[0], "0 0.3 0.2 0.2 0.2\n");
+    put(labels[1], "image,row,column,rows,columns\na.npy,3,8,6,8\n");
     for (size_t i = 0; i < COUNT(places); i++) {
-        put_image(state, places[i]);
+        put_image(places[i]);
         expected.image = "/a.npy";
-        expect_contacts(state, labels[1], LABELLED_BOTH, &expected, 1);
-        expect_contacts(state, "labels/train", LABELLED_BOTH, &expected, 1);
-        (void)unlink(temporary_file(*state, places[i]));
+        expect_contacts(labels[1], LABELLED_BOTH, &expected, 1);
+        expect_contacts("labels/train", LABELLED_BOTH, &expected, 1);
+        (void)unlink(file_in(places[i]));
     }
-    for (size_t i = 0; i < COUNT(labels); i++)
-        (void)unlink(temporary_file(*state, labels[i]));
-    for (size_t i = COUNT(folders); i-- > 0;)
-        assert_int_equal(rmdir(temporary_file(*state, folders[i])), 0);
 }
 
 /* ---- VOC. */
@@ -399,15 +381,15 @@ static void test_where_images_are_looked_for(void **state)
 #define OBJECT(name, box) "<object><name>" name "</name>" box "</object>"
 #define SIZE              "<size><width>40</width><height>30</height><depth>1</depth></size>\n"
 
-static void test_voc(void **state)
+WITH_LABELS(test_voc)
 {
     const struct expected expected[] = {{"/a&b.npy", LABELLED_SHADOW, {0, 0, 1, 1}},
                                         {"/a&b.npy", LABELLED_SHADOW, {2, 1, 8, 39}},
                                         {"/c.npy", LABELLED_BOTH, {9, 4, 2, 100}}};
-    put_image(state, "a&b.npy");
-    put_image(state, "c.npy");
+    put_image("a&b.npy");
+    put_image("c.npy");
 #define DEEP "longer-than-there-is-room-for-on-the-way-to-an-element"
-    put(state, "1.xml",
+    put("1.xml",
         "<?xml version='1.0'?>\n<annotation><folder>x</folder>" OBJECT(
             "\n shadow\n", BOX(0, 1, 1, 1)) "<filename>a&amp;b.npy\n</filename>" SIZE
                                             "<object><part><name>highlight</name>" BOX(
@@ -415,21 +397,18 @@ static void test_voc(void **state)
                                                 6) "</part>echo <name>rock's shadow</name>"
                                                    "<" DEEP "><name>highlight</name></" DEEP
                                                    ">" BOX(2, 3, 40, 10) "</object></annotation>");
-    put(state, "2.xml",
-        "<annotation><filename>c.npy</filename>" OBJECT("r",
-                                                        BOX(5, 10, 104.2, 11)) "</annotation>");
-    put(state, "3.xml", "<annotation><filename>none</filename></annotation>");
-    put(state, "classes.txt", "rock\n");
-    expect_contacts(state, "", LABELLED_BOTH, expected, COUNT(expected));
+    put("2.xml", "<annotation><filename>c.npy</filename>" OBJECT(
+                     "r", BOX(5, 10, 104.2, 11)) "</annotation>");
+    put("3.xml", "<annotation><filename>none</filename></annotation>");
+    put("classes.txt", "rock\n");
+    expect_contacts("", LABELLED_BOTH, expected, COUNT(expected));
 }
 
-static void test_voc_that_is_wrong(void **state)
+WITH_LABELS(test_voc_that_is_wrong)
 {
 #define VOC(text) "<annotation>\n<filename>a.npy</filename>\n" SIZE text "</annotation>"
 #define NEEDS     "%/a.xml:4: an object needs a name, and a bndbox of xmin, ymin, xmax, ymax"
-    static const struct {
-        const char *text, *message;
-    } wrong[] = {
+    static const struct wrong wrong[] = {
         {"", "%/a.xml:1: no XML: no element found"},
         {"<annotation>\n<object></annotation>", "%/a.xml:2: no XML: mismatched tag"},
         {"<html></html>",
@@ -452,21 +431,17 @@ static void test_voc_that_is_wrong(void **state)
          "%/a.xml:1: there is no image 'c', neither beside the labels nor in 'images' below or "
          "beside them"},
     };
-    put_image(state, "a.npy");
-    for (size_t i = 0; i < COUNT(wrong); i++) {
-        put(state, "a.xml", wrong[i].text);
-        expect_refused(state, "", wrong[i].message);
-    }
+    put_image("a.npy");
+    expect_all_refused("a.xml", "", wrong, COUNT(wrong));
     static char text[10000] = "<annotation><filename>";
     memset(text + strlen(text), 'a', 9000);
-    put(state, "a.xml", strcat(text, "</filename></annotation>"));
-    expect_refused(state, "",
-                   "%/a.xml:1: more text than an annotation has in /annotation/filename");
+    put("a.xml", strcat(text, "</filename></annotation>"));
+    expect_refused("", "%/a.xml:1: more text than an annotation has in /annotation/filename");
 }
 
 /* ---- What sonject writes itself. */
 
-static void test_own_labels_are_read_as_they_were_written(void **state)
+WITH_LABELS(test_own_labels_are_read_as_they_were_written)
 {
     static const sonject_box boxes[] = {
         {0, 0, 30, 40}, {0, 39, 1, 1}, {7, 3, 11, 13}, {13, 17, 9, 7}, {29, 0, 1, 23}};
@@ -479,12 +454,11 @@ static void test_own_labels_are_read_as_they_were_written(void **state)
     static sonject_object_truth truth;
     struct contact contacts[CONTACTS + 1];
     struct class_names classes = {NULL, 0};
-    struct report report = {{0}, NULL, NULL};
     struct image_labels labels = {"image.npy", ROWS_OF_IMAGE, COLUMNS_OF_IMAGE,
                                   false,       contacts,      CONTACTS + 1};
     struct expected expected[CONTACTS];
     memset(contacts, 0, sizeof contacts);
-    put_image(state, "image.npy");
+    put_image("image.npy");
     for (uint32_t i = 0; i < CONTACTS + 1; i++) {
         struct contact *contact = &contacts[i];
         snprintf(objects[i].name, sizeof objects[i].name, "=a, \"b\" # %u", i);
@@ -506,9 +480,9 @@ static void test_own_labels_are_read_as_they_were_written(void **state)
     }
     for (int file = 0; file < LABEL_FILES; file++) {
         EXPECT_OK(&report, labels_write(&report, &labels, &classes, (enum label_file)file,
-                                        temporary_file(*state, names[file])));
+                                        file_in(names[file])));
         if (file != LABEL_YOLO)
-            expect_contacts(state, file < LABEL_YOLO ? names[file] : "", LABELLED_BOTH, expected,
+            expect_contacts(file < LABEL_YOLO ? names[file] : "", LABELLED_BOTH, expected,
                             CONTACTS);
     }
     class_names_clear(&classes);
@@ -516,7 +490,7 @@ static void test_own_labels_are_read_as_they_were_written(void **state)
 
 /* ---- Highlights and shadows. */
 
-static void test_highlight_and_shadow_are_one_contact(void **state)
+WITH_LABELS(test_highlight_and_shadow_are_one_contact)
 {
 #define H "a.npy,highlight,"
 #define S "a.npy,shadow,"
@@ -574,28 +548,25 @@ static void test_highlight_and_shadow_are_one_contact(void **state)
          {{"", LABELLED_BOTH, {4, 0, 4, 32}}, {"", LABELLED_BOTH, {4, 30, 4, 10}}}},
     };
     char text[400];
-    put_image(state, "a.npy");
-    put_image(state, "b.npy");
+    put_image("a.npy");
+    put_image("b.npy");
     for (size_t i = 0; i < COUNT(cases); i++) {
         snprintf(text, sizeof text, "image,class,row,column,rows,columns\n%s", cases[i].rows);
-        put(state, "l.csv", text);
-        expect_contacts(state, "l.csv", LABELLED_BOTH, cases[i].expected, cases[i].count);
+        put("l.csv", text);
+        expect_contacts("l.csv", LABELLED_BOTH, cases[i].expected, cases[i].count);
     }
-    put(state, "l.csv",
-        "image,class,row,column,rows,columns\na.npy,mine,5,10,4,3\n" S "4,13,6,9\n");
-    expect_contacts(state, "l.csv", LABELLED_HIGHLIGHT, cases[0].expected, 1);
+    put("l.csv", "image,class,row,column,rows,columns\na.npy,mine,5,10,4,3\n" S "4,13,6,9\n");
+    expect_contacts("l.csv", LABELLED_HIGHLIGHT, cases[0].expected, 1);
 }
 
 /* ---- Quantiles. */
 
-static void test_quantiles(void **state)
+WITH_LABELS(test_quantiles)
 {
-    struct report report;
     struct contact_set set;
-    put(state, "q.yaml",
-        "quantiles: [0.05, 0.5, 1]\ncontacts: 120\nhighlight_range: [40 cm, 0.4, 6 m]\n"
-        "shadow_along: [1, 2, 3 km]\n");
-    EXPECT_OK(&report, read_set(state, "q.yaml", LABELLED_BOTH, &report, &set));
+    put("q.yaml", "quantiles: [0.05, 0.5, 1]\ncontacts: 120\nhighlight_range: [40 cm, 0.4, 6 m]\n"
+                  "shadow_along: [1, 2, 3 km]\n");
+    EXPECT_OK(&report, read_set("q.yaml", LABELLED_BOTH, &set));
     const struct extent_quantiles *quantiles = &set.quantiles;
     assert_int_equal(set.count, 0);
     assert_int_equal(quantiles->count, 3);
@@ -611,12 +582,10 @@ static void test_quantiles(void **state)
     contact_set_clear(&set);
 }
 
-static void test_quantiles_that_are_wrong(void **state)
+WITH_LABELS(test_quantiles_that_are_wrong)
 {
 #define Q "quantiles: [0.1, 0.5]\ncontacts: 12\n"
-    static const struct {
-        const char *text, *message;
-    } wrong[] = {
+    static const struct wrong wrong[] = {
         {"quantiles: [0.1, 0.5]\nshadow_range: [1, 2]\n",
          "%/q.yml:1:1: contacts: missing; add it (how many they were read off)"},
         {"contacts: 12\nshadow_range: [1, 2]\n",
@@ -644,45 +613,13 @@ static void test_quantiles_that_are_wrong(void **state)
                         "not find expected ',' or ']'); check indentation, colons, quotes and "
                         "brackets"},
     };
-    for (size_t i = 0; i < COUNT(wrong); i++) {
-        put(state, "q.yml", wrong[i].text);
-        expect_refused(state, "q.yml", wrong[i].message);
-    }
+    expect_all_refused("q.yml", "q.yml", wrong, COUNT(wrong));
     char text[800] = Q "shadow_range: [";
     for (int i = 0; i < 33; i++)
         sprintf(text + strlen(text), "%d, ", i + 1);
-    put(state, "q.yml", strcat(text, "]\n"));
-    expect_refused(state, "q.yml",
+    put("q.yml", strcat(text, "]\n"));
+    expect_refused("q.yml",
                    "%/q.yml:3:15: shadow_range: must be a list of 1 to 32 numbers that rise");
 }
 
-/* A folder within a fresh one, since images are looked for beside it, too. */
-static int make_labels_folder(void **state)
-{
-    if (make_temporary_folder(state) != 0)
-        return 1;
-    struct temporary_folder *folder = *state;
-    strcat(folder->path, "/labels");
-    return mkdir(folder->path, 0700);
-}
-
-static int remove_labels_folder(void **state)
-{
-    char outer[TEMPORARY_CAPACITY];
-    const struct temporary_folder *folder = *state;
-    const size_t length = strlen(folder->path) - strlen("/labels");
-    snprintf(outer, sizeof outer, "%.*s", (int)length, folder->path);
-    return remove_temporary_folder(state) != 0 || rmdir(outer) != 0;
-}
-
-#define IN_FOLDER(test)                                                                            \
-    cmocka_unit_test_setup_teardown(test, make_labels_folder, remove_labels_folder)
-
-TEST_PROGRAM(NULL, NULL, IN_FOLDER(test_coco), IN_FOLDER(test_coco_that_is_wrong),
-             IN_FOLDER(test_tables), IN_FOLDER(test_tables_that_are_wrong),
-             IN_FOLDER(test_so_many_contacts_and_no_more), IN_FOLDER(test_yolo),
-             IN_FOLDER(test_yolo_that_is_wrong), IN_FOLDER(test_where_images_are_looked_for),
-             IN_FOLDER(test_voc), IN_FOLDER(test_voc_that_is_wrong),
-             IN_FOLDER(test_own_labels_are_read_as_they_were_written),
-             IN_FOLDER(test_highlight_and_shadow_are_one_contact), IN_FOLDER(test_quantiles),
-             IN_FOLDER(test_quantiles_that_are_wrong))
+TEST_PROGRAM(NULL, NULL)

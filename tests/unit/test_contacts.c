@@ -10,6 +10,8 @@
 
 static struct report report;
 static uint64_t random_state;
+static double means[PIXELS]; /* of a profile */
+static const double lobe_bias[PIXELS];
 
 static double draw(void)
 {
@@ -60,11 +62,9 @@ static void expect_pulls(const char *what, const struct pulls *pulls)
 }
 
 /* From a highlight of levels that come and go to a shadow, all through a point response. */
-static void test_ends_in_speckle(void **state)
+TEST(test_ends_in_speckle)
 {
     const double deviation = 0.42;
-    double means[PIXELS];
-    const double lobe_bias[PIXELS] = {0.0};
     const struct end_levels levels = {0.2, 0.06};
     struct pulls pulls = {0.0, 0.0, 0.0, 0};
     random_state = 1;
@@ -82,10 +82,8 @@ static void test_ends_in_speckle(void **state)
 }
 
 /* From a shadow to the seabed, through penumbras of several widths. */
-static void test_steps_in_speckle(void **state)
+TEST(test_steps_in_speckle)
 {
-    double means[PIXELS];
-    const double lobe_bias[PIXELS] = {0.0};
     const double widths[2] = {0.42, 2.5};
     struct step_levels levels;
     random_state = 2;
@@ -109,10 +107,8 @@ static void test_steps_in_speckle(void **state)
 
 /* Twice the level in the first third: told where 6 samples a pixel tell it, but not where one level
  * is all there is: e^10 times as likely is one in some 200 (see contact_ruler.c). */
-static void test_changes_in_shadows(void **state)
+TEST(test_changes_in_shadows)
 {
-    double means[PIXELS];
-    const double lobe_bias[PIXELS] = {0.0};
     const struct profile profile = {means, lobe_bias, PIXELS, 6.0, 0.42};
     struct pulls pulls = {0.0, 0.0, 0.0, 0};
     int told = 0;
@@ -133,10 +129,9 @@ static void test_changes_in_shadows(void **state)
 }
 
 /* All dark, all lit, nothing but zeros, and a single pixel. */
-static void test_profiles_without_an_edge(void **state)
+TEST(test_profiles_without_an_edge)
 {
-    double means[PIXELS] = {0.0};
-    const double lobe_bias[PIXELS] = {0.0};
+    memset(means, 0, sizeof means);
     const struct end_levels levels = {4.0, 1.0};
     const struct profile profile = {means, lobe_bias, PIXELS, 20.0, 0.5};
     const struct profile single = {means, lobe_bias, 1, 1.0, 0.5};
@@ -150,37 +145,40 @@ static void test_profiles_without_an_edge(void **state)
     assert_true(fabs(edge.place - (PIXELS - 0.5)) < 0.5);
 }
 
+static float intensity[ROWS * COLUMNS];
+static struct contact_place places[10];
+static size_t left; /* of what was looked for last */
+
 /* A bright rectangle with a shadow behind it. */
-static void add_contact(float *intensity, size_t row, size_t column, size_t rows, float level,
-                        size_t shadow)
+static void add_contact(size_t row, size_t column, size_t rows, float level, size_t shadow)
 {
     for (size_t i = row; i < row + rows; i++)
         for (size_t k = column; k < COLUMNS && k < column + 5 + shadow; k++)
             intensity[i * COLUMNS + k] *= k < column + 5 ? level : 0.01f;
 }
 
-static void fill_with_speckle(float *intensity)
+static void fill_with_speckle(uint64_t seed)
 {
+    random_state = seed;
     for (size_t i = 0; i < (size_t)ROWS * COLUMNS; i++)
         intensity[i] = (float)speckle(1);
 }
 
-static size_t find(const float *intensity, double contrast, size_t most,
-                   struct contact_place *places, size_t *left)
+/* Fills places, and left. */
+static size_t find(double contrast, size_t most)
 {
     struct contact_image image;
     struct contact_search search;
     size_t count = 0;
-    assert_int_equal(contact_image_create(&image, &report, intensity, ROWS, COLUMNS), SONJECT_OK);
-    assert_int_equal(contact_search_begin(&search, &report, &image), SONJECT_OK);
+    EXPECT_OK(&report, contact_image_create(&image, &report, intensity, ROWS, COLUMNS));
+    EXPECT_OK(&report, contact_search_begin(&search, &report, &image));
     while (count < most) {
-        assert_int_equal(contact_search_next(&search, &report, &image, contrast, &places[count]),
-                         SONJECT_OK);
+        EXPECT_OK(&report, contact_search_next(&search, &report, &image, contrast, &places[count]));
         if (places[count].box.rows == 0)
             break;
         count++;
     }
-    *left = contact_search_left(&search, &image, contrast);
+    left = contact_search_left(&search, &image, contrast);
     contact_search_clear(&search);
     contact_image_clear(&image);
     return count;
@@ -190,22 +188,18 @@ static size_t find(const float *intensity, double contrast, size_t most,
  * fainter than what is asked for. Half of the image is 20 dB brighter: contrasts are against what
  * is around.
  */
-static void test_contacts_are_found(void **state)
+TEST(test_contacts_are_found)
 {
-    static float intensity[ROWS * COLUMNS];
-    struct contact_place places[10];
-    size_t left;
-    random_state = 3;
-    fill_with_speckle(intensity);
+    fill_with_speckle(3);
     for (size_t i = 0; i < (size_t)ROWS * COLUMNS; i++)
         intensity[i] *= i % COLUMNS < 150 ? 1.0f : 100.0f;
-    add_contact(intensity, 30, 30, 16, 400.0f, 40);
-    add_contact(intensity, 90, 200, 16, 200.0f, 30);
-    add_contact(intensity, 90, 40, 16, 100.0f, 40);
-    add_contact(intensity, 150, 60, 12, 50.0f, 0);
-    add_contact(intensity, 36, 60, 6, 4000.0f, 0);
-    add_contact(intensity, 150, 220, 12, 8.0f, 20);
-    assert_int_equal(find(intensity, 25.0, 10, places, &left), 4);
+    add_contact(30, 30, 16, 400.0f, 40);
+    add_contact(90, 200, 16, 200.0f, 30);
+    add_contact(90, 40, 16, 100.0f, 40);
+    add_contact(150, 60, 12, 50.0f, 0);
+    add_contact(36, 60, 6, 4000.0f, 0);
+    add_contact(150, 220, 12, 8.0f, 20);
+    assert_int_equal(find(25.0, 10), 4);
     assert_int_equal(left, 0);
     const size_t firsts[4][2] = {{30, 30}, {90, 200}, {90, 40}, {150, 60}};
     const size_t widths[4] = {45, 35, 45, 5};
@@ -215,102 +209,88 @@ static void test_contacts_are_found(void **state)
         assert_true(labs((long)box->first_column + CONTACT_MARGIN - (long)firsts[i][1]) <= 2);
         assert_true(labs((long)box->columns - 2 * CONTACT_MARGIN - (long)widths[i]) <= 4);
     }
-    assert_int_equal(find(intensity, 25.0, 2, places, &left), 2);
+    assert_int_equal(find(25.0, 2), 2);
     assert_int_equal(left, 2);
-    assert_int_equal(find(intensity, 1e4, 10, places, &left), 0);
+    assert_int_equal(find(1e4, 10), 0);
 }
 
 /* A side lobe 30 dB under its contact, in its columns, is none; elsewhere it is one. */
-static void test_side_lobes_are_no_contacts(void **state)
+TEST(test_side_lobes_are_no_contacts)
 {
-    static float intensity[ROWS * COLUMNS];
-    struct contact_place places[4];
-    size_t left;
-    random_state = 6;
-    fill_with_speckle(intensity);
-    add_contact(intensity, 60, 40, 10, 1e5f, 30);
-    add_contact(intensity, 100, 40, 10, 1e2f, 0);
-    add_contact(intensity, 100, 140, 10, 1e2f, 0);
-    assert_int_equal(find(intensity, 16.0, 4, places, &left), 2);
+    fill_with_speckle(6);
+    add_contact(60, 40, 10, 1e5f, 30);
+    add_contact(100, 40, 10, 1e2f, 0);
+    add_contact(100, 140, 10, 1e2f, 0);
+    assert_int_equal(find(16.0, 4), 2);
     assert_true(places[1].bright.first_column > 130);
 }
 
 /* Plain speckle has no contacts of 12 dB: a mean of 9 is over 16 once in e-50; nor has the dark. */
-static void test_nothing_is_found_in_speckle(void **state)
+TEST(test_nothing_is_found_in_speckle)
 {
-    static float intensity[ROWS * COLUMNS];
-    struct contact_place places[1];
-    size_t left;
-    random_state = 4;
-    fill_with_speckle(intensity);
-    assert_int_equal(find(intensity, 16.0, 1, places, &left), 0);
+    fill_with_speckle(4);
+    assert_int_equal(find(16.0, 1), 0);
     memset(intensity, 0, sizeof intensity);
-    assert_int_equal(find(intensity, 16.0, 1, places, &left), 0);
+    assert_int_equal(find(16.0, 1), 0);
 }
 
 /* A contact with little but black around it, as at the end of a recording, has no seabed that it
  * could be measured against; the others are found all the same. */
-static void test_contacts_amid_black_are_passed_over(void **state)
+TEST(test_contacts_amid_black_are_passed_over)
 {
-    static float intensity[ROWS * COLUMNS];
-    struct contact_place places[3];
-    size_t left;
-    random_state = 8;
-    fill_with_speckle(intensity);
-    add_contact(intensity, 20, 228, 12, 400.0f, 0);
-    add_contact(intensity, 120, 60, 12, 100.0f, 30);
+    fill_with_speckle(8);
+    add_contact(20, 228, 12, 400.0f, 0);
+    add_contact(120, 60, 12, 100.0f, 30);
     for (size_t i = 0; i < (size_t)ROWS * COLUMNS; i++)
         if (i % COLUMNS >= 234 || (i % COLUMNS >= 200 && i / COLUMNS < 18))
             intensity[i] = 0.0f;
-    assert_int_equal(find(intensity, 16.0, 3, places, &left), 1);
+    assert_int_equal(find(16.0, 3), 1);
     assert_true(places[0].bright.first_row > 100);
     assert_int_equal(left, 0);
 }
 
 /* A few dark pixels behind a highlight are speckle, and no shadow. */
-static void test_dark_speckle_is_no_shadow(void **state)
+TEST(test_dark_speckle_is_no_shadow)
 {
-    static float intensity[ROWS * COLUMNS];
     struct contact_image image;
     const struct window_box box = {50, 80, 40, 120};
     const struct contact_place place = {box, box, false};
     struct contact_sizes sizes;
     for (size_t i = 0; i < (size_t)ROWS * COLUMNS; i++)
         intensity[i] = 1.0f;
-    add_contact(intensity, 64, 100, 12, 100.0f, 0);
+    add_contact(64, 100, 12, 100.0f, 0);
     for (size_t row = 68; row < 72; row++)
         for (size_t column = 130; column < 134; column++)
             intensity[row * COLUMNS + column] = 0.01f;
-    assert_int_equal(contact_image_create(&image, &report, intensity, ROWS, COLUMNS), SONJECT_OK);
-    assert_int_equal(measure_contact_sizes(&image, &report, &place, &sizes), SONJECT_OK);
+    EXPECT_OK(&report, contact_image_create(&image, &report, intensity, ROWS, COLUMNS));
+    EXPECT_OK(&report, measure_contact_sizes(&image, &report, &place, &sizes));
     assert_true(sizes.highlight.pixels > 0 && sizes.shadow.pixels == 0);
     assert_true(isnan(sizes.shadow_columns.pixels) && isnan(sizes.dim_columns.pixels));
     contact_image_clear(&image);
 }
 
 /* Images of any size, bright pixels at any place of them, boxes of any size. */
-static void test_small_images(void **state)
+TEST(test_small_images)
 {
     random_state = 5;
     for (size_t rows = 1; rows < 40; rows += rows < 8 ? 1 : 7)
         for (size_t columns = 1; columns < 40; columns += columns < 8 ? 1 : 7)
             for (int i = 0; i < 8; i++) {
-                float *intensity = malloc(rows * columns * sizeof *intensity);
+                float *pixels = malloc(rows * columns * sizeof *pixels);
                 struct contact_image image;
                 struct contact_place place = {{0, 0, rows, columns}, {0, 0, 0, 0}, i % 2 == 0};
                 struct contact_sizes sizes;
-                assert_non_null(intensity);
+                assert_non_null(pixels);
                 for (size_t k = 0; k < rows * columns; k++)
-                    intensity[k] = (float)(draw() < 0.6 ? speckle(1) : i < 4 ? 0.0 : 1e-3);
+                    pixels[k] = (float)(draw() < 0.6 ? speckle(1) : i < 4 ? 0.0 : 1e-3);
                 for (int k = 0; k < i; k++)
-                    intensity[(size_t)(draw() * (double)(rows * columns))] = 1e4f;
+                    pixels[(size_t)(draw() * (double)(rows * columns))] = 1e4f;
                 place.box.first_row = (size_t)(draw() * (double)rows);
                 place.box.first_column = (size_t)(draw() * (double)columns);
                 place.box.rows -= place.box.first_row;
                 place.box.columns -= place.box.first_column;
                 place.bright = place.box;
-                assert_int_equal(contact_image_create(&image, &report, intensity, rows, columns),
-                                 SONJECT_OK);
+                EXPECT_OK(&report, contact_image_create(&image, &report, pixels, rows, columns));
                 const sonject_status status =
                     measure_contact_sizes(&image, &report, &place, &sizes);
                 assert_true(status == SONJECT_OK || status == SONJECT_ERROR_INPUT);
@@ -323,11 +303,11 @@ static void test_small_images(void **state)
                                 sizes.shadow_columns.pixels >= 0.0 &&
                                 sizes.shadow_columns.error >= 0.0);
                 contact_image_clear(&image);
-                free(intensity);
+                free(pixels);
             }
 }
 
-static void fill_box(float *intensity, const struct window_box *box, float value)
+static void fill_box(const struct window_box *box, float value)
 {
     for (size_t row = 0; row < box->rows; row++)
         for (size_t column = 0; column < box->columns; column++)
@@ -345,12 +325,11 @@ static void take_box(struct contact_image *image, const struct window_box *box)
  * (99.5 %) and 0.527 (0.5 %). A draw knows them to some 0.25 dB, for windows overlap; so many to
  * 0.04 dB. A second contact near by is nobody's seabed, and where there is no part there is no
  * answer. */
-static void parts_are_seen_by_the_quantiles_of_speckle(void **state)
+TEST(parts_are_seen_by_the_quantiles_of_speckle)
 {
     enum {
         SEEN = 40
     };
-    static float intensity[ROWS * COLUMNS];
     const struct window_box bright = {90, 100, 6, 6}, dark = {90, 110, 7, 21}, none = {0, 0, 0, 0};
     const struct window_box other = {70, 100, 8, 20};
     struct contact_image image;
@@ -359,9 +338,9 @@ static void parts_are_seen_by_the_quantiles_of_speckle(void **state)
     for (int i = 0; i < SEEN; i++) {
         for (size_t k = 0; k < ROWS * COLUMNS; k++)
             intensity[k] = (float)speckle(1);
-        fill_box(intensity, &bright, 20.0f);
-        fill_box(intensity, &dark, 0.05f);
-        fill_box(intensity, &other, 300.0f);
+        fill_box(&bright, 20.0f);
+        fill_box(&dark, 0.05f);
+        fill_box(&other, 300.0f);
         EXPECT_OK(&report, contact_image_create(&image, &report, intensity, ROWS, COLUMNS));
         take_box(&image, &bright);
         take_box(&image, &dark);
@@ -378,9 +357,4 @@ static void parts_are_seen_by_the_quantiles_of_speckle(void **state)
     assert_true(fabs(mean.shadow_db - 10.0 * log10(0.05 / 0.527)) < 0.16);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_ends_in_speckle), TEST(test_steps_in_speckle),
-             TEST(test_changes_in_shadows), TEST(test_profiles_without_an_edge),
-             TEST(test_contacts_are_found), TEST(test_side_lobes_are_no_contacts),
-             TEST(test_nothing_is_found_in_speckle), TEST(test_contacts_amid_black_are_passed_over),
-             TEST(test_dark_speckle_is_no_shadow), TEST(test_small_images),
-             TEST(parts_are_seen_by_the_quantiles_of_speckle))
+TEST_PROGRAM(NULL, NULL)

@@ -14,19 +14,17 @@
 #include "api/handles.h"
 
 /* What a context has of it. */
-struct host {
-    struct decoder decoder;
-    struct report_host lent;
-    struct report report;
-};
+static struct decoder decoder;
+static struct report_host host;
+static struct report report;
 
 /* A host, and the path of a good file of HDF5. */
-static const char *begin(struct host *host, struct temporary_folder *folder)
+static const char *begin(struct temporary_folder *folder)
 {
     const char *path = temporary_file(folder, "a.h5");
-    memset(host, 0, sizeof *host);
-    host->lent.decoder = &host->decoder;
-    host->report.host = &host->lent;
+    memset(&decoder, 0, sizeof decoder);
+    host = (struct report_host){.decoder = &decoder};
+    report.host = &host;
     write_hdf5(path, CHUNKS, false);
     return path;
 }
@@ -37,39 +35,39 @@ static void expect_no_child(void)
     assert_int_equal(errno, ECHILD);
 }
 
-static void end(struct host *host)
+static void end(void)
 {
-    decoder_stop(&host->decoder);
+    decoder_stop(&decoder);
     expect_no_child();
 }
 
-static void expect_says(const struct host *host, const char *words)
+static void expect_says(const char *words)
 {
-    if (!strstr(host->report.message, words))
-        fail_msg("'%s' is not in '%s'", words, host->report.message);
+    if (!strstr(report.message, words))
+        fail_msg("'%s' is not in '%s'", words, report.message);
 }
 
-static sonject_status open_image(struct host *host, const char *path, struct swath_file **file)
+static sonject_status open_image(const char *path, struct swath_file **file)
 {
-    return swath_file_open_array(&host->report, path, SONJECT_CHANNEL_ONLY, NULL, file);
+    return swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, NULL, file);
 }
 
-static sonject_status read_image(struct host *host, struct swath_file *file)
+static sonject_status read_image(struct swath_file *file)
 {
     static double samples[256 * 256];
     struct raster_layout layout;
     swath_file_layout(file, &layout);
     const struct region corner = {0, 0, layout.rows < 256 ? layout.rows : 256,
                                   layout.columns < 256 ? layout.columns : 256};
-    return swath_file_read(&host->report, file, &corner, samples);
+    return swath_file_read(&report, file, &corner, samples);
 }
 
-static sonject_status use_file(struct host *host, const char *path)
+static sonject_status use_file(const char *path)
 {
     struct swath_file *file;
-    sonject_status status = open_image(host, path, &file);
+    sonject_status status = open_image(path, &file);
     if (status == SONJECT_OK)
-        status = read_image(host, file);
+        status = read_image(file);
     swath_file_close(&file);
     return status;
 }
@@ -94,90 +92,85 @@ static void write_chunk(const char *path, hid_t type, const hsize_t sides[2],
 }
 
 /* A chunk of 64 MB that is stored unpacked in 100 bytes, behind which HDF5 1.10 reads on. */
-static void a_file_that_ends_the_decoder_ends_one_call(void **state)
+TEST(a_file_that_ends_the_decoder_ends_one_call)
 {
     static const hsize_t sides[2] = {4096, 2048};
-    struct host host;
-    const char *path = begin(&host, *state);
+    const char *path = begin(*state);
     char overread[TEMPORARY_CAPACITY + 300];
     snprintf(overread, sizeof overread, "%s.overread", path);
     write_chunk(overread, H5T_NATIVE_DOUBLE, sides, sides, 100);
-    assert_int_equal(use_file(&host, overread), SONJECT_ERROR_INPUT);
-    expect_says(&host, ".overread: is damaged: the program that reads it ended");
-    assert_int_equal(use_file(&host, path), SONJECT_OK);
-    assert_int_equal(host.decoder.starts, 2);
-    end(&host);
+    assert_int_equal(use_file(overread), SONJECT_ERROR_INPUT);
+    expect_says(".overread: is damaged: the program that reads it ended");
+    assert_int_equal(use_file(path), SONJECT_OK);
+    assert_int_equal(decoder.starts, 2);
+    end();
 }
 
-static void what_was_open_in_a_dead_decoder_is_refused(void **state)
+TEST(what_was_open_in_a_dead_decoder_is_refused)
 {
-    struct host host;
     struct swath_file *files[2];
-    const char *path = begin(&host, *state);
+    const char *path = begin(*state);
     for (int i = 0; i < 2; i++)
-        EXPECT_OK(&host.report, open_image(&host, path, &files[i]));
-    assert_int_equal(kill((pid_t)host.decoder.child.number, SIGKILL), 0);
+        EXPECT_OK(&report, open_image(path, &files[i]));
+    assert_int_equal(kill((pid_t)decoder.child.number, SIGKILL), 0);
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(read_image(&host, files[i]), SONJECT_ERROR_INPUT);
-        expect_says(&host, "a.h5");
-        assert_int_equal(use_file(&host, path), SONJECT_OK); /* by a new one */
+        assert_int_equal(read_image(files[i]), SONJECT_ERROR_INPUT);
+        expect_says("a.h5");
+        assert_int_equal(use_file(path), SONJECT_OK); /* by a new one */
     }
     for (int i = 0; i < 2; i++)
         swath_file_close(&files[i]);
-    end(&host);
+    end();
 }
 
-static void more_samples_than_a_file_can_hold_are_refused(void **state)
+TEST(more_samples_than_a_file_can_hold_are_refused)
 {
-    struct host host;
-    const char *path = begin(&host, *state);
+    const char *path = begin(*state);
     write_chunk(path, H5T_NATIVE_FLOAT, (const hsize_t[]){40000, 40000},
                 (const hsize_t[]){100, 100}, 0);
-    assert_int_equal(use_file(&host, path), SONJECT_ERROR_INPUT);
-    expect_says(&host, "announces 40000 x 40000 samples");
-    end(&host);
+    assert_int_equal(use_file(path), SONJECT_ERROR_INPUT);
+    expect_says("announces 40000 x 40000 samples");
+    end();
 }
 
-static rlim_t limit_of(const struct host *host, enum __rlimit_resource resource)
+static rlim_t limit_of(enum __rlimit_resource resource)
 {
     struct rlimit limits;
-    assert_int_equal(prlimit((pid_t)host->decoder.child.number, resource, NULL, &limits), 0);
+    assert_int_equal(prlimit((pid_t)decoder.child.number, resource, NULL, &limits), 0);
     return limits.rlim_cur;
 }
 
-static void the_child_has_limits_and_nothing_of_the_host(void **state)
+TEST(the_child_has_limits_and_nothing_of_the_host)
 {
-    struct host host;
     char list[64];
-    const char *path = begin(&host, *state);
+    const char *path = begin(*state);
     const int kept = open("/dev/null", O_RDONLY); /* which programs that are started inherit */
     assert_true(kept >= 0);
-    assert_int_equal(use_file(&host, path), SONJECT_OK);
-    assert_int_equal(limit_of(&host, RLIMIT_CORE), 0);
-    assert_in_range(limit_of(&host, RLIMIT_CPU), DECODER_CPU_S, DECODER_CPU_S + 10);
+    assert_int_equal(use_file(path), SONJECT_OK);
+    assert_int_equal(limit_of(RLIMIT_CORE), 0);
+    assert_in_range(limit_of(RLIMIT_CPU), DECODER_CPU_S, DECODER_CPU_S + 10);
 #ifndef IS_SANITIZED
-    assert_int_equal(limit_of(&host, RLIMIT_AS), DECODER_MEMORY_BYTES);
+    assert_int_equal(limit_of(RLIMIT_AS), DECODER_MEMORY_BYTES);
 #endif
-    snprintf(list, sizeof list, "/proc/%ld/fd", host.decoder.child.number);
+    snprintf(list, sizeof list, "/proc/%ld/fd", decoder.child.number);
     assert_int_equal(count_entries(list), 3);
     close(kept);
-    end(&host);
+    end();
 }
 
-static void the_child_ends_with_its_host(void **state)
+TEST(the_child_ends_with_its_host)
 {
-    struct host host;
     int ends[2];
     long process = 0;
-    const char *path = begin(&host, *state);
+    const char *path = begin(*state);
     /* who loses its parent becomes this process's child */
     assert_int_equal(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
     assert_int_equal(pipe(ends), 0);
     fflush(NULL);
     const pid_t between = fork();
     if (between == 0) {
-        const bool is_read = use_file(&host, path) == SONJECT_OK;
-        const ssize_t told = write(ends[1], &host.decoder.child.number, sizeof process);
+        const bool is_read = use_file(path) == SONJECT_OK;
+        const ssize_t told = write(ends[1], &decoder.child.number, sizeof process);
         _exit(is_read && told == sizeof process ? 0 : 1);
     }
     int status = -1;
@@ -199,39 +192,37 @@ static int stop_now(void *user, double fraction, const char *stage)
 }
 
 /* A child that is stopped answers never; the host asks its caller meanwhile, and ends it. */
-static void a_caller_may_end_the_wait_for_the_child(void **state)
+TEST(a_caller_may_end_the_wait_for_the_child)
 {
-    struct host host;
     struct swath_file *file;
     int asked = 0;
-    const char *path = begin(&host, *state);
-    EXPECT_OK(&host.report, open_image(&host, path, &file));
-    host.lent.progress = stop_now;
-    host.lent.progress_user = &asked;
-    strcpy(host.lent.stage, "reading");
-    assert_int_equal(kill((pid_t)host.decoder.child.number, SIGSTOP), 0);
-    assert_int_equal(read_image(&host, file), SONJECT_CANCELLED);
+    const char *path = begin(*state);
+    EXPECT_OK(&report, open_image(path, &file));
+    host.progress = stop_now;
+    host.progress_user = &asked;
+    strcpy(host.stage, "reading");
+    assert_int_equal(kill((pid_t)decoder.child.number, SIGSTOP), 0);
+    assert_int_equal(read_image(file), SONJECT_CANCELLED);
     assert_int_equal(asked, 1);
     expect_no_child();
     swath_file_close(&file);
-    end(&host);
+    end();
 }
 
 /* Calls with a progress function lend it to those who wait. */
-static void a_run_may_be_ended_while_its_image_is_read(void **state)
+TEST(a_run_may_be_ended_while_its_image_is_read)
 {
     static const char text[] =
         "sonject: 1\n"
         "input:\n  path: a.h5\n"
         "  geometry: {row_spacing: 1 m, column_spacing: 1 m, first_slant_range: 40 m}\n"
         "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n";
-    struct host host;
     sonject_context *context = NULL;
     sonject_scene *scene = NULL;
     sonject_run_params params = {.struct_size = sizeof params};
     char *told = NULL;
     int asked = 0;
-    (void)begin(&host, *state);
+    (void)begin(*state);
     const char *path = temporary_file(*state, "scene.yaml");
     write_bytes(path, text, sizeof text - 1);
     assert_int_equal(sonject_context_create(NULL, &context), SONJECT_OK);
@@ -248,10 +239,4 @@ static void a_run_may_be_ended_while_its_image_is_read(void **state)
     expect_no_child();
 }
 
-TEST_PROGRAM(make_temporary_folder, remove_temporary_folder,
-             TEST(a_file_that_ends_the_decoder_ends_one_call),
-             TEST(what_was_open_in_a_dead_decoder_is_refused),
-             TEST(more_samples_than_a_file_can_hold_are_refused),
-             TEST(the_child_has_limits_and_nothing_of_the_host), TEST(the_child_ends_with_its_host),
-             TEST(a_caller_may_end_the_wait_for_the_child),
-             TEST(a_run_may_be_ended_while_its_image_is_read))
+TEST_PROGRAM(make_temporary_folder, remove_temporary_folder)

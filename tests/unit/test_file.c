@@ -1,6 +1,4 @@
 /* Files that appear whole or not at all. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 
 #include <fcntl.h>
@@ -12,7 +10,7 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/sha256.h"
-#include "temporary_folder.h"
+#include "clean_folder.h"
 
 static void expect_text(char *text, const char *expected)
 {
@@ -21,7 +19,7 @@ static void expect_text(char *text, const char *expected)
     free(text);
 }
 
-static void test_paths(void **state)
+TEST(test_paths)
 {
     expect_text(path_join("folder", "name"), "folder/name");
     expect_text(path_join("folder/", "name"), "folder/name");
@@ -46,7 +44,7 @@ static void expect_part(const char *path, const char *extension)
     free(part);
 }
 
-static void test_part_names_keep_the_extension_and_differ(void **state)
+TEST(test_part_names_keep_the_extension_and_differ)
 {
     char *names[64];
     expect_part("/a/image.tif", ".tif");
@@ -63,11 +61,9 @@ static void test_part_names_keep_the_extension_and_differ(void **state)
         free(names[i]);
 }
 
-static void test_a_file_is_written_and_read(void **state)
+CLEAN(test_a_file_is_written_and_read)
 {
-    struct temporary_folder *folder = *state;
-    struct report report = {{0}, NULL, NULL};
-    const char *path = temporary_file(folder, "x.json");
+    const char *path = file_in("x.json");
     /* longer than what is read at once, and with a 0 in it */
     const size_t length = 200001;
     char *written = calloc(length, 1);
@@ -76,59 +72,55 @@ static void test_a_file_is_written_and_read(void **state)
     assert_non_null(written);
     for (size_t i = 0; i < length; i++)
         written[i] = (char)(i * 7 % 251);
-    assert_int_equal(file_write_whole(&report, path, "old", 3), SONJECT_OK);
-    assert_int_equal(file_write_whole(&report, path, written, length), SONJECT_OK);
-    assert_int_equal(file_read_whole(&report, path, length, &read, &count), SONJECT_OK);
+    EXPECT_OK(&report, file_write_whole(&report, path, "old", 3));
+    EXPECT_OK(&report, file_write_whole(&report, path, written, length));
+    EXPECT_OK(&report, file_read_whole(&report, path, length, &read, &count));
     assert_int_equal(count, length);
     assert_memory_equal(read, written, length);
     assert_int_equal(read[length], 0);
     assert_int_equal(count_entries(folder->path), 1);
     free(read);
     free(written);
-    assert_int_equal(file_write_whole(&report, path, "", 0), SONJECT_OK);
-    assert_int_equal(file_read_whole(&report, path, 0, &read, &count), SONJECT_OK);
+    EXPECT_OK(&report, file_write_whole(&report, path, "", 0));
+    EXPECT_OK(&report, file_read_whole(&report, path, 0, &read, &count));
     assert_int_equal(count, 0);
     assert_int_equal(read[0], 0);
     free(read);
 }
 
-static void expect_message(const struct report *report, const char *path, const char *reason)
+static void expect_message(const char *path, const char *reason)
 {
-    if (!strstr(report->message, path) || !strstr(report->message, reason))
-        fail_msg("'%s' does not name '%s' and '%s'", report->message, path, reason);
+    if (!strstr(report.message, path) || !strstr(report.message, reason))
+        fail_msg("'%s' does not name '%s' and '%s'", report.message, path, reason);
 }
 
-static void test_what_cannot_be_read_or_written(void **state)
+CLEAN(test_what_cannot_be_read_or_written)
 {
-    struct temporary_folder *folder = *state;
-    struct report report = {{0}, NULL, NULL};
     char *read;
     size_t count;
-    const char *path = temporary_file(folder, "x");
+    const char *path = file_in("x");
     assert_int_equal(file_read_whole(&report, path, 10, &read, &count), SONJECT_ERROR_STORAGE);
-    expect_message(&report, path, "No such file");
+    expect_message(path, "No such file");
     assert_null(read);
     assert_int_equal(file_read_whole(&report, folder->path, 10, &read, &count),
                      SONJECT_ERROR_STORAGE);
-    expect_message(&report, folder->path, "directory");
+    expect_message(folder->path, "directory");
     write_bytes(path, "12345678901", 11);
     assert_int_equal(file_read_whole(&report, path, 10, &read, &count), SONJECT_ERROR_INPUT);
-    expect_message(&report, path, "10 bytes");
+    expect_message(path, "10 bytes");
     assert_null(read);
-    path = temporary_file(folder, "missing/x");
+    path = file_in("missing/x");
     assert_int_equal(file_write_whole(&report, path, "1", 1), SONJECT_ERROR_STORAGE);
-    expect_message(&report, path, "No such file");
+    expect_message(path, "No such file");
 }
 
 /* A limit on the size of files is as near as a test gets to a full disk. */
-static void test_a_full_disk_leaves_the_old_file(void **state)
+CLEAN(test_a_full_disk_leaves_the_old_file)
 {
-    struct temporary_folder *folder = *state;
-    struct report report = {{0}, NULL, NULL};
     static char many[100000];
     struct rlimit kept;
     struct rlimit low;
-    const char *path = temporary_file(folder, "x");
+    const char *path = file_in("x");
     write_bytes(path, "old", 3);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &kept), 0);
     low = kept;
@@ -138,7 +130,7 @@ static void test_a_full_disk_leaves_the_old_file(void **state)
     const sonject_status status = file_write_whole(&report, path, many, sizeof many);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &kept), 0);
     assert_int_equal(status, SONJECT_ERROR_STORAGE);
-    expect_message(&report, path, "File too large");
+    expect_message(path, "File too large");
     assert_int_equal(count_entries(folder->path), 1);
     size_t count;
     unsigned char *bytes = bytes_of_file(path, &count);
@@ -147,22 +139,19 @@ static void test_a_full_disk_leaves_the_old_file(void **state)
     free(bytes);
 }
 
-static void test_publishing(void **state)
+CLEAN(test_publishing)
 {
-    struct temporary_folder *folder = *state;
-    struct report report = {{0}, NULL, NULL};
-    char path[TEMPORARY_CAPACITY + 300];
-    snprintf(path, sizeof path, "%s", temporary_file(folder, "image.tif"));
+    const char *path = file_in("image.tif");
     char *part = file_part_name(path);
     write_bytes(part, "new", 3);
     assert_false(file_exists(path));
-    assert_int_equal(file_publish(&report, part, path), SONJECT_OK);
+    EXPECT_OK(&report, file_publish(&report, part, path));
     assert_true(file_exists(path));
     assert_false(file_exists(part));
     /* a part that is not there, and a name that a folder has: the part goes, the message names the
      * file */
     assert_int_equal(file_publish(&report, part, path), SONJECT_ERROR_STORAGE);
-    expect_message(&report, path, "No such file");
+    expect_message(path, "No such file");
     write_bytes(part, "new", 3);
     assert_int_equal(file_publish(&report, part, folder->path), SONJECT_ERROR_STORAGE);
     assert_false(file_exists(part));
@@ -188,15 +177,14 @@ static char *orphaned_part(const char *path)
     return strdup(name);
 }
 
-static void test_only_parts_of_dead_processes_are_tidied_away(void **state)
+CLEAN(test_only_parts_of_dead_processes_are_tidied_away)
 {
-    struct temporary_folder *folder = *state;
-    char path[TEMPORARY_CAPACITY + 300];
-    snprintf(path, sizeof path, "%s", temporary_file(folder, "a.part.of.image.tif"));
+    const char *path = file_in("a.part.of.image.tif");
     char *orphan = orphaned_part(path);
     char *elsewhere = strdup(orphan); /* the same process number on another host */
     elsewhere[strlen(path) + 1] = elsewhere[strlen(path) + 1] == '0' ? '1' : '0';
-    char *kept[] = {file_part_name(path), path, elsewhere};
+    char *own = file_part_name(path);
+    const char *kept[] = {own, path, elsewhere};
     write_bytes(orphan, "", 0);
     for (size_t i = 0; i < COUNT(kept); i++)
         write_bytes(kept[i], "", 0);
@@ -204,16 +192,15 @@ static void test_only_parts_of_dead_processes_are_tidied_away(void **state)
     assert_false(file_exists(orphan));
     for (size_t i = 0; i < COUNT(kept); i++)
         assert_true(file_exists(kept[i]));
-    free(kept[0]);
+    free(own);
     free(elsewhere);
     free(orphan);
 }
 
 static bool holds(const json_t *entry, const char *path, bool hashes_all)
 {
-    struct report report = {{0}, NULL, NULL};
     bool is_same = false;
-    assert_int_equal(file_entry_holds(&report, entry, path, hashes_all, &is_same), SONJECT_OK);
+    EXPECT_OK(&report, file_entry_holds(&report, entry, path, hashes_all, &is_same));
     return is_same;
 }
 
@@ -233,18 +220,16 @@ static void alter(const char *path, bool keeps_time)
     assert_int_equal(utimensat(AT_FDCWD, path, keeps_time ? kept : later, 0), 0);
 }
 
-static void test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too(void **state)
+CLEAN(test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too)
 {
-    struct temporary_folder *folder = *state;
-    struct report report = {{0}, NULL, NULL};
-    const char *path = temporary_file(folder, "image.tif");
+    const char *path = file_in("image.tif");
     const long sizes[] = {(16L << 20) - 1, 16L << 20};
     for (int i = 0; i < 2; i++) {
         const bool is_large = i == 1;
         json_t *entry;
         write_bytes(path, "", 0);
         assert_int_equal(truncate(path, sizes[i]), 0);
-        assert_int_equal(file_entry(&report, path, "image.tif", true, &entry), SONJECT_OK);
+        EXPECT_OK(&report, file_entry(&report, path, "image.tif", true, &entry));
         alter(path, true);
         assert_int_equal(holds(entry, path, false), is_large);
         assert_false(holds(entry, path, true));
@@ -260,52 +245,44 @@ static void test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too
     }
 }
 
-static void test_a_list_of_files_reaches_nothing_outside_of_its_folder(void **state)
+CLEAN(test_a_list_of_files_reaches_nothing_outside_of_its_folder)
 {
-    struct temporary_folder *folder = *state;
-    struct report report = {{0}, NULL, NULL};
     char around[TEMPORARY_CAPACITY + 300];
     char absolute[TEMPORARY_CAPACITY + 300];
     snprintf(around, sizeof around, "..%s/kept", strrchr(folder->path, '/'));
     snprintf(absolute, sizeof absolute, "%s/kept", folder->path);
     const char *names[] = {around, absolute}; /* both lead to the file */
     for (size_t i = 0; i < COUNT(names); i++) {
-        const char *path = temporary_file(folder, "kept");
+        const char *path = file_in("kept");
         const char *changed = NULL;
         json_t *list = json_array();
         json_t *entry;
         write_bytes(path, "", 0);
-        assert_int_equal(file_entry(&report, path, names[i], true, &entry), SONJECT_OK);
+        EXPECT_OK(&report, file_entry(&report, path, names[i], true, &entry));
         json_array_append_new(list, entry);
-        assert_int_equal(file_list_check(list, &report, folder->path, true, &changed), SONJECT_OK);
+        EXPECT_OK(&report, file_list_check(list, &report, folder->path, true, &changed));
         assert_string_equal(changed, names[i]);
         file_list_discard(list, NULL, folder->path);
-        assert_true(file_exists(temporary_file(folder, "kept")));
+        assert_true(file_exists(file_in("kept")));
         json_decref(list);
     }
 }
 
-static void test_folders_are_made_with_their_parents(void **state)
+CLEAN(test_folders_are_made_with_their_parents)
 {
-    struct temporary_folder *folder = *state;
-    struct report report = {{0}, NULL, NULL};
-    char path[TEMPORARY_CAPACITY + 300];
-    snprintf(path, sizeof path, "%s", temporary_file(folder, "a//b/c/"));
-    assert_int_equal(folder_make(&report, path), SONJECT_OK);
-    assert_int_equal(folder_make(&report, path), SONJECT_OK);
+    const char *path = file_in("a//b/c/");
+    EXPECT_OK(&report, folder_make(&report, path));
+    EXPECT_OK(&report, folder_make(&report, path));
     assert_true(file_exists(path));
-    assert_int_equal(rmdir(path), 0);
-    assert_int_equal(rmdir(temporary_file(folder, "a/b")), 0);
-    assert_int_equal(rmdir(temporary_file(folder, "a")), 0);
-    write_bytes(temporary_file(folder, "file"), "", 0);
-    assert_int_equal(folder_make(&report, temporary_file(folder, "file")), SONJECT_ERROR_STORAGE);
-    expect_message(&report, "file", "Not a directory");
-    assert_int_equal(folder_make(&report, temporary_file(folder, "file/b")), SONJECT_ERROR_STORAGE);
-    expect_message(&report, "file/b", "Not a directory");
+    write_bytes(file_in("file"), "", 0);
+    assert_int_equal(folder_make(&report, file_in("file")), SONJECT_ERROR_STORAGE);
+    expect_message("file", "Not a directory");
+    assert_int_equal(folder_make(&report, file_in("file/b")), SONJECT_ERROR_STORAGE);
+    expect_message("file/b", "Not a directory");
 }
 
 /* The examples of FIPS 180-4, and lengths about the end of a block, by another program. */
-static void test_sha256_is_that_of_the_standard(void **state)
+CLEAN(test_sha256_is_that_of_the_standard)
 {
     static const struct {
         const char *text, *digest;
@@ -317,28 +294,14 @@ static void test_sha256_is_that_of_the_standard(void **state)
                   "f34d5a0f80c0cbf84c8c0b90218c22637abd199965249da736a20143c8c9c9d9"},
                  {"0123456789012345678901234567890123456789012345678901234567890123",
                   "9674d9e078535b7cec43284387a6ee39956188e735a85452b0050b55341cda56"}};
-    struct temporary_folder *folder = *state;
-    struct report report = {{0}, NULL, NULL};
     char digest[SHA256_TEXT_CAPACITY];
     for (size_t i = 0; i < COUNT(cases); i++) {
-        const char *path = temporary_file(folder, "file");
+        const char *path = file_in("file");
         write_bytes(path, cases[i].text, strlen(cases[i].text));
-        assert_int_equal(file_sha256(&report, path, digest), SONJECT_OK);
+        EXPECT_OK(&report, file_sha256(&report, path, digest));
         assert_string_equal(digest, cases[i].digest);
     }
-    assert_int_equal(file_sha256(&report, temporary_file(folder, "absent"), digest),
-                     SONJECT_ERROR_STORAGE);
+    assert_int_equal(file_sha256(&report, file_in("absent"), digest), SONJECT_ERROR_STORAGE);
 }
 
-#define WITH_FOLDER(test)                                                                          \
-    cmocka_unit_test_setup_teardown(test, make_temporary_folder, remove_temporary_folder)
-
-TEST_PROGRAM(NULL, NULL, TEST(test_paths), TEST(test_part_names_keep_the_extension_and_differ),
-             WITH_FOLDER(test_a_file_is_written_and_read),
-             WITH_FOLDER(test_what_cannot_be_read_or_written),
-             WITH_FOLDER(test_a_full_disk_leaves_the_old_file), WITH_FOLDER(test_publishing),
-             WITH_FOLDER(test_only_parts_of_dead_processes_are_tidied_away),
-             WITH_FOLDER(test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too),
-             WITH_FOLDER(test_a_list_of_files_reaches_nothing_outside_of_its_folder),
-             WITH_FOLDER(test_folders_are_made_with_their_parents),
-             WITH_FOLDER(test_sha256_is_that_of_the_standard))
+TEST_PROGRAM(NULL, NULL)

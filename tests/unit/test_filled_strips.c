@@ -7,7 +7,7 @@
 #define LONG_GAP 8 /* empty strips that part two runs */
 
 /* Every first and last bin of one part, with the other part empty, the same, or one bin. */
-static void test_bins_of_a_line(void **state)
+TEST(test_bins_of_a_line)
 {
     static float line[BINS], other[BINS];
     for (int32_t first = 0; first < BINS; first += 7)
@@ -32,7 +32,7 @@ static void test_bins_of_a_line(void **state)
 
 /* Every filled strip is in one run, runs begin and end with filled strips, and only long gaps part
  * them. */
-static void test_runs_of_strips(void **state)
+TEST(test_runs_of_strips)
 {
     static struct filled_span filled[STRIPS];
     uint32_t number = 1;
@@ -59,4 +59,4 @@ static void test_runs_of_strips(void **state)
     assert_int_equal(next_filled_strips(filled, 0, (struct span){0, 0}).count, 0);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_bins_of_a_line), TEST(test_runs_of_strips))
+TEST_PROGRAM(NULL, NULL)

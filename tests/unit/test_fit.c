@@ -1,7 +1,5 @@
 /* Draws moved towards contacts in a world whose laws are known, and a campaign's file with new
  * numbers in their places. */
-#define _POSIX_C_SOURCE 200809L /* mkdtemp */
-
 #include "claims.h"
 
 #include "dataset/fit.h"
@@ -49,23 +47,21 @@ static void show(const struct draws_of_world *draws, uint64_t seed, uint64_t ind
     of[EXTENT_SHADOW_LEVEL] = contact->drawn[FITTED_FLOOR] + noise(seed, 6, index, 1.0);
 }
 
-static void draws_reach_what_made_the_contacts(void **state)
+TEST(draws_reach_what_made_the_contacts)
 {
     const struct draws_of_world hidden = {{-0.3, -1.0, -1.5, 13.0, -14.0},
                                           {0.4, 0.4, 0.5, 5.0, 0.0}};
     struct draws_of_world now = {{0.3, -0.6, -0.8, 30.0, -22.0}, {0.6, 0.4, 0.5, 3.0, 0.0}};
-    struct report report = {.message = ""};
     static struct drawn_contact made[ROUNDS * CONTACTS];
     static struct contact_extents real[CONTACTS];
     struct quantile_goal goals[EXTENT_KINDS];
     struct move_prior prior = {.contacts = CONTACTS};
-    (void)state;
     for (uint64_t i = 0; i < CONTACTS; i++) {
         struct drawn_contact contact;
         show(&hidden, 1, i, &contact);
         real[i] = contact.shown;
     }
-    EXPECT_OK(&report, quantile_goals(&report, real, CONTACTS, goals));
+    EXPECT_OK(&folder->report, quantile_goals(&folder->report, real, CONTACTS, goals));
     assert_int_equal(goals[EXTENT_SHADOW_ALONG].levels, 9);
     assert_int_equal(goals[EXTENT_AXIS_LENGTH].levels, 0); /* nobody shows it */
     for (uint32_t round = 0; round < ROUNDS; round++) {
@@ -75,7 +71,7 @@ static void draws_reach_what_made_the_contacts(void **state)
             show(&now, 10 + round, i, &made[round * CONTACTS + i]);
             made[round * CONTACTS + i].round = round;
         }
-        EXPECT_OK(&report, fit_moves(&report, made, count, goals, &prior, moves));
+        EXPECT_OK(&folder->report, fit_moves(&folder->report, made, count, goals, &prior, moves));
         for (size_t k = 0; k < FITTED_KINDS; k++) {
             prior.shift[k] += moves[k].shift;
             prior.stretch[k] += log(moves[k].stretch);
@@ -97,18 +93,19 @@ static void draws_reach_what_made_the_contacts(void **state)
     assert_true(fabs(now.half[FITTED_LEVEL] - 5.0) < 1.0);
 }
 
+static const struct draws_of_world world = {{0.0, 0.0, -1.0, 10.0, -15.0},
+                                            {0.5, 0.5, 0.5, 5.0, 0.0}};
+static const struct move_prior unmoved = {.contacts = CONTACTS};
+
 /* How far heights are moved where copies of one extent ask for 0.2 more and another one for none.
  */
 static double move_by_copies(size_t copies)
 {
     static const enum extent alike[] = {EXTENT_SHADOW_HEIGHT, EXTENT_AXIS_LENGTH, EXTENT_AXIS_WIDTH,
                                         EXTENT_HIGHLIGHT_ROWS};
-    const struct draws_of_world world = {{0.0, 0.0, -1.0, 10.0, -15.0}, {0.5, 0.5, 0.5, 5.0, 0.0}};
     static struct drawn_contact made[CONTACTS];
     static struct contact_extents real[CONTACTS];
-    struct report report = {.message = ""};
     struct quantile_goal goals[EXTENT_KINDS];
-    const struct move_prior prior = {.contacts = CONTACTS};
     struct draw_move moves[FITTED_KINDS];
     for (uint64_t i = 0; i < CONTACTS; i++) {
         show(&world, 1, i, &made[i]);
@@ -123,16 +120,15 @@ static double move_by_copies(size_t copies)
         }
         made[i].round = 0;
     }
-    EXPECT_OK(&report, quantile_goals(&report, real, CONTACTS, goals));
-    EXPECT_OK(&report, fit_moves(&report, made, CONTACTS, goals, &prior, moves));
+    EXPECT_OK(&folder->report, quantile_goals(&folder->report, real, CONTACTS, goals));
+    EXPECT_OK(&folder->report, fit_moves(&folder->report, made, CONTACTS, goals, &unmoved, moves));
     return moves[FITTED_HEIGHT].shift;
 }
 
 /* Four witnesses who say the same for the same reason are no four; independent ones would move it
  * four fifths of the way. */
-static void copies_of_an_extent_count_little(void **state)
+TEST(copies_of_an_extent_count_little)
 {
-    (void)state;
     const double one = move_by_copies(1);
     const double four = move_by_copies(4);
     print_message("one: %.3f, four: %.3f\n", one, four);
@@ -142,16 +138,12 @@ static void copies_of_an_extent_count_little(void **state)
 
 /* Of a round that has been stretched since those of the largest contacts have hardly moved: they
  * alone are no sample. */
-static void rounds_are_compared_whole(void **state)
+TEST(rounds_are_compared_whole)
 {
-    const struct draws_of_world world = {{0.0, 0.0, -1.0, 10.0, -15.0}, {0.5, 0.5, 0.5, 5.0, 0.0}};
     static struct drawn_contact made[2 * CONTACTS];
     static struct contact_extents real[CONTACTS];
-    struct report report = {.message = ""};
     struct quantile_goal goals[EXTENT_KINDS];
-    const struct move_prior prior = {.contacts = CONTACTS};
     struct draw_move moves[FITTED_KINDS];
-    (void)state;
     for (uint64_t i = 0; i < CONTACTS; i++) {
         struct drawn_contact *old = &made[i], *now = &made[CONTACTS + i];
         show(&world, 2, i, now);
@@ -164,17 +156,17 @@ static void rounds_are_compared_whole(void **state)
                             0.4 * (now->drawn[k] - world.centre[k] - world.half[k]);
         old->round = 0;
     }
-    EXPECT_OK(&report, quantile_goals(&report, real, CONTACTS, goals));
-    EXPECT_OK(&report, fit_moves(&report, made, (size_t)2 * CONTACTS, goals, &prior, moves));
+    EXPECT_OK(&folder->report, quantile_goals(&folder->report, real, CONTACTS, goals));
+    EXPECT_OK(&folder->report,
+              fit_moves(&folder->report, made, (size_t)2 * CONTACTS, goals, &unmoved, moves));
     for (size_t k = 0; k < FITTED_LEVEL; k++) {
         print_message("%zu: %.4f\n", k, moves[k].shift);
         assert_true(fabs(moves[k].shift) < 0.01);
     }
 }
 
-static void a_median_has_the_error_of_statistics(void **state)
+TEST(a_median_has_the_error_of_statistics)
 {
-    (void)state;
     /* of a normal distribution: sqrt(pi / 2) of the mean's */
     const double error = quantile_error(0.5, 2.0 * 0.67449 * 3.0, 100.0);
     assert_true(fabs(error - 0.3 * sqrt(PI / 2.0)) < 1e-3);
@@ -184,13 +176,12 @@ static void a_median_has_the_error_of_statistics(void **state)
 }
 
 /* Of ten values drawn between 0 and 1, in as many samples too low as too high. */
-static void quantiles_of_few_are_in_the_middle(void **state)
+TEST(quantiles_of_few_are_in_the_middle)
 {
     enum {
         SAMPLES = 4000,
         VALUES = 10
     };
-    (void)state;
     for (int fifth = 1; fifth < 5; fifth++) {
         const double share = 0.2 * fifth;
         double low = 0.0;
@@ -207,9 +198,8 @@ static void quantiles_of_few_are_in_the_middle(void **state)
 }
 
 /* The least and the largest of ten are known but roughly, not infinitely ill. */
-static void ends_of_published_quantiles_have_errors(void **state)
+TEST(ends_of_published_quantiles_have_errors)
 {
-    (void)state;
     for (int end = 0; end <= 1; end++) {
         const double error = quantile_error(end, 1.0, 10.0);
         assert_true(error > quantile_error(0.5, 1.0, 10.0) && error < 10.0);
@@ -261,9 +251,8 @@ static const char moved_file[] =
     "draw: {injection.noise_floor: -15 dB}\n"
     "visible: {highlight: 1.2 dB, shadow: -2.3 dB, otherwise: redraw}\n";
 
-static void a_fitted_file_is_the_users_own_with_other_numbers(void **state)
+TEST(a_fitted_file_is_the_users_own_with_other_numbers)
 {
-    struct scene_folder *folder = *state;
     struct report *report = &folder->report;
     /* lengths halve; widths and heights fall to a quarter; levels spread to twice their width */
     const struct draw_move moves[FITTED_KINDS] = {{0.0, log(0.5), 1.0},
@@ -275,9 +264,8 @@ static void a_fitted_file_is_the_users_own_with_other_numbers(void **state)
     struct fit_draws draws;
     char *text;
     memset(&draws, 0, sizeof draws);
-    write_file(folder, "campaign.yaml", block_file, strlen(block_file));
-    EXPECT_OK(report,
-              campaign_read(report, file_in(folder, "campaign.yaml"), NULL, NULL, 0, &campaign));
+    write_file("campaign.yaml", block_file, strlen(block_file));
+    EXPECT_OK(report, campaign_read(report, file_in("campaign.yaml"), NULL, NULL, 0, &campaign));
     EXPECT_OK(report, fit_draws_find(&draws, report, &campaign));
     assert_string_equal(draws.unchanged.characters, "targets[0].draw.heading\n");
     draws.level_db[0] = 18.0;
@@ -292,11 +280,9 @@ static void a_fitted_file_is_the_users_own_with_other_numbers(void **state)
     free(text);
     fit_draws_clear(&draws);
     campaign_clear(&campaign);
-    unlink(file_in(folder, "campaign.yaml"));
 }
 
-static char *fitted_text(struct scene_folder *folder, const char *file, const char *override,
-                         char unchanged[200])
+static char *fitted_text(const char *file, const char *override, char unchanged[200])
 {
     static struct campaign campaign;
     static const struct draw_move moves[FITTED_KINDS] = {
@@ -306,8 +292,8 @@ static char *fitted_text(struct scene_folder *folder, const char *file, const ch
     struct fit_draws draws;
     char *text = NULL;
     memset(&draws, 0, sizeof draws);
-    write_file(folder, "campaign.yaml", file, strlen(file));
-    EXPECT_OK(report, campaign_read(report, file_in(folder, "campaign.yaml"), NULL, &override,
+    write_file("campaign.yaml", file, strlen(file));
+    EXPECT_OK(report, campaign_read(report, file_in("campaign.yaml"), NULL, &override,
                                     override ? 1 : 0, &campaign));
     EXPECT_OK(report, fit_draws_find(&draws, report, &campaign));
     snprintf(unchanged, 200, "%s", draws.unchanged.characters ? draws.unchanged.characters : "");
@@ -315,7 +301,6 @@ static char *fitted_text(struct scene_folder *folder, const char *file, const ch
     fit_draws_text(&draws, report, &selection, "", &text);
     fit_draws_clear(&draws);
     campaign_clear(&campaign);
-    unlink(file_in(folder, "campaign.yaml"));
     return text;
 }
 
@@ -327,11 +312,10 @@ static const char flow_file[] = "{sonject_campaign: 1, scene: s.yaml, images: 10
                                 " targets: [{class: tin, object: {shape: sphere, diameter: 1},\n"
                                 "  draw: {level.over_seabed: 12 dB}}]}\n";
 
-static void what_is_in_braces_stays_so(void **state)
+TEST(what_is_in_braces_stays_so)
 {
-    struct scene_folder *folder = *state;
     char unchanged[200];
-    char *text = fitted_text(folder, flow_file, NULL, unchanged);
+    char *text = fitted_text(flow_file, NULL, unchanged);
     assert_string_equal(text,
                         "{visible: {highlight: 1.2 dB, shadow: -2.3 dB, otherwise: redraw}, "
                         "sonject_campaign: 1, scene: s.yaml, images: 10,\n"
@@ -344,23 +328,17 @@ static void what_is_in_braces_stays_so(void **state)
     free(text);
 }
 
-static void what_overrides_give_is_not_written_over(void **state)
+TEST(what_overrides_give_is_not_written_over)
 {
     static const char *const overrides[] = {"visible={highlight: 3 dB, shadow: -1 dB}",
                                             "chip.range_over_altitude=[2, 9]",
                                             "chip={rows: 64, columns: 64}"};
-    struct scene_folder *folder = *state;
     for (size_t i = 0; i < COUNT(overrides); i++) {
         char unchanged[200];
-        assert_null(fitted_text(folder, flow_file, overrides[i], unchanged));
+        assert_null(fitted_text(flow_file, overrides[i], unchanged));
         assert_non_null(strstr(folder->report.message, "gives what a fit writes"));
         assert_memory_equal(folder->report.message, "--set ", 6);
     }
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(draws_reach_what_made_the_contacts),
-             TEST(copies_of_an_extent_count_little), TEST(rounds_are_compared_whole),
-             TEST(a_median_has_the_error_of_statistics), TEST(quantiles_of_few_are_in_the_middle),
-             TEST(ends_of_published_quantiles_have_errors),
-             TEST(a_fitted_file_is_the_users_own_with_other_numbers),
-             TEST(what_is_in_braces_stays_so), TEST(what_overrides_give_is_not_written_over))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

@@ -38,7 +38,7 @@ static void expect_sound(const char *name, const struct section *section,
     }
 }
 
-static void test_values_are_allowed(void **state)
+TEST(test_values_are_allowed)
 {
     const char *name;
     for (uint32_t i = 0; (name = material_name(i)); i++) {
@@ -57,7 +57,7 @@ static void test_values_are_allowed(void **state)
 }
 
 /* What tells the materials apart. */
-static void test_order_of_values(void **state)
+TEST(test_order_of_values)
 {
     const sonject_material_params steel = take("steel");
     sonject_object_params initial;
@@ -84,7 +84,7 @@ static void test_order_of_values(void **state)
 }
 
 /* What its lambert leaves is the surface's cone unless a number is given. */
-static void test_the_sea_surfaces_rough_part(void **state)
+TEST(test_the_sea_surfaces_rough_part)
 {
     struct scene scene;
     scene_init(&scene);
@@ -104,5 +104,4 @@ static void test_the_sea_surfaces_rough_part(void **state)
     assert_true(surface_material(surface).glossy_albedo == 1.0);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_the_sea_surfaces_rough_part), TEST(test_values_are_allowed),
-             TEST(test_order_of_values))
+TEST_PROGRAM(NULL, NULL)

@@ -145,7 +145,7 @@ static void check_sample(const char *what, struct mesh_sample *sample)
     sample_clear(sample);
 }
 
-static void test_samples(void **state)
+TEST(test_samples)
 {
     struct mesh_sample sample;
     sample_box(&sample);
@@ -173,7 +173,7 @@ static void check_apart(const char *what, const float *vertices)
 }
 
 /* All triangles about one middle: nothing to choose by. */
-static void test_same_middle(void **state)
+TEST(test_same_middle)
 {
     static float vertices[9 * MANY];
     for (size_t i = 0; i < MANY; i++) {
@@ -189,7 +189,7 @@ static void test_same_middle(void **state)
 
 /* Each triangle is far smaller and nearer to 0 than the one before, so that the best cut always
  * splits off a few: unbounded, that would take as many levels as there are sizes. */
-static void test_ever_smaller(void **state)
+TEST(test_ever_smaller)
 {
     static float vertices[9 * MANY];
     for (size_t i = 0; i < MANY; i++) {
@@ -201,4 +201,4 @@ static void test_ever_smaller(void **state)
     check_apart("ever smaller", vertices);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_samples), TEST(test_same_middle), TEST(test_ever_smaller))
+TEST_PROGRAM(NULL, NULL)

@@ -47,7 +47,7 @@ static void expect_topology(const struct mesh_sample *sample, struct expected ex
     mesh_clear(&mesh);
 }
 
-static void test_orientation(void **state)
+TEST(test_orientation)
 {
     struct mesh_sample sample;
     sample_box(&sample);
@@ -84,7 +84,7 @@ static struct mesh prepare_loose_box(double off_m, bool is_reversed)
 
 /* A millionth of the box's diagonal is 2.4 um; the farthest corners of a seam are sqrt(3)/2 apart.
  */
-static void narrow_seams_close_in_any_order_and_thin_walls_stay(void **state)
+TEST(narrow_seams_close_in_any_order_and_thin_walls_stay)
 {
     for (int is_reversed = 0; is_reversed < 2; is_reversed++) {
         struct mesh mesh = prepare_loose_box(1e-6, is_reversed);
@@ -110,7 +110,7 @@ static void narrow_seams_close_in_any_order_and_thin_walls_stay(void **state)
 }
 
 /* A small box inside a large one, oriented inward, is a cavity. */
-static void test_cavity(void **state)
+TEST(test_cavity)
 {
     struct mesh_sample outer, inner;
     double positions[48];
@@ -133,7 +133,7 @@ static void test_cavity(void **state)
     sample_clear(&inner);
 }
 
-static void test_open(void **state)
+TEST(test_open)
 {
     struct mesh_sample sample;
     sample_box(&sample);
@@ -147,7 +147,7 @@ static void test_open(void **state)
 }
 
 /* A fin on an edge of the box: three triangles there. */
-static void test_crowded(void **state)
+TEST(test_crowded)
 {
     struct mesh_sample sample;
     double positions[27] = {0.0};
@@ -166,7 +166,7 @@ static void test_crowded(void **state)
 }
 
 /* A band with half a turn cannot be oriented. */
-static void test_twisted(void **state)
+TEST(test_twisted)
 {
     enum {
         STEPS = 12
@@ -197,7 +197,7 @@ static void test_twisted(void **state)
 
 /* Triangles with two equal corners go, and take no closedness with them; one whose corners lie on a
  * line stays, for its neighbours' sake. */
-static void test_degenerate(void **state)
+TEST(test_degenerate)
 {
     struct mesh_sample sample;
     double positions[33];
@@ -224,7 +224,7 @@ static void test_degenerate(void **state)
 }
 
 /* One vertex of 200,000 triangles: no work grows with the square of that. */
-static void test_crowded_vertex(void **state)
+TEST(test_crowded_vertex)
 {
     enum {
         RIM = 100000
@@ -247,9 +247,8 @@ static void test_crowded_vertex(void **state)
     struct mesh_options options;
     mesh_options_init(&options);
     options.smooth_angle_rad = 0.5;
-    assert_int_equal(mesh_from_arrays(&report, "cone", cone.positions, cone.vertices, cone.corners,
-                                      cone.triangles, &options, &mesh),
-                     SONJECT_OK);
+    EXPECT_OK(&report, mesh_from_arrays(&report, "cone", cone.positions, cone.vertices,
+                                        cone.corners, cone.triangles, &options, &mesh));
     assert_true(mesh.topology.is_closed);
     mesh_clear(&mesh);
     sample_clear(&cone);
@@ -257,15 +256,14 @@ static void test_crowded_vertex(void **state)
 
 /* On a sphere normals point away from the middle; on a box of 90 degrees they are the facets' below
  * that angle, and mixed above it. */
-static void test_normals(void **state)
+TEST(test_normals)
 {
     struct mesh_sample sample;
     float *normals;
     sample_sphere(&sample, 5);
     struct mesh mesh = prepare(&sample);
-    assert_int_equal(mesh_smooth_normals(&report, mesh.vertices, mesh.vertex_count, mesh.corners,
-                                         mesh.triangle_count, 0.3, &normals),
-                     SONJECT_OK);
+    EXPECT_OK(&report, mesh_smooth_normals(&report, mesh.vertices, mesh.vertex_count, mesh.corners,
+                                           mesh.triangle_count, 0.3, &normals));
     double worst = 0.0;
     for (size_t i = 0; i < 3 * mesh.triangle_count; i++) {
         const float *vertex = &mesh.vertices[3 * (size_t)mesh.corners[i]];
@@ -281,10 +279,9 @@ static void test_normals(void **state)
     sample_box(&sample);
     mesh = prepare(&sample);
     for (int is_mixed = 0; is_mixed < 2; is_mixed++) {
-        assert_int_equal(mesh_smooth_normals(&report, mesh.vertices, mesh.vertex_count,
-                                             mesh.corners, mesh.triangle_count,
-                                             is_mixed ? 1.6 : 1.5, &normals),
-                         SONJECT_OK);
+        EXPECT_OK(&report,
+                  mesh_smooth_normals(&report, mesh.vertices, mesh.vertex_count, mesh.corners,
+                                      mesh.triangle_count, is_mixed ? 1.6 : 1.5, &normals));
         for (size_t i = 0; i < 36; i++) {
             float most = 0.0f;
             for (size_t axis = 0; axis < 3; axis++)
@@ -298,7 +295,4 @@ static void test_normals(void **state)
     sample_clear(&sample);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_orientation),
-             TEST(narrow_seams_close_in_any_order_and_thin_walls_stay), TEST(test_cavity),
-             TEST(test_open), TEST(test_crowded), TEST(test_twisted), TEST(test_degenerate),
-             TEST(test_crowded_vertex), TEST(test_normals))
+TEST_PROGRAM(NULL, NULL)

@@ -1,5 +1,4 @@
 /* Launches on the device native: each work-item runs once, whoever else launches. */
-#define _POSIX_C_SOURCE 200809L
 #include "claims.h"
 
 #include <fenv.h>
@@ -92,7 +91,7 @@ static bool launch(uint32_t most, size_t items)
     return launch_by(NULL, most, items);
 }
 
-static void test_a_hosts_threads_run_each_work_item_once(void **state)
+TEST(test_a_hosts_threads_run_each_work_item_once)
 {
     for (uint32_t threads = 0; threads <= HOSTS; threads++) {
         struct task_host by = {.threads_max = threads};
@@ -117,7 +116,7 @@ static void *host(void *is_right)
     return NULL;
 }
 
-static void test_each_work_item_runs_once_beside_other_hosts(void **state)
+TEST(test_each_work_item_runs_once_beside_other_hosts)
 {
     pthread_t threads[HOSTS];
     bool are_right[HOSTS];
@@ -142,7 +141,7 @@ static void meet(const struct kernel_argument *arguments, const size_t *global, 
 }
 
 /* Forked while other threads launch. */
-static void test_children_have_threads_of_their_own(void **state)
+TEST(test_children_have_threads_of_their_own)
 {
     pthread_t threads[HOSTS];
     bool are_right[HOSTS];
@@ -168,7 +167,7 @@ static void test_children_have_threads_of_their_own(void **state)
 }
 #endif
 
-static void test_a_hosts_rounding_is_set_aside_and_given_back(void **state)
+TEST(test_a_hosts_rounding_is_set_aside_and_given_back)
 {
     assert_int_equal(fesetround(FE_UPWARD), 0);
     for (uint32_t most = 1; most <= 4; most++)
@@ -177,15 +176,4 @@ static void test_a_hosts_rounding_is_set_aside_and_given_back(void **state)
     assert_int_equal(fesetround(FE_TONEAREST), 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(test_each_work_item_runs_once_beside_other_hosts),
-        TEST(test_a_hosts_rounding_is_set_aside_and_given_back),
-        TEST(test_a_hosts_threads_run_each_work_item_once),
-#ifndef IS_SANITIZED
-        TEST(test_children_have_threads_of_their_own),
-#endif
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL)

@@ -1,26 +1,21 @@
 /* Tables of sound speeds: every way to write them, and files that are none. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
+#include "clean_folder.h"
 #include "schema/tables.h"
-#include "temporary_folder.h"
 
-static sonject_status read_bytes(void **state, const void *bytes, size_t count,
-                                 struct report *report, struct profile_table *table)
+static sonject_status read_bytes(const void *bytes, size_t count, struct profile_table *table)
 {
-    const char *path = temporary_file(*state, "cast.csv");
+    const char *path = file_in("cast.csv");
     write_bytes(path, bytes, count);
-    memset(report, 0, sizeof *report);
     memset(table, 0, sizeof *table);
-    return profile_table_read(report, path, NULL, table);
+    return profile_table_read(&report, path, NULL, table);
 }
 
 /* The samples of all good tables here: 12 m and 1490.5 m/s, then 15.5 m and 1.5e3 m/s. */
-static void expect_taken(void **state, const char *text, bool is_depth)
+static void expect_taken(const char *text, bool is_depth)
 {
-    struct report report;
     struct profile_table table;
-    if (read_bytes(state, text, strlen(text), &report, &table) != SONJECT_OK)
+    if (read_bytes(text, strlen(text), &table) != SONJECT_OK)
         fail_msg("%s\nwas refused: %s", text, report.message);
     assert_int_equal(table.count, 2);
     assert_int_equal(table.is_depth, is_depth);
@@ -29,32 +24,29 @@ static void expect_taken(void **state, const char *text, bool is_depth)
     profile_table_clear(&table);
 }
 
-static void test_every_way_to_write_a_table(void **state)
+CLEAN(test_every_way_to_write_a_table)
 {
-    expect_taken(state, "height_m,sound_speed_mps\n12,1490.5\n15.5,1.5e3\n", false);
-    expect_taken(state, "height_m,sound_speed_mps\n12,1490.5\n15.5,1.5e3", false);
-    expect_taken(state, "depth_m;sound_speed_mps\r\n12;1490.5\r\n15.5;1500\r\n", true);
-    expect_taken(state, "depth_m sound_speed_mps\n12 1490.5\n15.5 1500\n", true);
-    expect_taken(state, "\tdepth_m\t  sound_speed_mps\n 12\t\t1490.5  \n15.5 \t1500\t\n", true);
-    expect_taken(state, "sound_speed_mps , height_m\n 1490.5 ,\t12\n1500, 15.5 \n", false);
-    expect_taken(state, "\xEF\xBB\xBFheight_m,sound_speed_mps\n12,1490.5\n15.5,1500\n", false);
-    expect_taken(state,
-                 "# of 20\xB0"
+    expect_taken("height_m,sound_speed_mps\n12,1490.5\n15.5,1.5e3\n", false);
+    expect_taken("height_m,sound_speed_mps\n12,1490.5\n15.5,1.5e3", false);
+    expect_taken("depth_m;sound_speed_mps\r\n12;1490.5\r\n15.5;1500\r\n", true);
+    expect_taken("depth_m sound_speed_mps\n12 1490.5\n15.5 1500\n", true);
+    expect_taken("\tdepth_m\t  sound_speed_mps\n 12\t\t1490.5  \n15.5 \t1500\t\n", true);
+    expect_taken("sound_speed_mps , height_m\n 1490.5 ,\t12\n1500, 15.5 \n", false);
+    expect_taken("\xEF\xBB\xBFheight_m,sound_speed_mps\n12,1490.5\n15.5,1500\n", false);
+    expect_taken("# of 20\xB0"
                  "C\n\n \t \nheight_m,sound_speed_mps# metres\n#\n12,1490.5 # a\n\n"
                  "15.5,1500#\n#",
                  false);
-    expect_taken(state,
-                 "time;depth_m;temp, C;sound_speed_mps;\n"
+    expect_taken("time;depth_m;temp, C;sound_speed_mps;\n"
                  "10:00;12;4,5;1490.5;\n10:01;15.5;;1500;\n",
                  true);
-    expect_taken(state,
-                 "\"depth_m\", \"a \"\"b\"\", #c\",sound_speed_mps\n\"12\" ,\"d,e\",1490.5 # \"f\n"
+    expect_taken("\"depth_m\", \"a \"\"b\"\", #c\",sound_speed_mps\n\"12\" ,\"d,e\",1490.5 # \"f\n"
                  "15.5,\"\",\"1500\"#\n",
                  true);
-    expect_taken(state, "a;\"depth_m\";sound_speed_mps\n\"x;12;1490.5\ny\"z;15.5;1500\n", true);
+    expect_taken("a;\"depth_m\";sound_speed_mps\n\"x;12;1490.5\ny\"z;15.5;1500\n", true);
 }
 
-static void test_heights_rise_however_the_table_runs(void **state)
+CLEAN(test_heights_rise_however_the_table_runs)
 {
     static const struct {
         const char *text;
@@ -67,10 +59,8 @@ static void test_heights_rise_however_the_table_runs(void **state)
         {"depth_m,sound_speed_mps\n19,1501\n20,1502\n24,1504\n", {-4, 0, 1}, {1504, 1502, 1501}},
     };
     for (size_t i = 0; i < COUNT(tables); i++) {
-        struct report report;
         struct profile_table table;
-        if (read_bytes(state, tables[i].text, strlen(tables[i].text), &report, &table) !=
-            SONJECT_OK)
+        if (read_bytes(tables[i].text, strlen(tables[i].text), &table) != SONJECT_OK)
             fail_msg("%s", report.message);
         profile_table_to_heights(&table, 20.0);
         assert_int_equal(table.count, 3);
@@ -81,12 +71,10 @@ static void test_heights_rise_however_the_table_runs(void **state)
 }
 
 /* message: behind the file's name. */
-static void expect_refused(void **state, const void *bytes, size_t count, const char *message)
+static void expect_refused(const void *bytes, size_t count, const char *message)
 {
-    struct temporary_folder *folder = *state;
-    struct report report;
     struct profile_table table;
-    if (read_bytes(state, bytes, count, &report, &table) != SONJECT_ERROR_INPUT)
+    if (read_bytes(bytes, count, &table) != SONJECT_ERROR_INPUT)
         fail_msg("not refused, though %s", message);
     assert_null(table.positions_m);
     const size_t place = strlen(folder->file);
@@ -97,7 +85,7 @@ static void expect_refused(void **state, const void *bytes, size_t count, const 
 
 #define H "height_m,sound_speed_mps\n"
 
-static void test_tables_that_are_wrong(void **state)
+CLEAN(test_tables_that_are_wrong)
 {
     static const struct {
         const char *text, *message;
@@ -144,53 +132,47 @@ static void test_tables_that_are_wrong(void **state)
          ":2: sound_speed_mps: '123456789012345678901234567890123456...' is not a number"},
     };
     for (size_t i = 0; i < COUNT(wrong); i++)
-        expect_refused(state, wrong[i].text, strlen(wrong[i].text), wrong[i].message);
-    expect_refused(state, H "1,1500\n2,15\00000\n", sizeof H "1,1500\n2,15\00000\n" - 1,
+        expect_refused(wrong[i].text, strlen(wrong[i].text), wrong[i].message);
+    expect_refused(H "1,1500\n2,15\00000\n", sizeof H "1,1500\n2,15\00000\n" - 1,
                    ":3: not UTF-8 text; is this a table?");
-    expect_refused(state, "\x89PNG\r\n\x1A\n", 8, ":1: not UTF-8 text; is this a table?");
+    expect_refused("\x89PNG\r\n\x1A\n", 8, ":1: not UTF-8 text; is this a table?");
 }
 
-static void test_limits(void **state)
+CLEAN(test_limits)
 {
     char *text = calloc(PROFILE_BYTES_MAX + 2, 1);
     assert_non_null(text);
     size_t length = (size_t)sprintf(text, H);
     for (int i = 0; i < PROFILE_SAMPLES_MAX; i++)
         length += (size_t)sprintf(text + length, "%d,1500\n", i);
-    struct report report;
     struct profile_table table;
-    assert_int_equal(read_bytes(state, text, length, &report, &table), SONJECT_OK);
+    EXPECT_OK(&report, read_bytes(text, length, &table));
     assert_int_equal(table.count, PROFILE_SAMPLES_MAX);
     profile_table_clear(&table);
     length += (size_t)sprintf(text + length, "%d,1500\n", PROFILE_SAMPLES_MAX);
-    expect_refused(state, text, length, ":4098: more than 4096 samples; thin them out");
+    expect_refused(text, length, ":4098: more than 4096 samples; thin them out");
 
     length = (size_t)sprintf(text, "height_m,sound_speed_mps");
     for (int i = 0; i < 62; i++)
         length += (size_t)sprintf(text + length, ",c%d", i);
-    expect_refused(state, text, length,
-                   ":1: height_m: a profile needs at least two samples, not 0");
+    expect_refused(text, length, ":1: height_m: a profile needs at least two samples, not 0");
     length += (size_t)sprintf(text + length, ",one\n");
-    expect_refused(state, text, length,
-                   ":1: more than 64 columns; remove those that are not needed");
+    expect_refused(text, length, ":1: more than 64 columns; remove those that are not needed");
 
     memset(text, '#', PROFILE_BYTES_MAX + 1);
-    expect_refused(state, text, PROFILE_BYTES_MAX, ": there is nothing in it");
-    expect_refused(state, text, PROFILE_BYTES_MAX + 1, ": larger than 1048576 bytes");
+    expect_refused(text, PROFILE_BYTES_MAX, ": there is nothing in it");
+    expect_refused(text, PROFILE_BYTES_MAX + 1, ": larger than 1048576 bytes");
     memset(text, ',', PROFILE_BYTES_MAX);
-    expect_refused(state, text, PROFILE_BYTES_MAX,
+    expect_refused(text, PROFILE_BYTES_MAX,
                    ":1: more than 64 columns; remove those that are not needed");
     free(text);
 }
 
-static void test_files_that_cannot_be_read(void **state)
+CLEAN(test_files_that_cannot_be_read)
 {
-    struct temporary_folder *folder = *state;
-    struct report report = {{0}, NULL, NULL};
     struct profile_table table = {NULL, NULL, 0, false};
-    assert_int_equal(
-        profile_table_read(&report, temporary_file(folder, "absent.csv"), NULL, &table),
-        SONJECT_ERROR_STORAGE);
+    assert_int_equal(profile_table_read(&report, file_in("absent.csv"), NULL, &table),
+                     SONJECT_ERROR_STORAGE);
     assert_non_null(strstr(report.message, "absent.csv: cannot open"));
     assert_int_equal(profile_table_read(&report, folder->path, NULL, &table),
                      SONJECT_ERROR_STORAGE);
@@ -226,7 +208,6 @@ static double speed_at(const struct profile *profile, double height)
  * it is constant, which the next one joins if it has the same speed. */
 static void expect_layers(const struct profile *profile, size_t expected)
 {
-    struct report report = {{0}, NULL, NULL};
     struct water_layer *layers;
     size_t count;
     EXPECT_OK(&report, layers_of_profile(profile->heights, profile->speeds, profile->count, &report,
@@ -250,7 +231,7 @@ static void expect_layers(const struct profile *profile, size_t expected)
     free(layers);
 }
 
-static void test_profiles_become_thin_layers(void **state)
+TEST(test_profiles_become_thin_layers)
 {
     /* 1490 to 1520 m/s: 30 / (1490 / 20000) = 402.7 layers, and one below and above */
     const struct profile thermocline = {{0, 12, 16, 25}, {1490, 1490, 1520, 1520}, 4};
@@ -270,10 +251,9 @@ static void test_profiles_become_thin_layers(void **state)
 }
 
 /* Samples as close as heights may be, as far up as they may be, and the steepest that fits. */
-static void test_steep_profiles_keep_rising(void **state)
+TEST(test_steep_profiles_keep_rising)
 {
     const double heights[] = {999999.0, 999999.0000011}, speeds[] = {1400.0, 1660.0};
-    struct report report = {{0}, NULL, NULL};
     struct water_layer *layers;
     size_t count;
     EXPECT_OK(&report, layers_of_profile(heights, speeds, 2, &report, &layers, &count));
@@ -282,7 +262,4 @@ static void test_steep_profiles_keep_rising(void **state)
     free(layers);
 }
 
-TEST_PROGRAM(make_temporary_folder, remove_temporary_folder, TEST(test_every_way_to_write_a_table),
-             TEST(test_heights_rise_however_the_table_runs), TEST(test_tables_that_are_wrong),
-             TEST(test_limits), TEST(test_files_that_cannot_be_read),
-             TEST(test_profiles_become_thin_layers), TEST(test_steep_profiles_keep_rising))
+TEST_PROGRAM(NULL, NULL)

@@ -55,7 +55,7 @@ static void expect_round_trip(const sonject_transfer_params *transfer, enum pixe
     free(amplitude);
 }
 
-static void test_every_value_comes_back(void **state)
+TEST(test_every_value_comes_back)
 {
     const sonject_transfer_params kinds[] = {
         make(SONJECT_TRANSFER_AMPLITUDE, 0.0, 0.0),   make(SONJECT_TRANSFER_INTENSITY, 0.0, 0.0),
@@ -75,7 +75,7 @@ static void test_every_value_comes_back(void **state)
     }
 }
 
-static void test_plain_floats_keep_every_bit(void **state)
+TEST(test_plain_floats_keep_every_bit)
 {
     const sonject_transfer_params plain = make(SONJECT_TRANSFER_AMPLITUDE, 0.0, 0.0);
     const float stored[] = {0.0f,     -0.0f,   1.0f,        -1.0f,  1.0f / 3.0f, FLT_MAX,
@@ -107,7 +107,7 @@ static void expect_refused(sonject_transfer kind, float value)
     assert_int_equal(bad, 3);
 }
 
-static void test_values_without_an_amplitude(void **state)
+TEST(test_values_without_an_amplitude)
 {
     for (int kind = SONJECT_TRANSFER_AMPLITUDE; kind <= SONJECT_TRANSFER_SCHLICK; kind++) {
         expect_refused((sonject_transfer)kind, NAN);
@@ -122,7 +122,7 @@ static void test_values_without_an_amplitude(void **state)
     expect_refused(SONJECT_TRANSFER_SCHLICK, 3.0f);
 }
 
-static void test_full_scale_is_counted(void **state)
+TEST(test_full_scale_is_counted)
 {
     const sonject_transfer_params plain = make(SONJECT_TRANSFER_AMPLITUDE, 0.0, 0.0);
     const uint8_t stored[] = {255, 254, 0, 255};
@@ -137,7 +137,7 @@ static void test_full_scale_is_counted(void **state)
 }
 
 /* Twelve bits in sixteen. */
-static void test_the_recorders_full_scale(void **state)
+TEST(test_the_recorders_full_scale)
 {
     sonject_transfer_params plain = make(SONJECT_TRANSFER_AMPLITUDE, 0.0, 0.0);
     plain.full_scale = 4095.0;
@@ -160,7 +160,7 @@ static void test_the_recorders_full_scale(void **state)
     assert_int_equal(narrow, 255);
 }
 
-static void test_rounding_and_limits(void **state)
+TEST(test_rounding_and_limits)
 {
     const sonject_transfer_params plain = make(SONJECT_TRANSFER_AMPLITUDE, 0.0, 0.0);
     const sonject_transfer_params decibel = make(SONJECT_TRANSFER_DECIBEL, 0.5, -100.0);
@@ -188,7 +188,7 @@ static void test_rounding_and_limits(void **state)
 
 static const struct raster_layout swath = {1000, 400, 2, PIXEL_FLOAT32};
 
-static void test_bytes_that_overflow(void **state)
+TEST(test_bytes_that_overflow)
 {
     const struct region regions[] = {{0, 0, UINT64_MAX, 1},
                                      {0, 0, 1, UINT64_MAX},
@@ -202,7 +202,7 @@ static void test_bytes_that_overflow(void **state)
     assert_int_equal(bytes, 10 * 20 * 2 * 4);
 }
 
-static void test_inside(void **state)
+TEST(test_inside)
 {
     const struct region inside[] = {
         {0, 0, 1000, 400}, {999, 399, 1, 1}, {990, 0, 10, 400}, {0, 390, 1, 10}};
@@ -216,7 +216,4 @@ static void test_inside(void **state)
         assert_false(region_is_inside(&swath, &outside[i]));
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_every_value_comes_back), TEST(test_plain_floats_keep_every_bit),
-             TEST(test_values_without_an_amplitude), TEST(test_full_scale_is_counted),
-             TEST(test_the_recorders_full_scale), TEST(test_rounding_and_limits),
-             TEST(test_bytes_that_overflow), TEST(test_inside))
+TEST_PROGRAM(NULL, NULL)

@@ -24,7 +24,7 @@ static const struct format formats[] = {
 /* Whole, placed among zeros, and again a second later, when a file that holds the time of its
  * making would differ. Decoders run forwards; asking for earlier rows, or the same ones again, must
  * not confuse them. */
-static void what_is_written_comes_back(void **state)
+CLEAN(what_is_written_comes_back)
 {
     static const struct region regions[] = {{30, 5, 10, 20}, {2, 7, 20, 3}, {2, 7, 20, 3},
                                             {52, 0, 1, 71},  {0, 0, 1, 1},  {52, 70, 1, 1},
@@ -72,7 +72,7 @@ static void what_is_written_comes_back(void **state)
     }
 }
 
-static void a_region_outside_is_refused(void **state)
+CLEAN(a_region_outside_is_refused)
 {
     const struct region outside = {40, 0, 14, 1};
     const char *path = file_in("a.png");
@@ -102,7 +102,7 @@ static void expect_attribute(const char *path, const char *name, size_t capacity
 }
 
 /* Neither the coding of a JPEG nor a PNG's chunks are kept, but pixels and attributes are. */
-static void attributes_stay_in_copies_of_png_and_jpeg_which_are_png(void **state)
+CLEAN(attributes_stay_in_copies_of_png_and_jpeg_which_are_png)
 {
     static const struct format sources[] = {
         {"a.png", &grey8}, {"b.png", &grey16}, {"c.jpg", &grey8}, {"d.tif", &grey8}};
@@ -138,7 +138,7 @@ static void attributes_stay_in_copies_of_png_and_jpeg_which_are_png(void **state
     }
 }
 
-static void what_a_format_does_not_hold_is_refused(void **state)
+CLEAN(what_a_format_does_not_hold_is_refused)
 {
     static const struct raster_layout colour = {4, 4, 3, PIXEL_UINT8};
     static const struct raster_layout empty = {0, 4, 1, PIXEL_UINT8};
@@ -194,7 +194,7 @@ static sonject_status give_strip(void *user, uint64_t first, uint64_t end, void 
     return hand->has_rows ? SONJECT_OK : SONJECT_ERROR_INPUT;
 }
 
-static void a_failure_in_the_midst_of_writing_ends_it(void **state)
+CLEAN(a_failure_in_the_midst_of_writing_ends_it)
 {
     const uint64_t rows = 40; /* three strips */
     struct hand hand = {0, rows, true};
@@ -234,7 +234,7 @@ static int jpeg_quality(const char *path)
     return quality;
 }
 
-static void the_quality_of_a_jpeg_is_that_it_was_written_with(void **state)
+CLEAN(the_quality_of_a_jpeg_is_that_it_was_written_with)
 {
     const char *path = file_in("a.jpg");
     const unsigned char *pixels = make_image(&grey8);
@@ -255,7 +255,7 @@ static void the_quality_of_a_jpeg_is_that_it_was_written_with(void **state)
     assert_int_equal(jpeg_quality(file_in("a.png")), 0);
 }
 
-static void png_and_jpeg_that_are_not_for_sonject_are_refused(void **state)
+CLEAN(png_and_jpeg_that_are_not_for_sonject_are_refused)
 {
     static const struct {
         unsigned bits, colours;
@@ -276,7 +276,7 @@ static void png_and_jpeg_that_are_not_for_sonject_are_refused(void **state)
     expect_no_open(path, "cut short or damaged");
 }
 
-static void absurd_sides_are_refused(void **state)
+CLEAN(absurd_sides_are_refused)
 {
     static const uint64_t sides[][2] = {{1u << 31, 1u << 31},
                                         {(1u << 31) - 1, (1u << 31) - 1},
@@ -370,7 +370,7 @@ static void change_bytes(struct damage *damage, const unsigned char *bytes, size
 
 /* Files that are cut short are refused at once. Changed bytes give some other image or none, but
  * never a crash, a half-written file or noise. */
-static void files_that_are_cut_short_or_damaged_do_no_harm(void **state)
+CLEAN(files_that_are_cut_short_or_damaged_do_no_harm)
 {
     static const char *const names[] = {"plain.tif", "deflate.tif", "lzw.tif", "a.png", "a.jpg"};
     static unsigned char bytes[BYTES_MOST], patch[ROWS * COLUMNS];
@@ -444,7 +444,7 @@ static int count_calls(void *user, double fraction, const char *stage)
 }
 
 /* A limit on the size of files is as near as a test gets to a full disk. */
-static void who_cancels_or_has_a_full_disk_gets_no_file(void **state)
+CLEAN(who_cancels_or_has_a_full_disk_gets_no_file)
 {
     static const char *const names[] = {"a.tif", "a.png", "a.jpg"};
     struct rlimit kept;
@@ -480,11 +480,4 @@ static void who_cancels_or_has_a_full_disk_gets_no_file(void **state)
     }
 }
 
-TEST_PROGRAM(NULL, NULL, CLEAN(what_is_written_comes_back), CLEAN(a_region_outside_is_refused),
-             CLEAN(attributes_stay_in_copies_of_png_and_jpeg_which_are_png),
-             CLEAN(what_a_format_does_not_hold_is_refused),
-             CLEAN(a_failure_in_the_midst_of_writing_ends_it),
-             CLEAN(the_quality_of_a_jpeg_is_that_it_was_written_with),
-             CLEAN(png_and_jpeg_that_are_not_for_sonject_are_refused),
-             CLEAN(absurd_sides_are_refused), CLEAN(files_that_are_cut_short_or_damaged_do_no_harm),
-             CLEAN(who_cancels_or_has_a_full_disk_gets_no_file))
+TEST_PROGRAM(NULL, NULL)

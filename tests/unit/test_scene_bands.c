@@ -1,16 +1,9 @@
 /* Bands: several sonars in one scene file. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 
-#define HEAD                                                                                       \
-    "sonject: 1\n"                                                                                 \
-    "input: {uniform: {rows: 4, columns: 5},\n"                                                    \
-    "        geometry: {row_spacing: 1, column_spacing: 1, first_slant_range: 40}}\n"              \
-    "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10}\n"
 #define TWO_BANDS                                                                                  \
-    HEAD "bands:\n"                                                                                \
+    BASE "bands:\n"                                                                                \
          "  low: {sonar: {bandwidth: 20 kHz}}\n"                                                   \
          "  high:\n"                                                                               \
          "    sonar: {frequency: 400 kHz}\n"                                                       \
@@ -19,28 +12,26 @@
 static const char *const low[] = {"band=low"};
 static const char *const high[] = {"band=high"};
 
-static void test_a_band_changes_its_keys_alone(void **state)
+TEST(test_a_band_changes_its_keys_alone)
 {
-    struct scene_folder *folder = *state;
-    write_scene(folder, TWO_BANDS, strlen(TWO_BANDS));
-    assert_int_equal(read_scene(folder, low, 1), SONJECT_OK);
+    write_scene(TWO_BANDS, strlen(TWO_BANDS));
+    assert_int_equal(read_scene(low, 1), SONJECT_OK);
     assert_true(folder->scene.sonar.centre_frequency_hz == 100e3);
     assert_true(folder->scene.sonar.bandwidth_hz == 20e3);
-    assert_int_equal(read_scene(folder, high, 1), SONJECT_OK);
+    assert_int_equal(read_scene(high, 1), SONJECT_OK);
     assert_true(folder->scene.sonar.centre_frequency_hz == 400e3);
     assert_true(folder->scene.sonar.bandwidth_hz == 30e3);
     assert_true(folder->scene.sonar.altitude_m == 10.0);
     assert_true(folder->scene.seabed.lambert == 0.01);
 }
 
-static void test_a_band_may_stand_in_the_file(void **state)
+TEST(test_a_band_may_stand_in_the_file)
 {
-    struct scene_folder *folder = *state;
-    expect_scene_taken(folder, TWO_BANDS "band: high\n");
+    expect_scene_taken(TWO_BANDS "band: high\n");
     assert_true(folder->scene.sonar.centre_frequency_hz == 400e3);
 }
 
-static void what_is_set_beats_the_band(void **state)
+TEST(what_is_set_beats_the_band)
 {
     static const char *const set[] = {"band=high", "sonar.frequency=300 kHz",
                                       "seabed.lambert=-10 dB", "bands.high.sonar.bandwidth=25 kHz"};
@@ -48,28 +39,27 @@ static void what_is_set_beats_the_band(void **state)
                                         "sonar={altitude: 5, frequency: 90 kHz, bandwidth: 9 kHz}"};
     static const char *const within[] = {"band=one", "objects[0].heading=3 deg"};
     static const char *const own[] = {"band=one", "objects=[]"};
-    static const char scene[] = HEAD
+    static const char scene[] = BASE
         "objects: [{shape: sphere, diameter: 1, position: {row: 1, column: 1}}]\n"
         "bands: {one: {objects: [{shape: sphere, diameter: 2, position: {row: 1, column: 1}}]}}\n";
-    struct scene_folder *folder = *state;
-    write_scene(folder, TWO_BANDS, strlen(TWO_BANDS));
-    assert_int_equal(read_scene(folder, set, COUNT(set)), SONJECT_OK);
+    write_scene(TWO_BANDS, strlen(TWO_BANDS));
+    assert_int_equal(read_scene(set, COUNT(set)), SONJECT_OK);
     assert_true(folder->scene.sonar.centre_frequency_hz == 300e3);
     assert_true(folder->scene.sonar.bandwidth_hz == 25e3);
     assert_true(folder->scene.seabed.lambert == 0.1);
-    assert_int_equal(read_scene(folder, whole, COUNT(whole)), SONJECT_OK);
+    assert_int_equal(read_scene(whole, COUNT(whole)), SONJECT_OK);
     assert_true(folder->scene.sonar.centre_frequency_hz == 90e3);
     assert_true(folder->scene.sonar.altitude_m == 5.0);
-    write_scene(folder, scene, strlen(scene));
-    assert_int_equal(read_scene(folder, own, COUNT(own)), SONJECT_OK);
+    write_scene(scene, strlen(scene));
+    assert_int_equal(read_scene(own, COUNT(own)), SONJECT_OK);
     assert_int_equal(folder->scene.object_count, 0);
-    assert_int_equal(read_scene(folder, within, COUNT(within)), SONJECT_ERROR_INPUT);
+    assert_int_equal(read_scene(within, COUNT(within)), SONJECT_ERROR_INPUT);
     assert_non_null(
         strstr(folder->report.message, "the band has its own objects: set the whole of it"));
 }
 
-static void expect_names(struct scene_folder *folder, const char *text,
-                         const char *const *overrides, size_t count, const char *expected)
+static void expect_names(const char *text, const char *const *overrides, size_t count,
+                         const char *expected)
 {
     char *names;
     const struct scene_source source = {.path = folder->file,
@@ -81,37 +71,33 @@ static void expect_names(struct scene_folder *folder, const char *text,
     free(names);
 }
 
-static void test_bands_that_are_left_are_named(void **state)
+TEST(test_bands_that_are_left_are_named)
 {
-    expect_names(*state, TWO_BANDS, NULL, 0, "low\nhigh\n");
-    expect_names(*state, TWO_BANDS, high, 1, "");
-    expect_names(*state, HEAD, NULL, 0, "");
+    expect_names(TWO_BANDS, NULL, 0, "low\nhigh\n");
+    expect_names(TWO_BANDS, high, 1, "");
+    expect_names(BASE, NULL, 0, "");
 }
 
-static void test_what_is_wrong_is_told(void **state)
+TEST(test_what_is_wrong_is_told)
 {
-    struct scene_folder *folder = *state;
-    expect_scene_refused(folder, TWO_BANDS,
-                         ":6:3: bands: choose one of low, high (--set band=low)");
-    expect_scene_refused(folder, TWO_BANDS "band: middle\n",
-                         ":10:7: band: 'middle' is not one of low, high");
-    expect_scene_refused(folder, HEAD "band: low\n",
-                         ":5:7: band: there are no bands to choose from");
-    expect_scene_refused(folder, HEAD "bands: {}\n",
-                         ":5:8: bands: must be a section of bands: their names, and keys");
-    expect_scene_refused(folder, HEAD "bands: {../up: {}}\n",
-                         ":5:16: bands.../up: a band's name is that of a folder: 1 to 63 letters, "
-                         "digits, _ and -");
-    expect_scene_refused(folder, HEAD "bands: {low: 3}\nband: low\n",
-                         ":5:14: bands.low: must be a section of the scene's keys that this band "
-                         "changes");
-    expect_scene_refused(folder, HEAD "bands: {low: {bands: {}}}\nband: low\n",
-                         ":5:22: bands.low.bands: cannot be a band's own; remove it");
-    /* the place is where it was written */
-    expect_scene_refused(folder, HEAD "bands:\n  low: {sonar: {bandwidth: 3 kg}}\nband: low\n",
-                         ":6:28: sonar.bandwidth: unit 'kg' is not one of Hz, kHz, MHz");
+    static const struct refusal wrong[] = {
+        {TWO_BANDS, ":5:3: bands: choose one of low, high (--set band=low)"},
+        {TWO_BANDS "band: middle\n", ":9:7: band: 'middle' is not one of low, high"},
+        {BASE "band: low\n", ":4:7: band: there are no bands to choose from"},
+        {BASE "bands: {}\n", ":4:8: bands: must be a section of bands: their names, and keys"},
+        {BASE "bands: {../up: {}}\n",
+         ":4:16: bands.../up: a band's name is that of a folder: 1 to 63 letters, "
+         "digits, _ and -"},
+        {BASE "bands: {low: 3}\nband: low\n",
+         ":4:14: bands.low: must be a section of the scene's keys that this band "
+         "changes"},
+        {BASE "bands: {low: {bands: {}}}\nband: low\n",
+         ":4:22: bands.low.bands: cannot be a band's own; remove it"},
+        /* the place is where it was written */
+        {BASE "bands:\n  low: {sonar: {bandwidth: 3 kg}}\nband: low\n",
+         ":5:28: sonar.bandwidth: unit 'kg' is not one of Hz, kHz, MHz"},
+    };
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_a_band_changes_its_keys_alone),
-             TEST(test_a_band_may_stand_in_the_file), TEST(what_is_set_beats_the_band),
-             TEST(test_bands_that_are_left_are_named), TEST(test_what_is_wrong_is_told))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

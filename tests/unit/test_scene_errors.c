@@ -1,6 +1,4 @@
 /* Scene files that are wrong: each message tells the place, the key, what is wrong, what to do. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 
@@ -11,20 +9,9 @@
 #define KNOWN_MATERIALS                                                                            \
     "steel, concrete, rubber, wood, rock, gravel, coarse sand, medium sand, fine sand, silt, clay"
 
-struct wrong {
-    const char *text;
-    const char *message; /* behind the file name */
-};
-
-static void expect_all(void **state, const struct wrong *wrong, size_t count)
+TEST(test_unknown_keys)
 {
-    for (size_t i = 0; i < count; i++)
-        expect_scene_refused(*state, wrong[i].text, wrong[i].message);
-}
-
-static void test_unknown_keys(void **state)
-{
-    static const struct wrong wrong[] = {
+    static const struct refusal wrong[] = {
         {BASE "medum: {}\n", ":4:1: medum: unknown key; did you mean 'medium'?"},
         {BASE "medium:\n  salinity: 35\n",
          ":5:3: medium.salinity: unknown key; known here are sound_speed, reference_sound_speed, "
@@ -38,12 +25,12 @@ static void test_unknown_keys(void **state)
          "length, width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, "
          "position, heading, pitch, roll, burial, level, material, fouling, parts"},
     };
-    expect_all(state, wrong, COUNT(wrong));
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
-static void test_missing_keys(void **state)
+TEST(test_missing_keys)
 {
-    static const struct wrong wrong[] = {
+    static const struct refusal wrong[] = {
         {INPUT SONAR, ":1:1: sonject: missing; add it (version of the format, 1)"},
         {START, ":1:1: input: missing; add it (where the image comes from: path, uniform or "
                 "synthetic, and geometry)\n"
@@ -67,12 +54,12 @@ static void test_missing_keys(void **state)
         {BASE "objects: [{}]\n",
          ":4:11: objects[0]: none of shape, parts and target is there; give one"},
     };
-    expect_all(state, wrong, COUNT(wrong));
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
-static void test_wrong_values(void **state)
+TEST(test_wrong_values)
 {
-    static const struct wrong wrong[] = {
+    static const struct refusal wrong[] = {
         {BASE "medium:\n  sound_speed: 1500 knots\n",
          ":5:16: medium.sound_speed: unit 'knots' is not one of m/s, km/s"},
         {BASE "medium: {sound_speed: 1.5 Km/s}\n",
@@ -158,17 +145,14 @@ static void test_wrong_values(void **state)
          ":7:11: objects[0].name: longer than 63 bytes; shorten it"},
         {"- a\n", ":1:1: must be a section of 'key: value' lines, not a list"},
     };
-    expect_all(state, wrong, COUNT(wrong));
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
-static void test_keys_that_exclude_or_need_each_other(void **state)
+TEST(test_keys_that_exclude_or_need_each_other)
 {
     static const char geometry[] =
         ", geometry: {row_spacing: 1, column_spacing: 1, first_slant_range: 40}}\n";
-    static const struct {
-        const char *input;
-        const char *message;
-    } inputs[] = {
+    static const struct refusal inputs[] = {
         {"input: {path: a.tif, uniform: {rows: 1, columns: 1}",
          ":2:8: input: more than one of path, uniform and synthetic is there; give one"},
         {"input: {complex: true",
@@ -196,7 +180,7 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
         {"input: {uniform: {rows: 65536, columns: 32769}",
          ":2:25: input.uniform.rows: times columns must be at most 2^31 pixels, not 65536 x 32769"},
     };
-    static const struct wrong wrong[] = {
+    static const struct refusal wrong[] = {
         {BASE "seabed: {map: coherent}\n", ":4:15: seabed.map: coherent needs complex pixels; set "
                                            "complex: true in input if they are"},
         {OBJECT "sphere\n    diameter: 1\n    width: 1\n",
@@ -276,15 +260,15 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
     };
     for (size_t i = 0; i < COUNT(inputs); i++) {
         char text[1000];
-        snprintf(text, sizeof text, "%s%s%s%s", START, inputs[i].input, geometry, SONAR);
-        expect_scene_refused(*state, text, inputs[i].message);
+        snprintf(text, sizeof text, "%s%s%s%s", START, inputs[i].text, geometry, SONAR);
+        expect_scene_refused(text, inputs[i].message);
     }
-    expect_all(state, wrong, COUNT(wrong));
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
-static void test_yaml_that_is_not_wanted(void **state)
+TEST(test_yaml_that_is_not_wanted)
 {
-    static const struct wrong wrong[] = {
+    static const struct refusal wrong[] = {
         {"", ":1:1: there is nothing in it"},
         {"---\n", ":2:1: there is nothing in it; start with 'sonject: 1'"},
         {BASE "---\nsonject: 1\n", ":4:1: a second document starts here; keep one in a file"},
@@ -315,10 +299,10 @@ static void test_yaml_that_is_not_wanted(void **state)
         {START "# \xC3\xA9\xE2\x82 broken\n",
          ":2:5: not UTF-8 text (invalid trailing UTF-8 octet); save the file as UTF-8"},
     };
-    expect_all(state, wrong, COUNT(wrong));
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
-static void test_overrides_that_are_wrong(void **state)
+TEST(test_overrides_that_are_wrong)
 {
     static const struct {
         const char *override;
@@ -363,21 +347,19 @@ static void test_overrides_that_are_wrong(void **state)
         {"input.path=\xFF", "--set input.path: not UTF-8 text on one line"},
         {"objects[0].name=a\nb", "--set objects[0].name: not UTF-8 text on one line"},
     };
-    struct scene_folder *folder = *state;
     const char text[] = BASE "objects: [{shape: sphere, diameter: 1}]\n";
-    write_scene(folder, text, strlen(text));
+    write_scene(text, strlen(text));
     for (size_t i = 0; i < COUNT(wrong); i++) {
-        if (read_scene(folder, &wrong[i].override, 1) != SONJECT_ERROR_INPUT)
+        if (read_scene(&wrong[i].override, 1) != SONJECT_ERROR_INPUT)
             fail_msg("%s was taken", wrong[i].override);
         assert_string_equal(folder->report.message, wrong[i].message);
     }
 }
 
-static void test_a_missing_file_is_named(void **state)
+TEST(test_a_missing_file_is_named)
 {
     struct report report = {{0}, NULL, NULL};
     struct scene scene;
-    (void)state;
     scene_init(&scene);
     assert_int_equal(read_scene_file(&report, "/tmp/absent-scene.yaml", NULL, 0, false, &scene),
                      SONJECT_ERROR_INPUT);
@@ -385,7 +367,4 @@ static void test_a_missing_file_is_named(void **state)
                         "/tmp/absent-scene.yaml: there is no such scene file; check its name");
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_unknown_keys),
-             TEST(test_missing_keys), TEST(test_wrong_values),
-             TEST(test_keys_that_exclude_or_need_each_other), TEST(test_yaml_that_is_not_wanted),
-             TEST(test_overrides_that_are_wrong), TEST(test_a_missing_file_is_named))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

@@ -1,6 +1,4 @@
 /* Scene files that are good: every key, every way to write it, overrides. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_keys.h"
 
@@ -13,16 +11,16 @@ static void expect_arrived(const struct key_case *key, const void *structure)
         const char *text = place;
         if (key->type == TYPE_PATH)
             memcpy(&text, place, sizeof text);
-        assert_string_equal(text, key->text);
+        assert_string_equal(text, key->value);
     } else if (!(number_at(structure, key) == key->number)) {
         fail_msg("%s: %s gave %.17g, not %.17g", key->path, key->value, number_at(structure, key),
                  key->number);
     }
 }
 
-static void expect_case(struct scene_folder *folder, const struct key_case *key)
+static void expect_case(const struct key_case *key)
 {
-    const sonject_status status = read_case(folder, key, key->value);
+    const sonject_status status = read_case(key, key->value);
 #if !defined(HAS_DECODER)
     if (strstr(key->path, ".heights.") && !strstr(key->path, ".array")) {
         assert_int_not_equal(status, SONJECT_OK);
@@ -32,39 +30,38 @@ static void expect_case(struct scene_folder *folder, const struct key_case *key)
 #endif
     if (status != SONJECT_OK)
         fail_msg("%s=%s: %s", key->path, key->value, folder->report.message);
-    expect_arrived(key, structure_of(&folder->scene, key->path));
+    expect_arrived(key, structure_of(&folder->scene, key));
 }
 
 /* A value that the key's place holds anyway would show nothing. */
-static void expect_not_the_default(struct scene_folder *folder, const struct key_case *key)
+static void expect_not_the_default(const struct key_case *key)
 {
     const char *name = strrchr(key->path, '.');
     if (key->type == TYPE_NOTHING || key->type == TYPE_TEXT || key->type == TYPE_PATH)
         return;
     if (name && (strcmp(name, ".position") == 0 || strcmp(name, ".level") == 0))
         return; /* the only word for it is the default; its keys have cases of their own */
-    if (read_case(folder, key, NULL) != SONJECT_OK)
+    if (read_case(key, NULL) != SONJECT_OK)
         return; /* the section cannot do without the key */
-    const void *structure = structure_of(&folder->scene, key->path);
+    const void *structure = structure_of(&folder->scene, key);
     if (structure && number_at(structure, key) == key->number)
         fail_msg("%s: %s is there without the key, too", key->path, key->value);
 }
 
-static void test_every_key_arrives(void **state)
+TEST(test_every_key_arrives)
 {
     for (size_t i = 0; i < COUNT(cases); i++) {
-        expect_case(*state, &cases[i]);
-        expect_not_the_default(*state, &cases[i]);
+        expect_case(&cases[i]);
+        expect_not_the_default(&cases[i]);
     }
 }
 
 /* So that a key cannot be added to the tables without a case above. */
-static void test_every_key_has_a_case(void **state)
+TEST(test_every_key_has_a_case)
 {
     json_t *keys = list_keys();
     size_t i;
     json_t *key;
-    (void)state;
     json_array_foreach(keys, i, key)
     {
         assert_true(text_of(key, "unit")[0] && text_of(key, "meaning")[0]);
@@ -74,12 +71,11 @@ static void test_every_key_has_a_case(void **state)
     json_decref(keys);
 }
 
-static void test_defaults_stay_where_nothing_is_said(void **state)
+TEST(test_defaults_stay_where_nothing_is_said)
 {
-    struct scene_folder *folder = *state;
     struct scene defaults;
     scene_init(&defaults);
-    expect_scene_taken(folder, small);
+    expect_scene_taken(small);
     assert_memory_equal(&folder->scene.medium, &defaults.medium, sizeof defaults.medium);
     assert_memory_equal(&folder->scene.seabed, &defaults.seabed, sizeof defaults.seabed);
     assert_memory_equal(&folder->scene.injection, &defaults.injection, sizeof defaults.injection);
@@ -93,30 +89,28 @@ static void test_defaults_stay_where_nothing_is_said(void **state)
     assert_int_equal(folder->scene.sonar.taylor_terms, 5);
 }
 
-static void test_words_and_forms(void **state)
+TEST(test_words_and_forms)
 {
-    struct scene_folder *folder = *state;
     const char *overrides[] = {"sonar.response={taylor: {sidelobes: 30 dB, terms: 4}}",
                                "injection.noise_floor=-20",
                                "objects[0].position={row: 1, column: 2}", "seabed.lambert=-30 dB"};
     const char *back[] = {"sonar.response=rectangular", "injection.noise_floor=estimate",
                           "objects[0].position={along_track: 1, slant_range: 41}"};
-    write_scene(folder, small, strlen(small));
-    assert_int_equal(read_scene(folder, overrides, COUNT(overrides)), SONJECT_OK);
+    write_scene(small, strlen(small));
+    assert_int_equal(read_scene(overrides, COUNT(overrides)), SONJECT_OK);
     assert_int_equal(folder->scene.sonar.response_window, SONJECT_WINDOW_TAYLOR);
     assert_int_equal(folder->scene.injection.estimate_noise, 0);
     assert_int_equal(folder->scene.objects[0].position_kind, SONJECT_POSITION_PIXELS);
     assert_true(fabs(folder->scene.seabed.lambert / 1e-3 - 1.0) < 1e-15); /* rounding of pow */
-    assert_int_equal(read_scene(folder, back, COUNT(back)), SONJECT_OK);
+    assert_int_equal(read_scene(back, COUNT(back)), SONJECT_OK);
     assert_int_equal(folder->scene.sonar.response_window, SONJECT_WINDOW_RECTANGULAR);
     assert_int_equal(folder->scene.injection.estimate_noise, 1);
     assert_int_equal(folder->scene.objects[0].position_kind, SONJECT_POSITION_METRES);
 }
 
 /* A name fills in all of a material; keys beside it change it; a seabed keeps its backscatter. */
-static void test_named_materials(void **state)
+TEST(test_named_materials)
 {
-    struct scene_folder *folder = *state;
     const char *overrides[] = {"objects[0].material={name: concrete, roughness: 7 mm}",
                                "seabed.forward={sediment: medium_sand, rule: map, roughness: 5 mm}",
                                "seabed.lambert=-30 dB"};
@@ -125,8 +119,8 @@ static void test_named_materials(void **state)
                                  "0.03125}}"};
     sonject_material_params expected;
     const sonject_material_params *material;
-    write_scene(folder, small, strlen(small));
-    if (read_scene(folder, overrides, COUNT(overrides)) != SONJECT_OK)
+    write_scene(small, strlen(small));
+    if (read_scene(overrides, COUNT(overrides)) != SONJECT_OK)
         fail_msg("%s", folder->report.message);
     assert_true(material_named("concrete", &expected));
     expected.roughness_m = 0.007;
@@ -137,7 +131,7 @@ static void test_named_materials(void **state)
     assert_true(material->density_ratio == expected.density_ratio);
     assert_true(material->speed_ratio == expected.speed_ratio && material->loss == expected.loss);
     assert_true(fabs(folder->scene.seabed.lambert / 1e-3 - 1.0) < 1e-15); /* rounding of pow */
-    if (read_scene(folder, as_constant, COUNT(as_constant)) != SONJECT_OK)
+    if (read_scene(as_constant, COUNT(as_constant)) != SONJECT_OK)
         fail_msg("%s", folder->report.message);
     material = &folder->scene.objects[0].material;
     assert_int_equal(material->reflection_kind, SONJECT_REFLECTION_CONSTANT);
@@ -150,66 +144,62 @@ static void test_named_materials(void **state)
     assert_true(material->density_ratio == expected.density_ratio);
 }
 
-static void test_a_fluid_replaces_a_constant_reflection(void **state)
+TEST(test_a_fluid_replaces_a_constant_reflection)
 {
-    struct scene_folder *folder = *state;
     const char *fluid = "objects[0].material={name: steel, fluid: {density: 8, speed: 4}}";
-    write_scene(folder, small, strlen(small));
-    assert_int_equal(read_scene(folder, &fluid, 1), SONJECT_OK);
+    write_scene(small, strlen(small));
+    assert_int_equal(read_scene(&fluid, 1), SONJECT_OK);
     assert_int_equal(folder->scene.objects[0].material.reflection_kind, SONJECT_REFLECTION_FLUID);
 }
 
-static void test_paths_are_meant_from_where_they_stand(void **state)
+TEST(test_paths_are_meant_from_where_they_stand)
 {
-    struct scene_folder *folder = *state;
     const char *absolute = "input.path=/data/a #1: b.tif";
     const char *relative = "input.path= data/swath.tif";
     char expected[TEMPORARY_CAPACITY + 16];
-    expect_scene_taken(folder, file);
+    expect_scene_taken(file);
     snprintf(expected, sizeof expected, "%s/swath.tif", folder->folder.path);
     assert_string_equal(folder->scene.input_path, expected);
     assert_int_equal(folder->scene.input_kind, SONJECT_INPUT_FILE);
-    assert_int_equal(read_scene(folder, &absolute, 1), SONJECT_OK);
+    assert_int_equal(read_scene(&absolute, 1), SONJECT_OK);
     assert_string_equal(folder->scene.input_path, "/data/a #1: b.tif");
-    assert_int_equal(read_scene(folder, &relative, 1), SONJECT_OK);
+    assert_int_equal(read_scene(&relative, 1), SONJECT_OK);
     assert_string_equal(folder->scene.input_path, "data/swath.tif");
 }
 
-static void test_overrides_change_and_add(void **state)
+TEST(test_overrides_change_and_add)
 {
-    struct scene_folder *folder = *state;
     const char *overrides[] = {"objects[0].heading=30 deg", "objects[1]={shape: plane, length: 1}",
                                "objects[1].width = 2 m",    "sonar.altitude=11",
                                "sonar.altitude=12 m",       "injection.seed='77'"};
     const char *none = "objects=[]";
-    write_scene(folder, small, strlen(small));
-    assert_int_equal(read_scene(folder, overrides, COUNT(overrides)), SONJECT_OK);
+    write_scene(small, strlen(small));
+    assert_int_equal(read_scene(overrides, COUNT(overrides)), SONJECT_OK);
     assert_int_equal(folder->scene.object_count, 2);
     assert_true(folder->scene.objects[0].heading_rad == 30.0 / 180.0 * PI);
     assert_true(folder->scene.objects[1].width_m == 2.0);
     assert_true(folder->scene.objects[1].diameter_m == 0.0); /* a plane has none, not the default */
     assert_true(folder->scene.sonar.altitude_m == 12.0);
     assert_int_equal(folder->scene.injection.seed, 77);
-    assert_int_equal(read_scene(folder, &none, 1), SONJECT_OK);
+    assert_int_equal(read_scene(&none, 1), SONJECT_OK);
     assert_int_equal(folder->scene.object_count, 0);
 }
 
-static void test_sections_may_be_empty(void **state)
+TEST(test_sections_may_be_empty)
 {
     char text[1000];
-    struct scene_folder *folder = *state;
     snprintf(text, sizeof text, "%smedium:\nseabed: {}\ninjection: ~\n", small);
-    expect_scene_taken(folder, text);
+    expect_scene_taken(text);
     *strstr(text, "objects:") = 0;
     strcat(text, "objects:\n");
-    expect_scene_taken(folder, text);
+    expect_scene_taken(text);
     assert_int_equal(folder->scene.object_count, 0);
     *strstr(text, "objects:") = 0;
-    expect_scene_taken(folder, text);
+    expect_scene_taken(text);
     assert_int_equal(folder->scene.object_count, 0);
 }
 
-static void test_byte_order_mark_and_line_ends(void **state)
+TEST(test_byte_order_mark_and_line_ends)
 {
     char text[1000] = "\xEF\xBB\xBF";
     size_t length = 3;
@@ -219,12 +209,7 @@ static void test_byte_order_mark_and_line_ends(void **state)
         text[length++] = *c;
     }
     text[length] = 0;
-    expect_scene_taken(*state, text);
+    expect_scene_taken(text);
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_every_key_arrives),
-             TEST(test_every_key_has_a_case), TEST(test_defaults_stay_where_nothing_is_said),
-             TEST(test_words_and_forms), TEST(test_named_materials),
-             TEST(test_a_fluid_replaces_a_constant_reflection),
-             TEST(test_paths_are_meant_from_where_they_stand), TEST(test_overrides_change_and_add),
-             TEST(test_sections_may_be_empty), TEST(test_byte_order_mark_and_line_ends))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

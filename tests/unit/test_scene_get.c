@@ -1,6 +1,4 @@
 /* What a scene says, read back key by key. */
-#define _POSIX_C_SOURCE 200809L
-
 #include <sonject/sonject.h>
 
 #include <stdio.h>
@@ -14,17 +12,9 @@
     "  channel: 1, calibration: auto, path: a.npy}\n"                                              \
     "sonar: {frequency: 100 kHz, bandwidth: 30e3, altitude: \"10 m\"}\n"
 
-/* A scene of the text's file, named after a folder that is not there. */
-static sonject_scene *read_text(sonject_context *context, const char *text)
-{
-    sonject_scene *scene = NULL;
-    const sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
-    EXPECT_OK(&context->report, sonject_scene_read(context, "away/scene.yaml", &params, &scene));
-    return scene;
-}
+#define AWAY "away/scene.yaml" /* a folder that is not there */
 
-static void expect(sonject_context *context, const sonject_scene *scene, const char *key,
-                   const char *expected)
+static void expect(const sonject_scene *scene, const char *key, const char *expected)
 {
     char *json = NULL;
     EXPECT_OK(&context->report, sonject_scene_get(scene, key, &json));
@@ -33,7 +23,7 @@ static void expect(sonject_context *context, const sonject_scene *scene, const c
     sonject_text_release(&json);
 }
 
-static void values_are_numbers_texts_sections_and_lists(void **state)
+TEST(values_are_numbers_texts_sections_and_lists)
 {
     static const struct {
         const char *key, *value, *json;
@@ -63,90 +53,53 @@ static void values_are_numbers_texts_sections_and_lists(void **state)
         {"seabed.relief[0].heights.unit", "cm", "\"cm\""},
         {"bands.low", "{sonar: {frequency: 10 kHz}}", "{\"sonar\": {\"frequency\": 10000.0}}"},
     };
-    sonject_context *context = *state;
     for (size_t i = 0; i < COUNT(cases); i++) {
-        sonject_scene *scene = read_text(context, HEAD);
-        set(context, scene, "objects[0]", "{}");
+        sonject_scene *scene = read_text(AWAY, HEAD);
+        set(scene, "objects[0]", "{}");
         if (strstr(cases[i].key, "relief"))
-            set(context, scene, "seabed.relief[0]", "{}");
-        expect(context, scene, cases[i].key, strstr(cases[i].key, "altitude") ? "10.0" : "null");
-        set(context, scene, cases[i].key, cases[i].value);
-        expect(context, scene, cases[i].key, cases[i].json);
+            set(scene, "seabed.relief[0]", "{}");
+        expect(scene, cases[i].key, strstr(cases[i].key, "altitude") ? "10.0" : "null");
+        set(scene, cases[i].key, cases[i].value);
+        expect(scene, cases[i].key, cases[i].json);
         sonject_scene_release(&scene);
     }
 }
 
-static void the_whole_is_in_the_order_of_the_text(void **state)
+TEST(the_whole_is_in_the_order_of_the_text)
 {
-    sonject_context *context = *state;
     sonject_scene *scene = NULL;
     EXPECT_OK(&context->report, sonject_scene_create(context, &scene));
-    expect(context, scene, "", "{\"sonject\": 1}");
-    set(context, scene, "sonar", "{bandwidth: 30 kHz, frequency: 1e5}");
-    expect(context, scene, "",
+    expect(scene, "", "{\"sonject\": 1}");
+    set(scene, "sonar", "{bandwidth: 30 kHz, frequency: 1e5}");
+    expect(scene, "",
            "{\"sonject\": 1, \"sonar\": {\"bandwidth\": 30000.0, \"frequency\": 100000.0}}");
-    expect(context, scene, "objects[0].heading", "null");
-    expect(context, scene, "sonar[0]", "null");
-    expect(context, scene, "sonar.frequency[0]", "null");
+    expect(scene, "objects[0].heading", "null");
+    expect(scene, "sonar[0]", "null");
+    expect(scene, "sonar.frequency[0]", "null");
     sonject_scene_release(&scene);
 }
 
-/* Names of the text are meant from its folder, names that are set from the working folder. */
-static void names_of_files_are_absolute(void **state)
-{
-    char folder[1024], expected[1100];
-    char *text = NULL;
-    sonject_context *context = *state;
-    sonject_scene *scene = read_text(context, HEAD);
-    assert_non_null(getcwd(folder, sizeof folder));
-    snprintf(expected, sizeof expected, "\"%s/away/a.npy\"", folder);
-    expect(context, scene, "input.path", expected);
-    expect(context, scene, "input.calibration", "\"auto\"");
-    set(context, scene, "input.path", "auto");
-    snprintf(expected, sizeof expected, "\"%s/auto\"", folder);
-    expect(context, scene, "input.path", expected);
-    set(context, scene, "input.path", "b.npy");
-    set(context, scene, "objects[0]", "{shape: mesh, mesh: c.stl}");
-    snprintf(expected, sizeof expected, "\"%s/b.npy\"", folder);
-    expect(context, scene, "input.path", expected);
-    snprintf(expected, sizeof expected, "{\"shape\": \"mesh\", \"mesh\": \"%s/c.stl\"}", folder);
-    expect(context, scene, "objects[0]", expected);
-    EXPECT_OK(&context->report, sonject_scene_text(scene, &text));
-    snprintf(expected, sizeof expected, "%s/b.npy", folder);
-    assert_non_null(strstr(text, expected));
-    snprintf(expected, sizeof expected, "%s/c.stl", folder);
-    assert_non_null(strstr(text, expected));
-    assert_non_null(strstr(text, "\"calibration\": auto"));
-    sonject_text_release(&text);
-    /* The scene itself keeps the names as they were given. */
-    assert_int_equal(chdir("/"), 0);
-    expect(context, scene, "input.path", "\"/b.npy\"");
-    sonject_scene_release(&scene);
-}
-
-static void a_table_in_memory_is_told_by_its_numbers(void **state)
+TEST(a_table_in_memory_is_told_by_its_numbers)
 {
     static const double values[] = {0, 0.1, 1, 2e-4};
-    sonject_context *context = *state;
-    sonject_scene *scene = read_text(context, HEAD);
+    sonject_scene *scene = read_text(AWAY, HEAD);
     EXPECT_OK(&context->report, sonject_scene_set_table(scene, "sonar.motion.file",
                                                         "along_track_m, sway_m", values, 2, 2));
-    expect(context, scene, "sonar.motion",
+    expect(scene, "sonar.motion",
            "{\"file\": {\"columns\": \"along_track_m, sway_m\", \"values\": [[0.0, "
            "0.10000000000000001], [1.0, 0.00020000000000000001]]}}");
-    set(context, scene, "seabed.relief", "[{heights: {unit: m}}]");
+    set(scene, "seabed.relief", "[{heights: {unit: m}}]");
     EXPECT_OK(&context->report,
               sonject_scene_set_table(scene, "seabed.relief[0].heights.file", NULL, values, 1, 1));
-    expect(context, scene, "seabed.relief[0].heights",
+    expect(scene, "seabed.relief[0].heights",
            "{\"unit\": \"m\", \"file\": {\"columns\": null, \"values\": [[0.0]]}}");
     sonject_scene_release(&scene);
 }
 
-static void keys_that_are_none_are_refused(void **state)
+TEST(keys_that_are_none_are_refused)
 {
     char *json = "set before";
-    sonject_context *context = *state;
-    sonject_scene *scene = read_text(context, HEAD);
+    sonject_scene *scene = read_text(AWAY, HEAD);
     assert_int_equal(sonject_scene_get(scene, "sonar.altitud", &json), SONJECT_ERROR_INPUT);
     assert_null(json);
     assert_string_equal(sonject_context_message(context),
@@ -157,7 +110,36 @@ static void keys_that_are_none_are_refused(void **state)
     sonject_scene_release(&scene);
 }
 
-TEST_PROGRAM(make_context, release_context, TEST(values_are_numbers_texts_sections_and_lists),
-             TEST(the_whole_is_in_the_order_of_the_text),
-             TEST(a_table_in_memory_is_told_by_its_numbers), TEST(keys_that_are_none_are_refused),
-             TEST(names_of_files_are_absolute))
+/* Names of the text are meant from its folder, names that are set from the working folder. */
+TEST(names_of_files_are_absolute)
+{
+    char folder[1024], expected[1100];
+    char *text = NULL;
+    sonject_scene *scene = read_text(AWAY, HEAD);
+    assert_non_null(getcwd(folder, sizeof folder));
+    snprintf(expected, sizeof expected, "\"%s/away/a.npy\"", folder);
+    expect(scene, "input.path", expected);
+    expect(scene, "input.calibration", "\"auto\"");
+    set(scene, "input.path", "auto");
+    snprintf(expected, sizeof expected, "\"%s/auto\"", folder);
+    expect(scene, "input.path", expected);
+    set(scene, "input.path", "b.npy");
+    set(scene, "objects[0]", "{shape: mesh, mesh: c.stl}");
+    snprintf(expected, sizeof expected, "\"%s/b.npy\"", folder);
+    expect(scene, "input.path", expected);
+    snprintf(expected, sizeof expected, "{\"shape\": \"mesh\", \"mesh\": \"%s/c.stl\"}", folder);
+    expect(scene, "objects[0]", expected);
+    EXPECT_OK(&context->report, sonject_scene_text(scene, &text));
+    snprintf(expected, sizeof expected, "%s/b.npy", folder);
+    assert_non_null(strstr(text, expected));
+    snprintf(expected, sizeof expected, "%s/c.stl", folder);
+    assert_non_null(strstr(text, expected));
+    assert_non_null(strstr(text, "\"calibration\": auto"));
+    sonject_text_release(&text);
+    /* The scene itself keeps the names as they were given. */
+    assert_int_equal(chdir("/"), 0);
+    expect(scene, "input.path", "\"/b.npy\"");
+    sonject_scene_release(&scene);
+}
+
+TEST_PROGRAM(make_context, release_context)

@@ -1,6 +1,4 @@
 /* Heights of the seabed from a file, and what is said about files that are no heights. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 #include "swath/raster_file.h"
@@ -13,22 +11,14 @@
 #define ROWS    3
 #define COLUMNS 4
 
-static void write_heights(struct scene_folder *folder, const struct raster_layout *layout,
-                          const void *pixels)
+static void write_heights(const struct raster_layout *layout, const void *pixels)
 {
-    assert_int_equal(raster_file_write(&folder->report, file_in(folder, "heights.tif"), layout,
-                                       NULL, NULL, 0, pixels),
-                     SONJECT_OK);
+    assert_int_equal(
+        raster_file_write(&folder->report, file_in("heights.tif"), layout, NULL, NULL, 0, pixels),
+        SONJECT_OK);
 }
 
-static int remove_heights(void **state)
-{
-    (void)unlink(file_in(*state, "heights.tif"));
-    return remove_scene_folder(state);
-}
-
-static void expect_heights(struct scene_folder *folder, double first_along_track_m,
-                           const float heights_m[ROWS * COLUMNS])
+static void expect_heights(double first_along_track_m, const float heights_m[ROWS * COLUMNS])
 {
     const struct relief_features *relief = &folder->scene.relief;
     sonject_relief_params grid;
@@ -45,7 +35,7 @@ static void expect_heights(struct scene_folder *folder, double first_along_track
 }
 
 /* Binary fractions throughout, so that no height is rounded. */
-static void test_numbers_become_heights(void **state)
+TEST(test_numbers_become_heights)
 {
     static const double numbers[ROWS * COLUMNS] = {0, 1, 2, 3, 4, 50, 60, 70, 255, 100, 9, 11};
     static const enum pixel_type types[] = {PIXEL_UINT8, PIXEL_UINT16, PIXEL_FLOAT32};
@@ -58,37 +48,29 @@ static void test_numbers_become_heights(void **state)
         {HEIGHTS("unit: 125 mm, positive: down, offset: 10 m, first_along_track: -7 m"), -0.125,
          10.0, -7.0},
     };
-    struct scene_folder *folder = *state;
     for (size_t type = 0; type < COUNT(types); type++) {
         const struct raster_layout layout = {ROWS, COLUMNS, 1, types[type]};
-        uint8_t bytes[ROWS * COLUMNS];
-        uint16_t words[ROWS * COLUMNS];
-        float floats[ROWS * COLUMNS];
-        const void *const pixels[] = {bytes, words, floats};
-        for (size_t i = 0; i < COUNT(numbers); i++) {
-            bytes[i] = (uint8_t)numbers[i];
-            words[i] = (uint16_t)numbers[i];
-            floats[i] = (float)numbers[i];
-        }
-        write_heights(folder, &layout, pixels[type]);
+        float pixels[ROWS * COLUMNS]; /* room for any type's */
+        for (size_t i = 0; i < COUNT(numbers); i++)
+            assert_true(pixel_store(types[type], pixels, i, numbers[i]));
+        write_heights(&layout, pixels);
         for (size_t i = 0; i < COUNT(cases); i++) {
             float heights[ROWS * COLUMNS];
             for (size_t j = 0; j < COUNT(numbers); j++)
                 heights[j] = (float)(cases[i].offset + cases[i].scale * numbers[j]);
-            expect_scene_taken(folder, cases[i].text);
-            expect_heights(folder, cases[i].first_along_track_m, heights);
+            expect_scene_taken(cases[i].text);
+            expect_heights(cases[i].first_along_track_m, heights);
         }
     }
 }
 
 /* Heights add to what else there is. */
-static void test_heights_among_features(void **state)
+TEST(test_heights_among_features)
 {
     static const float flat[ROWS * COLUMNS] = {0.0f};
     static const struct raster_layout layout = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
-    struct scene_folder *folder = *state;
-    write_heights(folder, &layout, flat);
-    expect_scene_taken(folder, RELIEF
+    write_heights(&layout, flat);
+    expect_scene_taken(RELIEF
                        "  - mound: {radius: 1 m, height: 10 cm}\n"
                        "  - heights: {file: heights.tif, unit: m, row_spacing: 1, column_spacing: "
                        "1, first_ground_range: 0}\n"
@@ -98,11 +80,9 @@ static void test_heights_among_features(void **state)
     assert_non_null(folder->scene.relief.heights_m);
 }
 
-static void test_what_is_refused(void **state)
+TEST(test_what_is_refused)
 {
-    static const struct {
-        const char *text, *message;
-    } wrong[] = {
+    static const struct refusal wrong[] = {
         {RELIEF "  - heights: heights.tif\n",
          ":6:14: seabed.relief[0].heights: must be a section of 'key: value' lines, not a single "
          "value"},
@@ -123,29 +103,21 @@ static void test_what_is_refused(void **state)
     };
     static const uint8_t pixels[ROWS * COLUMNS] = {0};
     static const struct raster_layout layout = {ROWS, COLUMNS, 1, PIXEL_UINT8};
-    struct scene_folder *folder = *state;
-    write_heights(folder, &layout, pixels);
-    for (size_t i = 0; i < COUNT(wrong); i++)
-        expect_scene_refused(folder, wrong[i].text, wrong[i].message);
+    write_heights(&layout, pixels);
+    expect_all_refused(wrong, COUNT(wrong));
     assert_null(folder->scene.relief.heights_m);
 }
 
-/* One line that names scene file, line, key and what is wrong with the file. */
-static void expect_bad_file(struct scene_folder *folder, const char *keys, const char *what)
+static void expect_bad_heights(const char *keys, const char *what)
 {
-    char text[1000], place[TEMPORARY_CAPACITY + 64];
+    char text[1000];
     snprintf(text, sizeof text, HEIGHTS("%s"), keys);
-    snprintf(place, sizeof place, "%s:6:21: seabed.relief[0].heights.file: ", folder->file);
-    write_scene(folder, text, strlen(text));
-    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-    const char *message = folder->report.message;
-    if (strncmp(message, place, strlen(place)) != 0 || !strstr(message, what) ||
-        !strstr(message, file_in(folder, "heights.tif")) || strchr(message, '\n'))
-        fail_msg("'%s' is not '%s... %s'", message, place, what);
+    expect_bad_file(text, ":6:21: seabed.relief[0].heights.file", "heights.tif",
+                    SONJECT_ERROR_INPUT, what);
     assert_null(folder->scene.relief.heights_m);
 }
 
-static void test_files_that_are_no_heights(void **state)
+TEST(test_files_that_are_no_heights)
 {
     static const float hole[ROWS * COLUMNS] = {[6] = NAN};
     static const float deep[ROWS * COLUMNS] = {[11] = -9999.0f};
@@ -155,7 +127,6 @@ static void test_files_that_are_no_heights(void **state)
     static const struct raster_layout line = {1, COLUMNS, 1, PIXEL_FLOAT32};
     static const struct raster_layout wide = {2, 16385, 1, PIXEL_UINT8};
     static const struct raster_layout large = {4096, 4097, 1, PIXEL_UINT8};
-    struct scene_folder *folder = *state;
     uint8_t *many = calloc(4096, 4097);
     assert_non_null(many);
     const struct {
@@ -173,27 +144,17 @@ static void test_files_that_are_no_heights(void **state)
         {&large, many, "unit: m", "has 4096 rows and 4097 columns"},
     };
     for (size_t i = 0; i < COUNT(files); i++) {
-        write_heights(folder, files[i].layout, files[i].pixels);
-        expect_bad_file(folder, files[i].keys, files[i].what);
+        write_heights(files[i].layout, files[i].pixels);
+        expect_bad_heights(files[i].keys, files[i].what);
     }
     free(many);
-    write_heights(folder, &plain, hole);
-    assert_int_equal(truncate(file_in(folder, "heights.tif"), 90), 0);
-    expect_bad_file(folder, "unit: m", "");
-    assert_int_equal(truncate(file_in(folder, "heights.tif"), 0), 0);
-    expect_bad_file(folder, "unit: m", "");
-    assert_int_equal(unlink(file_in(folder, "heights.tif")), 0);
-    expect_bad_file(folder, "unit: m", "there is no file");
+    write_heights(&plain, hole);
+    assert_int_equal(truncate(file_in("heights.tif"), 90), 0);
+    expect_bad_heights("unit: m", "");
+    assert_int_equal(truncate(file_in("heights.tif"), 0), 0);
+    expect_bad_heights("unit: m", "");
+    assert_int_equal(unlink(file_in("heights.tif")), 0);
+    expect_bad_heights("unit: m", "there is no file");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, make_scene_folder, remove_heights)
-        IN_FOLDER(test_numbers_become_heights),
-        IN_FOLDER(test_heights_among_features),
-        IN_FOLDER(test_what_is_refused),
-        IN_FOLDER(test_files_that_are_no_heights),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

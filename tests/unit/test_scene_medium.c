@@ -1,11 +1,7 @@
 /* The water of scene files: layers, profiles, absorption. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 
-/* Three lines; the medium stands before what it needs. */
-#define HEAD    START INPUT "# the water\n"
 #define SURFACE "surface: {depth: 25 m}\n"
 #define CAST    SOURCE_ROOT "/tests/unit/cast.csv"
 
@@ -19,32 +15,31 @@ static void expect_layer(const struct scene *scene, size_t i, double bottom, dou
                  layer->density);
 }
 
-static void test_layers(void **state)
+TEST(test_layers)
 {
-    struct scene_folder *folder = *state;
-    expect_scene_taken(folder, HEAD "medium:\n"
-                                    "  reference_sound_speed: 1500 m/s\n"
-                                    "  layers:\n"
-                                    "    - {bottom: 0 m, sound_speed: 1490 m/s, density: 1025}\n"
-                                    "    - {bottom: 1200 cm, sound_speed: 1.52 km/s,\n"
-                                    "       density: 1.024 g/cm3}\n" SONAR);
+    expect_scene_taken(BASE "medium:\n"
+                            "  reference_sound_speed: 1500 m/s\n"
+                            "  layers:\n"
+                            "    - {bottom: 0 m, sound_speed: 1490 m/s, density: 1025}\n"
+                            "    - {bottom: 1200 cm, sound_speed: 1.52 km/s,\n"
+                            "       density: 1.024 g/cm3}\n");
     assert_int_equal(folder->scene.water_layer_count, 2);
     expect_layer(&folder->scene, 0, 0.0, 1490.0, 1025.0);
     expect_layer(&folder->scene, 1, 12.0, 1520.0, 1024.0);
     assert_true(folder->scene.medium.reference_sound_speed_mps == 1500.0);
-    expect_scene_taken(folder, HEAD "medium: {layers: [{bottom: 0, sound_speed: 1490}, "
-                                    "{sound_speed: 1510, bottom: 3}]}\n" SONAR);
+    expect_scene_taken(BASE "medium: {layers: [{bottom: 0, sound_speed: 1490}, "
+                            "{sound_speed: 1510, bottom: 3}]}\n");
     expect_layer(&folder->scene, 1, 3.0, 1510.0, 1.0);
-    expect_scene_taken(folder, HEAD "medium: {sound_speed: 1490}\n" SONAR);
+    expect_scene_taken(BASE "medium: {sound_speed: 1490}\n");
     assert_null(folder->scene.water_layers);
     assert_int_equal(folder->scene.water_layer_count, 0);
 }
 
 /* From 1490 m/s at 3 m to 1490.25 m/s at 12 m over the seabed. */
-static void expect_corners(struct scene_folder *folder, const char *text)
+static void expect_corners(const char *text)
 {
     const struct scene *scene = &folder->scene;
-    expect_scene_taken(folder, text);
+    expect_scene_taken(text);
     const size_t count = scene->water_layer_count;
     /* 0.25 m/s: 3.36 steps of 1490 / 20000 m/s, so four layers */
     assert_int_equal(count, 6);
@@ -53,38 +48,36 @@ static void expect_corners(struct scene_folder *folder, const char *text)
     expect_layer(scene, 5, 12.0, 1490.25, 1.0);
 }
 
-static void test_profiles(void **state)
+TEST(test_profiles)
 {
-    struct scene_folder *folder = *state;
-    expect_corners(folder, HEAD "medium: {profile: {file: " CAST "}}\n" SONAR);
-    expect_corners(folder, HEAD "medium: {profile: {heights: [3, 12 m], sound_speeds: [1490, "
-                                "1.49025 km/s]}}\n" SONAR);
-    expect_corners(folder, HEAD "medium: {profile: {heights: [20, 12, 3], sound_speeds: [1490.25, "
-                                "1490.25, 1490]}}\n" SONAR);
-    expect_corners(folder, HEAD "medium: {profile: {depths: [13 m, 22 m], sound_speeds: [1490.25, "
-                                "1490]}}\n" SONAR SURFACE);
-    expect_corners(folder, HEAD "medium: {profile: {depths: [22, 13, 0], sound_speeds: [1490, "
-                                "1490.25, 1490.25]}}\n" SURFACE SONAR);
+    expect_corners(BASE "medium: {profile: {file: " CAST "}}\n");
+    expect_corners(BASE "medium: {profile: {heights: [3, 12 m], sound_speeds: [1490, "
+                        "1.49025 km/s]}}\n");
+    expect_corners(BASE "medium: {profile: {heights: [20, 12, 3], sound_speeds: [1490.25, "
+                        "1490.25, 1490]}}\n");
+    expect_corners(BASE "medium: {profile: {depths: [13 m, 22 m], sound_speeds: [1490.25, "
+                        "1490]}}\n" SURFACE);
+    expect_corners(BASE "medium: {profile: {depths: [22, 13, 0], sound_speeds: [1490, "
+                        "1490.25, 1490.25]}}\n" SURFACE);
 }
 
 /* Beside the scene file; of an override, where the user is. */
-static void test_files_are_looked_for_beside_the_scene(void **state)
+TEST(test_files_are_looked_for_beside_the_scene)
 {
-    struct scene_folder *folder = *state;
     static const char warm[] = "height_m sound_speed_mps\n1 1500\n2 warm\n";
     static const char good[] = "height_m sound_speed_mps\n1 1500\n2 1500\n";
     char beside[TEMPORARY_CAPACITY + 64];
     const char *absent = "medium.profile.file=cast-of-nobody.csv";
     const char *there = "medium.profile.file=" CAST;
-    static const char text[] = HEAD "medium: {profile: {file: cast.csv}}\n" SONAR;
-    write_file(folder, "cast.csv", good, strlen(good));
-    strcpy(beside, file_in(folder, "cast.csv"));
-    expect_scene_taken(folder, text);
+    static const char text[] = BASE "medium: {profile: {file: cast.csv}}\n";
+    write_file("cast.csv", good, strlen(good));
+    strcpy(beside, file_in("cast.csv"));
+    expect_scene_taken(text);
     assert_int_equal(folder->scene.water_layer_count, 1);
     expect_layer(&folder->scene, 0, 0.0, 1500.0, 1.0);
-    write_file(folder, "cast.csv", warm, strlen(warm));
-    write_scene(folder, text, strlen(text));
-    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    write_file("cast.csv", warm, strlen(warm));
+    write_scene(text, strlen(text));
+    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
     assert_int_equal(strncmp(folder->report.message, beside, strlen(beside)), 0);
     assert_string_equal(folder->report.message + strlen(beside),
                         ":3: sound_speed_mps: 'warm' is not a number");
@@ -92,44 +85,41 @@ static void test_files_are_looked_for_beside_the_scene(void **state)
     char message[2 * TEMPORARY_CAPACITY];
     snprintf(message, sizeof message,
              ":4:26: medium.profile.file: there is no file %s; check its name", beside);
-    expect_scene_refused(folder, text, message);
-    assert_int_equal(read_scene(folder, &absent, 1), SONJECT_ERROR_INPUT);
+    expect_scene_refused(text, message);
+    assert_int_equal(read_scene(&absent, 1), SONJECT_ERROR_INPUT);
     assert_string_equal(folder->report.message,
                         "--set medium.profile.file: there is no file cast-of-nobody.csv; check its "
                         "name");
-    assert_int_equal(read_scene(folder, &there, 1), SONJECT_OK);
+    assert_int_equal(read_scene(&there, 1), SONJECT_OK);
 }
 
-static void test_absorption(void **state)
+TEST(test_absorption)
 {
-    struct scene_folder *folder = *state;
     const double *absorption = &folder->scene.medium.absorption_db_per_m;
-    expect_scene_taken(folder, HEAD "medium: {}\n" SONAR);
+    expect_scene_taken(BASE "medium: {}\n");
     assert_true(*absorption == 0.0);
-    expect_scene_taken(folder, HEAD "medium: {absorption: 0.03 dB/m}\n" SONAR);
+    expect_scene_taken(BASE "medium: {absorption: 0.03 dB/m}\n");
     assert_true(*absorption == 0.03);
-    expect_scene_taken(folder, HEAD "medium: {absorption: 34 dB/km}\n" SONAR);
+    expect_scene_taken(BASE "medium: {absorption: 34 dB/km}\n");
     assert_true(*absorption == 0.034);
-    expect_scene_taken(folder, HEAD "medium: {absorption: {temperature: 12 C, salinity: 34, depth: "
-                                    "20 m, ph: 7.9}}\n" SONAR);
+    expect_scene_taken(BASE "medium: {absorption: {temperature: 12 C, salinity: 34, depth: "
+                            "20 m, ph: 7.9}}\n");
     assert_true(*absorption == sonject_absorption(100e3, 12.0, 34.0, 20.0, 7.9));
-    expect_scene_taken(folder, HEAD "medium: {absorption: {temperature: -1, salinity: 5, depth: "
-                                    "0.2 km}}\n" SONAR);
+    expect_scene_taken(BASE "medium: {absorption: {temperature: -1, salinity: 5, depth: "
+                            "0.2 km}}\n");
     assert_true(*absorption == sonject_absorption(100e3, -1.0, 5.0, 200.0, 8.0));
     const char *frequency = "sonar.frequency=455 kHz";
-    assert_int_equal(read_scene(folder, &frequency, 1), SONJECT_OK);
+    assert_int_equal(read_scene(&frequency, 1), SONJECT_OK);
     assert_true(*absorption == sonject_absorption(455e3, -1.0, 5.0, 200.0, 8.0));
 }
 
-#define MEDIUM  HEAD "medium:\n" /* its keys begin on line 5 */
+#define MEDIUM  BASE "medium:\n" /* its keys begin on line 5 */
 #define LAYERS  MEDIUM "  layers:\n"
 #define PROFILE MEDIUM "  profile: "
 
-static void test_what_is_wrong(void **state)
+TEST(test_what_is_wrong)
 {
-    static const struct {
-        const char *text, *message;
-    } wrong[] = {
+    static const struct refusal wrong[] = {
         {MEDIUM "  sound_speed: 1500\n  layers: [{bottom: 0, sound_speed: 1500}]\n",
          ":5:3: medium: more than one of sound_speed, layers and profile is there; give one"},
         {MEDIUM "  layers: []\n",
@@ -155,7 +145,8 @@ static void test_what_is_wrong(void **state)
          ":5:12: medium.profile: none of file, heights and depths is there; give one"},
         {PROFILE "{heights: [1, 2], depths: [1, 2], sound_speeds: [1500, 1500]}\n",
          ":5:12: medium.profile: more than one of file, heights and depths is there; give one"},
-        {PROFILE "{file: " CAST ", sound_speeds: [1500, 1500]}\n", NULL},
+        {PROFILE "{sound_speeds: [1500, 1500], file: " CAST "}\n",
+         ":5:27: medium.profile.sound_speeds: the file tells them; remove one of the two"},
         {PROFILE "{heights: [1, 2]}\n",
          ":5:12: medium.profile.sound_speeds: missing; heights need it"},
         {PROFILE "{heights: [1, 2], sound_speeds: [1500]}\n",
@@ -182,51 +173,31 @@ static void test_what_is_wrong(void **state)
          "layers"},
         {MEDIUM "  absorption: -1 dB/m\n",
          ":5:15: medium.absorption: must be 0...100 dB/m, not -1"},
+        {START INPUT "sonar: {frequency: 2 MHz, bandwidth: 30 kHz, altitude: 10 m}\nmedium:\n"
+                     "  absorption: {temperature: 12, salinity: 35, depth: 1}\n",
+         ":5:15: medium.absorption: is known from 200 Hz to 1 MHz, not at the sonar's 2e+06 Hz; "
+         "give it in dB/m"},
     };
-    struct scene_folder *folder = *state;
-    for (size_t i = 0; i < COUNT(wrong); i++) {
-        char text[2000];
-        snprintf(text, sizeof text, "%s%s", wrong[i].text, SONAR);
-        if (wrong[i].message) {
-            expect_scene_refused(folder, text, wrong[i].message);
-        } else {
-            write_scene(folder, text, strlen(text));
-            assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-            assert_non_null(strstr(folder->report.message, ": medium.profile.sound_speeds: the "
-                                                           "file tells them; remove one of the "
-                                                           "two"));
-        }
-        assert_null(folder->scene.water_layers);
-    }
-    expect_scene_refused(folder,
-                         MEDIUM "  absorption: {temperature: 12, salinity: 35, depth: 1}\n"
-                                "sonar: {frequency: 2 MHz, bandwidth: 30 kHz, altitude: 10 m}\n",
-                         ":5:15: medium.absorption: is known from 200 Hz to 1 MHz, not at the "
-                         "sonar's 2e+06 Hz; give it in dB/m");
+    expect_all_refused(wrong, COUNT(wrong));
+    assert_null(folder->scene.water_layers);
 }
 
-static void test_too_many_of_them(void **state)
+TEST(test_too_many_of_them)
 {
-    struct scene_folder *folder = *state;
     const size_t capacity = 300000;
     char *text = calloc(capacity, 1);
     assert_non_null(text);
     size_t length = (size_t)sprintf(text, "%s", LAYERS);
     for (int i = 0; i < 4097; i++)
         length += (size_t)sprintf(text + length, "    - {bottom: %d, sound_speed: 1500}\n", i);
-    sprintf(text + length, "%s", SONAR);
-    expect_scene_refused(folder, text,
-                         ":6:5: medium.layers: has 4097 entries; at most 4096 are possible");
+    expect_scene_refused(text, ":6:5: medium.layers: has 4097 entries; at most 4096 are possible");
     length = (size_t)sprintf(text, "%s", PROFILE "{heights: [0");
     for (int i = 1; i < 4097; i++)
         length += (size_t)sprintf(text + length, ", %d", i);
-    sprintf(text + length, "%s", "], sound_speeds: [1500, 1500]}\n" SONAR);
-    expect_scene_refused(folder, text,
-                         ":5:22: medium.profile.heights: has 4097 entries; at most "
-                         "4096 are possible");
+    sprintf(text + length, "%s", "], sound_speeds: [1500, 1500]}\n");
+    expect_scene_refused(text, ":5:22: medium.profile.heights: has 4097 entries; at most "
+                               "4096 are possible");
     free(text);
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_layers), TEST(test_profiles),
-             TEST(test_files_are_looked_for_beside_the_scene), TEST(test_absorption),
-             TEST(test_what_is_wrong), TEST(test_too_many_of_them))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

@@ -1,11 +1,9 @@
 /* All mistakes of a scene file are told at once, each by one line, in its order. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 
 /* Each is one mistake, whatever else is wrong. */
-static void test_mistakes_do_not_hide_each_other_nor_add_any(void **state)
+TEST(test_mistakes_do_not_hide_each_other_nor_add_any)
 {
     static const struct {
         const char *right, *wrong;
@@ -26,7 +24,6 @@ static void test_mistakes_do_not_hide_each_other_nor_add_any(void **state)
         {"material: steel}\n", "material: {fluid: {density: 2}, roughness: 3}}\n"},
     };
     static const size_t lines_of_last = 3; /* no speed, no fluid without it, the roughness */
-    struct scene_folder *folder = *state;
     for (unsigned set = 0; set < 1u << COUNT(pieces); set++) {
         char text[2000] = "sonject: 1\n";
         size_t expected = 0;
@@ -35,17 +32,16 @@ static void test_mistakes_do_not_hide_each_other_nor_add_any(void **state)
             strcat(text, is_wrong ? pieces[i].wrong : pieces[i].right);
             expected += !is_wrong ? 0 : i + 1 < COUNT(pieces) ? 1 : lines_of_last - 1;
         }
-        write_scene(folder, text, strlen(text));
-        read_scene(folder, NULL, 0);
+        write_scene(text, strlen(text));
+        read_scene(NULL, 0);
         if (lines_of(folder->report.message, strlen(folder->report.message)) != expected)
             fail_msg("%zu mistakes in\n%s\nare told as\n%s", expected, text,
                      folder->report.message);
     }
 }
 
-static void test_a_targets_mistakes_stand_where_it_is_named(void **state)
+TEST(test_a_targets_mistakes_stand_where_it_is_named)
 {
-    struct scene_folder *folder = *state;
     char target[TEMPORARY_CAPACITY + 64];
     char expected[10 * TEMPORARY_CAPACITY];
     static const char text[] = BASE "objects:\n"
@@ -55,11 +51,10 @@ static void test_a_targets_mistakes_stand_where_it_is_named(void **state)
                                     "seabed: {lambert: loud}\n";
     static const char described[] =
         "sonject_target: 1\nclass: \"a\\tb\"\nparts:\n  - {shape: sphere}\n  - {shape: shpere}\n";
-    write_file(folder, "t.yaml", described, strlen(described));
-    strcpy(target, file_in(folder, "t.yaml"));
-    write_scene(folder, text, strlen(text));
-    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-    unlink(target);
+    write_file("t.yaml", described, strlen(described));
+    strcpy(target, file_in("t.yaml"));
+    write_scene(text, strlen(text));
+    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
     sprintf(expected,
             "%s:2:8: class: must be UTF-8 text without control characters\n"
             "%s:4:5: parts[0].diameter: missing; a sphere needs it\n"
@@ -73,14 +68,13 @@ static void test_a_targets_mistakes_stand_where_it_is_named(void **state)
     assert_string_equal(folder->report.message, expected);
 }
 
-static void test_lines_beyond_fifty_are_counted(void **state)
+TEST(test_lines_beyond_fifty_are_counted)
 {
-    struct scene_folder *folder = *state;
     char text[4000] = BASE "seabed:\n";
     for (int i = 0; i < 60; i++)
         sprintf(text + strlen(text), "  unheard_of_%d: 1\n", i);
-    write_scene(folder, text, strlen(text));
-    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    write_scene(text, strlen(text));
+    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
     /* fifty, or, where the folder's name is long, as many as there is room for */
     const char *message = folder->report.message;
     const int told = (int)lines_of(message, strlen(message)) - 1;
@@ -90,16 +84,12 @@ static void test_lines_beyond_fifty_are_counted(void **state)
     assert_true(told == 50 || (told < 50 && strlen(message) > REPORT_CAPACITY - REPORT_LINE));
 }
 
-static void test_broken_yaml_ends_the_reading(void **state)
+TEST(test_broken_yaml_ends_the_reading)
 {
-    struct scene_folder *folder = *state;
     static const char text[] = "sonject: 5\nsonar: {frequency: 1 m}\ninput: [\n";
-    write_scene(folder, text, strlen(text));
-    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    write_scene(text, strlen(text));
+    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
     assert_int_equal(lines_of(folder->report.message, strlen(folder->report.message)), 1);
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder,
-             TEST(test_mistakes_do_not_hide_each_other_nor_add_any),
-             TEST(test_a_targets_mistakes_stand_where_it_is_named),
-             TEST(test_lines_beyond_fifty_are_counted), TEST(test_broken_yaml_ends_the_reading))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

@@ -1,13 +1,11 @@
 /* Objects of parts in scene files: groups, surfaces that are inherited, files of targets, and what
  * is refused. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 
 #define OBJECT BASE "objects:\n  - " /* five lines, its keys begin in column 5 */
 
-static const struct scene_part *part_at(const struct scene_folder *folder, uint32_t index)
+static const struct scene_part *part_at(uint32_t index)
 {
     assert_true(index < folder->scene.part_count);
     return &folder->scene.parts[index];
@@ -21,10 +19,9 @@ static void expect_vector(const double vector[3], double x, double y, double z)
             fail_msg("(%g, %g, %g) is not (%g, %g, %g)", vector[0], vector[1], vector[2], x, y, z);
 }
 
-static void test_parts_belong_to_their_objects(void **state)
+TEST(test_parts_belong_to_their_objects)
 {
-    struct scene_folder *folder = *state;
-    expect_scene_taken(folder, BASE
+    expect_scene_taken(BASE
                        "objects:\n"
                        "  - parts: [{shape: sphere, diameter: 1}, {shape: disc, diameter: 2}]\n"
                        "  - {shape: sphere, diameter: 3}\n"
@@ -34,60 +31,58 @@ static void test_parts_belong_to_their_objects(void **state)
     assert_int_equal(folder->scene.object_count, 3);
     assert_int_equal(folder->scene.part_count, 3);
     for (uint32_t i = 0; i < 3; i++) {
-        assert_int_equal(part_at(folder, i)->object, objects[i]);
-        assert_true(part_at(folder, i)->shape.diameter_m == diameters[i]);
-        expect_vector(part_at(folder, i)->centre, 0.0, 0.0, 0.0);
+        assert_int_equal(part_at(i)->object, objects[i]);
+        assert_true(part_at(i)->shape.diameter_m == diameters[i]);
+        expect_vector(part_at(i)->centre, 0.0, 0.0, 0.0);
     }
-    assert_string_equal(part_at(folder, 2)->shape.name, "last");
+    assert_string_equal(part_at(2)->shape.name, "last");
     assert_int_equal(folder->scene.objects[0].shape, SHAPE_PARTS);
     assert_int_equal(folder->scene.objects[1].shape, SHAPE_SPHERE);
 }
 
 /* A group turned to its own y: what lies ahead of its origin comes to lie across the object; what
  * is raised there, ahead of that, still points up. */
-static void test_groups_place_and_turn(void **state)
+TEST(test_groups_place_and_turn)
 {
-    struct scene_folder *folder = *state;
-    expect_scene_taken(folder, OBJECT "parts:\n"
-                                      "    - at: {along: 10, up: 1}\n"
-                                      "      heading: 90 deg\n"
-                                      "      parts:\n"
-                                      "      - at: {along: 2}\n"
-                                      "        pitch: 90 deg\n"
-                                      "        parts:\n"
-                                      "        - {shape: cylinder, length: 1, diameter: 1,\n"
-                                      "           at: {along: 0.5}, heading: 90 deg}\n"
-                                      "    - {shape: sphere, diameter: 1}\n");
-    const struct scene_part *cylinder = part_at(folder, 0);
+    expect_scene_taken(OBJECT "parts:\n"
+                              "    - at: {along: 10, up: 1}\n"
+                              "      heading: 90 deg\n"
+                              "      parts:\n"
+                              "      - at: {along: 2}\n"
+                              "        pitch: 90 deg\n"
+                              "        parts:\n"
+                              "        - {shape: cylinder, length: 1, diameter: 1,\n"
+                              "           at: {along: 0.5}, heading: 90 deg}\n"
+                              "    - {shape: sphere, diameter: 1}\n");
+    const struct scene_part *cylinder = part_at(0);
     expect_vector(cylinder->centre, 10.0, 2.0, 1.5);
     expect_vector(cylinder->axes[0], -1.0, 0.0, 0.0);
     expect_vector(cylinder->axes[1], 0.0, 0.0, -1.0);
     expect_vector(cylinder->axes[2], 0.0, -1.0, 0.0);
-    expect_vector(part_at(folder, 1)->centre, 0.0, 0.0, 0.0);
-    expect_vector(part_at(folder, 1)->axes[0], 1.0, 0.0, 0.0);
+    expect_vector(part_at(1)->centre, 0.0, 0.0, 0.0);
+    expect_vector(part_at(1)->axes[0], 1.0, 0.0, 0.0);
 }
 
 /* Of the object, the group, and what a part changes of it, wherever the keys stand. */
-static void test_surfaces_are_inherited(void **state)
+TEST(test_surfaces_are_inherited)
 {
-    struct scene_folder *folder = *state;
-    expect_scene_taken(folder, OBJECT "parts:\n"
-                                      "    - {shape: sphere, diameter: 1}\n"
-                                      "    - parts: [{shape: sphere, diameter: 1},\n"
-                                      "        {shape: sphere, diameter: 1, material: concrete}]\n"
-                                      "      material: rubber\n"
-                                      "    - {shape: sphere, diameter: 1, material: {roughness: "
-                                      "7 mm}}\n"
-                                      "    material: {reflection: 0.75, roughness: 2 mm}\n");
+    expect_scene_taken(OBJECT "parts:\n"
+                              "    - {shape: sphere, diameter: 1}\n"
+                              "    - parts: [{shape: sphere, diameter: 1},\n"
+                              "        {shape: sphere, diameter: 1, material: concrete}]\n"
+                              "      material: rubber\n"
+                              "    - {shape: sphere, diameter: 1, material: {roughness: "
+                              "7 mm}}\n"
+                              "    material: {reflection: 0.75, roughness: 2 mm}\n");
     sonject_material_params named;
-    assert_true(part_at(folder, 0)->shape.material.reflection == 0.75);
-    assert_true(part_at(folder, 0)->shape.material.roughness_m == 0.002);
+    assert_true(part_at(0)->shape.material.reflection == 0.75);
+    assert_true(part_at(0)->shape.material.roughness_m == 0.002);
     assert_true(material_named("rubber", &named));
-    assert_true(part_at(folder, 1)->shape.material.density_ratio == named.density_ratio);
+    assert_true(part_at(1)->shape.material.density_ratio == named.density_ratio);
     assert_true(material_named("concrete", &named));
-    assert_true(part_at(folder, 2)->shape.material.density_ratio == named.density_ratio);
-    assert_true(part_at(folder, 3)->shape.material.reflection == 0.75);
-    assert_true(part_at(folder, 3)->shape.material.roughness_m == 0.007);
+    assert_true(part_at(2)->shape.material.density_ratio == named.density_ratio);
+    assert_true(part_at(3)->shape.material.reflection == 0.75);
+    assert_true(part_at(3)->shape.material.roughness_m == 0.007);
 }
 
 /* The text of `levels` lists of parts within each other. */
@@ -102,40 +97,35 @@ static void nested_object(char *text, size_t capacity, int levels)
     snprintf(text + length, capacity - length, "}]\n");
 }
 
-static void test_nesting_is_bounded(void **state)
+TEST(test_nesting_is_bounded)
 {
-    struct scene_folder *folder = *state;
     char text[2000];
     nested_object(text, sizeof text, 8);
-    expect_scene_taken(folder, text);
-    expect_vector(part_at(folder, 0)->centre, 0.0, 0.0, 8.0);
+    expect_scene_taken(text);
+    expect_vector(part_at(0)->centre, 0.0, 0.0, 8.0);
     nested_object(text, sizeof text, 9);
-    expect_scene_refused(folder, text,
+    expect_scene_refused(text,
                          ":4:195: objects[0].parts[0].parts[0].parts[0].parts[0].parts[0].parts[0]."
                          "parts[0].parts[0].parts: nested too deeply; parts may be 8 levels deep");
 }
 
-static void test_overrides_reach_parts(void **state)
+TEST(test_overrides_reach_parts)
 {
-    struct scene_folder *folder = *state;
     const char *overrides[] = {"objects[0].parts[1].parts[0].diameter=70 cm",
                                "objects[0].parts[2]={shape: disc, diameter: 1}"};
     const char text[] = OBJECT "parts: [{shape: sphere, diameter: 1},\n"
                                "      {parts: [{shape: sphere, diameter: 1}]}]\n";
-    write_scene(folder, text, strlen(text));
-    if (read_scene(folder, overrides, COUNT(overrides)) != SONJECT_OK)
+    write_scene(text, strlen(text));
+    if (read_scene(overrides, COUNT(overrides)) != SONJECT_OK)
         fail_msg("%s", folder->report.message);
     assert_int_equal(folder->scene.part_count, 3);
-    assert_true(part_at(folder, 1)->shape.diameter_m == 0.7);
-    assert_int_equal(part_at(folder, 2)->shape.shape, SHAPE_DISC);
+    assert_true(part_at(1)->shape.diameter_m == 0.7);
+    assert_int_equal(part_at(2)->shape.shape, SHAPE_DISC);
 }
 
-static void test_what_is_refused(void **state)
+TEST(test_what_is_refused)
 {
-    static const struct {
-        const char *text;
-        const char *message;
-    } wrong[] = {
+    static const struct refusal wrong[] = {
         {OBJECT "parts:\n", ":5:11: objects[0].parts: must be a list; start each part with '- '"},
         {OBJECT "parts: []\n", ":5:12: objects[0].parts: is empty; give at least one part"},
         {OBJECT "parts: [{name: nothing}]\n",
@@ -159,11 +149,10 @@ static void test_what_is_refused(void **state)
          "surface "
          "returns more than it receives; it is 1"},
     };
-    for (size_t i = 0; i < COUNT(wrong); i++)
-        expect_scene_refused(*state, wrong[i].text, wrong[i].message);
+    expect_all_refused(wrong, COUNT(wrong));
 }
 
-static void test_too_many_parts(void **state)
+TEST(test_too_many_parts)
 {
     static const char part[] = "  - {shape: sphere, diameter: 1}\n";
     char *text = malloc(2000 + 1001 * sizeof part);
@@ -171,35 +160,33 @@ static void test_too_many_parts(void **state)
     char *end = text + sprintf(text, "%sobjects:\n- parts:\n", BASE);
     for (int i = 0; i < 1000; i++)
         end += sprintf(end, "%s", part);
-    expect_scene_taken(*state, text);
+    expect_scene_taken(text);
     sprintf(end, "%s", part);
-    expect_scene_refused(*state, text,
+    expect_scene_refused(text,
                          ":1006:5: objects[0].parts[1000]: is one part too many: a scene may have "
                          "1000; split it");
     free(text);
 }
 
-static void write_target(struct scene_folder *folder, const char *text)
+static void write_target(const char *text)
 {
-    write_file(folder, "target.yaml", text, strlen(text));
+    write_file("target.yaml", text, strlen(text));
 }
 
-static void test_targets_are_files(void **state)
+TEST(test_targets_are_files)
 {
-    struct scene_folder *folder = *state;
-    write_target(folder, "sonject_target: 1\nname: twin\nclass: clutter\n"
-                         "material: {reflection: 0.75, roughness: 2 mm}\n"
-                         "parts: [{shape: sphere, diameter: 1, at: {along: 1}},\n"
-                         "  {shape: disc, diameter: 2, material: {reflection: 0.875}}]\n");
-    expect_scene_taken(folder, BASE "objects:\n"
-                                    "  - target: target.yaml\n"
-                                    "  - {name: other, class: mine, target: target.yaml, heading: "
-                                    "90 deg, material: {roughness: 7 mm}, burial: 10 cm}\n");
-    remove_file(folder, "target.yaml");
+    write_target("sonject_target: 1\nname: twin\nclass: clutter\n"
+                 "material: {reflection: 0.75, roughness: 2 mm}\n"
+                 "parts: [{shape: sphere, diameter: 1, at: {along: 1}},\n"
+                 "  {shape: disc, diameter: 2, material: {reflection: 0.875}}]\n");
+    expect_scene_taken(BASE "objects:\n"
+                            "  - target: target.yaml\n"
+                            "  - {name: other, class: mine, target: target.yaml, heading: "
+                            "90 deg, material: {roughness: 7 mm}, burial: 10 cm}\n");
     const sonject_object_params *objects = folder->scene.objects;
     assert_int_equal(folder->scene.part_count, 4);
     for (uint32_t i = 0; i < 4; i++) {
-        const struct scene_part *part = part_at(folder, i);
+        const struct scene_part *part = part_at(i);
         assert_int_equal(part->object, i / 2);
         assert_true(part->shape.diameter_m == (i % 2 ? 2.0 : 1.0));
         assert_true(part->shape.material.reflection == (i % 2 ? 0.875 : 0.75));
@@ -213,24 +200,19 @@ static void test_targets_are_files(void **state)
     assert_true(objects[0].shape == SHAPE_PARTS && objects[1].shape == SHAPE_PARTS);
 }
 
-static void test_targets_may_have_one_shape(void **state)
+TEST(test_targets_may_have_one_shape)
 {
-    struct scene_folder *folder = *state;
-    write_target(folder, "sonject_target: 1\nshape: torus\ndiameter: 1\nheight: 0.2\n");
-    expect_scene_taken(folder, OBJECT "target: target.yaml\n");
-    remove_file(folder, "target.yaml");
+    write_target("sonject_target: 1\nshape: torus\ndiameter: 1\nheight: 0.2\n");
+    expect_scene_taken(OBJECT "target: target.yaml\n");
     assert_int_equal(folder->scene.objects[0].shape, SHAPE_TORUS);
     assert_true(folder->scene.objects[0].height_m == 0.2);
     assert_int_equal(folder->scene.part_count, 0);
 }
 
 /* Messages about the target name its file. */
-static void test_targets_that_are_wrong(void **state)
+TEST(test_targets_that_are_wrong)
 {
-    static const struct {
-        const char *text;
-        const char *message;
-    } wrong[] = {
+    static const struct refusal wrong[] = {
         {"", ":1:1: there is nothing in it"},
         {"~\n", ":1:1: there is nothing in it; start with 'sonject_target: 1'"},
         {"shape: sphere\ndiameter: 1\n",
@@ -248,14 +230,12 @@ static void test_targets_that_are_wrong(void **state)
          "width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, material, "
          "fouling, parts"},
     };
-    struct scene_folder *folder = *state;
     static const char scene[] = OBJECT "target: target.yaml\n";
-    write_scene(folder, scene, strlen(scene));
+    write_scene(scene, strlen(scene));
     for (size_t i = 0; i < COUNT(wrong); i++) {
-        write_target(folder, wrong[i].text);
-        assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-        remove_file(folder, "target.yaml");
-        const char *path = file_in(folder, "target.yaml");
+        write_target(wrong[i].text);
+        assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
+        const char *path = file_in("target.yaml");
         const size_t length = strlen(path);
         if (strncmp(folder->report.message, path, length) != 0 ||
             strcmp(folder->report.message + length, wrong[i].message) != 0)
@@ -266,53 +246,40 @@ static void test_targets_that_are_wrong(void **state)
     }
 }
 
-static void test_scenes_that_name_targets_wrongly(void **state)
+TEST(test_scenes_that_name_targets_wrongly)
 {
-    struct scene_folder *folder = *state;
     char message[TEMPORARY_CAPACITY + 100];
     snprintf(message, sizeof message,
              ":5:13: objects[0].target: there is no file %s/absent.yaml; check its name",
              folder->folder.path);
-    expect_scene_refused(folder, OBJECT "target: absent.yaml\n", message);
-    expect_scene_refused(folder, OBJECT "target:\n",
+    expect_scene_refused(OBJECT "target: absent.yaml\n", message);
+    expect_scene_refused(OBJECT "target:\n",
                          ":5:12: objects[0].target: has no value; write one or remove the key");
-    write_target(folder, "sonject_target: 1\nparts: [{shape: sphere, diameter: 1}]\n");
-    expect_scene_refused(folder, OBJECT "target: target.yaml\n    diameter: 1\n",
+    write_target("sonject_target: 1\nparts: [{shape: sphere, diameter: 1}]\n");
+    expect_scene_refused(OBJECT "target: target.yaml\n    diameter: 1\n",
                          ":6:15: objects[0].diameter: the target's file tells the shape; remove "
                          "it");
-    expect_scene_refused(folder, OBJECT "target: target.yaml\n    shape: sphere\n",
+    expect_scene_refused(OBJECT "target: target.yaml\n    parts: [{shape: disc, diameter: 1}]\n",
                          ":5:5: objects[0]: more than one of shape, parts and target is there; "
                          "give one");
-    expect_scene_refused(folder,
-                         OBJECT "target: target.yaml\n    parts: [{shape: disc, diameter: 1}]\n",
-                         ":5:5: objects[0]: more than one of shape, parts and target is there; "
-                         "give one");
-    remove_file(folder, "target.yaml");
 }
 
 /* A file that is as long as no target is. */
-static void test_large_targets_are_refused(void **state)
+TEST(test_large_targets_are_refused)
 {
-    struct scene_folder *folder = *state;
     const size_t bytes = 1024 * 1024 + 2;
     char *text = malloc(bytes + 1);
     assert_non_null(text);
     memset(text, '#', bytes);
     text[bytes] = 0;
-    write_target(folder, text);
+    write_target(text);
     free(text);
     static const char scene[] = OBJECT "target: target.yaml\n";
-    write_scene(folder, scene, strlen(scene));
-    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-    const char *path = file_in(folder, "target.yaml");
+    write_scene(scene, strlen(scene));
+    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
+    const char *path = file_in("target.yaml");
     assert_memory_equal(folder->report.message, path, strlen(path));
     assert_non_null(strstr(folder->report.message, "larger than"));
-    remove_file(folder, "target.yaml");
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_parts_belong_to_their_objects),
-             TEST(test_groups_place_and_turn), TEST(test_surfaces_are_inherited),
-             TEST(test_nesting_is_bounded), TEST(test_overrides_reach_parts),
-             TEST(test_what_is_refused), TEST(test_too_many_parts), TEST(test_targets_are_files),
-             TEST(test_targets_may_have_one_shape), TEST(test_targets_that_are_wrong),
-             TEST(test_scenes_that_name_targets_wrongly), TEST(test_large_targets_are_refused))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

@@ -1,7 +1,5 @@
 /* The references of scene and campaign files, tools/scenes/KEYS.md and tools/campaigns/KEYS.md, are
  * made of the tables of keys. Run with two files' names this program writes them. */
-#define _POSIX_C_SOURCE 200809L
-
 #include <jansson.h>
 
 #include "claims.h"
@@ -225,18 +223,16 @@ static void check_reference(const struct reference *reference)
     free(expected);
 }
 
-static void test_the_references_are_up_to_date(void **state)
+TEST(test_the_references_are_up_to_date)
 {
-    (void)state;
     for (size_t i = 0; i < COUNT(references); i++)
         check_reference(&references[i]);
 }
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {TEST(test_the_references_are_up_to_date)};
     if (argc != 1 + (int)COUNT(references))
-        return cmocka_run_group_tests(tests, NULL, NULL);
+        return run_own_tests(NULL, NULL);
     for (size_t i = 0; i < COUNT(references); i++) {
         FILE *stream = fopen(argv[1 + i], "wb");
         if (!stream)

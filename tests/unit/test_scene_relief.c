@@ -1,6 +1,4 @@
 /* The seabed's relief in scene files: what is taken, what is refused, and what comes of it. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene/placement.h"
 #include "scene_folder.h"
@@ -13,6 +11,10 @@
     "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"                                   \
     "seabed:\n"                                                                                    \
     "  relief:\n"
+#define FEATURES                                                                                   \
+    "  - mound: {position: {along_track: 3 m, slant_range: 43 m}, radius: 1 m, height: 30 cm}\n"   \
+    "  - pit: {position: {row: 280, column: 240}, radius: 1 m, depth: 20 cm}\n"
+#define RIPPLES(more) "  - ripples: {wavelength: 80 cm, height: 6 cm, " more "}\n"
 #define OBJECTS                                                                                    \
     "objects:\n"                                                                                   \
     "  - {name: can, shape: cylinder, length: 2 m, diameter: 0.5 m, heading: 90 deg, burial: "     \
@@ -25,7 +27,7 @@ struct ground {
     struct placements placements;
 };
 
-static sonject_status lay(struct scene_folder *folder, struct ground *ground)
+static sonject_status lay(struct ground *ground)
 {
     struct scene *scene = &folder->scene;
     memset(ground, 0, sizeof *ground);
@@ -58,31 +60,22 @@ static void expect_height(const char *what, double height, double expected, doub
         fail_msg("%s: height %.5f m, not %.5f", what, height, expected);
 }
 
-static void take(struct scene_folder *folder, struct ground *ground, const char *text)
+static void take(struct ground *ground, const char *text)
 {
-    expect_scene_taken(folder, text);
-    if (lay(folder, ground) != SONJECT_OK)
+    expect_scene_taken(text);
+    if (lay(ground) != SONJECT_OK)
         fail_msg("%s", folder->report.message);
 }
 
 /* Both sides of the track see the same ground. */
-static void test_features_lie_where_they_are_told(void **state)
+TEST(test_features_lie_where_they_are_told)
 {
     static const char *const texts[] = {
-        SEEN_FROM(
-            "port") "  - mound: {position: {along_track: 3 m, slant_range: 43 m}, radius: 1 m, "
-                    "height: 30 cm}\n"
-                    "  - pit: {position: {row: 280, column: 240}, radius: 1 m, depth: 20 cm}\n"
-                    "  - scour: {object: can, width: 50 cm, depth: 10 cm}\n" OBJECTS,
-        SEEN_FROM(
-            "starboard") "  - mound: {position: {along_track: 3 m, slant_range: 43 m}, radius: 1 "
-                         "m, height: 30 cm}\n"
-                         "  - pit: {position: {row: 280, column: 240}, radius: 1 m, depth: 20 "
-                         "cm}\n"
-                         "  - scour: {width: 50 cm, depth: 10 cm}\n" OBJECTS};
+        SEEN_FROM("port") FEATURES "  - scour: {object: can, width: 50 cm, depth: 10 cm}\n" OBJECTS,
+        SEEN_FROM("starboard") FEATURES "  - scour: {width: 50 cm, depth: 10 cm}\n" OBJECTS};
     for (int side = 0; side < 2; side++) {
         struct ground ground;
-        take(*state, &ground, texts[side]);
+        take(&ground, texts[side]);
         const struct placed_object *can = &ground.placements.objects[0];
         expect_height("top of the mound", height_at(&ground, 3.0, 43.0), 0.3, 1e-4);
         expect_height("half its radius", height_at(&ground, 3.5, 43.0), 0.15, 1e-3);
@@ -101,17 +94,13 @@ static void test_features_lie_where_they_are_told(void **state)
 }
 
 /* Crest to crest, trough to crest, level at the edges; the same ground from both sides. */
-static void test_ripples(void **state)
+TEST(test_ripples)
 {
-    static const char *const texts[] = {
-        SEEN_FROM(
-            "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, heading: 30 deg, sharpness: "
-                    "0.5, phase: 20 deg}\n",
-        SEEN_FROM("starboard") "  - ripples: {wavelength: 80 cm, height: 6 cm, heading: 30 deg, "
-                               "sharpness: 0.5, phase: 20 deg}\n"};
+#define WAVES RIPPLES("heading: 30 deg, sharpness: 0.5, phase: 20 deg")
+    static const char *const texts[] = {SEEN_FROM("port") WAVES, SEEN_FROM("starboard") WAVES};
     for (int side = 0; side < 2; side++) {
         struct ground ground;
-        take(*state, &ground, texts[side]);
+        take(&ground, texts[side]);
         for (int i = 0; i < 50; i++) {
             const double along = 1.5 + 0.14 * i;
             const double range = 42.0 + 0.12 * i;
@@ -131,25 +120,19 @@ static void test_ripples(void **state)
     }
 }
 
-static void test_irregular_ripples(void **state)
+TEST(test_irregular_ripples)
 {
     struct ground one, same, other;
-    take(*state, &one,
-         SEEN_FROM(
-             "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 4}\n");
-    take(*state, &same,
-         SEEN_FROM(
-             "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 4}\n");
-    take(*state, &other,
-         SEEN_FROM(
-             "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 5}\n");
+    take(&one, SEEN_FROM("port") RIPPLES("irregularity: 1, seed: 4"));
+    take(&same, SEEN_FROM("port") RIPPLES("irregularity: 1, seed: 4"));
+    take(&other, SEEN_FROM("port") RIPPLES("irregularity: 1, seed: 5"));
     const struct relief *relief = one.placements.relief;
     const size_t bytes = (size_t)relief->rows * relief->columns * sizeof(float);
     assert_memory_equal(relief->heights, same.placements.relief->heights, bytes);
     assert_true(memcmp(relief->heights, other.placements.relief->heights, bytes) != 0);
     /* no higher than the water's layers and the checks are told */
     double lowest, highest;
-    relief_features_bounds(&((struct scene_folder *)*state)->scene.relief, &lowest, &highest);
+    relief_features_bounds(&folder->scene.relief, &lowest, &highest);
     assert_true(relief->lowest_m >= lowest && relief->highest_m <= highest);
     ground_clear(&one);
     ground_clear(&same);
@@ -157,11 +140,9 @@ static void test_irregular_ripples(void **state)
 }
 
 /* What only shows when the scene is used. */
-static void test_refusals_in_use(void **state)
+TEST(test_refusals_in_use)
 {
-    static const struct {
-        const char *text, *message;
-    } cases[] = {
+    static const struct refusal cases[] = {
         {SEEN_FROM("port") "  - scour: {object: tin, width: 1 m, depth: 1 cm}\n" OBJECTS,
          "scour around 'tin': no object has that name"},
         {SEEN_FROM("port") "  - mound: {radius: 1 m, height: 2 m}\n", "rises by"},
@@ -172,26 +153,14 @@ static void test_refusals_in_use(void **state)
                            "  forward: medium sand\n",
          "cannot be smooth"},
     };
-    struct scene_folder *folder = *state;
     for (size_t i = 0; i < COUNT(cases); i++) {
         struct ground ground;
-        expect_scene_taken(folder, cases[i].text);
-        assert_int_equal(lay(folder, &ground), SONJECT_ERROR_INPUT);
+        expect_scene_taken(cases[i].text);
+        assert_int_equal(lay(&ground), SONJECT_ERROR_INPUT);
         if (!strstr(folder->report.message, cases[i].message))
             fail_msg("'%s' does not say '%s'", folder->report.message, cases[i].message);
         ground_clear(&ground);
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-#define IN_FOLDER(test)                                                                            \
-    cmocka_unit_test_setup_teardown(test, make_scene_folder, remove_scene_folder)
-        IN_FOLDER(test_features_lie_where_they_are_told),
-        IN_FOLDER(test_ripples),
-        IN_FOLDER(test_irregular_ripples),
-        IN_FOLDER(test_refusals_in_use),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

@@ -1,7 +1,5 @@
 /* Keys that calls set: the same scene as a file that says so, and one that stays as it was where a
  * key is refused. */
-#define _POSIX_C_SOURCE 200809L
-
 #include <sonject/sonject.h>
 
 #include "inject/scene_hash.h"
@@ -16,89 +14,77 @@
     "input: {geometry: {row_spacing: 0.1, column_spacing: 0.1, first_slant_range: 40}}\n"          \
     "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
 
-static sonject_scene *read_text(sonject_context *context, const char *text)
-{
-    sonject_scene *scene = NULL;
-    sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
-    params.allows_user_shapes = 1;
-    EXPECT_OK(&context->report, sonject_scene_read(context, NULL, &params, &scene));
-    return scene;
-}
-
-static const struct scene *use(sonject_context *context, const sonject_scene *scene)
+static const struct scene *use(const sonject_scene *scene)
 {
     const struct scene *used = NULL;
     EXPECT_OK(&context->report, scene_use(&context->report, scene, &used));
     return used;
 }
 
-static void hash_of(sonject_context *context, const sonject_scene *scene,
-                    char text[HASH_TEXT_CAPACITY])
+static void hash_of(const sonject_scene *scene, char text[HASH_TEXT_CAPACITY])
 {
-    EXPECT_OK(&context->report, scene_hash(&context->report, use(context, scene), "", text));
+    EXPECT_OK(&context->report, scene_hash(&context->report, use(scene), "", text));
 }
 
 /* Releases both. */
-static void expect_same(sonject_context *context, sonject_scene *first, sonject_scene *second)
+static void expect_same(sonject_scene *first, sonject_scene *second)
 {
     char hashes[2][HASH_TEXT_CAPACITY];
-    hash_of(context, first, hashes[0]);
-    hash_of(context, second, hashes[1]);
+    hash_of(first, hashes[0]);
+    hash_of(second, hashes[1]);
     assert_string_equal(hashes[0], hashes[1]);
     sonject_scene_release(&first);
     sonject_scene_release(&second);
 }
 
-static void a_scene_that_is_set_is_that_of_a_text_that_says_so(void **state)
+TEST(a_scene_that_is_set_is_that_of_a_text_that_says_so)
 {
     sonject_scene *scene = NULL;
-    EXPECT_OK(&((sonject_context *)*state)->report, sonject_scene_create(*state, &scene));
-    set(*state, scene, "input.geometry",
-        "{row_spacing: 0.1, column_spacing: 0.1, first_slant_range: 40}");
-    set(*state, scene, "sonar.frequency", "1 kHz");
-    set(*state, scene, "sonar", "{frequency: 100e3, bandwidth: 30e3, altitude: 1}");
-    set(*state, scene, "sonar.altitude", "11");
-    set(*state, scene, "sonar.altitude", "10");
-    set(*state, scene, "objects[0]", "{shape: box}");
-    set(*state, scene, "objects[0].length", "2");
-    set(*state, scene, "objects[1]", "{shape: sphere, diameter: 1}");
-    set(*state, scene, "objects[0]", "{\"shape\": \"sphere\", \"diameter\": 0.5}");
-    set(*state, scene, "objects[0].heading", "0.1 rad");
-    expect_same(*state, scene,
-                read_text(*state, HEAD "objects:\n  - {shape: sphere, diameter: 0.5, heading: 0.1 "
-                                       "rad}\n  - {shape: sphere, diameter: 1}\n"));
+    EXPECT_OK(&context->report, sonject_scene_create(context, &scene));
+    set(scene, "input.geometry", "{row_spacing: 0.1, column_spacing: 0.1, first_slant_range: 40}");
+    set(scene, "sonar.frequency", "1 kHz");
+    set(scene, "sonar", "{frequency: 100e3, bandwidth: 30e3, altitude: 1}");
+    set(scene, "sonar.altitude", "11");
+    set(scene, "sonar.altitude", "10");
+    set(scene, "objects[0]", "{shape: box}");
+    set(scene, "objects[0].length", "2");
+    set(scene, "objects[1]", "{shape: sphere, diameter: 1}");
+    set(scene, "objects[0]", "{\"shape\": \"sphere\", \"diameter\": 0.5}");
+    set(scene, "objects[0].heading", "0.1 rad");
+    expect_same(scene,
+                read_text(NULL, HEAD "objects:\n  - {shape: sphere, diameter: 0.5, heading: 0.1 "
+                                     "rad}\n  - {shape: sphere, diameter: 1}\n"));
 }
 
-static void what_is_set_replaces_what_was_used_before(void **state)
+TEST(what_is_set_replaces_what_was_used_before)
 {
-    sonject_scene *scene = read_text(*state, HEAD);
-    assert_true(use(*state, scene)->input_kind == SONJECT_INPUT_MEMORY);
-    set(*state, scene, "sonar.altitude", "0.1000000000000000055511151231257827");
-    assert_true(use(*state, scene)->sonar.altitude_m == 0.1);
-    set(*state, scene, "sonar.aperture", "0.12345678901234568 rad");
-    assert_true(use(*state, scene)->sonar.aperture_rad == 0.12345678901234568);
-    set(*state, scene, "input.uniform", "{rows: 4, columns: 5}");
-    assert_true(use(*state, scene)->input_kind == SONJECT_INPUT_UNIFORM);
+    sonject_scene *scene = read_text(NULL, HEAD);
+    assert_true(use(scene)->input_kind == SONJECT_INPUT_MEMORY);
+    set(scene, "sonar.altitude", "0.1000000000000000055511151231257827");
+    assert_true(use(scene)->sonar.altitude_m == 0.1);
+    set(scene, "sonar.aperture", "0.12345678901234568 rad");
+    assert_true(use(scene)->sonar.aperture_rad == 0.12345678901234568);
+    set(scene, "input.uniform", "{rows: 4, columns: 5}");
+    assert_true(use(scene)->input_kind == SONJECT_INPUT_UNIFORM);
     sonject_scene_release(&scene);
 }
 
-static void a_call_beats_all_that_was_given_with_the_text(void **state)
+TEST(a_call_beats_all_that_was_given_with_the_text)
 {
     static const char *const given[] = {"sonar.altitude=5",
                                         "sonar={frequency: 100e3, bandwidth: 30e3, altitude: 6}"};
-    sonject_context *context = *state;
     sonject_scene *scene = NULL;
     sonject_scene_read_params params = {.struct_size = sizeof params, .text = HEAD};
     params.overrides = given;
     params.override_count = COUNT(given);
     EXPECT_OK(&context->report, sonject_scene_read(context, NULL, &params, &scene));
-    assert_true(use(context, scene)->sonar.altitude_m == 6.0);
-    set(context, scene, "sonar.altitude", "7");
-    assert_true(use(context, scene)->sonar.altitude_m == 7.0);
+    assert_true(use(scene)->sonar.altitude_m == 6.0);
+    set(scene, "sonar.altitude", "7");
+    assert_true(use(scene)->sonar.altitude_m == 7.0);
     sonject_scene_release(&scene);
 }
 
-static void keys_that_are_none_are_refused_at_once(void **state)
+TEST(keys_that_are_none_are_refused_at_once)
 {
     static const struct {
         const char *key, *value, *message;
@@ -109,19 +95,13 @@ static void keys_that_are_none_are_refused_at_once(void **state)
          "set sonar: sonar.altitud: unknown key; did you mean 'altitude'?"},
         {"objects[0]", "{shape: sphere, parts: [{shap: box}]}",
          "set objects[0]: objects[0].parts[0].shap: unknown key; did you mean 'shape'?"},
-        {"objects[3]", "{shape: sphere}",
-         "set objects[3]: objects has 1 entries, counted from 0; [1] would add one"},
         {"objects[0", "{}", "set objects[0: not a key path; ']' is missing"},
-        {"sonar.altitude.high", "3",
-         "set sonar.altitude.high: sonar.altitude is a value in the file, not a section; give the "
-         "whole of it"},
         {"sonar.altitude", "", "set sonar.altitude: has no value; write key.path=value"},
         {"sonar.altitude=", "3", "sonar.altitude=: not a key; its value goes by itself"},
         {"", "3", NULL},
         {"objects[0]", "{shape: ", NULL},
     };
-    sonject_context *context = *state;
-    sonject_scene *scene = read_text(context, HEAD "objects: [{shape: sphere, diameter: 1}]\n");
+    sonject_scene *scene = read_text(NULL, HEAD "objects: [{shape: sphere, diameter: 1}]\n");
     for (size_t i = 0; i < COUNT(cases); i++) {
         assert_int_equal(sonject_scene_set(scene, cases[i].key, cases[i].value),
                          SONJECT_ERROR_INPUT);
@@ -129,19 +109,18 @@ static void keys_that_are_none_are_refused_at_once(void **state)
             assert_string_equal(sonject_context_message(context), cases[i].message);
     }
     assert_int_equal(sonject_scene_set(scene, NULL, "3"), SONJECT_ERROR_ARGUMENT);
-    set(context, scene, "objects[1]", "{shape: sphere, diameter: 2}");
-    expect_same(context, scene,
-                read_text(context, HEAD "objects: [{shape: sphere, diameter: 1}, {shape: sphere, "
-                                        "diameter: 2}]\n"));
+    set(scene, "objects[1]", "{shape: sphere, diameter: 2}");
+    expect_same(scene,
+                read_text(NULL, HEAD "objects: [{shape: sphere, diameter: 1}, {shape: sphere, "
+                                     "diameter: 2}]\n"));
 }
 
-static void values_are_checked_by_the_call_that_uses_the_scene(void **state)
+TEST(values_are_checked_by_the_call_that_uses_the_scene)
 {
-    sonject_context *context = *state;
-    sonject_scene *scene = read_text(context, HEAD);
+    sonject_scene *scene = read_text(NULL, HEAD);
     uint32_t count;
-    set(context, scene, "sonar.altitude", "-3 m");
-    set(context, scene, "surface.depth", "ten");
+    set(scene, "sonar.altitude", "-3 m");
+    set(scene, "surface.depth", "ten");
     for (int uses = 0; uses < 2; uses++) {
         assert_int_equal(sonject_scene_object_count(scene, &count), SONJECT_ERROR_INPUT);
         assert_string_equal(sonject_context_message(context),
@@ -149,49 +128,47 @@ static void values_are_checked_by_the_call_that_uses_the_scene(void **state)
                             "set surface.depth: 'ten' is not a number with a unit of m, km, cm, "
                             "mm");
     }
-    set(context, scene, "sonar.altitude", "3 m");
-    set(context, scene, "surface.depth", "10 m");
+    set(scene, "sonar.altitude", "3 m");
+    set(scene, "surface.depth", "10 m");
     assert_int_equal(sonject_scene_object_count(scene, &count), SONJECT_OK);
     sonject_scene_release(&scene);
 }
 
 /* Code in a target's file is a program as much as in the scene's own. */
-static void a_target_is_that_of_a_file_and_its_code_needs_consent(void **state)
+TEST(a_target_is_that_of_a_file_and_its_code_needs_consent)
 {
     static const char relief[] = "{target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml}";
-    sonject_context *context = *state;
     sonject_scene *careful = NULL;
     sonject_scene_read_params params = {.struct_size = sizeof params, .text = HEAD};
     uint32_t count;
-    sonject_scene *scene = read_text(context, HEAD);
-    set(context, scene, "objects[0]",
+    sonject_scene *scene = read_text(NULL, HEAD);
+    set(scene, "objects[0]",
         "{target: " SOURCE_ROOT "/tools/targets/crab_pot_frame.yaml, burial: {fraction: 0.25}}");
-    set(context, scene, "objects[1]", relief);
-    expect_same(context, scene,
-                read_text(context, HEAD "objects:\n  - {target: " SOURCE_ROOT
-                                        "/tools/targets/crab_pot_frame.yaml, burial: {fraction: "
-                                        "0.25}}\n  - {target: " SOURCE_ROOT
-                                        "/tools/targets/boulder_relief.yaml}\n"));
+    set(scene, "objects[1]", relief);
+    expect_same(scene,
+                read_text(NULL, HEAD "objects:\n  - {target: " SOURCE_ROOT
+                                     "/tools/targets/crab_pot_frame.yaml, burial: {fraction: "
+                                     "0.25}}\n  - {target: " SOURCE_ROOT
+                                     "/tools/targets/boulder_relief.yaml}\n"));
     EXPECT_OK(&context->report, sonject_scene_read(context, NULL, &params, &careful));
-    set(context, careful, "objects[0]", relief);
+    set(careful, "objects[0]", relief);
     assert_int_equal(sonject_scene_object_count(careful, &count), SONJECT_ERROR_INPUT);
     sonject_scene_release(&careful);
 }
 
-static void the_text_of_a_scene_is_the_scene(void **state)
+TEST(the_text_of_a_scene_is_the_scene)
 {
-    sonject_context *context = *state;
     char *text = NULL;
-    sonject_scene *scene = read_text(context, HEAD);
-    set(context, scene, "objects[0]",
+    sonject_scene *scene = read_text(NULL, HEAD);
+    set(scene, "objects[0]",
         "{name: \"a \\\"b\\\"\", shape: user, user: {bounding_radius: 1, code: \"" CODE "\"}}");
-    set(context, scene, "objects[0].position", "{row: 3, column: 4}");
+    set(scene, "objects[0].position", "{row: 3, column: 4}");
     EXPECT_OK(&context->report, sonject_scene_text(scene, &text));
-    expect_same(context, scene, read_text(context, text));
+    expect_same(scene, read_text(NULL, text));
     sonject_text_release(&text);
 }
 
-static void a_table_in_memory_is_that_of_a_file(void **state)
+TEST(a_table_in_memory_is_that_of_a_file)
 {
     static const double response[] = {-0.2, 0, 0.1, -0.1, 0.5, 0.2, 0, 1, 0, 0.2, 0.1, 0};
     static const double motion[] = {0, 1e-4, 1, 2e-4};
@@ -213,7 +190,6 @@ static void a_table_in_memory_is_that_of_a_file(void **state)
         {"input.pings", "row, altitude_m", pings, 4, 2, "input",
          "{path: a.tif, geometry: {row_spacing: 1, column_spacing: 1, first_slant_range: 40}}"},
     };
-    sonject_context *context = *state;
     struct temporary_folder folder;
     assert_true(open_temporary_folder(&folder));
     for (size_t i = 0; i < COUNT(cases); i++) {
@@ -230,30 +206,29 @@ static void a_table_in_memory_is_that_of_a_file(void **state)
         assert_int_equal(fclose(file), 0);
         sonject_scene *scenes[2];
         for (int k = 0; k < 2; k++) {
-            scenes[k] = read_text(context, HEAD);
+            scenes[k] = read_text(NULL, HEAD);
             if (cases[i].beside)
-                set(context, scenes[k], cases[i].beside, cases[i].value);
+                set(scenes[k], cases[i].beside, cases[i].value);
         }
-        set(context, scenes[0], cases[i].key, path);
+        set(scenes[0], cases[i].key, path);
         EXPECT_OK(&context->report,
                   sonject_scene_set_table(scenes[1], cases[i].key, cases[i].columns,
                                           cases[i].values, cases[i].count / cases[i].columns_count,
                                           cases[i].columns_count));
-        expect_same(context, scenes[0], scenes[1]);
+        expect_same(scenes[0], scenes[1]);
     }
     assert_int_equal(close_temporary_folder(&folder), 0);
 }
 
-static void heights_in_memory_are_a_relief(void **state)
+TEST(heights_in_memory_are_a_relief)
 {
     static const double heights[] = {0.1f, 0.2f, 0.3f, 0, 0, 0.25};
-    sonject_context *context = *state;
-    sonject_scene *scene = read_text(context, HEAD);
-    set(context, scene, "seabed.relief[0].heights",
+    sonject_scene *scene = read_text(NULL, HEAD);
+    set(scene, "seabed.relief[0].heights",
         "{unit: m, row_spacing: 2, column_spacing: 3, first_ground_range: 40}");
     EXPECT_OK(&context->report,
               sonject_scene_set_table(scene, "seabed.relief[0].heights.file", NULL, heights, 2, 3));
-    const struct scene *used = use(context, scene);
+    const struct scene *used = use(scene);
     assert_int_equal(used->relief.grid.rows, 2);
     assert_int_equal(used->relief.grid.columns, 3);
     for (size_t i = 0; i < COUNT(heights); i++)
@@ -261,7 +236,7 @@ static void heights_in_memory_are_a_relief(void **state)
     sonject_scene_release(&scene);
 }
 
-static void tables_that_are_none_are_refused(void **state)
+TEST(tables_that_are_none_are_refused)
 {
     static const double values[8] = {0, 1, 2, 3, 4, 5, 6, 7};
     static const struct {
@@ -278,9 +253,8 @@ static void tables_that_are_none_are_refused(void **state)
         {"medium.profile.file", "height_m, sound_speed_mps", NULL,
          "medium.profile.file, given as an array:1: sound_speed_mps: must be 100...10000"},
     };
-    sonject_context *context = *state;
     for (size_t i = 0; i < COUNT(cases); i++) {
-        sonject_scene *scene = read_text(context, HEAD);
+        sonject_scene *scene = read_text(NULL, HEAD);
         uint32_t count;
         const sonject_status status =
             sonject_scene_set_table(scene, cases[i].key, cases[i].columns, values, 4, 2);
@@ -298,12 +272,4 @@ static void tables_that_are_none_are_refused(void **state)
     }
 }
 
-TEST_PROGRAM(make_context, release_context,
-             TEST(a_scene_that_is_set_is_that_of_a_text_that_says_so),
-             TEST(what_is_set_replaces_what_was_used_before),
-             TEST(a_call_beats_all_that_was_given_with_the_text),
-             TEST(keys_that_are_none_are_refused_at_once),
-             TEST(values_are_checked_by_the_call_that_uses_the_scene),
-             TEST(a_target_is_that_of_a_file_and_its_code_needs_consent),
-             TEST(the_text_of_a_scene_is_the_scene), TEST(a_table_in_memory_is_that_of_a_file),
-             TEST(heights_in_memory_are_a_relief), TEST(tables_that_are_none_are_refused))
+TEST_PROGRAM(make_context, release_context)

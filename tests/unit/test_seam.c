@@ -55,8 +55,7 @@ static struct seam seam_with(enum flaw flaw, uint64_t seed)
         else if (influence[i] && flaw == FLAW_LEVEL)
             pixels[i] *= 1.122f;
     }
-    assert_int_equal(measure_seam(&report, pixels, influence, labels, ROWS, COLUMNS, &seam),
-                     SONJECT_OK);
+    EXPECT_OK(&report, measure_seam(&report, pixels, influence, labels, ROWS, COLUMNS, &seam));
     print_message("flaw %d: %.3f +- %.3f of %zu and %zu\n", (int)flaw, seam.auc, seam.error,
                   seam.patches, seam.background);
     free(pixels);
@@ -71,7 +70,7 @@ static struct seam seam_with(enum flaw flaw, uint64_t seed)
 /* Untouched seabed: chance, each time within 4 of the errors it tells, the mean of 8 within 4 of
  * its own; and the told errors are those of the scatter within a factor of 2, of which 8 values
  * leave a thousandth outside. */
-static void test_no_seam(void **state)
+TEST(test_no_seam)
 {
     double sum = 0.0;
     double squares = 0.0;
@@ -88,7 +87,7 @@ static void test_no_seam(void **state)
     assert_true(squares < 4.0 * errors && errors < 4.0 * squares);
 }
 
-static void test_seams_are_seen(void **state)
+TEST(test_seams_are_seen)
 {
     for (uint64_t seed = 1; seed <= 3; seed++) {
         assert_true(seam_with(FLAW_CONTRAST, seed).auc > 0.7);
@@ -98,23 +97,21 @@ static void test_seams_are_seen(void **state)
 }
 
 /* Nothing to compare: told as such. */
-static void test_too_little(void **state)
+TEST(test_too_little)
 {
     struct seam seam;
     float *pixels = seabed(1.6, 1);
     uint8_t *influence = calloc(PIXELS, 1);
     assert_non_null(influence);
-    assert_int_equal(measure_seam(&report, pixels, influence, NULL, ROWS, COLUMNS, &seam),
-                     SONJECT_OK);
+    EXPECT_OK(&report, measure_seam(&report, pixels, influence, NULL, ROWS, COLUMNS, &seam));
     assert_true(isnan(seam.auc) && isnan(seam.error) && seam.patches == 0);
     memset(influence, 1, PIXELS);
-    assert_int_equal(measure_seam(&report, pixels, influence, NULL, ROWS, COLUMNS, &seam),
-                     SONJECT_OK);
+    EXPECT_OK(&report, measure_seam(&report, pixels, influence, NULL, ROWS, COLUMNS, &seam));
     assert_true(isnan(seam.auc) && seam.patches == 0);
-    assert_int_equal(measure_seam(&report, pixels, influence, NULL, 5, 7, &seam), SONJECT_OK);
+    EXPECT_OK(&report, measure_seam(&report, pixels, influence, NULL, 5, 7, &seam));
     assert_true(isnan(seam.auc));
     free(pixels);
     free(influence);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_no_seam), TEST(test_seams_are_seen), TEST(test_too_little))
+TEST_PROGRAM(NULL, NULL)

@@ -59,7 +59,7 @@ static const struct {
       -6.8, -3.6}},
 };
 
-static void test_the_handbooks_table(void **state)
+TEST(test_the_handbooks_table)
 {
     double worst = 0.0;
     for (size_t i = 0; i < COUNT(columns); i++) {
@@ -84,7 +84,7 @@ static void test_the_handbooks_table(void **state)
 }
 
 /* The same handbook, table 2, page IV-6: medium sand, sandy gravel, sandy mud. */
-static void test_grain_sizes(void **state)
+TEST(test_grain_sizes)
 {
     const struct sediment sand = sediment_of_grain_size(1.5), mud = sediment_of_grain_size(6.0);
     assert_true(fabs(sand.density_ratio - 1.845) < 5e-4 && fabs(sand.speed_ratio - 1.1782) < 5e-5);
@@ -94,7 +94,7 @@ static void test_grain_sizes(void **state)
     assert_true(fabs(mud.strength - 0.000518) < 1e-6 && mud.volume == 0.001);
 }
 
-static void test_lambert_is_that_at_the_angle(void **state)
+TEST(test_lambert_is_that_at_the_angle)
 {
     const struct sediment sand = sediment_of_grain_size(2.5);
     const double grazing = 0.25, mu = sediment_lambert(2.5, 0.015, grazing);
@@ -105,7 +105,7 @@ static void test_lambert_is_that_at_the_angle(void **state)
 }
 
 /* Of a patch from range 0 on, what lies behind the bottom's first return is seabed. */
-static void test_lambert_is_that_of_the_seabed_in_view(void **state)
+TEST(test_lambert_is_that_of_the_seabed_in_view)
 {
     struct report report = {{0}, NULL, NULL};
     static struct water_layer layer = {0.0, 1500.0, 1.0};
@@ -126,6 +126,4 @@ static void test_lambert_is_that_of_the_seabed_in_view(void **state)
     }
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_the_handbooks_table), TEST(test_grain_sizes),
-             TEST(test_lambert_is_that_at_the_angle),
-             TEST(test_lambert_is_that_of_the_seabed_in_view))
+TEST_PROGRAM(NULL, NULL)

@@ -44,7 +44,7 @@ static bool random_point(const struct shape_size *size, const struct body *body,
 }
 
 /* No point reaches further, and some reach nearly as far: corners are rarely drawn. */
-static void test_clouds_of_points(void **state)
+TEST(test_clouds_of_points)
 {
     for (int i = 0; i < 3 * solid_row_count; i++) {
         const struct solid_row *row = &solid_rows[i / 3];
@@ -96,7 +96,7 @@ static void expect_extent(const sonject_object_params *object, double x, double 
 }
 
 /* A sphere, a box's corner, a ring. */
-static void test_closed_forms(void **state)
+TEST(test_closed_forms)
 {
     const double s = sqrt(0.5);
     sonject_object_params object;
@@ -114,7 +114,7 @@ static void test_closed_forms(void **state)
 }
 
 /* A cylinder with round ends lies within the sphere through its tips. */
-static void test_bounding_radius(void **state)
+TEST(test_bounding_radius)
 {
     struct shape_size size;
     sonject_object_params object;
@@ -162,14 +162,12 @@ static double lowest_point(const struct placement *placement, const sonject_obje
     return lowest;
 }
 
-/* Places the only object of a scene, whose mesh may be NULL. */
+/* Places the only object of a scene. */
 static sonject_status place(struct placement *placement, double *burial_m, struct report *report,
-                            const struct patch_view *view, struct mesh *mesh,
-                            sonject_object_params *object)
+                            const struct patch_view *view, sonject_object_params *object)
 {
     struct placements placements;
-    struct scene scene = {
-        .objects = object, .object_count = 1, .meshes = mesh, .mesh_count = mesh != NULL};
+    struct scene scene = {.objects = object, .object_count = 1};
     const sonject_status status = placements_init(&placements, report, &scene, view, 0.0, 0.0);
     memset(placement, 0, sizeof *placement);
     *burial_m = NAN;
@@ -182,7 +180,7 @@ static sonject_status place(struct placement *placement, double *burial_m, struc
 }
 
 /* Whatever the shape, pose and side of the sonar: its lowest point is as deep as asked for. */
-static void test_objects_rest_on_the_seabed(void **state)
+TEST(test_objects_rest_on_the_seabed)
 {
     for (int side = 0; side < 2; side++)
         for (int i = 0; i < 3 * solid_row_count; i++) {
@@ -193,27 +191,27 @@ static void test_objects_rest_on_the_seabed(void **state)
             double highest, burial;
             sonject_object_params object = random_object(&solid_rows[i / 3]);
             make_view(&view, &scene, side ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT);
-            EXPECT_OK(&report, place(&placement, &burial, &report, &view, NULL, &object));
+            EXPECT_OK(&report, place(&placement, &burial, &report, &view, &object));
             const double slack = 0.15 * placement.bounding_radius_m;
             const double lowest = lowest_point(&placement, &object, &highest);
             assert_true(lowest > -1e-9 && lowest < slack);
             const double height = highest - lowest;
             object.burial_kind = SONJECT_BURIAL_FRACTION;
             object.burial_fraction = 0.5;
-            assert_int_equal(place(&placement, &burial, &report, &view, NULL, &object), SONJECT_OK);
+            assert_int_equal(place(&placement, &burial, &report, &view, &object), SONJECT_OK);
             lowest_point(&placement, &object, &highest);
             assert_true(fabs(highest - 0.5 * height) < slack);
             assert_true(fabs(burial - 0.5 * height) < slack);
             object.burial_kind = SONJECT_BURIAL_PROUD;
             object.proud_height_m = 0.05;
-            assert_int_equal(place(&placement, &burial, &report, &view, NULL, &object), SONJECT_OK);
+            assert_int_equal(place(&placement, &burial, &report, &view, &object), SONJECT_OK);
             lowest_point(&placement, &object, &highest);
             assert_true(highest < 0.05 + 1e-9 && highest > 0.05 - slack);
             scene_clear(&scene);
         }
 }
 
-static void test_nothing_stands_prouder_than_it_is_high(void **state)
+TEST(test_nothing_stands_prouder_than_it_is_high)
 {
     struct report report = {{0}, NULL, NULL};
     struct patch_view view;
@@ -226,11 +224,10 @@ static void test_nothing_stands_prouder_than_it_is_high(void **state)
     object.burial_kind = SONJECT_BURIAL_PROUD;
     object.proud_height_m = 0.5;
     make_view(&view, &scene, SONJECT_SIDE_PORT);
-    assert_int_equal(place(&placement, &burial, &report, &view, NULL, &object), SONJECT_OK);
+    assert_int_equal(place(&placement, &burial, &report, &view, &object), SONJECT_OK);
     assert_true(fabs(placement.centre[2] - 0.25) < 1e-12);
     object.proud_height_m = 0.501;
-    assert_int_equal(place(&placement, &burial, &report, &view, NULL, &object),
-                     SONJECT_ERROR_INPUT);
+    assert_int_equal(place(&placement, &burial, &report, &view, &object), SONJECT_ERROR_INPUT);
     assert_non_null(strstr(report.message, "burial.proud"));
     scene_clear(&scene);
 }
@@ -263,7 +260,7 @@ static void compare_extents(const struct mesh *mesh, const sonject_object_params
     }
 }
 
-static void test_extents_of_meshes(void **state)
+TEST(test_extents_of_meshes)
 {
     struct mesh mesh;
     struct mesh_sample sample;
@@ -288,7 +285,7 @@ static void test_extents_of_meshes(void **state)
 }
 
 /* Of a user's shape the lesser of a box and a sphere is known. */
-static void test_extents_of_user_shapes(void **state)
+TEST(test_extents_of_user_shapes)
 {
     static const double upward[3] = {0.0, 0.0, 1.0}, slanting[3] = {0.6, 0.0, 0.8};
     const struct user_shape shape = {
@@ -303,42 +300,4 @@ static void test_extents_of_user_shapes(void **state)
     assert_true(fabs(shape_extent(&size, SHAPE_USER, slanting) - 1.0) < 1e-9); /* the sphere's */
 }
 
-/* A mesh of a box lies as deep as the box. */
-static void test_meshes_lie_as_deep(void **state)
-{
-    struct report report = {{0}, NULL, NULL};
-    struct patch_view view;
-    struct scene scene;
-    struct mesh mesh;
-    struct mesh_sample sample;
-    make_view(&view, &scene, SONJECT_SIDE_PORT);
-    sample_box(&sample);
-    make_mesh(&mesh, &sample);
-    for (int i = 0; i < 200; i++) {
-        sonject_object_params object;
-        object_init(&object);
-        object.length_m = 2.0;
-        object.width_m = 1.2;
-        object.height_m = 0.6;
-        object.pitch_rad = sample_uniform(-1.5, 1.5);
-        object.roll_rad = sample_uniform(-3.0, 3.0);
-        object.burial_kind = i % 2 ? SONJECT_BURIAL_FRACTION : SONJECT_BURIAL_PROUD;
-        object.burial_fraction = 0.3;
-        object.proud_height_m = 0.05;
-        double heights[2], burial; /* of the centre: box, mesh */
-        for (int k = 0; k < 2; k++) {
-            struct placement placement;
-            object.shape = k == 0 ? SHAPE_BOX : SHAPE_MESH;
-            EXPECT_OK(&report, place(&placement, &burial, &report, &view, &mesh, &object));
-            heights[k] = placement.centre[2];
-        }
-        assert_true(fabs(heights[1] - heights[0]) < 2e-7); /* as above */
-    }
-    mesh_clear(&mesh);
-    scene_clear(&scene);
-}
-
-TEST_PROGRAM(NULL, NULL, TEST(test_clouds_of_points), TEST(test_closed_forms),
-             TEST(test_bounding_radius), TEST(test_objects_rest_on_the_seabed),
-             TEST(test_nothing_stands_prouder_than_it_is_high), TEST(test_extents_of_meshes),
-             TEST(test_extents_of_user_shapes), TEST(test_meshes_lie_as_deep))
+TEST_PROGRAM(NULL, NULL)

@@ -1,14 +1,6 @@
 /* The law of speckle's logarithm, against closed forms. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
-
 #include "base/memory.h"
+#include "claims.h"
 #include "measure/first_return.h"
 #include "measure/speckle_law.h"
 
@@ -22,10 +14,9 @@ static void moments_of(const struct speckle_law *law, double *mean, double *vari
 }
 
 /* Trigamma at whole numbers: pi^2 / 6 less the first squares' reciprocals. */
-static void variance_of_a_logarithm_is_trigamma(void **state)
+TEST(variance_of_a_logarithm_is_trigamma)
 {
-    double exact = 3.14159265358979323846 * 3.14159265358979323846 / 6.0;
-    (void)state;
+    double exact = PI * PI / 6.0;
     for (int looks = 1; looks <= 12; looks++) {
         assert_true(fabs(log_gamma_variance(looks) - exact) < 1e-8);
         exact -= 1.0 / (looks * looks);
@@ -34,11 +25,10 @@ static void variance_of_a_logarithm_is_trigamma(void **state)
 
 /* A K distribution's log intensity is the sum of two gamma variables' logarithms. Grid and cut ends
  * leave 1e-3 of the variance. */
-static void texture_adds_its_variance(void **state)
+TEST(texture_adds_its_variance)
 {
     struct speckle_law law;
     double mean, variance;
-    (void)state;
     for (int looks = 1; looks <= 4; looks++)
         for (int k = 0; k < 4; k++) {
             const double shape = k == 0 ? INFINITY : 3.0 * k;
@@ -51,11 +41,10 @@ static void texture_adds_its_variance(void **state)
 }
 
 /* One look's intensity is exponential: what lies below x of its mean is 1 - exp(-x). */
-static void one_look_is_exponential(void **state)
+TEST(one_look_is_exponential)
 {
     struct speckle_law law;
     double density;
-    (void)state;
     speckle_law_init(&law, 1.0, 0.0);
     for (double x = 0.01; x < 6.0; x *= 1.37) {
         assert_true(fabs(speckle_law_below(&law, log(x), &density) - (1.0 - exp(-x))) < 2e-5);
@@ -65,7 +54,7 @@ static void one_look_is_exponential(void **state)
 }
 
 /* A waterfall of two sides, of a level 20 dB over the water from a column that changes. */
-static void a_nadir_lies_between_both_first_returns(void **state)
+TEST(a_nadir_lies_between_both_first_returns)
 {
     enum {
         ROWS = 60,
@@ -75,7 +64,6 @@ static void a_nadir_lies_between_both_first_returns(void **state)
     struct report report = {{0}, NULL, NULL};
     struct first_returns returns;
     float *intensity = allocate_array(ROWS, COLUMNS * sizeof *intensity);
-    (void)state;
     for (int row = 0; row < ROWS; row++)
         for (int column = 0; column < COLUMNS; column++)
             intensity[row * COLUMNS + column] = abs(column - NADIR) < 60 + row / 2 ? 0.01f : 1.0f;
@@ -91,13 +79,4 @@ static void a_nadir_lies_between_both_first_returns(void **state)
     free(intensity);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(variance_of_a_logarithm_is_trigamma),
-        cmocka_unit_test(texture_adds_its_variance),
-        cmocka_unit_test(one_look_is_exponential),
-        cmocka_unit_test(a_nadir_lies_between_both_first_returns),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL)

@@ -38,7 +38,7 @@ static float speckle(uint64_t *state)
     return (float)-log(uniform(state));
 }
 
-static void test_a_point_spreads_with_the_deviation_asked_for(void **state)
+TEST(test_a_point_spreads_with_the_deviation_asked_for)
 {
     const double deviations[][2] = {{0.0, 0.0}, {0.3, 0.7}, {1.0, 1.5}, {2.5, 0.0}, {4.0, 11.3}};
     const size_t rows = 101;
@@ -47,9 +47,8 @@ static void test_a_point_spreads_with_the_deviation_asked_for(void **state)
         float *point = make_map(rows, columns, 0.0f);
         float *mean = make_map(rows, columns, -1.0f);
         point[50 * columns + 70] = 1.0f;
-        assert_int_equal(local_mean(&report, point, rows, columns, deviations[test][0],
-                                    deviations[test][1], mean),
-                         SONJECT_OK);
+        EXPECT_OK(&report, local_mean(&report, point, rows, columns, deviations[test][0],
+                                      deviations[test][1], mean));
         double sum = 0.0;
         double row_variance = 0.0;
         double column_variance = 0.0;
@@ -108,7 +107,7 @@ static void smooth_slowly(double *line, size_t count, double deviation)
 }
 
 /* Of lines of any length; the last two deviations give the mean of all. */
-static void test_edges(void **state)
+TEST(test_edges)
 {
     const double deviations[] = {0.2, 0.9, 2.0, 7.7, 30.0, 1e6, INFINITY};
     const size_t counts[] = {1, 2, 9, 61};
@@ -131,20 +130,20 @@ static void test_edges(void **state)
 }
 
 /* An echo far above everything must not leave rounding errors where it is out of reach. */
-static void test_a_bright_echo_leaves_no_trace(void **state)
+TEST(test_a_bright_echo_leaves_no_trace)
 {
     const size_t columns = 300;
     float *map = make_map(1, columns, 1e-6f);
     float *mean = make_map(1, columns, 0.0f);
     map[20] = 1e12f;
-    assert_int_equal(local_mean(&report, map, 1, columns, 1.0, 3.0, mean), SONJECT_OK);
+    EXPECT_OK(&report, local_mean(&report, map, 1, columns, 1.0, 3.0, mean));
     for (size_t i = 60; i < columns; i++)
         expect_near((double)mean[i], 1e-6, 1e-12);
     free(map);
     free(mean);
 }
 
-static void test_mean_and_deviation(void **state)
+TEST(test_mean_and_deviation)
 {
     const float values[] = {2.0f, 4.0f, 4.0f, 4.0f, 5.0f, 5.0f, 7.0f, 9.0f};
     float *many = make_map(1000, 1000, 16777217.0f);
@@ -183,14 +182,13 @@ static struct shadow_floor floor_of(const struct made_shadows *made)
             states[row * columns + i] = i < made->water;
             intensity[row * columns + i] = (float)(seabed * share) * speckle(&random);
         }
-    assert_int_equal(shadow_floor_find(&report, intensity, states, rows, columns, &found),
-                     SONJECT_OK);
+    EXPECT_OK(&report, shadow_floor_find(&report, intensity, states, rows, columns, &found));
     free(intensity);
     free(states);
     return found;
 }
 
-static void test_shadows_tell_the_floor_and_water_does_not(void **state)
+TEST(test_shadows_tell_the_floor_and_water_does_not)
 {
     for (double floor_db = -10.0; floor_db > -26.0; floor_db -= 3.0)
         for (size_t size = 0; size < 2; size++) { /* also as narrow as a small stone's */
@@ -203,7 +201,7 @@ static void test_shadows_tell_the_floor_and_water_does_not(void **state)
         }
 }
 
-static void test_what_is_no_shadow_amid_the_seabed_tells_none(void **state)
+TEST(test_what_is_no_shadow_amid_the_seabed_tells_none)
 {
     const struct made_shadows none[] = {
         {1.0, 12, 40, 40, false},  /* plain seabed behind water */
@@ -219,11 +217,11 @@ static void test_what_is_no_shadow_amid_the_seabed_tells_none(void **state)
 static double distance_of(const float *a, const float *b, size_t count)
 {
     double distance = -1.0;
-    assert_int_equal(histogram_distance(&report, a, b, count, &distance), SONJECT_OK);
+    EXPECT_OK(&report, histogram_distance(&report, a, b, count, &distance));
     return distance;
 }
 
-static void test_histogram_distance(void **state)
+TEST(test_histogram_distance)
 {
     const float a[] = {1.0f, 2.0f, 3.0f, 4.0f};
     const float shuffled[] = {40.0f, 20.0f, 10.0f, 30.0f};
@@ -240,7 +238,7 @@ static void test_histogram_distance(void **state)
     assert_true(distance_of(a, a, 0) == 0.0);
 }
 
-static void test_correlation(void **state)
+TEST(test_correlation)
 {
     const float a[] = {1.0f, 2.0f, 3.0f, 4.0f};
     const float up[] = {30.0f, 50.0f, 70.0f, 90.0f};
@@ -269,9 +267,8 @@ static void add_seabed(double shape, double row_width, double column_width, uint
 static struct speckle_statistics measure(const float *intensity, const uint8_t *excluded)
 {
     struct speckle_statistics statistics;
-    assert_int_equal(
-        measure_speckle(&report, intensity, excluded, ROWS, COLUMNS, COLUMNS, &statistics),
-        SONJECT_OK);
+    EXPECT_OK(&report,
+              measure_speckle(&report, intensity, excluded, ROWS, COLUMNS, COLUMNS, &statistics));
     return statistics;
 }
 
@@ -279,7 +276,7 @@ static struct speckle_statistics measure(const float *intensity, const uint8_t *
  * block of 32 x 32 pixels with some 500 independent ones knows the squared contrast 1 / L to
  * sqrt(20 / 500) / L or less, the median of 256 of them to 1.25 / 16 of that: 1.6 %; its skewness
  * takes 2 % more off. Tolerance 4 * 1.6 % + 2 %. */
-static void test_looks(void **state)
+TEST(test_looks)
 {
     static const double expected_amplitude[] = {0.52272, 0.0, 0.0, 0.25289};
     float *intensity = make_map(ROWS, COLUMNS, 0.0f);
@@ -302,7 +299,7 @@ static void test_looks(void **state)
 /* Correlation of single looks: sinc^2(1 / row width), exp(-4 ln 2 / (2 column width^2)) with the
  * width at half power; that of the median of 256 blocks is known to the error it tells itself, and
  * the trend and mean that are taken off a block cost 1 % of a correlation. */
-static void test_speckle_correlation(void **state)
+TEST(test_speckle_correlation)
 {
     static const double row_widths[] = {1.0, 1.5, 2.5};
     static const double column_widths[] = {1.0, 2.0, 1.5};
@@ -326,7 +323,7 @@ static void test_speckle_correlation(void **state)
 
 /* K-distributed intensity: second moment 2 (1 + 1 / shape) of the squared mean. Blocks of so heavy
  * tails are skewed: their median lies up to 15 % below the mean. */
-static void test_texture(void **state)
+TEST(test_texture)
 {
     float *intensity = make_map(ROWS, COLUMNS, 0.0f);
     add_seabed(4.0, 1.5, 1.0, 3, intensity);
@@ -342,7 +339,7 @@ static void test_texture(void **state)
 
 /* Neither bright stones in a tenth of the blocks, nor what is excluded, nor an even slope of the
  * level counts for more than the error. */
-static void test_what_does_not_count(void **state)
+TEST(test_what_does_not_count)
 {
     float *intensity = make_map(ROWS, COLUMNS, 0.0f);
     static uint8_t excluded[PIXELS];
@@ -370,7 +367,7 @@ static void test_what_does_not_count(void **state)
     free(intensity);
 }
 
-static void test_saturation(void **state)
+TEST(test_saturation)
 {
     float values[1000];
     for (int i = 0; i < 1000; i++)
@@ -384,9 +381,4 @@ static void test_saturation(void **state)
     assert_true(isinf(find_saturation(values, 1000))); /* all alike: nothing is cut */
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_a_point_spreads_with_the_deviation_asked_for), TEST(test_edges),
-             TEST(test_a_bright_echo_leaves_no_trace), TEST(test_mean_and_deviation),
-             TEST(test_shadows_tell_the_floor_and_water_does_not),
-             TEST(test_what_is_no_shadow_amid_the_seabed_tells_none), TEST(test_histogram_distance),
-             TEST(test_correlation), TEST(test_looks), TEST(test_speckle_correlation),
-             TEST(test_texture), TEST(test_what_does_not_count), TEST(test_saturation))
+TEST_PROGRAM(NULL, NULL)

@@ -1,10 +1,8 @@
 /* Files of tallies: what is written is read again, whatever is damaged is refused, chains of
  * checkpoints cover a shard once, and sums that do not go together are not added up. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "base/file.h"
 #include "claims.h"
-#include "temporary_folder.h"
+#include "clean_folder.h"
 #include "trace/checkpoint.h"
 
 #define SUMS 18
@@ -14,8 +12,6 @@ static const struct scene_source source = {
     .path = "scene.yaml", .text = "sonject: 1\n", .overrides = overrides, .override_count = 2};
 static const int64_t sums[SUMS] = {0, 0, 5, 0,         0,         0, 0, -7, 0,
                                    0, 0, 0, INT64_MAX, INT64_MIN, 1, 0, 0,  3};
-
-static struct report report;
 
 /* What one process traced of a shard. */
 static struct sums_head head_of(uint64_t shard, uint64_t shards, uint64_t first, uint64_t last,
@@ -36,14 +32,14 @@ static struct sums_head head_of(uint64_t shard, uint64_t shards, uint64_t first,
     return head;
 }
 
-static void write_sums(const char *folder, struct sums_head head, const int64_t *values,
+static void write_sums(const char *place, struct sums_head head, const int64_t *values,
                        size_t count)
 {
     struct sums_writer writer;
-    assert_int_equal(sums_writer_begin(&writer, &report, NULL, folder), SONJECT_OK);
-    assert_int_equal(sums_writer_sums(&writer, values, count), SONJECT_OK);
-    assert_int_equal(sums_writer_sums(&writer, sums, SUMS), SONJECT_OK);
-    assert_int_equal(sums_writer_publish(&writer, &head, &source), SONJECT_OK);
+    EXPECT_OK(&report, sums_writer_begin(&writer, &report, NULL, place));
+    EXPECT_OK(&report, sums_writer_sums(&writer, values, count));
+    EXPECT_OK(&report, sums_writer_sums(&writer, sums, SUMS));
+    EXPECT_OK(&report, sums_writer_publish(&writer, &head, &source));
     sums_writer_clear(&writer);
 }
 
@@ -74,15 +70,14 @@ static void expect_sums(const struct sums_file *file, uint64_t record, const int
 {
     struct collected all = {calloc(count, sizeof(int64_t)), 0};
     assert_non_null(all.values);
-    assert_int_equal(sums_file_runs(file, &report, record, count, collect, &all), SONJECT_OK);
+    EXPECT_OK(&report, sums_file_runs(file, &report, record, count, collect, &all));
     assert_memory_equal(all.values, values, count * sizeof *values);
     assert_int_equal(all.runs, runs);
     free(all.values);
 }
 
-static void test_what_is_written_is_read(void **state)
+CLEAN(test_what_is_written_is_read)
 {
-    struct temporary_folder *folder = *state;
     struct sums_file file;
     struct sums_head head = head_of(2, 3, 4, 9, 1);
     /* so many that they do not stay in memory */
@@ -93,8 +88,8 @@ static void test_what_is_written_is_read(void **state)
         values[i] = (int64_t)i * 7 - 5;
     write_sums(folder->path, head, values, many);
     assert_int_equal(count_entries(folder->path), 1);
-    const char *path = temporary_file(folder, "shard-2-of-3-4-9.sums");
-    assert_int_equal(sums_file_open(&file, &report, path), SONJECT_OK);
+    const char *path = file_in("shard-2-of-3-4-9.sums");
+    EXPECT_OK(&report, sums_file_open(&file, &report, path));
     head.records = 2;
     assert_memory_equal(&file.head, &head, sizeof head);
     assert_string_equal(file.scene.path, source.path);
@@ -132,16 +127,13 @@ static void expect_refused(const char *path, const unsigned char *bytes, size_t 
                  strstr(report.message, "not sums as this version")));
 }
 
-static void test_no_damage_goes_unseen(void **state)
+CLEAN(test_no_damage_goes_unseen)
 {
-    struct temporary_folder *folder = *state;
     struct sums_file file;
     size_t count;
-    char written[TEMPORARY_CAPACITY + 300];
     write_sums(folder->path, head_of(1, 1, 0, 9, 1), sums, SUMS);
-    strcpy(written, temporary_file(folder, "shard-1-of-1-0-9.sums"));
-    unsigned char *bytes = bytes_of_file(written, &count);
-    const char *path = temporary_file(folder, "damaged.sums");
+    unsigned char *bytes = bytes_of_file(file_in("shard-1-of-1-0-9.sums"), &count);
+    const char *path = file_in("damaged.sums");
     for (size_t i = 0; i < count; i++) {
         bytes[i] ^= (unsigned char)(1 << i % 8);
         expect_refused(path, bytes, count);
@@ -151,12 +143,11 @@ static void test_no_damage_goes_unseen(void **state)
     bytes[count] = 0;
     expect_refused(path, bytes, count + 1);
     write_bytes(path, bytes, count);
-    assert_int_equal(sums_file_open(&file, &report, path), SONJECT_OK);
+    EXPECT_OK(&report, sums_file_open(&file, &report, path));
     sums_file_close(&file);
     free(bytes);
     /* what is not there, and what is no file, is not damaged */
-    assert_int_equal(sums_file_open(&file, &report, temporary_file(folder, "none.sums")),
-                     SONJECT_ERROR_STORAGE);
+    assert_int_equal(sums_file_open(&file, &report, file_in("none.sums")), SONJECT_ERROR_STORAGE);
     assert_int_equal(sums_file_open(&file, &report, folder->path), SONJECT_ERROR_STORAGE);
 }
 
@@ -198,10 +189,9 @@ static struct draft draft_of(struct sums_head head)
     return draft;
 }
 
-static void test_what_makes_no_sense_is_refused(void **state)
+CLEAN(test_what_makes_no_sense_is_refused)
 {
-    struct temporary_folder *folder = *state;
-    const char *path = temporary_file(folder, "draft.sums");
+    const char *path = file_in("draft.sums");
     const struct sums_head sound = head_of(1, 1, 0, 9, 1);
     struct sums_head heads[] = {head_of(0, 1, 0, 9, 1),
                                 head_of(2, 1, 0, 9, 1),
@@ -213,7 +203,7 @@ static void test_what_makes_no_sense_is_refused(void **state)
     struct sums_file file;
     struct draft draft = draft_of(sound);
     write_bytes(path, draft.bytes, draft.count);
-    assert_int_equal(sums_file_open(&file, &report, path), SONJECT_OK);
+    EXPECT_OK(&report, sums_file_open(&file, &report, path));
     assert_null(file.scene.text);
     sums_file_close(&file);
 
@@ -247,10 +237,9 @@ static void test_what_makes_no_sense_is_refused(void **state)
     }
 }
 
-static void test_runs_stay_within_their_sums(void **state)
+CLEAN(test_runs_stay_within_their_sums)
 {
-    struct temporary_folder *folder = *state;
-    const char *path = temporary_file(folder, "draft.sums");
+    const char *path = file_in("draft.sums");
     /* number of sums; first and length of a run; values */
     static const uint64_t blocks[][5] = {{4, 2, 2, 8, 9},          {4, 3, 2, 8, 9},
                                          {4, 5, 0, 8, 9},          {4, 0, 3, 8, 9},
@@ -266,7 +255,7 @@ static void test_runs_stay_within_their_sums(void **state)
         add_block(&draft, BLOCK_SUMS, blocks[i], sizeof blocks[i]);
         add_block(&draft, BLOCK_HEAD, &head, sizeof head);
         write_bytes(path, draft.bytes, draft.count);
-        assert_int_equal(sums_file_open(&file, &report, path), SONJECT_OK);
+        EXPECT_OK(&report, sums_file_open(&file, &report, path));
         assert_int_equal(sums_file_runs(&file, &report, 0, 4, collect, &all),
                          i == 0 ? SONJECT_OK : SONJECT_ERROR_INPUT);
         assert_int_equal(all.runs, i == 0);
@@ -287,7 +276,7 @@ struct chain_case {
     bool is_complete;
 };
 
-static void test_chains_cover_a_shard_once(void **state)
+CLEAN(test_chains_cover_a_shard_once)
 {
     static const struct chain_case cases[] = {
         {{{0, 0, false}}, 0, 0, 0, false},
@@ -304,21 +293,19 @@ static void test_chains_cover_a_shard_once(void **state)
          true},
         {{{0, 0, true}}, 1, 0, 1, true}, /* a shard without strips */
     };
-    struct temporary_folder *folder = *state;
     for (size_t i = 0; i < COUNT(cases); i++) {
         struct sums_folder all;
         struct sums_chain chain;
-        char path[TEMPORARY_CAPACITY + 300];
-        strcpy(path, temporary_file(folder, "work"));
-        assert_int_equal(folder_make(&report, path), SONJECT_OK);
+        const char *path = file_in("work");
+        EXPECT_OK(&report, folder_make(&report, path));
         for (size_t k = 0; k < cases[i].count; k++) {
             const struct span_of_file *file = &cases[i].files[k];
             write_sums(path, head_of(2, 3, file->first, file->last, file->is_last), sums, SUMS);
         }
         write_sums(path, head_of(1, 3, 0, 99, true), sums, SUMS); /* another's */
-        assert_int_equal(sums_folder_read(&all, &report, path, 0, SIZE_MAX, false), SONJECT_OK);
+        EXPECT_OK(&report, sums_folder_read(&all, &report, path, 0, SIZE_MAX, false));
         assert_int_equal(all.count, cases[i].count + 1);
-        assert_int_equal(sums_chain_find(&chain, &report, &all, 2), SONJECT_OK);
+        EXPECT_OK(&report, sums_chain_find(&chain, &report, &all, 2));
         assert_int_equal(chain.next, cases[i].next);
         assert_int_equal(chain.count, cases[i].in_chain);
         assert_int_equal(chain.is_complete, cases[i].is_complete);
@@ -343,21 +330,20 @@ static void expect_folder(const char *path, uint64_t shard, size_t most, bool dr
     sums_folder_clear(&all);
 }
 
-static void test_a_folder_gives_what_is_its_own(void **state)
+CLEAN(test_a_folder_gives_what_is_its_own)
 {
-    struct temporary_folder *folder = *state;
     uint64_t shards = 7;
-    char damaged[TEMPORARY_CAPACITY + 300], other[TEMPORARY_CAPACITY + 300];
-    expect_folder(temporary_file(folder, "none"), 0, SIZE_MAX, false, SONJECT_OK, 0);
+    const char *damaged = file_in("shard-1-of-3-4-5.sums");
+    const char *other = file_in("shard-2-of-3-4-5.sums");
+    expect_folder(file_in("none"), 0, SIZE_MAX, false, SONJECT_OK, 0);
     write_sums(folder->path, head_of(2, 3, 0, 4, false), sums, SUMS);
     write_sums(folder->path, head_of(1, 3, 0, 4, false), sums, SUMS);
-    strcpy(damaged, temporary_file(folder, "shard-1-of-3-4-5.sums"));
     write_bytes(damaged, sums, sizeof sums);
-    write_bytes(temporary_file(folder, "shard.sums.7-00.part.sums"), sums, sizeof sums);
+    write_bytes(file_in("shard.sums.7-00.part.sums"), sums, sizeof sums);
     expect_folder(folder->path, 0, 1, false, SONJECT_OK, 1);
-    assert_int_equal(sums_folder_shards(&report, folder->path, 3, &shards), SONJECT_OK);
+    EXPECT_OK(&report, sums_folder_shards(&report, folder->path, 3, &shards));
     assert_int_equal(shards, 0);
-    assert_int_equal(sums_folder_shards(&report, folder->path, 1, &shards), SONJECT_OK);
+    EXPECT_OK(&report, sums_folder_shards(&report, folder->path, 1, &shards));
     assert_int_equal(shards, 3);
     /* what is damaged is refused; its own shard may drop it */
     expect_folder(folder->path, 0, SIZE_MAX, false, SONJECT_ERROR_INPUT, 1);
@@ -367,7 +353,6 @@ static void test_a_folder_gives_what_is_its_own(void **state)
     assert_false(file_exists(damaged));
     /* what another shard traced is sound, and stays */
     write_sums(folder->path, head_of(2, 3, 4, 5, true), sums, SUMS);
-    strcpy(other, temporary_file(folder, "shard-2-of-3-4-5.sums"));
     assert_int_equal(rename(other, damaged), 0);
     expect_folder(folder->path, 1, SIZE_MAX, true, SONJECT_ERROR_INPUT, 2);
     assert_non_null(strstr(report.message, "another shard's"));
@@ -375,17 +360,17 @@ static void test_a_folder_gives_what_is_its_own(void **state)
 }
 
 /* Adds up two checkpoints of two shards each. */
-static sonject_status add_both(const char *folder, int64_t *total)
+static sonject_status add_both(int64_t *total)
 {
     struct sums_folder all;
     struct checkpoint checkpoint;
     struct trace_counts counts;
     const int64_t *added;
     memset(&counts, 0, sizeof counts);
-    assert_int_equal(sums_folder_read(&all, &report, folder, 0, SIZE_MAX, false), SONJECT_OK);
+    EXPECT_OK(&report, sums_folder_read(&all, &report, folder->path, 0, SIZE_MAX, false));
     assert_int_equal(all.count, 2);
     const struct sums_file *files[] = {&all.files[0], &all.files[1]};
-    assert_int_equal(checkpoint_begin_adding(&checkpoint, &report, files, 2), SONJECT_OK);
+    EXPECT_OK(&report, checkpoint_begin_adding(&checkpoint, &report, files, 2));
     sonject_status status = checkpoint_sums(&checkpoint, NULL, 2, &added);
     if (status == SONJECT_OK) {
         memcpy(total, added, 2 * sizeof *total);
@@ -398,9 +383,8 @@ static sonject_status add_both(const char *folder, int64_t *total)
     return status;
 }
 
-static void test_only_what_goes_together_is_added_up(void **state)
+CLEAN(test_only_what_goes_together_is_added_up)
 {
-    struct temporary_folder *folder = *state;
     static const int64_t first[] = {3, INT64_MAX - 5};
     static const int64_t second[] = {-8, 5};
     static const int64_t overflows[] = {-8, 6};
@@ -408,23 +392,21 @@ static void test_only_what_goes_together_is_added_up(void **state)
     /* both also hold `sums`, whose limits go beyond 64 bits when doubled */
     write_sums(folder->path, head_of(1, 2, 0, 9, true), first, 2);
     write_sums(folder->path, head_of(2, 2, 0, 9, true), second, 2);
-    assert_int_equal(add_both(folder->path, total), SONJECT_ERROR_INPUT);
+    assert_int_equal(add_both(total), SONJECT_ERROR_INPUT);
     assert_int_equal(total[0], -5);
     assert_int_equal(total[1], INT64_MAX);
     write_sums(folder->path, head_of(2, 2, 0, 9, true), overflows, 2);
     total[0] = 0;
-    assert_int_equal(add_both(folder->path, total), SONJECT_ERROR_INPUT);
+    assert_int_equal(add_both(total), SONJECT_ERROR_INPUT);
     assert_int_equal(total[0], 0);
     /* whose course is that of other launches; this checkpoint's own is of none at all */
     struct checkpoint checkpoint;
     struct trace_counts counts;
     struct sums_file file;
     memset(&counts, 0, sizeof counts);
-    assert_int_equal(
-        sums_file_open(&file, &report, temporary_file(folder, "shard-1-of-2-0-9.sums")),
-        SONJECT_OK);
+    EXPECT_OK(&report, sums_file_open(&file, &report, file_in("shard-1-of-2-0-9.sums")));
     const struct sums_file *files[] = {&file};
-    assert_int_equal(checkpoint_begin_adding(&checkpoint, &report, files, 1), SONJECT_OK);
+    EXPECT_OK(&report, checkpoint_begin_adding(&checkpoint, &report, files, 1));
     checkpoint.record = 2;
     assert_int_equal(checkpoint_finish(&checkpoint, &counts), SONJECT_ERROR_INPUT);
     assert_non_null(strstr(report.message, "traced other rays"));
@@ -435,22 +417,15 @@ static void test_only_what_goes_together_is_added_up(void **state)
     assert_non_null(hash);
     hash_end(hash, nothing);
     strcpy(file.head.launches, nothing);
-    assert_int_equal(checkpoint_begin_adding(&checkpoint, &report, files, 1), SONJECT_OK);
+    EXPECT_OK(&report, checkpoint_begin_adding(&checkpoint, &report, files, 1));
     assert_int_equal(checkpoint_finish(&checkpoint, &counts), SONJECT_ERROR_INPUT);
     checkpoint_clear(&checkpoint);
-    assert_int_equal(checkpoint_begin_adding(&checkpoint, &report, files, 1), SONJECT_OK);
+    EXPECT_OK(&report, checkpoint_begin_adding(&checkpoint, &report, files, 1));
     checkpoint.record = 2;
-    assert_int_equal(checkpoint_finish(&checkpoint, &counts), SONJECT_OK);
+    EXPECT_OK(&report, checkpoint_finish(&checkpoint, &counts));
     assert_int_equal(counts.rays, 100);
     checkpoint_clear(&checkpoint);
     sums_file_close(&file);
 }
 
-#define IN_FOLDER(test)                                                                            \
-    cmocka_unit_test_setup_teardown(test, make_temporary_folder, remove_temporary_folder)
-
-TEST_PROGRAM(NULL, NULL, IN_FOLDER(test_what_is_written_is_read),
-             IN_FOLDER(test_no_damage_goes_unseen), IN_FOLDER(test_what_makes_no_sense_is_refused),
-             IN_FOLDER(test_runs_stay_within_their_sums), IN_FOLDER(test_chains_cover_a_shard_once),
-             IN_FOLDER(test_a_folder_gives_what_is_its_own),
-             IN_FOLDER(test_only_what_goes_together_is_added_up))
+TEST_PROGRAM(NULL, NULL)

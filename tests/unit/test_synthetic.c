@@ -2,6 +2,7 @@
  * with N independent cells an average of the intensity has the relative standard error 1 / sqrt(N),
  * a correlation 1 / sqrt(N). Seeds are fixed, so that a pass stays a pass. */
 #include "claims.h"
+#include "image/statistics.h"
 #include "image/synthetic.h"
 
 #define SPACING     0.025
@@ -70,7 +71,7 @@ static void expect_near(const char *what, double value, double expected, double 
 
 /* At one pixel of resolution the intensity's correlation is 1/4 to either side in range, none along
  * the track: 1.5 pixels a cell, 107,000 cells, 5 / sqrt(N) = 0.015. */
-static void test_rayleigh(void **state)
+TEST(test_rayleigh)
 {
     const sonject_synthetic_params synthetic = plain(400, 400);
     float *pixels = make(&synthetic, 1.0, 1.0);
@@ -88,7 +89,7 @@ static void test_rayleigh(void **state)
  * square of a normal deviate. At 5 deviations probabilities and amplitudes go like exp(5 z), so
  * that linear interpolation between steps h = 1/256 is off by 25 h^2 / 8 = 5e-5 of the amplitude.
  */
-static void test_texture_distribution(void **state)
+TEST(test_texture_distribution)
 {
     struct speckle_texture exponential, squared_normal;
     speckle_texture_init(&exponential, 1.0);
@@ -107,7 +108,7 @@ static void test_texture_distribution(void **state)
 }
 
 /* Mean and variance of the texture by quadrature over the normal deviate. */
-static void test_texture_moments(void **state)
+TEST(test_texture_moments)
 {
     static const double shapes[] = {0.1, 0.5, 1.5, 4.0, 10.0, 100.0, 1e4, 9e5};
     for (size_t i = 0; i < COUNT(shapes); i++) {
@@ -153,7 +154,7 @@ static void correlate(const float *pixels, const sonject_synthetic_params *synth
 /* The correlation of speckle is the autocorrelation of the point response: sinc(x / resolution)
  * along the track, 2^-(r / resolution)^2 in range. 800 x 800 pixels in cells of at most 2.3 x 2.4:
  * 5 / sqrt(N) = 0.015. */
-static void test_correlation_is_the_point_response(void **state)
+TEST(test_correlation_is_the_point_response)
 {
     static const double resolutions[][2] = {{1.0, 1.0}, {2.3, 1.6}, {1.4, 0.7}};
     sonject_synthetic_params synthetic = plain(800, 800);
@@ -174,7 +175,7 @@ static void test_correlation_is_the_point_response(void **state)
     }
 }
 
-static void test_seed_decides(void **state)
+TEST(test_seed_decides)
 {
     sonject_synthetic_params synthetic = plain(90, 110);
     synthetic.speckle_shape = 4.0;
@@ -206,7 +207,7 @@ static uint32_t hash_of(const float *pixels, size_t count)
 
 /* The same bits on every machine, compiler and optimisation level. The number changes only with the
  * model: nothing else in this file depends on it. */
-static void test_same_bits_everywhere(void **state)
+TEST(test_same_bits_everywhere)
 {
     sonject_synthetic_params synthetic = plain(64, 80);
     synthetic.speckle_shape = 3.0;
@@ -218,7 +219,7 @@ static void test_same_bits_everywhere(void **state)
     assert_int_equal(hash_of(pixels, count_of(&synthetic)), 0x0551a0ec);
 }
 
-static void test_amplitude_is_that_of_complex_pixels(void **state)
+TEST(test_amplitude_is_that_of_complex_pixels)
 {
     sonject_synthetic_params synthetic = plain(40, 50);
     synthetic.speckle_shape = 2.0;
@@ -232,17 +233,10 @@ static void test_amplitude_is_that_of_complex_pixels(void **state)
                     1.0, 3e-7); /* two roundings of float */
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Mean intensities of 20 x 20 blocks: 267 cells each, 6 % standard error, so that 6 dB apart (a
  * factor of 4) the two sediments stand clear of each other. Blocks across a border lie between:
  * medians are hardly moved by them. */
-static void test_patch_step(void **state)
+TEST(test_patch_step)
 {
     sonject_synthetic_params synthetic = plain(800, 800);
     synthetic.patch_contrast_db = 6.0;
@@ -264,10 +258,8 @@ static void test_patch_step(void **state)
             bright[bright_count++] = intensity;
     }
     assert_true(dark_count > 320 && bright_count > 320); /* neither sediment below a fifth */
-    qsort(dark, dark_count, sizeof *dark, ascending);
-    qsort(bright, bright_count, sizeof *bright, ascending);
-    expect_near("darker sediment", dark[dark_count / 2], 1.0, 0.05);
-    expect_near("brighter sediment", bright[bright_count / 2] / pow(10.0, 0.6), 1.0, 0.05);
+    expect_near("darker sediment", median_of(dark, dark_count), 1.0, 0.05);
+    expect_near("brighter sediment", median_of(bright, bright_count) / pow(10.0, 0.6), 1.0, 0.05);
 }
 
 /* Correlation of the intensities of pixels that far apart. */
@@ -293,7 +285,7 @@ static double intensity_correlation(const float *pixels, const sonject_synthetic
  * texture's: it has fallen to about 1/e at the texture length, a little less since Gamma deviates
  * follow normal ones less than in proportion, and to exp(-4) at twice that. 800 x 800 pixels are
  * 4,000 cells, whose products scatter by about 3 / sqrt(N) = 0.05 in 1/shape. */
-static void test_texture_length(void **state)
+TEST(test_texture_length)
 {
     sonject_synthetic_params synthetic = plain(800, 800);
     synthetic.speckle_shape = 1.5;
@@ -315,7 +307,7 @@ static void test_texture_length(void **state)
 /* Ripples 0.6 m = 24 pixels long repeat across the crests, not along them, on about half of the
  * ground, and leave the mean intensity: the error of the mean is that of 30 wavelengths times 30
  * uncorrelated places, each with an intensity deviation of about 1. */
-static void test_ripples(void **state)
+TEST(test_ripples)
 {
     sonject_synthetic_params synthetic = plain(800, 800);
     synthetic.ripple_contrast = 0.8;
@@ -348,7 +340,7 @@ static void expect_usable(const sonject_synthetic_params *synthetic, double alon
     assert_true(sum > 0.0);
 }
 
-static void test_extremes(void **state)
+TEST(test_extremes)
 {
     sonject_synthetic_params synthetic = plain(1, 1);
     synthetic.speckle_shape = 4.0;
@@ -375,8 +367,4 @@ static void test_extremes(void **state)
     expect_usable(&synthetic, 1.0, 1.0);
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_rayleigh), TEST(test_texture_distribution),
-             TEST(test_texture_moments), TEST(test_correlation_is_the_point_response),
-             TEST(test_seed_decides), TEST(test_same_bits_everywhere),
-             TEST(test_amplitude_is_that_of_complex_pixels), TEST(test_patch_step),
-             TEST(test_texture_length), TEST(test_ripples), TEST(test_extremes))
+TEST_PROGRAM(NULL, NULL)

@@ -17,7 +17,7 @@ static void expect_number(const char *text, double expected, const char *expecte
 }
 
 /* Expected values are written as hexadecimal bits, so that no decimal conversion checks itself. */
-static void test_numbers(void **state)
+TEST(test_numbers)
 {
     static const struct {
         const char *text;
@@ -51,7 +51,7 @@ static void test_numbers(void **state)
         expect_number(cases[i].text, cases[i].number, cases[i].rest);
 }
 
-static void test_what_is_no_number(void **state)
+TEST(test_what_is_no_number)
 {
     static const char *const texts[] = {"",   "-",  ".",     "-.",   "e5", "nan", ".nan",
                                         " 1", "m5", "--1.0", "+-.5", ".i", "i",   ".e1"};
@@ -65,7 +65,7 @@ static void test_what_is_no_number(void **state)
 }
 
 /* 2^53 + 1 lies halfway between two doubles; the smallest double's half likewise. */
-static void test_halfway_cases(void **state)
+TEST(test_halfway_cases)
 {
     char text[3000];
     expect_number("9007199254740993", 0x1p53, "");
@@ -83,7 +83,7 @@ static void test_halfway_cases(void **state)
 
 /* Half of the smallest double, 2^-1075, has 750 significant digits: exactly there it is a tie, and
  * any digit behind them decides. 2^-1075 = 5^1075 / 10^1075. */
-static void test_a_tie_of_750_digits(void **state)
+TEST(test_a_tie_of_750_digits)
 {
     char digits[1100];
     char text[1200];
@@ -104,7 +104,7 @@ static void test_a_tie_of_750_digits(void **state)
     expect_number(text, 0x1p-1074, "");
 }
 
-static void test_long_texts(void **state)
+TEST(test_long_texts)
 {
     char text[3000];
     snprintf(text, sizeof text, "0.%01200d1e1201", 0);
@@ -115,7 +115,7 @@ static void test_long_texts(void **state)
     expect_number(text, 5.0, "");
 }
 
-static void test_a_shift_rounds_once(void **state)
+TEST(test_a_shift_rounds_once)
 {
     double number;
     const char *rest;
@@ -147,12 +147,12 @@ static void expect_round_trips(int count)
     }
 }
 
-static void test_round_trips(void **state)
+TEST(test_round_trips)
 {
     expect_round_trips(20000);
 }
 
-static void test_a_decimal_comma_changes_nothing(void **state)
+TEST(test_a_decimal_comma_changes_nothing)
 {
     static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8",  "de_DE",      "fr_FR.UTF-8",
                                         "fr_FR.utf8",  "nb_NO.UTF-8", "nl_NL.UTF-8"};
@@ -182,7 +182,7 @@ static const char *next_text(const char **texts, char text[32])
     return text;
 }
 
-static void test_counts(void **state)
+TEST(test_counts)
 {
     const char *bad = "|-1|+1|1.0|1e3| 1|1 |0x1|1_0|18446744073709551616|99999999999999999999|";
     uint64_t count = 7;
@@ -195,7 +195,7 @@ static void test_counts(void **state)
     assert_true(text_to_count("1099511627776", &count) && count == UINT64_C(1) << 40);
 }
 
-static void test_printable(void **state)
+TEST(test_printable)
 {
     const char *good = "|mine 1|\xC3\xA5|\xE2\x82\xAC|\xED\x9F\xBF|\xF0\x9F\x90\x9F|"
                        "\xF4\x8F\xBF\xBF|\xC2\xA0|\xD8\x9B|\xE2\x80\x8D|\xE2\x80\xAF|\xE2\x81\xAA|";
@@ -212,7 +212,7 @@ static void test_printable(void **state)
             fail_msg("bad text before '%s' was taken", bad);
 }
 
-static void test_what_goes_to_a_terminal_is_made_printable(void **state)
+TEST(test_what_goes_to_a_terminal_is_made_printable)
 {
     char text[] = "a\nb \x1B[31m \xC2\x9B"
                   "31m \xE2\x80\xAEgnp.x \xFF \xC3\xA5 \xE2\x82";
@@ -221,7 +221,7 @@ static void test_what_goes_to_a_terminal_is_made_printable(void **state)
     assert_true(text_is_printable(text));
 }
 
-static void test_excerpts(void **state)
+TEST(test_excerpts)
 {
     char excerpt[8];
     assert_string_equal(text_excerpt(excerpt, sizeof excerpt, "seven 7"), "seven 7");
@@ -231,8 +231,4 @@ static void test_excerpts(void **state)
     assert_string_equal(text_excerpt(excerpt, 4, "abcd"), "...");
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_numbers), TEST(test_what_is_no_number), TEST(test_halfway_cases),
-             TEST(test_a_tie_of_750_digits), TEST(test_long_texts), TEST(test_a_shift_rounds_once),
-             TEST(test_round_trips), TEST(test_a_decimal_comma_changes_nothing), TEST(test_counts),
-             TEST(test_printable), TEST(test_what_goes_to_a_terminal_is_made_printable),
-             TEST(test_excerpts))
+TEST_PROGRAM(NULL, NULL)

@@ -51,7 +51,7 @@ static void expect_copy_of_build(const struct tiff_build *build)
     assert_string_equal(copy + tiff_place(copy, TIFF_PRIVATE_TAG, true), TIFF_PRIVATE_TEXT);
 }
 
-static void tiff_of_every_build_is_patched_in_place(void **state)
+CLEAN(tiff_of_every_build_is_patched_in_place)
 {
     static const uint16_t codings[][2] = {
         {COMPRESSION_NONE, 1},    {COMPRESSION_PACKBITS, 1},      {COMPRESSION_LZW, 1},
@@ -81,7 +81,7 @@ static void tiff_of_every_build_is_patched_in_place(void **state)
 /* The new place must come with the new size: here blocks grow a lot. And what TIFF says of one
  * strip for all rows: as many in it as a number can say. The image is taller than wide, and the
  * patch lies at its lower end. Deflate stores at most 65535 bytes at a time. */
-static void blocks_may_grow_and_hold_all_rows(void **state)
+CLEAN(blocks_may_grow_and_hold_all_rows)
 {
     static const uint16_t codings[] = {COMPRESSION_NONE, COMPRESSION_LZW,
                                        COMPRESSION_ADOBE_DEFLATE};
@@ -109,7 +109,7 @@ static void blocks_may_grow_and_hold_all_rows(void **state)
 
 /* Some writers store equal tiles once: changing one would change the others. A strip that is said
  * to lie where the directory is: the patch would destroy it, or make it another image's. */
-static void blocks_in_each_others_place_are_refused(void **state)
+CLEAN(blocks_in_each_others_place_are_refused)
 {
     const struct tiff_build build = {
         .layout = grey8, .compression = COMPRESSION_NONE, .predictor = 1, .block_rows = 16};
@@ -144,7 +144,7 @@ static void blocks_in_each_others_place_are_refused(void **state)
 }
 
 /* What libtiff writes, and what tags say that are changed (tag, number), as it would not write. */
-static void tiff_that_is_not_for_sonject_is_refused(void **state)
+CLEAN(tiff_that_is_not_for_sonject_is_refused)
 {
     const struct tiff_build other_order = {.layout = real32,
                                            .is_big_endian = !machine_is_big_endian(),
@@ -184,7 +184,7 @@ static void tiff_that_is_not_for_sonject_is_refused(void **state)
 }
 
 /* A file with holes: only its head and its last row are really there. */
-static void more_than_4_gb_are_read(void **state)
+CLEAN(more_than_4_gb_are_read)
 {
     const struct raster_layout layout = {70000, 70000, 1, PIXEL_UINT8};
     const struct region last = {69998, 69990, 2, 10};
@@ -214,7 +214,4 @@ static void more_than_4_gb_are_read(void **state)
     expect_no_open(path, "cut short");
 }
 
-TEST_PROGRAM(NULL, NULL, CLEAN(tiff_of_every_build_is_patched_in_place),
-             CLEAN(blocks_may_grow_and_hold_all_rows),
-             CLEAN(blocks_in_each_others_place_are_refused),
-             CLEAN(tiff_that_is_not_for_sonject_is_refused), CLEAN(more_than_4_gb_are_read))
+TEST_PROGRAM(NULL, NULL)

@@ -1,7 +1,5 @@
 /* Code of users' shapes before it meets a compiler: what is refused and where; scene files that
  * hold code, and that they need consent. */
-#define _POSIX_C_SOURCE 200809L
-
 #include "claims.h"
 #include "scene_folder.h"
 #include "user/snippet.h"
@@ -31,7 +29,7 @@ static void expect_code_taken(const char *code)
 
 #define NOT_HERE "#include is not possible here; write here what is in that file"
 
-static void test_code_that_is_not_whole_is_refused_with_its_line(void **state)
+TEST(test_code_that_is_not_whole_is_refused_with_its_line)
 {
     static const char *const cases[][2] = {
         {GOOD "#include \"more.cl\"\n", "my.cl:3: " NOT_HERE},
@@ -43,7 +41,7 @@ static void test_code_that_is_not_whole_is_refused_with_its_line(void **state)
         expect_code_refused(cases[i][0], cases[i][1]);
 }
 
-static void test_sound_code_is_taken(void **state)
+TEST(test_sound_code_is_taken)
 {
     static const char *const codes[] = {
         GOOD,
@@ -55,7 +53,7 @@ static void test_sound_code_is_taken(void **state)
         expect_code_taken(codes[i]);
 }
 
-static void test_size_and_names_are_limited(void **state)
+TEST(test_size_and_names_are_limited)
 {
     struct report report = {{0}, NULL, NULL};
     struct user_snippet snippet;
@@ -85,7 +83,7 @@ static void append(struct user_shapes *shapes, const char *name, const char *cod
     EXPECT_OK(&report, user_shapes_append(shapes, &report, &params));
 }
 
-static void test_equal_codes_are_one(void **state)
+TEST(test_equal_codes_are_one)
 {
     struct user_shapes shapes;
     memset(&shapes, 0, sizeof shapes);
@@ -99,13 +97,7 @@ static void test_equal_codes_are_one(void **state)
     user_shapes_clear(&shapes);
 }
 
-#undef BASE
-#define BASE                                                                                       \
-    "sonject: 1\n"                                                                                 \
-    "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
-    "first_slant_range: 40}}\n"                                                                    \
-    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"                                   \
-    "objects:\n"
+#define OBJECTS BASE "objects:\n"
 #define CODE                                                                                       \
     "    user:\n"                                                                                  \
     "      bounding_radius: 50 cm\n"                                                               \
@@ -113,16 +105,15 @@ static void test_equal_codes_are_one(void **state)
     "      code: |\n"                                                                              \
     "        " DISTANCE "        " NORMAL
 
-static sonject_status read_with_consent(struct scene_folder *folder, const char *text)
+static sonject_status read_with_consent(const char *text)
 {
-    write_scene(folder, text, strlen(text));
-    return read_scene_with(folder, NULL, 0, true);
+    write_scene(text, strlen(text));
+    return read_scene_with(NULL, 0, true);
 }
 
-static void expect_refused_with_consent(struct scene_folder *folder, const char *text,
-                                        const char *message)
+static void expect_refused_with_consent(const char *text, const char *message)
 {
-    assert_int_equal(read_with_consent(folder, text), SONJECT_ERROR_INPUT);
+    assert_int_equal(read_with_consent(text), SONJECT_ERROR_INPUT);
     const size_t length = strlen(folder->report.message);
     assert_true(length >= strlen(message));
     assert_string_equal(folder->report.message + length - strlen(message), message);
@@ -132,30 +123,28 @@ static void expect_refused_with_consent(struct scene_folder *folder, const char 
     "user: is code that would run with your rights; if you trust who wrote it, use "               \
     "--allow-user-shapes"
 
-static void test_code_in_files_needs_consent(void **state)
+TEST(test_code_in_files_needs_consent)
 {
-    struct scene_folder *folder = *state;
-    expect_scene_refused(folder, BASE "  - shape: user\n" CODE, ":7:7: objects[0]." NO_CONSENT);
-    expect_scene_refused(folder, BASE "  - parts:\n    - {shape: user, user: {}}\n",
+    expect_scene_refused(OBJECTS "  - shape: user\n" CODE, ":7:7: objects[0]." NO_CONSENT);
+    expect_scene_refused(OBJECTS "  - parts:\n    - {shape: user, user: {}}\n",
                          ":6:27: objects[0].parts[0]." NO_CONSENT);
     /* a target's file, in an object's or in that of parts */
-    write_scene(folder, BASE "  - target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml\n",
-                strlen(BASE "  - target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml\n"));
-    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    write_scene(OBJECTS "  - target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml\n",
+                strlen(OBJECTS "  - target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml\n"));
+    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
     assert_non_null(strstr(folder->report.message, "boulder_relief.yaml:9:3: " NO_CONSENT));
 }
 
-static void test_code_arrives_with_its_lines(void **state)
+TEST(test_code_arrives_with_its_lines)
 {
-    struct scene_folder *folder = *state;
-    assert_int_equal(read_with_consent(folder, BASE "  - shape: user\n" CODE "  - parts:\n"
-                                                    "    - shape: sphere\n"
-                                                    "      diameter: 1\n"
-                                                    "    - shape: user\n"
-                                                    "      user: {file: " SOURCE_ROOT
-                                                    "/tools/targets/boulder_relief.cl,\n"
-                                                    "        bounding_radius: 1, half_height: 0.25,"
-                                                    " open: true}\n"),
+    assert_int_equal(read_with_consent(OBJECTS "  - shape: user\n" CODE "  - parts:\n"
+                                               "    - shape: sphere\n"
+                                               "      diameter: 1\n"
+                                               "    - shape: user\n"
+                                               "      user: {file: " SOURCE_ROOT
+                                               "/tools/targets/boulder_relief.cl,\n"
+                                               "        bounding_radius: 1, half_height: 0.25,"
+                                               " open: true}\n"),
                      SONJECT_OK);
     const struct user_shapes *shapes = &folder->scene.user_shapes;
     assert_int_equal(shapes->count, 2);
@@ -170,17 +159,16 @@ static void test_code_arrives_with_its_lines(void **state)
     assert_true(shapes->shapes[1].half_height_m == 0.25 && shapes->shapes[1].is_open);
     assert_true(shapes->shapes[1].half_width_m == 1.0);
     /* the line of an error in a block is that of the file */
-    expect_refused_with_consent(folder,
-                                BASE "  - shape: user\n" CODE "        #include <more.cl>\n",
+    expect_refused_with_consent(OBJECTS "  - shape: user\n" CODE "        #include <more.cl>\n",
                                 "scene.yaml:12: " NOT_HERE);
 }
 
-static void test_wrong_sections_are_refused(void **state)
+TEST(test_wrong_sections_are_refused)
 {
-#define OF_USER(keys) BASE "  - {shape: user, user: {" keys "}}\n"
+#define OF_USER(keys) OBJECTS "  - {shape: user, user: {" keys "}}\n"
     static const char *const cases[][2] = {
-        {BASE "  - shape: user\n", "objects[0].user: missing; a user needs it"},
-        {BASE "  - diameter: 1\n    shape: sphere\n" CODE,
+        {OBJECTS "  - shape: user\n", "objects[0].user: missing; a user needs it"},
+        {OBJECTS "  - diameter: 1\n    shape: sphere\n" CODE,
          "objects[0].user: a sphere has none; remove it"},
         {OF_USER("bounding_radius: 1"),
          "objects[0].user: none of file and code is there; give one"},
@@ -193,13 +181,8 @@ static void test_wrong_sections_are_refused(void **state)
         {OF_USER("bounding_radius: 1, code: x"),
          "scene.yaml:5: there is no function shape_distance in it; write one"},
     };
-    struct scene_folder *folder = *state;
     for (size_t i = 0; i < COUNT(cases); i++)
-        expect_refused_with_consent(folder, cases[i][0], cases[i][1]);
+        expect_refused_with_consent(cases[i][0], cases[i][1]);
 }
 
-TEST_PROGRAM(make_scene_folder, remove_scene_folder,
-             TEST(test_code_that_is_not_whole_is_refused_with_its_line),
-             TEST(test_sound_code_is_taken), TEST(test_size_and_names_are_limited),
-             TEST(test_equal_codes_are_one), TEST(test_code_in_files_needs_consent),
-             TEST(test_code_arrives_with_its_lines), TEST(test_wrong_sections_are_refused))
+TEST_PROGRAM(make_scene_folder, remove_scene_folder)

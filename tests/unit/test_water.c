@@ -133,7 +133,7 @@ static void compare_ray(const struct water *water, const struct reference_way *f
     }
 }
 
-static void test_snell(void **state)
+TEST(test_snell)
 {
     largest_error = 0.0;
     on_every_way(compare_ray);
@@ -178,7 +178,7 @@ static void compare_two_points(const struct water *water, const struct reference
     }
 }
 
-static void test_two_points(void **state)
+TEST(test_two_points)
 {
     largest_error = 0.0;
     on_every_way(compare_two_points);
@@ -187,7 +187,7 @@ static void test_two_points(void **state)
 
 /* Fermat: of all ways over a plane between two waters sound takes the quickest. Nothing of Snell's
  * law is in here. */
-static void test_fermat(void **state)
+TEST(test_fermat)
 {
     static const double ranges[] = {1.0, 10.0, 35.0, 120.0, 1000.0};
     struct water water;
@@ -230,7 +230,7 @@ static double arc_time(double bottom_speed, double growth, double range, double 
 }
 
 /* As scene files write it, also with targets that reach through many of its layers. */
-static void test_linear_profiles_bend_rays_to_arcs(void **state)
+TEST(test_linear_profiles_bend_rays_to_arcs)
 {
     static const double heights[] = {0.0, 25.0};
     static const struct {
@@ -259,7 +259,7 @@ static void test_linear_profiles_bend_rays_to_arcs(void **state)
 /* ---- equal layers ---- */
 
 /* Layers of one speed are isovelocity water, also where the layers above the sonar differ. */
-static void test_straight_water(void **state)
+TEST(test_straight_water)
 {
     static const struct water_layer equal[] = {
         {0.0, 1490.0, 1.0}, {3.0, 1490.0, 1.0}, {9.0, 1490.0, 1.0}};
@@ -336,7 +336,7 @@ static void compare_tube(const struct water *water, const struct reference_way *
     }
 }
 
-static void test_ray_tube(void **state)
+TEST(test_ray_tube)
 {
     on_every_way(compare_tube);
 }
@@ -352,7 +352,7 @@ static double plane_passes(const struct water_layer *one, const struct water_lay
     return 1.0 - pow((z1 - z2) / (z1 + z2), 2.0);
 }
 
-static void test_transmission(void **state)
+TEST(test_transmission)
 {
     static const struct water_layer light[] = {{0.0, 1490.0, 1030.0},
                                                {6.0, 1510.0, 1030.0}, /* all passes this plane */
@@ -394,7 +394,7 @@ static void test_transmission(void **state)
 
 /* As the layers' contrast goes, so does what they do; and where density alone differs rays are
  * straight, but not all of their sound passes. */
-static void test_slight_contrasts(void **state)
+TEST(test_slight_contrasts)
 {
     static const struct {
         struct water_layer layers[2];
@@ -430,7 +430,7 @@ static bool is_infinite(const struct arrival *ray)
            isinf(ray->wavefront_m) && isinf(ray->spreading);
 }
 
-static void test_total_reflection(void **state)
+TEST(test_total_reflection)
 {
     static const struct water_layer layers[] = {
         {0.0, 1490.0, 1.0}, {10.0, 1540.0, 1.0}, {15.0, 1490.0, 1.0}};
@@ -474,7 +474,7 @@ static void test_total_reflection(void **state)
 
 /* ---- the seabed by travel time ---- */
 
-static void test_ground_range(void **state)
+TEST(test_ground_range)
 {
     for (size_t w = 0; w < COUNT(waters); w++)
         for (uint32_t bounces = 0; bounces <= 2; bounces++) {
@@ -519,7 +519,7 @@ static double time_up(const struct water_layer *layers, size_t count, double hei
     return (double)reference_sum(&up, 0.0, 0.0L).time;
 }
 
-static void test_joined_layers(void **state)
+TEST(test_joined_layers)
 {
     static const struct water_layer layers[] = {{0.0, 1490.0, 1.0},
                                                 {0.4, 1491.0, 1.0},
@@ -564,7 +564,7 @@ static void expect_refused(const struct water_layer *layers, size_t count)
 }
 
 /* Up to 1 m both halves count alike: each is half the difference away from what joins them. */
-static void test_refused_layers(void **state)
+TEST(test_refused_layers)
 {
     struct water_layer layers[] = {{0.0, 1500.0, 1.0}, {0.5, 1500.0, 1.0}, {2.0, 1530.0, 1.2}};
     struct water water;
@@ -585,8 +585,4 @@ static void test_refused_layers(void **state)
     }
 }
 
-TEST_PROGRAM(NULL, NULL, TEST(test_snell), TEST(test_two_points), TEST(test_fermat),
-             TEST(test_linear_profiles_bend_rays_to_arcs), TEST(test_straight_water),
-             TEST(test_ray_tube), TEST(test_transmission), TEST(test_slight_contrasts),
-             TEST(test_total_reflection), TEST(test_ground_range), TEST(test_joined_layers),
-             TEST(test_refused_layers))
+TEST_PROGRAM(NULL, NULL)
