@@ -67,11 +67,12 @@ typedef struct sonject_context_params {
  * contexts may be used by different threads at once, also when these are the first to use a
  * device.
  * Contexts of one device share what is compiled for it, which is given back with the last of them.
- * On the device native, a context keeps up to 96 MB of its buffers for later calls. Forks: the
- * device native works in children, also with contexts that were made before. OpenCL does not, in a
- * child of a process in which a call asked for it (one that opened a device that was not named
- * native, or listed them): there the default is native, and other devices answer ERROR_DEVICE. The
- * program sonject-decoder, if a call needed it, has no descriptors but its own, ends with the
+ * The device native keeps up to 96 MB of buffers for later calls, until a context is released.
+ * Forks: the device native works in children, also with contexts that were made before. OpenCL does
+ * not, in a child of a process in which a call asked for it (one that opened a device that was not
+ * named native, or listed them): there the default is native, and other devices answer
+ * ERROR_DEVICE.
+ * The program sonject-decoder, if a call needed it, has no descriptors but its own, ends with the
  * context or this process, and is started anew where a file ended it. It is looked for in the
  * folder sonject beside the library (or beside the program that has it linked in), in the folder of
  * either, and where sonject was installed. */

@@ -11,7 +11,7 @@ struct device_calls {
     void (*close)(struct device *device);
     sonject_status (*buffer_reserve)(struct report *report, struct device *device, size_t bytes,
                                      device_buffer *buffer);
-    void (*buffer_release)(struct device *device, device_buffer buffer);
+    void (*buffer_release)(device_buffer buffer);
     sonject_status (*buffer_read)(struct report *report, struct device *device,
                                   device_buffer buffer, size_t offset, size_t bytes,
                                   void *contents);

@@ -137,7 +137,7 @@ sonject_status buffer_create(struct report *report, struct device *device, size_
 void buffer_release(struct device *device, device_buffer *buffer)
 {
     if (*buffer)
-        device->calls->buffer_release(device, *buffer);
+        device->calls->buffer_release(*buffer);
     *buffer = NULL;
 }
 

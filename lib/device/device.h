@@ -17,8 +17,6 @@ typedef void *device_buffer, *device_kernel;
 
 struct device_calls;
 
-#define NATIVE_BUFFERS_KEPT 12
-
 struct device {
     const struct device_calls *calls; /* backend.h */
     bool is_cpu;
@@ -30,11 +28,9 @@ struct device {
     char platform[128];
     char driver[128];
 
-    /* native's: a host's threads; NULL: the library's own; and released buffers for the next ones
-     */
+    /* native's: a host's threads; NULL: the library's own */
     sonject_run_tasks_function run_tasks;
     void *run_tasks_user;
-    void *kept[NATIVE_BUFFERS_KEPT];
 
     /* OpenCL's */
     bool is_pocl;

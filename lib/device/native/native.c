@@ -18,6 +18,9 @@
 #define KEPT_LEAST ((size_t)128 << 10) /* bytes of a buffer that is kept */
 #define KEPT_MOST  ((size_t)8 << 20)
 
+/* Released buffers, of all contexts; atomic. */
+static void *kept[12];
+
 /* In the order of enum device_program. */
 #define PROGRAMS(set)                                                                              \
     {                                                                                              \
@@ -141,27 +144,28 @@ struct buffer_head {
 
 static void native_close(struct device *device)
 {
-    for (size_t i = 0; i < NATIVE_BUFFERS_KEPT; i++)
-        free(device->kept[i]);
+    (void)device;
+    for (size_t i = 0; i < COUNT(kept); i++)
+        free(__atomic_exchange_n(&kept[i], NULL, __ATOMIC_ACQ_REL));
     threads_release();
 }
 
-static bool put_back(struct device *device, size_t place, struct buffer_head *head)
+static bool put_back(size_t place, struct buffer_head *head)
 {
     void *nothing = NULL;
-    return __atomic_compare_exchange_n(&device->kept[place], &nothing, head, false,
-                                       __ATOMIC_ACQ_REL, __ATOMIC_RELAXED);
+    return __atomic_compare_exchange_n(&kept[place], &nothing, head, false, __ATOMIC_ACQ_REL,
+                                       __ATOMIC_RELAXED);
 }
 
-/* A kept buffer of so many bytes, or up to twice as many; NULL: there is none. Threads may share a
- * device: who takes a buffer out of its place has it. */
-static struct buffer_head *take_kept(struct device *device, size_t bytes)
+/* A kept buffer of so many bytes, or up to twice as many; NULL: there is none. Of threads, who
+ * takes a buffer out of its place has it. */
+static struct buffer_head *take_kept(size_t bytes)
 {
-    for (size_t i = 0; i < NATIVE_BUFFERS_KEPT; i++) {
-        struct buffer_head *head = __atomic_exchange_n(&device->kept[i], NULL, __ATOMIC_ACQ_REL);
+    for (size_t i = 0; i < COUNT(kept); i++) {
+        struct buffer_head *head = __atomic_exchange_n(&kept[i], NULL, __ATOMIC_ACQ_REL);
         if (head && head->bytes >= bytes && head->bytes / 2 <= bytes)
             return head;
-        if (head && !put_back(device, i, head))
+        if (head && !put_back(i, head))
             free(head);
     }
     return NULL;
@@ -170,7 +174,8 @@ static struct buffer_head *take_kept(struct device *device, size_t bytes)
 static sonject_status native_reserve(struct report *report, struct device *device, size_t bytes,
                                      device_buffer *buffer)
 {
-    struct buffer_head *head = bytes < KEPT_LEAST ? NULL : take_kept(device, bytes);
+    (void)device;
+    struct buffer_head *head = bytes < KEPT_LEAST ? NULL : take_kept(bytes);
     if (!head) {
         head = bytes > SIZE_MAX - sizeof *head ? NULL : malloc(sizeof *head + bytes);
         CHECK_MEMORY(report, head, "a buffer of the device");
@@ -180,14 +185,16 @@ static sonject_status native_reserve(struct report *report, struct device *devic
     return SONJECT_OK;
 }
 
-static void native_release(struct device *device, device_buffer buffer)
+static void native_release(device_buffer buffer)
 {
     struct buffer_head *head = (struct buffer_head *)buffer - 1;
     const bool is_kept = head->bytes >= KEPT_LEAST && head->bytes <= KEPT_MOST;
-    for (size_t i = 0; is_kept && i < NATIVE_BUFFERS_KEPT; i++)
-        if (put_back(device, i, head))
+    for (size_t i = 0; is_kept && i < COUNT(kept); i++)
+        if (put_back(i, head))
             return;
-    free(head);
+    /* in the place of any other, so that those of a size that is asked for no more go */
+    void **any = &kept[((uintptr_t)head >> 12) % COUNT(kept)];
+    free(is_kept ? __atomic_exchange_n(any, head, __ATOMIC_ACQ_REL) : head);
 }
 
 static sonject_status native_read(struct report *report, struct device *device,

@@ -16,9 +16,8 @@ static sonject_status opencl_reserve(struct report *report, struct device *devic
     return opencl_answer(report, device, "clCreateBuffer", error);
 }
 
-static void opencl_release(struct device *device, device_buffer buffer)
+static void opencl_release(device_buffer buffer)
 {
-    (void)device;
     clReleaseMemObject(buffer);
 }
 
