@@ -24,10 +24,8 @@ sonject_status sonject_campaign_read(sonject_context *context, const char *path,
     CHECK(scene_read_params_take(report, path, params, &taken));
     if (taken.text)
         return report_failure(report, SONJECT_ERROR_ARGUMENT, "a campaign is read from its file");
-    const struct campaign_source source = {.path = path,
-                                           .overrides = taken.overrides,
-                                           .override_count = taken.override_count,
-                                           .allows_user_shapes = taken.allows_user_shapes != 0};
+    const struct campaign_source source = {
+        .path = path, .overrides = taken.overrides, .override_count = taken.override_count};
     return campaign_open(report, &source, campaign);
 }
 
@@ -127,7 +125,7 @@ sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaig
         return null_argument(&context->report, "campaign");
     struct device *device;
     CHECK(campaign_check_id(campaign, id));
-    CHECK(device_slot_open(&context->report, &context->device, campaign->has_user_shapes, &device));
+    CHECK(device_slot_open(&context->report, &context->device, &device));
     struct sonject_result *made = allocate_array(1, sizeof *made);
     CHECK_MEMORY(&context->report, made, "a result");
     memset(&image, 0, sizeof image);
@@ -215,10 +213,8 @@ sonject_status sonject_campaign_fit(sonject_context *context, const char *path,
     if (fit.part > SONJECT_LABELS_SHADOW)
         return report_failure(report, SONJECT_ERROR_ARGUMENT, "part must be 0 to 2, not %u",
                               (unsigned)fit.part);
-    const struct campaign_source source = {.path = path,
-                                           .overrides = taken.overrides,
-                                           .override_count = taken.override_count,
-                                           .allows_user_shapes = taken.allows_user_shapes != 0};
+    const struct campaign_source source = {
+        .path = path, .overrides = taken.overrides, .override_count = taken.override_count};
     return context_finish(context,
                           campaign_fit(report, &context->device, &source, &fit, progress, user));
 }

@@ -73,7 +73,7 @@ sonject_status sonject_element_series(sonject_context *context, const sonject_sc
     const struct injection_input input = swath_input(&swath);
     THEN(status, element_echoes_describe(report, scene, &input, &layout));
     THEN(status, check_bytes(report, &layout, bytes));
-    THEN(status, device_slot_open(report, &context->device, scene->user_shapes.count > 0, &device));
+    THEN(status, device_slot_open(report, &context->device, &device));
     THEN(status,
          element_echoes_compute(report, device, scene, &input, progress, user, &layout, series));
     swath_close(&swath);

@@ -25,8 +25,7 @@ struct device_calls {
                                    device_buffer buffer, size_t bytes);
     sonject_status (*kernel_create)(struct report *report, struct device *device,
                                     enum device_program program, enum program_variant variant,
-                                    const struct user_code *code, const char *name,
-                                    device_kernel *kernel);
+                                    const char *name, device_kernel *kernel);
     void (*kernel_release)(device_kernel kernel);
     sonject_status (*kernel_run)(struct report *report, struct device *device, device_kernel kernel,
                                  const struct kernel_argument *arguments, size_t argument_count,

@@ -200,7 +200,7 @@ bool scene_key_find(const struct section *top, const char *path, const char **ne
 extern const struct section scene_section, input_section, sonar_section, pulse_section,
     seabed_section, forward_section, relief_section, relief_grid_section, surface_section,
     material_section, medium_section, layer_section, injection_section, elements_section,
-    object_section, part_section, user_section, mesh_section;
+    object_section, part_section, mesh_section;
 
 /* ---- Reading. */
 
@@ -210,8 +210,7 @@ struct reader {
     struct report *report;
     const struct tree *tree;
     struct scene *scene;
-    bool allows_user_shapes; /* code in files is wanted */
-    bool takes_geometry;     /* of the input file, once all is read */
+    bool takes_geometry; /* of the input file, once all is read */
     enum altitude_source altitude_by;
     bool takes_first_range;
     const char *moved_folder; /* as in struct scene_source */
@@ -277,11 +276,8 @@ sonject_status read_version(struct reader *reader, const struct tree_node *node,
 /* Reads the list of objects into the reader's scene. */
 sonject_status read_objects(struct reader *reader, const struct tree_node *node, void *structure);
 
-/* Read a mesh and a user's code into the scene; structure: the sonject_object_params that has it.
- */
+/* Reads a mesh into the scene; structure: the sonject_object_params that has it. */
 sonject_status read_mesh(struct reader *reader, const struct tree_node *node, void *structure);
-sonject_status read_user_shape(struct reader *reader, const struct tree_node *node,
-                               void *structure);
 
 /* Whether names are the same but for '_' and '-' in place of blanks. */
 bool is_same_name(const char *given, const char *name);

@@ -177,7 +177,6 @@ static sonject_status fill_scene(struct tree *tree, const struct scene_source *s
     struct reader reader = {.report = tree->report,
                             .tree = tree,
                             .scene = scene,
-                            .allows_user_shapes = source->allows_user_shapes,
                             .moved_folder = source->moved_folder,
                             .moved_overrides = source->moved_overrides,
                             .arrays = source->arrays,

@@ -33,7 +33,6 @@ struct tree_place {
 struct tree_node {
     enum tree_kind kind;
     bool is_quoted; /* a text in quotes or in a block */
-    bool is_block;  /* a block that keeps its lines: they follow the place's */
     struct tree_place place;
     char *text;                 /* of a TREE_TEXT; NULL: no value at all */
     struct tree_entry *entries; /* of the other two */

@@ -12,7 +12,7 @@
 #define ZEROS_MOST  4                  /* within a run: a new one takes two numbers */
 
 typedef char block_head_is_packed[sizeof(struct block_head) == 56 ? 1 : -1];
-typedef char sums_head_is_packed[sizeof(struct sums_head) == 312 ? 1 : -1];
+typedef char sums_head_is_packed[sizeof(struct sums_head) == 272 ? 1 : -1];
 
 bool block_digest(struct block_head *head, const void *content)
 {
@@ -277,7 +277,6 @@ static bool read_head(struct sums_file *file, char *content, size_t bytes, uint6
            is_terminated(identity->code, sizeof identity->code) &&
            is_terminated(identity->scene, sizeof identity->scene) &&
            is_terminated(identity->image, sizeof identity->image) &&
-           is_terminated(identity->device, sizeof identity->device) &&
            is_terminated(head->launches, sizeof head->launches) && head->shard >= 1 &&
            head->shard <= head->shards && head->first <= head->last && head->is_last <= 1 &&
            head->records == records && read_source(file, content + sizeof *head, content + bytes);

@@ -76,15 +76,15 @@ SIZES = {
     "sonject_device_info": 400,
     "sonject_element_layout": 176,
     "sonject_elements_params": 128,
-    "sonject_form_params": 48,
+    "sonject_form_params": 40,
     "sonject_measure_params": 136,
     "sonject_measurement": 112,
-    "sonject_merge_params": 24,
+    "sonject_merge_params": 16,
     "sonject_object_truth": 376,
     "sonject_pixels": 48,
     "sonject_quicklook_params": 80,
     "sonject_run_params": 48,
-    "sonject_scene_read_params": 32,
+    "sonject_scene_read_params": 24,
     "sonject_statistics": 240,
 }
 

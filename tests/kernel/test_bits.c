@@ -10,7 +10,6 @@
 #include "kernel/reference_solids.h"
 #include "mesh_arrays.h"
 #include "physics/bench.h"
-#include "physics/user_codes.h"
 
 #define ROWS    96
 #define COLUMNS 128
@@ -110,17 +109,10 @@ static void place_more_shapes(struct bench *bench)
 
 static void place_crowd(struct bench *bench)
 {
-    sonject_user_shape_params params = {0};
-    params.name = "sphere.cl";
-    params.code = SPHERE_CODE;
-    params.bounding_radius_m = params.parameters[0] = 0.2;
-    params.parameter_count = 1;
-    EXPECT_OK(&bench->report,
-              user_shapes_append(&bench->scene.user_shapes, &bench->report, &params));
     bench_add_tetrahedron(bench);
     for (int i = 0; i < 22; i++) {
-        const enum shape_kind shape = i == 0 ? SHAPE_MESH : i == 1 ? SHAPE_USER : SHAPE_SPHERE;
-        bench_place(bench_add(bench, shape, 0.0, 0.0, i < 2 ? 0.0 : 0.08 + 0.002 * i),
+        const enum shape_kind shape = i == 0 ? SHAPE_MESH : SHAPE_SPHERE;
+        bench_place(bench_add(bench, shape, 0.0, 0.0, i == 0 ? 0.0 : 0.08 + 0.002 * i),
                     12.0 + 18.0 * (i % 5), 15.0 + 22.0 * (i / 5), 0.0, 0.0, 0.0);
     }
 }

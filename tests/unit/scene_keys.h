@@ -64,9 +64,9 @@ static const struct key_case {
     const char *value;
     enum type type;
     size_t offset; /* in struct scene; in the first object if the path starts with objects, in the
-                      first part if it goes on with parts, in the first user shape if it goes
-                      through user, in the layers if it starts with medium.layers or .profile, in
-                      the relief's first feature, or in its grid, if with seabed.relief */
+                      first part if it goes on with parts, in the layers if it starts with
+                      medium.layers or .profile, in the relief's first feature, or in its grid, if
+                      with seabed.relief */
     double number;
     const char *text;
     const char *other;
@@ -76,7 +76,6 @@ static const struct key_case {
 #define O(type, member)             MEMBER_OF(sonject_object_params, type, member)
 #define P(type, member)             MEMBER_OF(struct scene_part, type, member)
 #define M(type, member)             MEMBER_OF(struct mesh, type, member)
-#define U(type, member)             MEMBER_OF(struct user_shape, type, member)
 #define R(type, member)             MEMBER_OF(struct relief_feature, type, member)
 #define G(type, member)             MEMBER_OF(sonject_relief_params, type, member)
 #define L(type, index, member)                                                                     \
@@ -479,27 +478,6 @@ static const struct key_case {
      .number = -0.75, .other = A_PART(A_SPHERE)},
     {"objects[].parts[].material", "gravel", P(U32, shape.material.reflection_kind),
      .number = SONJECT_REFLECTION_FLUID, .other = A_PART(A_SPHERE)},
-#define BOULDER SOURCE_ROOT "/tools/targets/boulder_relief.cl"
-#define A_USER  "shape: user, user: {bounding_radius: 1"
-    {"objects[].user.bounding_radius", "90 cm", U(DOUBLE, bounding_radius_m), .number = 0.9,
-     .other = "objects[0]={" A_USER ", file: " BOULDER "}}"},
-    {"objects[].user.half_length", "30 cm", U(DOUBLE, half_length_m), .number = 0.3,
-     .other = "objects[0]={" A_USER ", file: " BOULDER "}}"},
-    {"objects[].user.half_width", "20 cm", U(DOUBLE, half_width_m), .number = 0.2,
-     .other = "objects[0]={" A_USER ", file: " BOULDER "}}"},
-    {"objects[].user.half_height", "10 cm", U(DOUBLE, half_height_m), .number = 0.1,
-     .other = "objects[0]={" A_USER ", file: " BOULDER "}}"},
-    {"objects[].user.open", "true", U(BOOL, is_open), .number = 1.0,
-     .other = "objects[0]={" A_USER ", file: " BOULDER "}}"},
-    /* how code and numbers arrive: test_user_shapes.c */
-    {"objects[].user.parameters", "[1, 2]", NOTHING,
-     .other = "objects[0]={" A_USER ", file: " BOULDER "}}"},
-    {"objects[].user.file", BOULDER, NOTHING, .other = "objects[0]={" A_USER "}}"},
-    {"objects[].user.code", "float shape_distance(); float3 shape_normal();", NOTHING,
-     .other = "objects[0]={" A_USER "}}"},
-    {"objects[].parts[].user.bounding_radius", "90 cm", U(DOUBLE, bounding_radius_m), .number = 0.9,
-     .other = A_PART(A_USER ", file: " BOULDER "}")},
-    /* how code and numbers arrive: test_user_shapes.c */
 };
 
 /* All keys, for json_decref. */
@@ -546,8 +524,6 @@ static inline double number_at(const void *structure, const struct key_case *key
 
 static inline const void *structure_of(const struct scene *scene, const char *path)
 {
-    if (strstr(path, ".user."))
-        return scene->user_shapes.shapes;
     if (strstr(path, "].mesh"))
         return scene->meshes;
     if (strncmp(path, "objects[].parts", 15) == 0)
@@ -620,7 +596,7 @@ static inline sonject_status read_case(struct scene_folder *folder, const struct
         overrides[count++] = override;
     }
     write_scene(folder, base_of(key), strlen(base_of(key)));
-    return read_scene_with(folder, overrides, count, true);
+    return read_scene(folder, overrides, count);
 }
 
 #endif

@@ -12,7 +12,7 @@
 
 static const char *const examples[] = {"demo",    "elements", "figure4", "figure5",
                                        "figure6", "figure7",  "layers",  "relief",
-                                       "shapes",  "surface",  "targets", "user_shape"};
+                                       "shapes",  "surface",  "targets"};
 
 /* How many are tried of each example. */
 static size_t mutations_wanted(void)
@@ -61,14 +61,13 @@ static sonject_status read_bytes(struct scene_folder *folder, const char *text, 
 {
     if (memchr(text, 0, bytes)) {
         write_scene(folder, text, bytes);
-        return read_scene_with(folder, NULL, 0, true);
+        return read_scene(folder, NULL, 0);
     }
     char *copy = malloc(bytes + 1);
     assert_non_null(copy);
     memcpy(copy, text, bytes);
     copy[bytes] = 0;
-    const struct scene_source source = {
-        .path = folder->file, .text = copy, .allows_user_shapes = true};
+    const struct scene_source source = {.path = folder->file, .text = copy};
     scene_clear(&folder->scene);
     const sonject_status status = scene_source_read(&source, &folder->report, &folder->scene);
     free(copy);

@@ -8,9 +8,6 @@
 #include "scene_context.h"
 #include "temporary_folder.h"
 
-#define CODE                                                                                       \
-    "float shape_distance(float3 p, float3 d, float n, const float *k) {return INFINITY;}\\n"      \
-    "float3 shape_normal(float3 p, const float *k) {return p;}\\n"
 #define HEAD                                                                                       \
     "sonject: 1\n"                                                                                 \
     "input: {geometry: {row_spacing: 0.1, column_spacing: 0.1, first_slant_range: 40}}\n"          \
@@ -20,7 +17,6 @@ static sonject_scene *read_text(sonject_context *context, const char *text)
 {
     sonject_scene *scene = NULL;
     sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
-    params.allows_user_shapes = 1;
     EXPECT_OK(&context->report, sonject_scene_read(context, NULL, &params, &scene));
     return scene;
 }
@@ -155,27 +151,16 @@ static void values_are_checked_by_the_call_that_uses_the_scene(void **state)
     sonject_scene_release(&scene);
 }
 
-/* Code in a target's file is a program as much as in the scene's own. */
-static void a_target_is_that_of_a_file_and_its_code_needs_consent(void **state)
+static void a_target_is_that_of_a_file(void **state)
 {
-    static const char relief[] = "{target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml}";
     sonject_context *context = *state;
-    sonject_scene *careful = NULL;
-    sonject_scene_read_params params = {.struct_size = sizeof params, .text = HEAD};
-    uint32_t count;
     sonject_scene *scene = read_text(context, HEAD);
     set(context, scene, "objects[0]",
         "{target: " SOURCE_ROOT "/tools/targets/crab_pot_frame.yaml, burial: {fraction: 0.25}}");
-    set(context, scene, "objects[1]", relief);
     expect_same(context, scene,
                 read_text(context, HEAD "objects:\n  - {target: " SOURCE_ROOT
                                         "/tools/targets/crab_pot_frame.yaml, burial: {fraction: "
-                                        "0.25}}\n  - {target: " SOURCE_ROOT
-                                        "/tools/targets/boulder_relief.yaml}\n"));
-    EXPECT_OK(&context->report, sonject_scene_read(context, NULL, &params, &careful));
-    set(context, careful, "objects[0]", relief);
-    assert_int_equal(sonject_scene_object_count(careful, &count), SONJECT_ERROR_INPUT);
-    sonject_scene_release(&careful);
+                                        "0.25}}\n"));
 }
 
 static void the_text_of_a_scene_is_the_scene(void **state)
@@ -183,8 +168,7 @@ static void the_text_of_a_scene_is_the_scene(void **state)
     sonject_context *context = *state;
     char *text = NULL;
     sonject_scene *scene = read_text(context, HEAD);
-    set(context, scene, "objects[0]",
-        "{name: \"a \\\"b\\\"\", shape: user, user: {bounding_radius: 1, code: \"" CODE "\"}}");
+    set(context, scene, "objects[0]", "{name: \"a \\\"b\\\"\", shape: sphere, diameter: 1}");
     set(context, scene, "objects[0].position", "{row: 3, column: 4}");
     EXPECT_OK(&context->report, sonject_scene_text(scene, &text));
     expect_same(context, scene, read_text(context, text));
@@ -304,6 +288,6 @@ TEST_PROGRAM(make_context, release_context,
              TEST(a_call_beats_all_that_was_given_with_the_text),
              TEST(keys_that_are_none_are_refused_at_once),
              TEST(values_are_checked_by_the_call_that_uses_the_scene),
-             TEST(a_target_is_that_of_a_file_and_its_code_needs_consent),
-             TEST(the_text_of_a_scene_is_the_scene), TEST(a_table_in_memory_is_that_of_a_file),
-             TEST(heights_in_memory_are_a_relief), TEST(tables_that_are_none_are_refused))
+             TEST(a_target_is_that_of_a_file), TEST(the_text_of_a_scene_is_the_scene),
+             TEST(a_table_in_memory_is_that_of_a_file), TEST(heights_in_memory_are_a_relief),
+             TEST(tables_that_are_none_are_refused))

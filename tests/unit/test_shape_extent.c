@@ -287,22 +287,6 @@ static void test_extents_of_meshes(void **state)
     mesh_clear(&mesh);
 }
 
-/* Of a user's shape the lesser of a box and a sphere is known. */
-static void test_extents_of_user_shapes(void **state)
-{
-    static const double upward[3] = {0.0, 0.0, 1.0}, slanting[3] = {0.6, 0.0, 0.8};
-    const struct user_shape shape = {
-        .bounding_radius_m = 1.0, .half_length_m = 1.0, .half_width_m = 1.0, .half_height_m = 0.8};
-    struct shape_size size;
-    sonject_object_params object;
-    object_init(&object);
-    object.shape = SHAPE_USER;
-    shape_size_init(&size, &object);
-    shape_size_of_user_shape(&size, &shape);
-    assert_true(fabs(shape_extent(&size, SHAPE_USER, upward) - 0.8) < 1e-9);
-    assert_true(fabs(shape_extent(&size, SHAPE_USER, slanting) - 1.0) < 1e-9); /* the sphere's */
-}
-
 /* A mesh of a box lies as deep as the box. */
 static void test_meshes_lie_as_deep(void **state)
 {
@@ -341,4 +325,4 @@ static void test_meshes_lie_as_deep(void **state)
 TEST_PROGRAM(NULL, NULL, TEST(test_clouds_of_points), TEST(test_closed_forms),
              TEST(test_bounding_radius), TEST(test_objects_rest_on_the_seabed),
              TEST(test_nothing_stands_prouder_than_it_is_high), TEST(test_extents_of_meshes),
-             TEST(test_extents_of_user_shapes), TEST(test_meshes_lie_as_deep))
+             TEST(test_meshes_lie_as_deep))

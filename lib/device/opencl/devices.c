@@ -249,8 +249,7 @@ static sonject_status choose_device(struct report *report, const char *name,
     if (count == 0)
         return report_failure(report, SONJECT_ERROR_DEVICE,
                               "no OpenCL device found: install a driver, such as the package "
-                              "pocl-opencl-icd for the CPU%s",
-                              name ? ", or name the device native" : "; users' shapes need one");
+                              "pocl-opencl-icd for the CPU, or name the device native");
     return report_failure(report, SONJECT_ERROR_DEVICE,
                           "no device has '%s' in its name: `sonject devices` lists them", name);
 }

@@ -51,7 +51,6 @@ extern const struct device_calls opencl_calls;
 void opencl_close(struct device *device);
 sonject_status opencl_kernel_create(struct report *report, struct device *device,
                                     enum device_program program, enum program_variant variant,
-                                    const struct user_code *code, const char *name,
-                                    device_kernel *kernel);
+                                    const char *name, device_kernel *kernel);
 
 #endif

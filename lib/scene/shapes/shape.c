@@ -9,7 +9,6 @@ const struct shape_key_name shape_keys[] = {
     {"width", SHAPE_HAS_WIDTH},
     {"diameter", SHAPE_HAS_DIAMETER},
     {"height", SHAPE_HAS_HEIGHT},
-    {"user", SHAPE_HAS_CODE},
     {"top_diameter", SHAPE_HAS_TOP_DIAMETER},
     {"front_height", SHAPE_HAS_FRONT_HEIGHT},
     {"nose_end", SHAPE_HAS_ENDS},
@@ -60,8 +59,6 @@ void shape_size_init_in_scene(struct shape_size *size, const struct scene *scene
     shape_size_init(size, object);
     if (object->shape == SHAPE_MESH)
         shape_size_of_mesh(size, &scene->meshes[object->mesh]);
-    if (object->shape == SHAPE_USER)
-        shape_size_of_user_shape(size, &scene->user_shapes.shapes[object->user_shape]);
 }
 
 bool shape_is_convex(const struct shape_size *size, uint32_t shape)
