@@ -45,10 +45,8 @@ sonject_status native_open(struct report *report, const sonject_context_params *
 sonject_status opencl_list(struct report *report, sonject_device_info *devices, size_t capacity,
                            size_t *count, size_t *gpu);
 
-/* The host's device where params have its context; else the first that `name` is part of; NULL: the
- * first GPU, else the first of any kind. */
-sonject_status opencl_open(struct report *report, const sonject_context_params *params,
-                           const char *name, struct device *device);
+/* The first that `name` is part of; NULL: the first GPU, else the first of any kind. */
+sonject_status opencl_open(struct report *report, const char *name, struct device *device);
 
 /* Sets what a device is called, its lanes and its units. */
 void device_take_info(struct device *device, const sonject_device_info *info);

@@ -50,11 +50,8 @@ static sonject_status open_chosen(struct report *report, const sonject_context_p
     const char *name = params->device_name             ? params->device_name
                        : environment && environment[0] ? environment
                                                        : NULL;
-    const bool is_native = params->opencl_context ? false
-                           : name                 ? native_is_named(name)
-                                                  : !has_gpu();
-    return is_native ? native_open(report, params, device)
-                     : opencl_open(report, params, name, device);
+    const bool is_native = name ? native_is_named(name) : !has_gpu();
+    return is_native ? native_open(report, params, device) : opencl_open(report, name, device);
 }
 
 sonject_status device_open(struct report *report, const sonject_context_params *params,

@@ -70,10 +70,6 @@ void device_slot_close(struct device_slot *slot);
  * ever: refuses in a child of a process that used the driver. Errors: DEVICE. */
 sonject_status driver_claim(struct report *report);
 
-/* Keeps a host's OpenCL context, NULL: none, alive until it is released. */
-void host_context_retain(struct report *report, void *opencl_context);
-void host_context_release(void *opencl_context);
-
 /* A buffer of bytes (at least 1), filled from contents, or with zeros if contents is NULL. To be
  * given to buffer_release. Errors: DEVICE, MEMORY. */
 sonject_status buffer_create(struct report *report, struct device *device, size_t bytes,

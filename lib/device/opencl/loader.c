@@ -55,7 +55,6 @@ OBJECT(cl_context, clCreateContext,
         void(CL_CALLBACK *notify)(const char *, const void *, size_t, void *), void *user,
         cl_int *error),
        (properties, count, devices, notify, user, error))
-STATUS(clRetainContext, (cl_context context), (context))
 STATUS(clReleaseContext, (cl_context context), (context))
 OBJECT(cl_command_queue, clCreateCommandQueue,
        (cl_context context, cl_device_id device, cl_command_queue_properties properties,

@@ -23,7 +23,6 @@ struct shared_device {
     struct shared_device *next;
     size_t users;
     cl_device_id id;
-    cl_context host_context; /* NULL: `context` is the library's own */
     cl_context context;
     size_t program_count;
     struct kept_program programs[PROGRAMS_KEPT]; /* the one used last first */
