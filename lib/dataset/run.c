@@ -9,7 +9,6 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
-#include "base/progress.h"
 #include "base/report.h"
 #include "base/system/process.h"
 #include "inject/scene_hash.h"

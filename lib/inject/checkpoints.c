@@ -8,7 +8,6 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/progress.h"
 #include "base/report.h"
 #include "base/system/process.h"
 #include "inject/accuracy.h"

@@ -37,7 +37,8 @@ static const struct named_material materials[] = {
     {"clay", 1.145, 0.9801, 0.00148, 1.0e-3, 1.9953e-3, 9.0},
 };
 
-bool is_same_name(const char *given, const char *name)
+/* Whether names are the same but for '_' and '-' in place of blanks. */
+static bool is_same_name(const char *given, const char *name)
 {
     for (; *name; given++, name++) {
         const char letter = *given == '_' || *given == '-' ? ' ' : *given;
@@ -79,21 +80,33 @@ double material_grain_size(uint32_t index)
     return index == 0 ? NAN : materials[index - 1].grain_size_phi;
 }
 
-sonject_status read_material_name(struct reader *reader, const struct tree_node *node,
-                                  void *structure)
+sonject_status find_material(struct reader *reader, const struct tree_node *node, bool of_sediments,
+                             uint32_t *index)
 {
     const char *names[COUNT(materials) + 1];
     struct word_list list = {{0}, 0};
     const char *name = read_text(reader, node);
     if (!name)
         return SONJECT_ERROR_INPUT;
-    if (material_named(name, structure))
-        return SONJECT_OK;
-    while (material_name((uint32_t)list.count)) {
-        names[list.count] = material_name((uint32_t)list.count);
+    for (uint32_t i = 0; material_name(i); i++) {
+        if (of_sediments && isnan(material_grain_size(i)))
+            continue;
+        *index = i;
+        if (is_same_name(name, material_name(i)))
+            return SONJECT_OK;
+        names[list.count] = material_name(i);
         list_word(&list, names[list.count]);
     }
     return refuse_word(reader, node, name, &list, nearest_word(name, names, list.count));
+}
+
+sonject_status read_material_name(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    uint32_t index;
+    CHECK(find_material(reader, node, false, &index));
+    material_named(material_name(index), structure);
+    return SONJECT_OK;
 }
 
 /* The sediment's backscatter stays the seabed's own. */

@@ -28,12 +28,6 @@ enum file_axis {
     AXIS_Z_REVERSED
 };
 
-static sonject_status read_unit(struct reader *reader, const struct tree_node *node,
-                                void *structure)
-{
-    return read_length_unit(reader, node, &((struct mesh_text *)structure)->unit_m);
-}
-
 /* 1, 2, 3, negative where reversed, as struct mesh_options has it. */
 static int signed_axis(uint32_t axis)
 {
@@ -77,7 +71,7 @@ static sonject_status finish_mesh(struct reader *reader, const struct tree_node 
     }
 static const struct field mesh_fields[] = {
     {"file", "of triangles: STL, OBJ or PLY", .kind = FIELD_FILE, MEMBER(path), REQUIRED},
-    {"unit", "of the file's numbers, by default m", SPECIAL(read_unit, "m, km, cm, mm")},
+    {"unit", "of the file's numbers, by default m", LENGTH_UNIT(unit_m)},
     {"nose", "axis of the file that is the object's nose", WORD(nose) = AXIS_WORDS},
     {"up", "axis of the file that is up when level", WORD(up) = AXIS_WORDS, .preset = AXIS_Z},
     {"open", "a mesh that is not watertight is taken as thin sheets; by default it is refused",

@@ -36,7 +36,7 @@ END_SECTION(tail_end, tail_end)
                  [SONJECT_END_SPHERICAL] = "spherical"},                                           \
     .section = &end##_section
 
-#define SIZE(its) QUANTITY(its, LENGTH), POSITIVE, NONE_IF_ZERO
+#define SIZE(its) QUANTITY(its, LENGTH), POSITIVE
 
 #define SHAPE_WORD(NUMBER, name, traits) [SHAPE_##NUMBER] = #name,
 #define SHAPE_FIELDS                                                                               \

@@ -279,13 +279,8 @@ static sonject_status read_pings(struct reader *reader, const struct tree_node *
         .rises = true};
     struct scene *scene = structure;
     struct number_table table;
-    char *path = NULL;
-    CHECK(read_existing_path(reader, node, &path));
-    sonject_status status =
-        number_table_read(reader->report, path, find_array(reader, path), &format, &table);
-    free(path);
-    if (status != SONJECT_OK)
-        return status;
+    sonject_status status = SONJECT_OK;
+    CHECK(read_number_table(reader, node, &format, &table));
     const double *ranges = table.values[PING_FIRST_RANGE];
     for (size_t i = 0; status == SONJECT_OK && i < table.count; i++)
         if (!(table.values[PING_ALTITUDE][i] > 0.0))

@@ -285,17 +285,11 @@ static bool read_head(struct sums_file *file, char *content, size_t bytes, uint6
 /* False where memory lacks. */
 static bool note_sums(struct sums_file *file, uint64_t records, uint64_t at, uint64_t bytes)
 {
-    const struct sums_block block = {at, bytes};
-    if ((records & (records + 1)) == 0) { /* 0, 1, 3, 7...: room for twice as many */
-        struct sums_block *more =
-            records < SIZE_MAX / sizeof *more / 4
-                ? realloc(file->sums, (size_t)(2 * records + 1) * sizeof *more)
-                : NULL;
-        if (!more)
-            return false;
-        file->sums = more;
-    }
-    file->sums[records] = block;
+    struct sums_block *more = grow_doubling(file->sums, (size_t)records, sizeof *more);
+    if (!more)
+        return false;
+    file->sums = more;
+    file->sums[records] = (struct sums_block){at, bytes};
     return true;
 }
 

@@ -96,23 +96,9 @@ void shape_record_init(struct object_record *record, const struct shape_size *si
         row->record(record, size);
 }
 
-/* 0 is a length that nobody gave, else rows of keys keep them in their bounds. */
-static void check_sizes(struct check *check, const sonject_object_params *object, uint32_t needs)
-{
-    if (needs & SHAPE_HAS_LENGTH)
-        check_positive_length(check, "length", object->length_m);
-    if (needs & SHAPE_HAS_WIDTH)
-        check_positive_length(check, "width", object->width_m);
-    if (needs & SHAPE_HAS_DIAMETER)
-        check_positive_length(check, "diameter", object->diameter_m);
-    if (needs & SHAPE_HAS_HEIGHT)
-        check_positive_length(check, "height", object->height_m);
-}
-
 void check_shape(struct check *check, const sonject_object_params *object)
 {
     const struct shape *shape = shape_of(object->shape);
-    check_sizes(check, object, shape->needs);
     if (shape->check)
         shape->check(check, object);
 }
