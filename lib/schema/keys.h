@@ -32,7 +32,7 @@ enum field_kind {
     FIELD_SECTION,  /* a structure; the same one as its parent's where offset is 0 */
     FIELD_NAMED,    /* the same, or a single text that `read` takes into the structure */
     FIELD_ENTRIES,  /* an array of structures, which the section fills, and how many there are */
-    FIELD_SPECIAL   /* no single member: read by a function of its own */
+    FIELD_SPECIAL   /* no single member: read by a function of its own; NULL: before the table is */
 };
 
 /* What bounds of a number mean. */
