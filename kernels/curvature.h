@@ -9,16 +9,6 @@
  * rounding (6e-8) does not. */
 #define CURVATURE_STEP 5.0e-4f
 
-FUNCTION struct vector3 own_normal(GLOBAL const struct object_record *object, struct vector3 point,
-                                   struct vector3 direction)
-{
-#ifdef WITH_USER_SHAPES
-    if (object->shape == SHAPE_USER)
-        return user_object_normal(object, point, direction);
-#endif
-    return shape_normal(object, point, direction);
-}
-
 /* Change of one object's normal, in its own frame, for a shift on the tangent plane of a point.
  * Beside an edge the two sides differ; the one that bends less is the hit's own face. */
 FUNCTION struct vector3 own_normal_change(GLOBAL const struct object_record *object,
@@ -27,9 +17,9 @@ FUNCTION struct vector3 own_normal_change(GLOBAL const struct object_record *obj
 {
     const vfloat length = larger(SQUARE_ROOT(dot3(shift, shift)), SPLAT(1.0e-12f));
     const vfloat step = CURVATURE_STEP * object->bounding_radius / length;
-    const struct vector3 here = own_normal(object, point, direction);
-    const struct vector3 ahead = own_normal(object, along3(point, shift, step), direction);
-    const struct vector3 behind = own_normal(object, along3(point, shift, -step), direction);
+    const struct vector3 here = shape_normal(object, point, direction);
+    const struct vector3 ahead = shape_normal(object, along3(point, shift, step), direction);
+    const struct vector3 behind = shape_normal(object, along3(point, shift, -step), direction);
     const struct vector3 forth = along3(ahead, here, SPLAT(-1.0f));
     const struct vector3 back = along3(here, behind, SPLAT(-1.0f));
     const vfloat square_forth = dot3(forth, forth);

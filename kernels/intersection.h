@@ -10,9 +10,6 @@
 #if HAS_MESHES
 #include "mesh_object.h"
 #endif
-#ifdef WITH_USER_SHAPES /* only where a scene has some, in OpenCL C */
-#include "user_object.h"
-#endif
 
 /* Turns a vector of the launch's frame into the object's own. */
 FUNCTION struct vector3 into_object(GLOBAL const struct object_record *object, struct vector3 v)
@@ -152,10 +149,6 @@ FUNCTION vfloat object_distance(GLOBAL const struct object_record *object, struc
         return approach + mesh_object_distance(object, start, step, beyond, farthest);
     }
 #endif
-#ifdef WITH_USER_SHAPES
-    if (object->shape == SHAPE_USER)
-        return approach + user_object_distance(object, start, step, minimum - approach, is_near);
-#endif
     const struct spans inside = shape_spans(object, start, step);
     return smaller(first_end_beyond(inside.first, approach, minimum),
                    first_end_beyond(inside.second, approach, minimum));
@@ -175,20 +168,6 @@ FUNCTION struct mesh_surface surface_of_mesh(GLOBAL const struct object_record *
 }
 #endif
 
-#ifdef WITH_USER_SHAPES
-/* In the object's own frame. */
-FUNCTION struct vector3 normal_of_user_shape(GLOBAL const struct object_record *object,
-                                             struct vector3 point, struct vector3 direction,
-                                             vfloat distance)
-{
-    const struct vector3 relative = from_centre(object, point);
-    const vfloat approach = -dot3(relative, direction);
-    const struct vector3 start = into_object(object, along3(relative, direction, approach));
-    const struct vector3 step = into_object(object, direction);
-    return user_object_normal(object, along3(start, step, distance - approach), step);
-}
-#endif
-
 /* Outward unit normal where the ray meets the object at that distance, which object_distance gave
  * for the same ray. Of a mesh that of the facet: what physical optics integrates over. */
 FUNCTION struct vector3 object_normal(GLOBAL const struct object_record *object,
@@ -198,10 +177,6 @@ FUNCTION struct vector3 object_normal(GLOBAL const struct object_record *object,
 #if HAS_MESHES
     if (object->shape == SHAPE_MESH)
         return out_of_object(object, surface_of_mesh(object, point, direction, distance).facet);
-#endif
-#ifdef WITH_USER_SHAPES
-    if (object->shape == SHAPE_USER)
-        return out_of_object(object, normal_of_user_shape(object, point, direction, distance));
 #endif
     const struct vector3 hit =
         into_object(object, from_centre(object, along3(point, direction, distance)));

@@ -111,8 +111,7 @@ struct object_record {
     float slant_offset;    /* m: of that face from the centre */
     float bounding_radius; /* m, about the centre */
     struct end_record ends[ENDS];
-    RECORD_WORD mesh_words;    /* mesh: where its mesh_record is, in 4-byte words from this record;
-                                  user's shape: likewise, its user_record */
+    RECORD_WORD mesh_words; /* mesh: where its mesh_record is, in 4-byte words from this record */
     RECORD_WORD fouling_words; /* where its fouling_record is, likewise; 0: it has none */
     RECORD_WORD tree_words; /* of the first record: where the object_tree_record of all objects is,
                                likewise; 0: there is none */
@@ -411,15 +410,6 @@ struct object_tree_record {
     float grain;    /* m: rays no further apart than this are tested together */
     float radius;   /* m about the middle: holds every box */
     RECORD_INT branches;
-};
-
-/* What the kernels know of a shape that a user wrote, behind the records of all objects. */
-#define USER_PARAMETERS 16
-
-struct user_record {
-    RECORD_INT snippet; /* number of the code among the program's */
-    RECORD_INT is_open; /* no inside: the normal turns to the side that the ray comes from */
-    float parameters[USER_PARAMETERS]; /* 0 beyond those that are given */
 };
 
 #endif

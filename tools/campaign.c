@@ -14,7 +14,6 @@ struct campaign_options {
     const char *shard;
     struct whole_argument only;
     struct number_argument exit_after;
-    bool allows_user_shapes;
 };
 
 static const struct argument arguments[] = {
@@ -28,8 +27,6 @@ static const struct argument arguments[] = {
      offsetof(struct campaign_options, only)},
     {"--exit-after", NULL, "SECONDS", "stops after so long, as after SIGTERM", ARGUMENT_NUMBER,
      false, offsetof(struct campaign_options, exit_after)},
-    {"--allow-user-shapes", NULL, NULL, "take shapes that files describe by code", ARGUMENT_FLAG,
-     false, offsetof(struct campaign_options, allows_user_shapes)},
     {"--overwrite", NULL, NULL, OVERWRITE_HELP, ARGUMENT_FLAG, false,
      offsetof(struct campaign_options, overwrites)},
     STAGE_ARGUMENTS(struct campaign_options),
@@ -41,7 +38,6 @@ static sonject_status make(sonject_context *context, const void *verb_options,
     const struct campaign_options *options = verb_options;
     sonject_campaign *campaign = NULL;
     const sonject_scene_read_params reading = {.struct_size = sizeof(reading),
-                                               .allows_user_shapes = options->allows_user_shapes,
                                                .overrides = options->overrides.texts,
                                                .override_count =
                                                    (uint32_t)options->overrides.count};

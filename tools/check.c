@@ -13,8 +13,6 @@ struct check_options {
 static const struct argument arguments[] = {
     {"--set", NULL, "KEY.PATH=VALUE", "replaces or adds a key of the scene; may be repeated",
      ARGUMENT_TEXTS, false, offsetof(struct check_options, scene.overrides)},
-    {"--allow-user-shapes", NULL, NULL, "tries code of shapes in the scene; only if you trust it",
-     ARGUMENT_FLAG, false, offsetof(struct check_options, scene.allows_user_shapes)},
 };
 
 static int work(const void *verb_options)

@@ -13,7 +13,6 @@ struct fit_options {
     const char *contacts;
     const char *boxes;
     struct text_list overrides;
-    bool allows_user_shapes;
 };
 
 static const struct argument arguments[] = {
@@ -24,8 +23,6 @@ static const struct argument arguments[] = {
      offsetof(struct fit_options, boxes)},
     {"--set", NULL, "KEY=VALUE", "changes the campaign that is fitted; may be repeated",
      ARGUMENT_TEXTS, false, offsetof(struct fit_options, overrides)},
-    {"--allow-user-shapes", NULL, NULL, "take shapes that files describe by code", ARGUMENT_FLAG,
-     false, offsetof(struct fit_options, allows_user_shapes)},
     STAGE_ARGUMENTS(struct fit_options),
 };
 
@@ -50,7 +47,6 @@ static sonject_status make(sonject_context *context, const void *verb_options,
 {
     const struct fit_options *options = verb_options;
     const sonject_scene_read_params reading = {.struct_size = sizeof(reading),
-                                               .allows_user_shapes = options->allows_user_shapes,
                                                .overrides = options->overrides.texts,
                                                .override_count =
                                                    (uint32_t)options->overrides.count};

@@ -12,7 +12,6 @@ struct form_options {
     const char *labels;
     const char *file;
     struct text_list overrides;
-    bool allows_user_shapes;
 };
 
 static const struct argument arguments[] = {
@@ -21,8 +20,6 @@ static const struct argument arguments[] = {
     {"--set", NULL, "KEY.PATH=VALUE",
      "another pulse, bandwidth, resolution, response or motion; may be repeated", ARGUMENT_TEXTS,
      false, offsetof(struct form_options, overrides)},
-    {"--allow-user-shapes", NULL, NULL, "runs code of shapes in the scene; only if you trust it",
-     ARGUMENT_FLAG, false, offsetof(struct form_options, allows_user_shapes)},
     {"--labels", NULL, "FORMATS", LABELS_HELP, ARGUMENT_TEXT, false,
      offsetof(struct form_options, labels)},
     {"--overwrite", NULL, NULL, OVERWRITE_HELP, ARGUMENT_FLAG, false,
@@ -41,7 +38,6 @@ static sonject_status form(sonject_context *context, const void *verb_options,
     labels_parse("form", options->labels, &params.labels);
     params.overrides = (const char *const *)options->overrides.texts;
     params.override_count = (uint32_t)options->overrides.count;
-    params.allows_user_shapes = options->allows_user_shapes;
     return sonject_form(context, NULL, &params, progress_update, progress, was_finished);
 }
 

@@ -14,15 +14,11 @@
 struct merge_options {
     struct stage_options stage; /* output: the operand */
     const char *labels;
-    bool allows_user_shapes;
 };
 
 static const struct argument arguments[] = {
     {"--labels", NULL, "FORMATS", LABELS_HELP, ARGUMENT_TEXT, false,
      offsetof(struct merge_options, labels)},
-    {"--allow-user-shapes", NULL, NULL,
-     "takes code of shapes in a run's scene; only if you trust it", ARGUMENT_FLAG, false,
-     offsetof(struct merge_options, allows_user_shapes)},
     STAGE_ARGUMENTS(struct merge_options),
 };
 
@@ -31,7 +27,6 @@ static sonject_status merge_run(sonject_context *context, const struct merge_opt
 {
     sonject_merge_params params = {.struct_size = sizeof(params)};
     params.folder = options->stage.output;
-    params.allows_user_shapes = options->allows_user_shapes;
     labels_parse("merge", options->labels, &params.labels);
     return sonject_merge(context, NULL, &params, progress_update, progress, was_finished);
 }

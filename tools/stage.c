@@ -64,10 +64,8 @@ sonject_status scene_arguments_read(sonject_context *context,
         snprintf(band, sizeof(band), "band=%s", arguments->band);
         overrides[count++] = band;
     }
-    const sonject_scene_read_params params = {.struct_size = sizeof(params),
-                                              .allows_user_shapes = arguments->allows_user_shapes,
-                                              .overrides = overrides,
-                                              .override_count = (uint32_t)count};
+    const sonject_scene_read_params params = {
+        .struct_size = sizeof(params), .overrides = overrides, .override_count = (uint32_t)count};
     const sonject_status status = sonject_scene_read(context, arguments->path, &params, scene);
     free(overrides);
     return status;

@@ -55,7 +55,6 @@ struct scene_arguments {
     const char *path;
     struct text_list overrides;
     struct whole_argument seed; /* an override too, the last */
-    bool allows_user_shapes;
     const char *band; /* --set band=, of a verb that goes through all; NULL: as the scene says */
 };
 
@@ -69,17 +68,9 @@ struct scene_arguments {
      ARGUMENT_WHOLE,                                                                               \
      false,                                                                                        \
      offsetof(structure, scene.seed)},                                                             \
-        {"--set",                                                                                  \
-         NULL,                                                                                     \
-         "KEY.PATH=VALUE",                                                                         \
-         "replaces or adds a key of the scene; may be repeated",                                   \
-         ARGUMENT_TEXTS,                                                                           \
-         false,                                                                                    \
-         offsetof(structure, scene.overrides)},                                                    \
     {                                                                                              \
-        "--allow-user-shapes", NULL, NULL,                                                         \
-            "runs code of shapes in the scene; only if you trust it", ARGUMENT_FLAG, false,        \
-            offsetof(structure, scene.allows_user_shapes)                                          \
+        "--set", NULL, "KEY.PATH=VALUE", "replaces or adds a key of the scene; may be repeated",   \
+            ARGUMENT_TEXTS, false, offsetof(structure, scene.overrides)                            \
     }
 
 /* The bands that the scene leaves to be chosen; see sonject_scene_bands. */

@@ -43,8 +43,6 @@ typedef struct sonject_context_params {
     const char *device_name;  /* part of a device's name, case-insensitive; NULL: what the
                                  environment's SONJECT_DEVICE names, else a GPU of OpenCL, else
                                  native: this processor, which needs no driver */
-    void *opencl_context;     /* a host's cl_context to work in; NULL: the library makes its own */
-    void *opencl_device;      /* the cl_device_id to use in that context; NULL with no context */
     sonject_log_function log; /* NULL: silent */
     void *log_user;
     uint32_t decodes_in_process; /* 0: images, HDF5 and MATLAB v7.3 files are read by a child
@@ -60,7 +58,7 @@ typedef struct sonject_context_params {
 
 /* Makes a context. It opens no device yet: that happens at the first call that needs one, so that a
  * missing device is reported with a message. params may be NULL (all defaults); its strings are
- * copied. A host's OpenCL context is retained until release.
+ * copied.
  * On success *context is the caller's, to be given to sonject_context_release. On failure *context
  * is NULL. Errors: ARGUMENT, MEMORY.
  * Threads: a context and whatever was made with it belong to one thread at a time; different

@@ -60,11 +60,8 @@ SONJECT_API sonject_status sonject_run(sonject_context *context, const sonject_s
 
 typedef struct sonject_merge_params {
     uint32_t struct_size;
-    uint32_t allows_user_shapes; /* 1: take code of shapes in a scene that the shards keep, as
-                                    sonject_scene_read_params has it; 0: refuse it */
-    const char *folder;          /* that the shards were given; the results go there */
-    uint32_t labels;             /* as of sonject_run_params */
-    uint32_t reserved;           /* 0 */
+    uint32_t labels;    /* as of sonject_run_params */
+    const char *folder; /* that the shards were given; the results go there */
 } sonject_merge_params;
 
 /* Makes the result of all shards of a run, and removes their tallies once it is written. scene: the
@@ -82,13 +79,8 @@ SONJECT_API sonject_status sonject_merge(sonject_context *context, const sonject
 
 /* Checks the scene against its input image (which must exist) without tracing, and describes the
  * geometry as a text with a drawing: track, patch, objects, grazing angles, shadow lengths. *text
- * is the caller's, for sonject_text_release. User shapes are compiled and tried with 4096 rays each
- * on the device: INPUT where a distance or normal is not a number, a surface lies outside the
- * bounding sphere or box or not beyond `nearest`, or where more than one ray in a hundred finds a
- * solid's normals pointing inwards, normals more than 3 deg (or half of the rays more than 1 deg)
- * off the surface's finite differences away from edges, a surface that is not found again from just
- * before it, no inner side behind an outer one, or the surface that it leaves from 20 um off it.
- * Errors: ARGUMENT, INPUT, STORAGE, MEMORY; with user shapes also DEVICE. */
+ * is the caller's, for sonject_text_release.
+ * Errors: ARGUMENT, INPUT, STORAGE, MEMORY. */
 SONJECT_API sonject_status sonject_check(sonject_context *context, const sonject_scene *scene,
                                          char **text);
 SONJECT_API void sonject_text_release(char **text);

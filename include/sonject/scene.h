@@ -27,18 +27,14 @@ typedef struct sonject_scene sonject_scene;
  * caller's, for sonject_scene_release; on failure NULL. Errors: ARGUMENT, MEMORY. */
 SONJECT_API sonject_status sonject_scene_create(sonject_context *context, sonject_scene **scene);
 
-/* How a scene is read. All 0: the file as it is, without code. */
+/* How a scene is read. All 0: the file as it is. */
 typedef struct sonject_scene_read_params {
     uint32_t struct_size;
-    uint32_t allows_user_shapes; /* 1: take shapes that the scene, or a target's file that it names,
-                                    describes by code; see user_shape.h. 0: refuse
-                                    them, for such a file is a program */
-    const char *text;            /* the scene instead of a file, YAML (which JSON is); copied */
+    uint32_t override_count;
+    const char *text;             /* the scene instead of a file, YAML (which JSON is); copied */
     const char *const *overrides; /* override_count strings "key.path=value" that replace or add
                                      keys, such as "input.path=swath.tif" or
                                      "objects[0].heading=30 deg" */
-    uint32_t override_count;
-    uint32_t reserved; /* 0 */
 } sonject_scene_read_params;
 
 /* Reads a scene file, or params->text. path: YAML file; of a text the name in messages, NULL for

@@ -14,7 +14,6 @@
 #include <sonject/scene.h>
 #include <sonject/stages.h>
 #include <sonject/status.h>
-#include <sonject/user_shape.h>
 #include <sonject/version.h>
 
 #endif

@@ -29,11 +29,8 @@ typedef struct sonject_form_params {
                                      sonar.bandwidth, .pulse, .resolution, .response,
                                      .measured_response and .motion, what is below these, and
                                      input.path (the same image elsewhere); no other key */
-    uint32_t allows_user_shapes;  /* 1: run code of shapes in that scene, or beside it, as
-                                     sonject_scene_read_params has it; 0: refuse it */
     uint32_t labels;              /* as of sonject_run_params */
     uint32_t overwrites;          /* as of sonject_run_params */
-    uint32_t reserved;            /* 0 */
 } sonject_form_params;
 
 /* Forms the image of the scene that was traced, or of `scene`, which then may differ in the

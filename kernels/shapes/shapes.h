@@ -28,8 +28,7 @@ enum shape_trait {
 /* What scenes call a shape, and kernels another one or treat apart. */
 #define SCENE_SHAPES(ROW)                                                                          \
     ROW(TRUNCATED_CONE, truncated_cone, 0)                                                         \
-    ROW(MESH, mesh, SHAPE_IS_HOLLOW)                                                               \
-    ROW(USER, user, SHAPE_IS_HOLLOW)
+    ROW(MESH, mesh, SHAPE_IS_HOLLOW)
 
 /* Cylinders that have other ends than flat ones. */
 #define ENDED_CYLINDERS(ROW)                                                                       \

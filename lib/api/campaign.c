@@ -11,24 +11,31 @@
 #include "schema/scene_file.h"
 #include "schema/yaml_tree.h"
 
+/* A campaign's file and what is set of it, which stay the caller's. */
+static sonject_status take_source(struct report *report, const char *path,
+                                  const sonject_scene_read_params *params,
+                                  struct campaign_source *source)
+{
+    sonject_scene_read_params taken;
+    CHECK(scene_read_params_take(report, path, params, &taken));
+    *source = (struct campaign_source){
+        .path = path, .overrides = taken.overrides, .override_count = taken.override_count};
+    return taken.text
+               ? report_failure(report, SONJECT_ERROR_ARGUMENT, "a campaign is read from its file")
+               : SONJECT_OK;
+}
+
 sonject_status sonject_campaign_read(sonject_context *context, const char *path,
                                      const sonject_scene_read_params *params,
                                      sonject_campaign **campaign)
 {
-    sonject_scene_read_params taken;
+    struct campaign_source source;
     if (!context || !campaign)
         return SONJECT_ERROR_ARGUMENT;
     *campaign = NULL;
     context_begin_call(context);
-    struct report *report = &context->report;
-    CHECK(scene_read_params_take(report, path, params, &taken));
-    if (taken.text)
-        return report_failure(report, SONJECT_ERROR_ARGUMENT, "a campaign is read from its file");
-    const struct campaign_source source = {.path = path,
-                                           .overrides = taken.overrides,
-                                           .override_count = taken.override_count,
-                                           .allows_user_shapes = taken.allows_user_shapes != 0};
-    return campaign_open(report, &source, campaign);
+    CHECK(take_source(&context->report, path, params, &source));
+    return campaign_open(&context->report, &source, campaign);
 }
 
 void sonject_campaign_release(sonject_campaign **campaign)
@@ -127,7 +134,7 @@ sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaig
         return null_argument(&context->report, "campaign");
     struct device *device;
     CHECK(campaign_check_id(campaign, id));
-    CHECK(device_slot_open(&context->report, &context->device, campaign->has_user_shapes, &device));
+    CHECK(device_slot_open(&context->report, &context->device, &device));
     struct sonject_result *made = allocate_array(1, sizeof *made);
     CHECK_MEMORY(&context->report, made, "a result");
     memset(&image, 0, sizeof image);
@@ -199,15 +206,13 @@ sonject_status sonject_campaign_fit(sonject_context *context, const char *path,
                                     const sonject_campaign_fit_params *fit_params,
                                     sonject_progress_function progress, void *user)
 {
-    sonject_scene_read_params taken;
+    struct campaign_source source;
     sonject_campaign_fit_params fit;
     CHECK(context_begin_call(context));
     context_watch(context, &progress, &user);
     struct report *report = &context->report;
-    CHECK(scene_read_params_take(report, path, params, &taken));
+    CHECK(take_source(report, path, params, &source));
     CHECK(params_take(report, &fit, sizeof fit, fit_params, sizeof fit, "fit parameters"));
-    if (taken.text)
-        return report_failure(report, SONJECT_ERROR_ARGUMENT, "a campaign is read from its file");
     if (!fit.contacts || !fit.contacts[0])
         return null_argument(report, "contacts");
     if (!fit.fitted || !fit.fitted[0])
@@ -215,10 +220,6 @@ sonject_status sonject_campaign_fit(sonject_context *context, const char *path,
     if (fit.part > SONJECT_LABELS_SHADOW)
         return report_failure(report, SONJECT_ERROR_ARGUMENT, "part must be 0 to 2, not %u",
                               (unsigned)fit.part);
-    const struct campaign_source source = {.path = path,
-                                           .overrides = taken.overrides,
-                                           .override_count = taken.override_count,
-                                           .allows_user_shapes = taken.allows_user_shapes != 0};
     return context_finish(context,
                           campaign_fit(report, &context->device, &source, &fit, progress, user));
 }

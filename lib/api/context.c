@@ -128,8 +128,6 @@ static sonject_status copy_params(struct sonject_context *context,
     sonject_context_params taken;
     CHECK(params_take(&context->report, &taken, sizeof taken, params,
                       offsetof(sonject_context_params, decodes_in_process), "context parameters"));
-    if ((taken.opencl_context == NULL) != (taken.opencl_device == NULL))
-        return SONJECT_ERROR_ARGUMENT;
     context->report.log = taken.log;
     context->host.log_user = taken.log_user;
     context->decoder.is_in_process = taken.decodes_in_process != 0;
@@ -156,7 +154,6 @@ sonject_status sonject_context_create(const sonject_context_params *params,
         sonject_context_release(&made);
         return status;
     }
-    host_context_retain(&made->report, made->device.params.opencl_context);
     *context = made;
     return SONJECT_OK;
 }
@@ -167,7 +164,6 @@ void sonject_context_release(sonject_context **context)
         return;
     device_slot_close(&(*context)->device);
     decoder_stop(&(*context)->decoder);
-    host_context_release((*context)->device.params.opencl_context);
     free((char *)(*context)->device.params.device_name);
     free(*context);
     *context = NULL;

@@ -8,18 +8,6 @@
 #include "inject/injection.h"
 #include "scene/element_plan.h"
 
-/* The size of the patch that the scene makes itself; nothing where it makes none. */
-static void made_size(const struct scene *scene, struct injection_input *input)
-{
-    if (scene->input_kind == SONJECT_INPUT_UNIFORM) {
-        input->rows = scene->uniform_rows;
-        input->columns = scene->uniform_columns;
-    } else if (scene->input_kind == SONJECT_INPUT_SYNTHETIC) {
-        input->rows = scene->synthetic.rows;
-        input->columns = scene->synthetic.columns;
-    }
-}
-
 sonject_status sonject_elements_describe(sonject_context *context, const sonject_scene *handle,
                                          uint64_t rows, uint64_t columns,
                                          sonject_element_layout *layout)
@@ -30,12 +18,12 @@ sonject_status sonject_elements_describe(sonject_context *context, const sonject
     CHECK(scene_use(report, handle, &scene));
     if (rows > SWATH_PIXELS_MAX || columns > SWATH_PIXELS_MAX || rows * columns > SWATH_PIXELS_MAX)
         return report_failure(report, SONJECT_ERROR_INPUT, "a patch has at most 2^31 pixels");
+    const struct raster_layout own = made_layout(scene);
+    const bool is_own = rows == 0 && columns == 0;
     struct injection_input input;
     memset(&input, 0, sizeof input);
-    input.rows = (size_t)rows;
-    input.columns = (size_t)columns;
-    if (rows == 0 && columns == 0)
-        made_size(scene, &input);
+    input.rows = (size_t)(is_own ? own.rows : rows);
+    input.columns = (size_t)(is_own ? own.columns : columns);
     input.is_complex = true; /* whatever the pixels are, the geometry is the same */
     sonject_element_layout made;
     memset(&made, 0, sizeof made);
@@ -73,7 +61,7 @@ sonject_status sonject_element_series(sonject_context *context, const sonject_sc
     const struct injection_input input = swath_input(&swath);
     THEN(status, element_echoes_describe(report, scene, &input, &layout));
     THEN(status, check_bytes(report, &layout, bytes));
-    THEN(status, device_slot_open(report, &context->device, scene->user_shapes.count > 0, &device));
+    THEN(status, device_slot_open(report, &context->device, &device));
     THEN(status,
          element_echoes_compute(report, device, scene, &input, progress, user, &layout, series));
     swath_close(&swath);

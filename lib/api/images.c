@@ -10,6 +10,14 @@
 #include "swath/conversion.h"
 #include "swath/quicklook.h"
 
+static sonject_status check_altitude(struct report *report, double altitude_m)
+{
+    if (altitude_m >= 0.0 && isfinite(altitude_m))
+        return SONJECT_OK;
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "altitude must be a number of m above 0, not %g", altitude_m);
+}
+
 static sonject_status check_quicklook(struct report *report, const sonject_quicklook_params *params)
 {
     const bool has_scale = params->minimum_db != 0.0 || params->maximum_db != 0.0;
@@ -22,10 +30,7 @@ static sonject_status check_quicklook(struct report *report, const sonject_quick
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "minimum_db must be a number below maximum_db, not %g and %g",
                               params->minimum_db, params->maximum_db);
-    if (!(params->altitude_m >= 0.0) || !isfinite(params->altitude_m))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "altitude must be a number of m above 0, not %g", params->altitude_m);
-    return SONJECT_OK;
+    return check_altitude(report, params->altitude_m);
 }
 
 sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklook_params *params)
@@ -47,10 +52,7 @@ static sonject_status check_conversion(struct report *report, const sonject_conv
         return null_argument(report, "input and output");
     if (params->range_axis > SONJECT_CONVERT_AXIS_GROUND)
         return report_failure(report, SONJECT_ERROR_ARGUMENT, "range_axis: no such choice");
-    if (!(params->altitude_m >= 0.0) || !isfinite(params->altitude_m))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "altitude must be a number of m above 0, not %g", params->altitude_m);
-    return SONJECT_OK;
+    return check_altitude(report, params->altitude_m);
 }
 
 sonject_status sonject_convert(sonject_context *context, const sonject_convert_params *params)

@@ -111,8 +111,7 @@ sonject_status find_input(struct report *report, const struct scene *scene,
     CHECK(make_input(report, scene, &input));
     swath->is_made = true;
     swath->is_complex = input.is_complex;
-    swath->layout =
-        (struct raster_layout){input.rows, input.columns, input.is_complex ? 2 : 1, PIXEL_FLOAT32};
+    swath->layout = made_layout(scene);
     swath->patch = (struct region){0, 0, input.rows, input.columns};
     swath->pixels = (float *)input.pixels;
     return SONJECT_OK;

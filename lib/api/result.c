@@ -36,7 +36,7 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *han
     struct swath swath;
     sonject_status status = find_input(report, scene, pixels, &swath);
     struct device *device = NULL;
-    THEN(status, device_slot_open(report, &context->device, scene->user_shapes.count > 0, &device));
+    THEN(status, device_slot_open(report, &context->device, &device));
     sonject_result *made = NULL;
     if (status == SONJECT_OK) {
         made = allocate_array(1, sizeof *made);

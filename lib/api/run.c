@@ -113,8 +113,8 @@ sonject_status sonject_merge(sonject_context *context, const sonject_scene *scen
     request.merges = true;
     request.overwrites = true; /* the shards were asked whether they may */
     if (!scene)
-        return context_finish(context, merge_folder(report, &context->device, &request,
-                                                    taken.allows_user_shapes != 0, was_finished));
+        return context_finish(context,
+                              merge_folder(report, &context->device, &request, was_finished));
     CHECK(scene_use(report, scene, &request.scene));
     return context_finish(context, run_calibrated(context, scene, &request, was_finished));
 }
@@ -141,8 +141,7 @@ sonject_status sonject_form(sonject_context *context, const sonject_scene *scene
     const struct scene *used = NULL;
     CHECK(begin(context, &request, progress, user, was_finished));
     struct report *report = &context->report;
-    CHECK(params_take(report, &taken, sizeof taken, params,
-                      offsetof(sonject_form_params, allows_user_shapes), "form parameters"));
+    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "form parameters"));
     if (!taken.file || !taken.file[0])
         return null_argument(report, "file and folder");
     CHECK(check_overrides(report, taken.file, taken.overrides, taken.override_count));
@@ -184,7 +183,7 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *scen
     *text = NULL;
     context_begin_call(context);
     CHECK(scene_use(&context->report, scene, &used));
-    return describe_scene(&context->report, &context->device, used, text);
+    return describe_scene(&context->report, used, text);
 }
 
 void sonject_text_release(char **text)

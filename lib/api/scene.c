@@ -60,7 +60,6 @@ static sonject_status take_source(struct report *report, const char *path,
     else
         CHECK(scene_file_load(report, path, &text, &bytes));
     source->takes_pixels = params->text != NULL;
-    source->allows_user_shapes = params->allows_user_shapes != 0;
     return scene_source_keep(source, report, path ? path : "scene", text, params->overrides,
                              params->override_count);
 }
@@ -71,8 +70,8 @@ sonject_status scene_read_params_take(struct report *report, const char *path,
 {
     memset(taken, 0, sizeof *taken);
     if (params)
-        CHECK(params_take(report, taken, sizeof *taken, params,
-                          offsetof(sonject_scene_read_params, text), "scene read parameters"));
+        CHECK(params_take(report, taken, sizeof *taken, params, sizeof *taken,
+                          "scene read parameters"));
     return check_overrides(report, path ? path : taken->text, taken->overrides,
                            taken->override_count);
 }

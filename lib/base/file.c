@@ -314,19 +314,15 @@ void folder_names_clear(struct folder_names *list)
 
 static bool add_name(struct folder_names *list, const char *name)
 {
-    if ((list->count & (list->count + 1)) == 0) { /* 0, 1, 3, 7...: room for twice as many */
-        char **more = list->count < NAMES_MAX
-                          ? realloc(list->names, (2 * list->count + 1) * sizeof *more)
-                          : NULL;
-        if (!more)
-            return false;
-        list->names = more;
-    }
-    list->names[list->count] = copy_text(name);
-    if (!list->names[list->count])
+    char **more =
+        list->count < NAMES_MAX ? grow_doubling(list->names, list->count, sizeof *more) : NULL;
+    if (!more)
         return false;
-    list->count++;
-    return true;
+    list->names = more;
+    char *copy = copy_text(name);
+    list->names[list->count] = copy;
+    list->count += copy != NULL;
+    return copy != NULL;
 }
 
 static int compare_names(const void *a, const void *b)

@@ -47,6 +47,13 @@ bool report_is_cancelled(const struct report *report, const char *stage)
            host->progress(host->progress_user, host->fraction, stage ? stage : host->stage) != 0;
 }
 
+int progress_share_tell(void *user, double fraction, const char *stage)
+{
+    const struct progress_share *part = user;
+    return part->progress ? part->progress(part->user, part->first + part->share * fraction, stage)
+                          : 0;
+}
+
 void report_line(struct report *report, uint32_t level, const char *line)
 {
     if (report->log)

@@ -86,6 +86,20 @@ sonject_status report_gather(struct report *report, char lines[REPORT_CAPACITY],
  * that which was told last. */
 bool report_is_cancelled(const struct report *report, const char *stage);
 
+/* ---- Progress of a part of a call as a share of the whole call's. */
+
+/* The part's fractions 0 to 1 become first to first + share. */
+struct progress_share {
+    sonject_progress_function progress; /* the whole call's; may be NULL */
+    void *user;
+    double first, share;
+};
+
+/* A sonject_progress_function; user: the struct progress_share. */
+int progress_share_tell(void *user, double fraction, const char *stage);
+
+/* ---- The log. */
+
 /* Send a line to the log, if there is one: news, a note, or a line of a level that is known. */
 void report_log(struct report *report, const char *format, ...) REPORT_FORMAT(2);
 void report_note(struct report *report, const char *format, ...) REPORT_FORMAT(2);

@@ -407,8 +407,6 @@ struct sonject_campaign {
     struct campaign campaign;
     char *scene_text; /* of the base scene's file; owned */
     size_t scene_bytes;
-    bool allows_user_shapes;
-    bool has_user_shapes;                     /* among what may be drawn */
     char (*swath_hashes)[HASH_TEXT_CAPACITY]; /* of the swaths' files; owned */
     json_t *inputs;                           /* all that images depend on, by name; owned */
     char hash[HASH_TEXT_CAPACITY];            /* of inputs */
@@ -425,7 +423,6 @@ struct campaign_source {
     const char *path, *text; /* as of campaign_read */
     const char *const *overrides;
     size_t override_count;
-    bool allows_user_shapes;
     bool has_one_target; /* in each image, and nothing else */
 };
 

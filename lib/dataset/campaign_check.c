@@ -114,7 +114,6 @@ static sonject_status try_scene(struct sonject_campaign *campaign, struct hash *
     THEN(status, scene_hash(campaign->report, &trial.scene, NULL, text));
     if (status == SONJECT_OK)
         hash_add_text(hash, text);
-    campaign->has_user_shapes = campaign->has_user_shapes || trial.scene.user_shapes.count > 0;
     trial_clear(&trial);
     return status;
 }
@@ -291,7 +290,6 @@ sonject_status campaign_open(struct report *report, const struct campaign_source
     *campaign = allocate_array(1, sizeof **campaign);
     CHECK_MEMORY(report, *campaign, "a campaign");
     (*campaign)->report = report;
-    (*campaign)->allows_user_shapes = source->allows_user_shapes;
     const sonject_status status = fill(*campaign, source);
     if (status != SONJECT_OK)
         campaign_close(campaign);

@@ -90,7 +90,6 @@ sonject_status campaign_read_base(struct sonject_campaign *campaign, const char 
     source->path = campaign->campaign.scene_path;
     source->text = campaign->scene_text;
     source->moved_folder = campaign->campaign.folder;
-    source->allows_user_shapes = campaign->allows_user_shapes;
     const sonject_status status = scene_source_read(source, campaign->report, scene);
     free(text);
     return status;

@@ -99,16 +99,6 @@ static sonject_status find_missing(struct sweep *sweep)
     return status;
 }
 
-/* Images whose shapes are code depend on the device. */
-static sonject_status begin_set(struct sweep *sweep)
-{
-    struct device *device = NULL;
-    if (sweep->campaign->has_user_shapes)
-        CHECK(device_slot_open(sweep->campaign->report, sweep->slot, true, &device));
-    return data_set_begin(&sweep->set, sweep->campaign, device, sweep->params->folder,
-                          sweep->params->overwrites != 0);
-}
-
 /* Times are the only thing that differs from run to run, and so in a file of their own. */
 static sonject_status write_times(const struct sweep *sweep)
 {
@@ -142,7 +132,8 @@ sonject_status campaign_run(struct sonject_campaign *campaign, struct device_slo
                           .progress = progress,
                           .user = user,
                           .begin_s = clock_seconds()};
-    sonject_status status = begin_set(&sweep);
+    sonject_status status =
+        data_set_begin(&sweep.set, campaign, params->folder, params->overwrites != 0);
     campaign->folder = params->folder;
     THEN(status, find_missing(&sweep));
     sweep.start_s = clock_seconds();

@@ -114,8 +114,7 @@ static json_t *side_of(uint32_t pixels)
     return pixels > 0 ? json_count(pixels) : json_string("all");
 }
 
-static json_t *head_of(const struct sonject_campaign *campaign, const struct device *device,
-                       json_t *inputs)
+static json_t *head_of(const struct sonject_campaign *campaign)
 {
     const struct campaign *plan = &campaign->campaign;
     json_t *splits = json_array();
@@ -147,22 +146,21 @@ static json_t *head_of(const struct sonject_campaign *campaign, const struct dev
     return JSON_OBJECT(
         {"sonject_campaign", json_integer(FORMAT_VERSION)},
         {"sonject", json_string(sonject_version())}, {"hash", json_string(campaign->hash)},
-        {"inputs", json_incref(inputs)}, {"device", device ? device_document(device) : json_null()},
-        {"images", json_count(plan->images)}, {"empty", json_number(plan->empty)},
-        {"clutter_alone", json_number(plan->clutter_alone)}, {"rows", side_of(plan->chip_rows)},
-        {"columns", side_of(plan->chip_columns)}, {"splits", splits}, {"classes", classes},
-        {"outputs", outputs}, {"swaths", swaths});
+        {"inputs", json_incref(campaign->inputs)}, {"images", json_count(plan->images)},
+        {"empty", json_number(plan->empty)}, {"clutter_alone", json_number(plan->clutter_alone)},
+        {"rows", side_of(plan->chip_rows)}, {"columns", side_of(plan->chip_columns)},
+        {"splits", splits}, {"classes", classes}, {"outputs", outputs}, {"swaths", swaths});
 }
 
 /* Whose images the folder holds; those of another campaign are removed where they may be. */
-static sonject_status check_head(struct sonject_campaign *campaign, const json_t *inputs,
-                                 const char *folder, bool overwrites, bool *is_same)
+static sonject_status check_head(struct sonject_campaign *campaign, const char *folder,
+                                 bool overwrites, bool *is_same)
 {
     struct data_set set;
     memset(&set, 0, sizeof set);
     sonject_status status = data_set_open(&set, campaign->report, folder);
-    THEN(status, inputs_check(campaign->report, folder, json_object_get(set.head, "inputs"), inputs,
-                              NULL, overwrites, is_same));
+    THEN(status, inputs_check(campaign->report, folder, json_object_get(set.head, "inputs"),
+                              campaign->inputs, NULL, overwrites, is_same));
     if (status == SONJECT_OK && !*is_same)
         remove_all(&set);
     data_set_clear(&set);
@@ -170,7 +168,7 @@ static sonject_status check_head(struct sonject_campaign *campaign, const json_t
 }
 
 sonject_status data_set_begin(struct data_set *set, struct sonject_campaign *campaign,
-                              const struct device *device, const char *folder, bool overwrites)
+                              const char *folder, bool overwrites)
 {
     struct report *report = campaign->report;
     const struct campaign *plan = &campaign->campaign;
@@ -178,17 +176,11 @@ sonject_status data_set_begin(struct data_set *set, struct sonject_campaign *cam
     char path[PATH_CAPACITY];
     CHECK(folder_make(report, folder));
     CHECK(path_in(report, path, folder, HEAD_FILE));
-    json_t *inputs = device ? json_object() : json_incref(campaign->inputs);
-    if (device) /* json_copy would not tell what it had no memory for */
-        json_add(&inputs, "device",
-                 json_object_update(inputs, campaign->inputs) == 0 ? device_document(device)
-                                                                   : NULL);
-    sonject_status status = inputs ? SONJECT_OK : report_out_of_memory(report, "inputs");
-    if (status == SONJECT_OK && file_exists(path))
-        status = check_head(campaign, inputs, folder, overwrites, &is_same);
+    sonject_status status = SONJECT_OK;
+    if (file_exists(path))
+        status = check_head(campaign, folder, overwrites, &is_same);
     if (status == SONJECT_OK && !is_same)
-        status = json_document_write(report, head_of(campaign, device, inputs), 9, path);
-    json_decref(inputs);
+        status = json_document_write(report, head_of(campaign), 9, path);
     THEN(status, data_set_open(set, report, folder));
     for (size_t i = 0; status == SONJECT_OK && i < plan->split_count; i++)
         status = each_folder(report, folder, plan->splits[i].name, plan->outputs, folder_make);
@@ -256,7 +248,6 @@ static bool read_head(struct data_set *set)
     size_t i;
     const json_t *name;
     const json_t *outputs = json_object_get(set->head, "outputs");
-    const json_t *device = json_object_get(set->head, "device");
     set->outputs = OUTPUT_ALWAYS;
     json_array_foreach(outputs, i, name)
     {
@@ -268,7 +259,6 @@ static bool read_head(struct data_set *set)
            has_plain(set->head, "sonject") && has_plain(set->head, "hash") &&
            is_side(set->head, "rows") && is_side(set->head, "columns") && json_is_array(outputs) &&
            are_swaths(json_object_get(set->head, "swaths")) &&
-           (json_is_null(device) || json_is_object(device)) &&
            json_is_number(json_object_get(set->head, "empty")) &&
            json_is_number(json_object_get(set->head, "clutter_alone")) &&
            are_classes(json_object_get(set->head, "classes")) &&
@@ -488,8 +478,8 @@ static sonject_status write_classes(const struct data_set *set)
 /* What the whole is, with size and hash of the documents of splits and of the whole. */
 static sonject_status write_last(const struct data_set *set)
 {
-    static const char *const kept[] = {"sonject", "hash",   "device",  "images",  "rows",
-                                       "columns", "splits", "classes", "outputs", "swaths"};
+    static const char *const kept[] = {"sonject", "hash",    "images",  "rows",  "columns",
+                                       "splits",  "classes", "outputs", "swaths"};
     char name[SPLIT_NAME_CAPACITY + 16];
     char path[PATH_CAPACITY];
     const char *documents[DOCUMENTS];

@@ -36,10 +36,10 @@ struct data_set {
 
 /* Opens the campaign's folder: publishes campaign.json, or checks that the folder's is this
  * campaign's, and makes the folders of the splits; overwrites: removes the images of another.
- * device: what images are made on if they depend on that, or NULL. Errors: ARGUMENT (it is
- * another's, another version's, or of another device), INPUT (it is damaged), STORAGE, MEMORY. */
+ * Errors: ARGUMENT (it is another's, or another version's), INPUT (it is damaged), STORAGE, MEMORY.
+ */
 sonject_status data_set_begin(struct data_set *set, struct sonject_campaign *campaign,
-                              const struct device *device, const char *folder, bool overwrites);
+                              const char *folder, bool overwrites);
 
 /* Opens a folder by its campaign.json. Errors: INPUT, STORAGE, MEMORY. */
 sonject_status data_set_open(struct data_set *set, struct report *report, const char *folder);

@@ -125,7 +125,7 @@ static sonject_status compute(struct report *report, struct device_slot *slot,
                               sonject_element_layout *layout, float **series)
 {
     struct device *device = NULL;
-    CHECK(device_slot_open(report, slot, scene->user_shapes.count > 0, &device));
+    CHECK(device_slot_open(report, slot, &device));
     *series = allocate_array(element_plan_samples(layout), 2 * sizeof **series);
     CHECK_MEMORY(report, *series,
                  "the time series: narrow the window of times, or "

@@ -111,8 +111,7 @@ static void *make_images(void *user)
     uint64_t index;
     while (begin_image(thread, &index)) {
         sonject_status status =
-            device_slot_open(&thread->report, &thread->slot, thread->campaign.has_user_shapes,
-                             &thread->maker.device);
+            device_slot_open(&thread->report, &thread->slot, &thread->maker.device);
         THEN(status, pool->work->make(pool->work->user, &thread->maker, index));
         end_image(thread, index, status);
     }

@@ -23,14 +23,12 @@ static sonject_status count_shards(struct report *report, const char *folder, ui
 
 /* The scene that the first of the shards keeps. */
 static sonject_status read_kept_scene(struct report *report, const struct sums_file *file,
-                                      const char *folder, bool allows_user_shapes,
-                                      struct scene *scene)
+                                      const char *folder, struct scene *scene)
 {
     char calibration[PATH_CAPACITY];
     sonject_form_params params;
     memset(&params, 0, sizeof params);
     params.file = file->path;
-    params.allows_user_shapes = allows_user_shapes;
     if (strcmp(file->head.identity.version, sonject_version()) != 0)
         return refuse_foreign_sums(report, file->path, "another version of sonject");
     CHECK(path_in(report, calibration, folder, CALIBRATION_NAME ".yaml"));
@@ -40,8 +38,7 @@ static sonject_status read_kept_scene(struct report *report, const struct sums_f
 
 /* A run whose scene its shards keep. */
 static sonject_status merge_kept(struct report *report, struct device_slot *slot,
-                                 const struct run_request *asked, bool allows_user_shapes,
-                                 int *was_finished)
+                                 const struct run_request *asked, int *was_finished)
 {
     struct run_request request = *asked;
     struct sums_folder folder;
@@ -52,8 +49,7 @@ static sonject_status merge_kept(struct report *report, struct device_slot *slot
     sonject_status status = sums_folder_read(&folder, report, work, 0, SIZE_MAX, false);
     const bool has_shards = status == SONJECT_OK && folder.count > 0;
     if (has_shards)
-        status =
-            read_kept_scene(report, &folder.files[0], asked->folder, allows_user_shapes, &scene);
+        status = read_kept_scene(report, &folder.files[0], asked->folder, &scene);
     sums_folder_clear(&folder);
     request.scene = &scene;
     if (has_shards) {
@@ -114,8 +110,7 @@ static sonject_status check_bands(struct report *report, const char *folder, con
 }
 
 sonject_status merge_folder(struct report *report, struct device_slot *slot,
-                            const struct run_request *request, bool allows_user_shapes,
-                            int *was_finished)
+                            const struct run_request *request, int *was_finished)
 {
     uint64_t shards;
     struct folder_names below;
@@ -124,7 +119,7 @@ sonject_status merge_folder(struct report *report, struct device_slot *slot,
     int were_finished = 1;
     CHECK(count_shards(report, request->folder, &shards));
     if (shards > 0 || folder_has_result(request->folder))
-        return merge_kept(report, slot, request, allows_user_shapes, was_finished);
+        return merge_kept(report, slot, request, was_finished);
     CHECK(folder_names_read(&below, report, request->folder, ""));
     sonject_status status = SONJECT_OK;
     for (size_t i = 0; status == SONJECT_OK && i < below.count; i++) {
@@ -136,14 +131,14 @@ sonject_status merge_folder(struct report *report, struct device_slot *slot,
             status = find_band(report, request->folder, below.names[i], path, &is_there);
         if (!is_there)
             continue;
-        THEN(status, merge_kept(report, slot, &of_band, allows_user_shapes, &was_band_finished));
+        THEN(status, merge_kept(report, slot, &of_band, &was_band_finished));
         if (bands++ == 0)
             THEN(status, check_bands(report, request->folder, path));
         were_finished = were_finished && was_band_finished;
     }
     folder_names_clear(&below);
     if (bands == 0)
-        THEN(status, merge_kept(report, slot, request, allows_user_shapes, was_finished));
+        THEN(status, merge_kept(report, slot, request, was_finished));
     else if (was_finished)
         *was_finished = status == SONJECT_OK && were_finished;
     return status;

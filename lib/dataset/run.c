@@ -9,7 +9,6 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
-#include "base/progress.h"
 #include "base/report.h"
 #include "base/system/process.h"
 #include "inject/scene_hash.h"
@@ -224,7 +223,7 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
                                    WRITE_START - TRACE_START};
     const struct injection_input input = swath_input(swath);
     bool is_formed = true;
-    sonject_status status = device_slot_open(report, slot, scene->user_shapes.count > 0, &device);
+    sonject_status status = device_slot_open(report, slot, &device);
     const struct checkpoint_job job = {report,          device, request, facts->scene_hash,
                                        swath->identity, &input, start,   progress_share_tell,
                                        &stage};
@@ -289,18 +288,12 @@ static sonject_status open_swath(struct report *report, const struct run_request
 }
 
 /* What the result is made of, and whether the folder holds it. facts->inputs is the caller's. */
-static sonject_status check_earlier(struct report *report, struct device_slot *slot,
-                                    const struct run_request *request, const struct swath *swath,
-                                    struct run_facts *facts, char hash[HASH_TEXT_CAPACITY],
-                                    bool *is_finished)
+static sonject_status check_earlier(struct report *report, const struct run_request *request,
+                                    const struct swath *swath, struct run_facts *facts,
+                                    char hash[HASH_TEXT_CAPACITY], bool *is_finished)
 {
-    struct device *device = NULL;
     CHECK(scene_inputs(report, request->scene, swath->identity, hash, &facts->inputs));
-    if (request->scene->user_shapes.count > 0)
-        CHECK(device_slot_open(report, slot, true, &device));
     json_add(&facts->inputs, "image", json_text(facts->image_name));
-    if (device)
-        json_add(&facts->inputs, "device", device_document(device));
     const struct earlier_request earlier = {
         request->folder,        RUN_DOCUMENT,        facts->inputs,  request->scene,
         request->label_formats, request->overwrites, request->merges};
@@ -324,9 +317,9 @@ sonject_status run_scene(struct report *report, struct device_slot *slot,
     facts.scene_hash = hash;
     facts.image_name = image_name;
     facts.label_formats = request->label_formats;
-    sonject_status status =
-        image_name ? check_earlier(report, slot, request, &swath, &facts, hash, &is_finished)
-                   : report_out_of_memory(report, "a path");
+    sonject_status status = image_name
+                                ? check_earlier(report, request, &swath, &facts, hash, &is_finished)
+                                : report_out_of_memory(report, "a path");
     if (status == SONJECT_OK && !is_finished)
         status = folder_make(report, request->folder);
     if (status == SONJECT_OK && !is_finished) {
@@ -349,7 +342,7 @@ static sonject_status trace_swath(struct report *report, struct device_slot *slo
     struct device *device = NULL;
     char hash[HASH_TEXT_CAPACITY];
     CHECK(scene_hash(report, request->scene, swath->identity, hash));
-    CHECK(device_slot_open(report, slot, request->scene->user_shapes.count > 0, &device));
+    CHECK(device_slot_open(report, slot, &device));
     const struct checkpoint_job job = {report,          device, request,         hash,
                                        swath->identity, &input, clock_seconds(), request->progress,
                                        request->user};
@@ -452,7 +445,6 @@ sonject_status read_traced_scene(struct report *report, const struct kept_scene 
     source.override_count = kept->override_count + params->override_count;
     source.moved_folder = is_here ? NULL : kept->folder;
     source.moved_overrides = kept->override_count;
-    source.allows_user_shapes = params->allows_user_shapes != 0;
     source.made_calibration = calibration;
     const sonject_status status = path && overrides
                                       ? scene_source_read(&source, report, scene)
@@ -472,8 +464,6 @@ static sonject_status form_file(struct report *report, struct device_slot *slot,
     const struct kept_scene *kept = &request->sums->scene;
     sonject_form_params as_traced = *params;
     as_traced.override_count = 0;
-    if (request->scene && request->scene->user_shapes.count > 0)
-        as_traced.allows_user_shapes = 1;
     CHECK(check_sums(report, request->sums));
     request->traced = request->scene;
     if (kept->text || !request->scene) {

@@ -42,8 +42,7 @@ sonject_status form_scene(struct report *report, struct device_slot *slot,
 /* Makes the result of all shards in the request's folder, whose scene they keep: sonject_merge; of
  * bands, where there are such, each in its folder. */
 sonject_status merge_folder(struct report *report, struct device_slot *slot,
-                            const struct run_request *request, bool allows_user_shapes,
-                            int *was_finished);
+                            const struct run_request *request, int *was_finished);
 
 /* Reads the scene whose text a file keeps, with the overrides of params, whose file is for the
  * message. Names of files are meant from where it was traced. calibration: the file that stands for
@@ -59,8 +58,7 @@ sonject_status run_elements(struct report *report, struct device_slot *slot,
                             sonject_progress_function progress, void *user);
 
 /* The scene's geometry as a text with a sample, for free(): sonject_check. */
-sonject_status describe_scene(struct report *report, struct device_slot *slot,
-                              const struct scene *scene, char **text);
+sonject_status describe_scene(struct report *report, const struct scene *scene, char **text);
 
 struct run_facts {
     const struct scene *scene;

@@ -12,7 +12,6 @@
 #include "inject/swath.h"
 #include "scene/placement.h"
 #include "swath/geometry_notes.h"
-#include "user/shape_check.h"
 
 #define MAP_ROWS    20
 #define MAP_COLUMNS 64
@@ -217,32 +216,7 @@ static void draw_plan(struct growing_text *text, const struct patch_view *view,
         growing_text_add(text, "  |%s|\n", plan[view->is_mirrored ? MAP_ROWS - 1 - row : row]);
 }
 
-/* Only scenes with users' shapes need a device to be checked. */
-static sonject_status try_user_shapes(struct growing_text *text, struct report *report,
-                                      struct device_slot *slot, const struct user_shapes *shapes)
-{
-    struct device *device = NULL;
-    sonject_status status = SONJECT_OK;
-    if (shapes->count > 0)
-        status = device_slot_open(report, slot, true, &device);
-    for (uint32_t i = 0; status == SONJECT_OK && i < shapes->count; i++) {
-        struct shape_check check;
-        status = shape_check_run(report, device, shapes, i, &check);
-        if (status == SONJECT_OK)
-            growing_text_add(
-                text,
-                "user shape %u (%s): %zu of %d rays meet it, %zu of %zu that leave it meet it "
-                "again at once; normals at %zu hits are off by %.2g deg in the median, %.2g "
-                "deg at most\n",
-                (unsigned)(i + 1), shapes->snippets[shapes->shapes[i].snippet].name, check.hits,
-                SHAPE_CHECK_RAYS, check.acne, check.restarts, check.compared, check.median_deg,
-                check.largest_deg);
-    }
-    return status;
-}
-
-sonject_status describe_scene(struct report *report, struct device_slot *slot,
-                              const struct scene *scene, char **out)
+sonject_status describe_scene(struct report *report, const struct scene *scene, char **out)
 {
     struct swath swath;
     struct injection_setup setup;
@@ -263,7 +237,6 @@ sonject_status describe_scene(struct report *report, struct device_slot *slot,
                 relief->lowest_m, relief->highest_m, relief->row_step_m, relief->column_step_m);
         describe_objects(&text, scene, view, placements);
         describe_meshes(&text, scene, placements);
-        THEN(status, try_user_shapes(&text, report, slot, &scene->user_shapes));
         draw_plan(&text, view, placements);
         char *characters = growing_text_end(&text);
         if (!characters)

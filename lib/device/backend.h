@@ -25,8 +25,7 @@ struct device_calls {
                                    device_buffer buffer, size_t bytes);
     sonject_status (*kernel_create)(struct report *report, struct device *device,
                                     enum device_program program, enum program_variant variant,
-                                    const struct user_code *code, const char *name,
-                                    device_kernel *kernel);
+                                    const char *name, device_kernel *kernel);
     void (*kernel_release)(device_kernel kernel);
     sonject_status (*kernel_run)(struct report *report, struct device *device, device_kernel kernel,
                                  const struct kernel_argument *arguments, size_t argument_count,
@@ -46,10 +45,8 @@ sonject_status native_open(struct report *report, const sonject_context_params *
 sonject_status opencl_list(struct report *report, sonject_device_info *devices, size_t capacity,
                            size_t *count, size_t *gpu);
 
-/* The host's device where params have its context; else the first that `name` is part of; NULL: the
- * first GPU, else the first of any kind. */
-sonject_status opencl_open(struct report *report, const sonject_context_params *params,
-                           const char *name, struct device *device);
+/* The first that `name` is part of; NULL: the first GPU, else the first of any kind. */
+sonject_status opencl_open(struct report *report, const char *name, struct device *device);
 
 /* Sets what a device is called, its lanes and its units. */
 void device_take_info(struct device *device, const sonject_device_info *info);

@@ -44,26 +44,23 @@ static bool has_gpu(void)
 }
 
 static sonject_status open_chosen(struct report *report, const sonject_context_params *params,
-                                  bool compiles, struct device *device)
+                                  struct device *device)
 {
     const char *environment = getenv("SONJECT_DEVICE");
     const char *name = params->device_name             ? params->device_name
                        : environment && environment[0] ? environment
                                                        : NULL;
-    const bool is_native = params->opencl_context ? false
-                           : name                 ? native_is_named(name)
-                                                  : !compiles && !has_gpu();
-    return is_native ? native_open(report, params, device)
-                     : opencl_open(report, params, name, device);
+    const bool is_native = name ? native_is_named(name) : !has_gpu();
+    return is_native ? native_open(report, params, device) : opencl_open(report, name, device);
 }
 
-static sonject_status open_device(struct report *report, const sonject_context_params *params,
-                                  bool compiles, struct device **out)
+sonject_status device_open(struct report *report, const sonject_context_params *params,
+                           struct device **out)
 {
     *out = NULL;
     struct device *device = allocate_array(1, sizeof *device);
     CHECK_MEMORY(report, device, "the device");
-    const sonject_status status = open_chosen(report, params, compiles, device);
+    const sonject_status status = open_chosen(report, params, device);
     if (status != SONJECT_OK) {
         device_close(&device);
         return status;
@@ -74,29 +71,21 @@ static sonject_status open_device(struct report *report, const sonject_context_p
     return SONJECT_OK;
 }
 
-sonject_status device_open(struct report *report, const sonject_context_params *params,
-                           struct device **device)
-{
-    return open_device(report, params, false, device);
-}
-
-sonject_status device_slot_open(struct report *report, struct device_slot *slot, bool compiles,
+sonject_status device_slot_open(struct report *report, struct device_slot *slot,
                                 struct device **device)
 {
-    struct device **place = compiles ? &slot->compiler : &slot->device;
     *device = NULL;
-    if (*place)
-        CHECK((*place)->calls->claim(report));
+    if (slot->device)
+        CHECK(slot->device->calls->claim(report));
     else
-        CHECK(open_device(report, &slot->params, compiles, place));
-    *device = *place;
+        CHECK(device_open(report, &slot->params, &slot->device));
+    *device = slot->device;
     return SONJECT_OK;
 }
 
 void device_slot_close(struct device_slot *slot)
 {
     device_close(&slot->device);
-    device_close(&slot->compiler);
 }
 
 void device_close(struct device **device)
@@ -177,16 +166,8 @@ sonject_status kernel_create(struct report *report, struct device *device,
                              enum device_program program, enum program_variant variant,
                              const char *name, device_kernel *kernel)
 {
-    return kernel_create_with_code(report, device, program, variant, NULL, name, kernel);
-}
-
-sonject_status kernel_create_with_code(struct report *report, struct device *device,
-                                       enum device_program program, enum program_variant variant,
-                                       const struct user_code *code, const char *name,
-                                       device_kernel *kernel)
-{
     *kernel = NULL;
-    return device->calls->kernel_create(report, device, program, variant, code, name, kernel);
+    return device->calls->kernel_create(report, device, program, variant, name, kernel);
 }
 
 void kernel_release(struct device *device, device_kernel *kernel)

@@ -53,26 +53,22 @@ sonject_status device_open(struct report *report, const sonject_context_params *
                            struct device **device);
 void device_close(struct device **device);
 
-/* Devices that are opened when they are first needed: all zeros but for the parameters, whose
- * strings must outlive it. */
+/* A device that is opened when it is first needed: all zeros but for the parameters, whose strings
+ * must outlive it. */
 struct device_slot {
     sonject_context_params params;
-    struct device *device, *compiler; /* NULL until then */
+    struct device *device; /* NULL until then */
 };
 
-/* The device for a call. compiles: users' code is to be compiled, which takes a device of OpenCL
- * where none is named. Errors: as device_open, and DEVICE in a forked child that may not use it. */
-sonject_status device_slot_open(struct report *report, struct device_slot *slot, bool compiles,
+/* The device for a call. Errors: as device_open, and DEVICE in a forked child that may not use it.
+ */
+sonject_status device_slot_open(struct report *report, struct device_slot *slot,
                                 struct device **device);
 void device_slot_close(struct device_slot *slot);
 
 /* A driver's threads do not come along into a forked child, whose calls would wait for them for
  * ever: refuses in a child of a process that used the driver. Errors: DEVICE. */
 sonject_status driver_claim(struct report *report);
-
-/* Keeps a host's OpenCL context, NULL: none, alive until it is released. */
-void host_context_retain(struct report *report, void *opencl_context);
-void host_context_release(void *opencl_context);
 
 /* A buffer of bytes (at least 1), filled from contents, or with zeros if contents is NULL. To be
  * given to buffer_release. Errors: DEVICE, MEMORY. */
@@ -129,7 +125,6 @@ enum device_program {
     PROGRAM_TRACE_MULTIBOUNCE,
     PROGRAM_IMAGE_FORMATION,
     PROGRAM_ELEMENT_SERIES,
-    PROGRAM_PROBE_USER_SHAPE, /* only with code of users */
     PROGRAM_COUNT
 };
 
@@ -150,31 +145,11 @@ struct embedded_source {
 /* In the order of enum device_program. */
 extern const struct embedded_source embedded_sources[];
 
-#define PROGRAM_UNITS_MAX 64
-
-/* Code of users that is linked to a program, each unit a translation unit of its own. */
-struct user_code {
-    const char *calls; /* what stands behind the program's source: what it calls of the units */
-    char *const *units;
-    size_t unit_count; /* 1...PROGRAM_UNITS_MAX */
-    /* Makes the message of a unit that does not compile from the compiler's log. */
-    sonject_status (*explain)(struct report *report, const struct device *device, const void *user,
-                              size_t unit, const char *log);
-    const void *user; /* for explain */
-};
-
 /* A kernel of a program, to be given to kernel_release; NULL on failure. OpenCL builds the program
  * once a device for all contexts of a process; what of it is kept between processes is the driver's
  * to say. Errors: DEVICE (with the first line of the build log), MEMORY. */
 sonject_status kernel_create(struct report *report, struct device *device,
                              enum device_program program, enum program_variant variant,
                              const char *name, device_kernel *kernel);
-
-/* The same of a program that users' code is linked to; NULL: none is. Errors: also those of
- * code->explain, and DEVICE where the device has no compiler. */
-sonject_status kernel_create_with_code(struct report *report, struct device *device,
-                                       enum device_program program, enum program_variant variant,
-                                       const struct user_code *code, const char *name,
-                                       device_kernel *kernel);
 
 #endif

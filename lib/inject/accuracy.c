@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/progress.h"
+#include "base/report.h"
 
 #define REACH       2    /* pixels */
 #define PILOT_SCALE 0.5  /* of the usual number of rays; pilots of fewer foretell badly */

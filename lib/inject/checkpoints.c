@@ -8,7 +8,6 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/progress.h"
 #include "base/report.h"
 #include "base/system/process.h"
 #include "inject/accuracy.h"
@@ -63,17 +62,7 @@ static sonject_status identify(struct tracing *tracing)
     strncpy(identity->version, sonject_version(), sizeof identity->version - 1);
     strncpy(identity->scene, job->scene_hash, sizeof identity->scene - 1);
     strncpy(identity->image, job->image_hash, sizeof identity->image - 1);
-    CHECK(code_hash(tracing->report, identity->code));
-    if (job->request->scene->user_shapes.count == 0)
-        return SONJECT_OK;
-    /* code of users may answer differently on another device */
-    struct hash *hash = hash_begin();
-    CHECK_MEMORY(tracing->report, hash, "a hash");
-    hash_add_text(hash, job->device->name);
-    hash_add_text(hash, job->device->platform);
-    hash_add_text(hash, job->device->driver);
-    hash_end(hash, identity->device);
-    return SONJECT_OK;
+    return code_hash(tracing->report, identity->code);
 }
 
 /* After it, also on failure, the pilots are to be cleared. */
@@ -101,18 +90,12 @@ static sonject_status find_rays(struct tracing *tracing)
                              &tracing->input, job->progress, job->user);
 }
 
-/* NULL where the tallies are of the same scene, image and version, and traced on that device; else
- * what differs. */
-static const char *difference(const struct sums_identity *found, const struct sums_identity *mine,
-                              const char *device)
+/* NULL where the tallies are of the same scene, image and version; else what differs. */
+static const char *difference(const struct sums_identity *found, const struct sums_identity *mine)
 {
     if (strcmp(found->version, mine->version) != 0 || strcmp(found->code, mine->code) != 0)
         return "another version of sonject";
-    if (strcmp(found->scene, mine->scene) != 0)
-        return "another scene or image";
-    return strcmp(found->device, device) == 0
-               ? NULL
-               : "another device, on which code of shapes may answer differently";
+    return strcmp(found->scene, mine->scene) == 0 ? NULL : "another scene or image";
 }
 
 /* Work of shards of another number, or of a whole run and of shards, does not go together. */
@@ -131,16 +114,15 @@ static sonject_status check_shards(const struct tracing *tracing)
 }
 
 /* What is in the folder must be this scene's; what an earlier whole run left of another is dropped.
- * Shards that are merged must be of one device. */
+ */
 static sonject_status check_folder(struct tracing *tracing, struct sums_folder *folder)
 {
     struct report *report = tracing->report;
     const struct run_request *request = tracing->job->request;
     const struct sums_identity *mine = &tracing->head.identity;
-    const char *device = request->merges ? folder->files[0].head.identity.device : mine->device;
     for (size_t i = 0; i < folder->count; i++) {
         const struct sums_file *file = &folder->files[i];
-        const char *what = difference(&file->head.identity, mine, device);
+        const char *what = difference(&file->head.identity, mine);
         if (what && (request->shards > 0 || request->merges))
             return refuse_foreign_sums(report, file->path, what);
         if (what) {

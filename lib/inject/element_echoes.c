@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/progress.h"
+#include "base/report.h"
 #include "elements/elements.h"
 #include "inject/accuracy.h"
 #include "inject/compose.h"

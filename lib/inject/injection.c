@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/progress.h"
+#include "base/report.h"
 #include "base/system/process.h"
 #include "inject/accuracy.h"
 #include "inject/compose.h"

@@ -10,6 +10,7 @@
 
 #include "base/report.h"
 #include "device/device.h"
+#include "image/raster.h"
 #include "inject/impulses.h"
 #include "scene/placement.h"
 #include "scene/scene.h"
@@ -123,6 +124,10 @@ sonject_status element_echoes_compute(struct report *report, struct device *devi
                                       const struct injection_input *input,
                                       sonject_progress_function progress, void *user,
                                       const sonject_element_layout *layout, float *series);
+
+/* Of the swath that the scene makes itself, uniform or synthetic; without rows where it makes none.
+ */
+struct raster_layout made_layout(const struct scene *scene);
 
 /* Makes the pixels of the scene's uniform or synthetic input (its whole swath) and describes them
  * in *input. input->pixels is to be given to free(). Errors: MEMORY. */

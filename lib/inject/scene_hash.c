@@ -170,20 +170,6 @@ static void add_meshes(struct hash *hash, const struct scene *scene)
     }
 }
 
-static void add_user_shapes(struct hash *hash, const struct user_shapes *shapes)
-{
-    for (uint32_t i = 0; i < shapes->count; i++) {
-        const struct user_shape *shape = &shapes->shapes[i];
-        hash_add_text(hash, shapes->snippets[shape->snippet].code);
-        ADD(hash, shape->is_open);
-        ADD(hash, shape->bounding_radius_m);
-        ADD(hash, shape->half_length_m);
-        ADD(hash, shape->half_width_m);
-        ADD(hash, shape->half_height_m);
-        ADD(hash, shape->parameters);
-    }
-}
-
 /* What is read from files, or has no keys. */
 static void add_tables(struct digest *digest, const struct scene *scene)
 {
@@ -215,8 +201,6 @@ static void add_scene(struct digest *digest, const struct scene *scene, const ch
     add_objects(digest, scene);
     add_meshes(digest->section, scene);
     end_section(digest, "objects[].mesh");
-    add_user_shapes(digest->section, &scene->user_shapes);
-    end_section(digest, "objects[].user_shape");
     hash_add_text(digest->section, input_identity);
     end_section(digest, "input's pixels");
     if (digest->inputs) { /* these say more by themselves */

@@ -7,20 +7,36 @@
 #include "inject/injection.h"
 #include "scene/point_response.h"
 
+struct raster_layout made_layout(const struct scene *scene)
+{
+    const sonject_synthetic_params *synthetic = &scene->synthetic;
+    struct raster_layout layout = {0, 0, 1, PIXEL_FLOAT32};
+    if (scene->input_kind == SONJECT_INPUT_SYNTHETIC) {
+        layout.rows = synthetic->rows;
+        layout.columns = synthetic->columns;
+        layout.channels = synthetic->complex_pixels ? 2 : 1;
+    } else if (scene->input_kind == SONJECT_INPUT_UNIFORM) {
+        layout.rows = scene->uniform_rows;
+        layout.columns = scene->uniform_columns;
+    }
+    return layout;
+}
+
 sonject_status make_input(struct report *report, const struct scene *scene,
                           struct injection_input *input)
 {
     const sonject_synthetic_params *synthetic = &scene->synthetic;
     const bool is_synthetic = scene->input_kind == SONJECT_INPUT_SYNTHETIC;
     const double reference = scene_reference_speed(scene);
+    const struct raster_layout layout = made_layout(scene);
     struct point_response response;
     memset(input, 0, sizeof *input);
     input->is_made = true;
-    input->rows = is_synthetic ? synthetic->rows : scene->uniform_rows;
-    input->columns = is_synthetic ? synthetic->columns : scene->uniform_columns;
-    input->is_complex = is_synthetic && synthetic->complex_pixels;
+    input->rows = (size_t)layout.rows;
+    input->columns = (size_t)layout.columns;
+    input->is_complex = layout.channels == 2;
     const size_t count = input->rows * input->columns;
-    float *pixels = allocate_array(count, (input->is_complex ? 2 : 1) * sizeof *pixels);
+    float *pixels = allocate_array(count, layout.channels * sizeof *pixels);
     CHECK_MEMORY(report, pixels, is_synthetic ? "the synthetic seabed" : "the uniform seabed");
     input->pixels = pixels;
     for (size_t i = 0; !is_synthetic && i < count; i++)

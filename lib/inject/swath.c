@@ -111,18 +111,6 @@ static sonject_status describe_file(struct report *report, const struct scene *s
     return track_of_recording(&swath->track, report, recording);
 }
 
-static void describe_made(const struct scene *scene, struct swath *swath)
-{
-    const bool is_synthetic = scene->input_kind == SONJECT_INPUT_SYNTHETIC;
-    swath->layout.rows = is_synthetic ? scene->synthetic.rows : scene->uniform_rows;
-    swath->layout.columns = is_synthetic ? scene->synthetic.columns : scene->uniform_columns;
-    swath->is_complex = is_synthetic && scene->synthetic.complex_pixels;
-    swath->layout.channels = swath->is_complex ? 2 : 1;
-    swath->layout.type = PIXEL_FLOAT32;
-    swath->is_made = true;
-    swath->new_extension = ".tif";
-}
-
 static sonject_status open_input(struct report *report, const struct scene *scene,
                                  struct swath_file **file)
 {
@@ -143,7 +131,10 @@ static sonject_status open_and_describe(struct report *report, const struct scen
         THEN(status, describe_file(report, scene, *file, swath));
         status = scene_locate(scene, report, status, "input.path");
     } else {
-        describe_made(scene, swath);
+        swath->layout = made_layout(scene);
+        swath->is_complex = swath->layout.channels == 2;
+        swath->is_made = true;
+        swath->new_extension = ".tif";
     }
     THEN(status, scene_locate(scene, report, choose_patch(report, scene, swath), "patch"));
     if (status != SONJECT_OK) {

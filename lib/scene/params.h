@@ -10,7 +10,6 @@
 #include <sonject/elements.h>
 #include <sonject/result.h>
 #include <sonject/scene.h>
-#include <sonject/user_shape.h>
 
 #include "kernels/shapes/shapes.h"
 
@@ -360,28 +359,10 @@ typedef struct sonject_object_params {
     double burial_fraction;         /* 0...1 of the height that the object has in its pose */
     double proud_height_m;          /* of the highest point above the seabed, 0...that height */
     uint32_t mesh;                  /* number of a mesh of the scene */
-    uint32_t user_shape;            /* number of a user's shape of the scene */
     uint32_t level_kind;            /* sonject_level_kind */
     double level_db;                /* not for SONJECT_LEVEL_PHYSICAL */
     sonject_fouling_params fouling; /* of the whole object, whatever its parts have */
 } sonject_object_params;
-
-/* A shape by code, whose contract is in sonject/user_shape.h. All 0: a closed solid without code,
- * name and radius. */
-typedef struct sonject_user_shape_params {
-    bool is_open;             /* a surface without inside: the normal turns to the side that the
-                                 ray comes from; else the closed surface of a solid */
-    const char *name;         /* of the code, for messages ("name:line: what"): 1 to 255 bytes */
-    const char *code;         /* at most 64 KiB */
-    double bounding_radius_m; /* of a sphere about the origin that holds the shape, above 0 */
-    double half_length_m;     /* half sizes of a box about the origin that holds it too, along x, */
-    double half_width_m;      /* y and z; 0: the bounding radius. An object rests on the seabed */
-    double half_height_m;     /* with what box and sphere have in common */
-    uint32_t first_line;      /* number of the code's first line in messages; 0: 1 */
-    uint32_t parameter_count; /* of parameters that count */
-    double parameters[SONJECT_USER_PARAMETERS_CAPACITY]; /* handed to the code as float, the others
-                                                            as 0 */
-} sonject_user_shape_params;
 
 /* How targets are put into an image. */
 

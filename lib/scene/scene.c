@@ -35,7 +35,6 @@ void scene_clear(struct scene *scene)
     for (uint32_t i = 0; i < scene->mesh_count; i++)
         give_up_mesh(scene, &scene->meshes[i]);
     free(scene->meshes);
-    user_shapes_clear(&scene->user_shapes);
     free(scene->water_layers);
     response_table_clear(&scene->pulse_table);
     response_table_clear(&scene->cross_range_table);

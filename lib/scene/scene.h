@@ -15,7 +15,6 @@
 #include "scene/params.h"
 #include "scene/relief_features.h"
 #include "scene/response_table.h"
-#include "user/snippet.h"
 
 #define SCENE_OBJECTS_MAX      250 /* ids must fit the 8-bit label image */
 #define SCENE_PARTS_MAX        1000
@@ -23,25 +22,6 @@
 #define SCENE_MESHES_MAX       64
 #define SCENE_INTERACTIONS_MAX 8
 #define SWATH_PIXELS_MAX       (UINT64_C(1) << 31)
-
-/* Shapes that users wrote: code that several share is kept once. */
-#define USER_SNIPPETS_MAX 64
-#define USER_SHAPES_MAX   1250 /* as many as objects and parts */
-
-struct user_shape {
-    uint32_t snippet; /* number of its code */
-    bool is_open;
-    double bounding_radius_m;
-    double half_length_m, half_width_m, half_height_m; /* at most the radius */
-    float parameters[SONJECT_USER_PARAMETERS_CAPACITY];
-};
-
-struct user_shapes {
-    struct user_snippet *snippets; /* owned; no two of the same code */
-    uint32_t snippet_count;
-    struct user_shape *shapes; /* owned */
-    uint32_t count;
-};
 
 /* Where each key of a scene stands in its file, for what is found wrong only once the image and its
  * geometry are known. */
@@ -103,8 +83,7 @@ struct scene {
     struct mesh *meshes; /* owned */
     uint32_t mesh_count;
     struct mesh_store *mesh_store; /* that meshes come from and go back to; borrowed; NULL: none */
-    struct user_shapes user_shapes;
-    struct scene_part *parts; /* owned; in no order */
+    struct scene_part *parts;      /* owned; in no order */
     uint32_t part_count;
     struct relief_features relief;
     struct written_keys written; /* none where no file was read */
@@ -126,12 +105,6 @@ sonject_status scene_append_object(struct scene *scene, struct report *report,
 /* Appends a copy; there are fewer than SCENE_PARTS_MAX. Errors: MEMORY. */
 sonject_status scene_append_part(struct scene *scene, struct report *report,
                                  const struct scene_part *part);
-
-/* Appends a checked shape. Errors: INPUT (its code or name, see snippet_make; too many), MEMORY. */
-sonject_status user_shapes_append(struct user_shapes *shapes, struct report *report,
-                                  const sonject_user_shape_params *shape);
-
-void user_shapes_clear(struct user_shapes *shapes);
 
 /* Notes the place of a key, whose section has been noted before. Errors: MEMORY. */
 sonject_status scene_note_key(struct scene *scene, struct report *report, const char *path,

@@ -20,27 +20,6 @@ struct layer {
     struct growing_text taken;
 };
 
-static sonject_status check_keys(struct layer *layer, const struct tree_node *node)
-{
-    sonject_status status = SONJECT_OK;
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
-        const struct tree_entry *entry = &node->entries[i];
-        const struct section *section;
-        const char *near = NULL;
-        if (!entry->key)
-            continue;
-        const size_t before = key_path_add(&layer->path, entry->key);
-        if (!scene_key_find(&scene_section, layer->path.text, &near, &section))
-            status =
-                tree_failure(&layer->calibration, entry->place, layer->path.text,
-                             "no key of scenes%s%s%s; what was measured goes below measured",
-                             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-        THEN(status, check_keys(layer, &entry->value));
-        key_path_shorten(&layer->path, before);
-    }
-    return status;
-}
-
 /* Whatever is wrong with it is told where the scene names the file. */
 static void move_place(struct tree_node *node, struct tree_place place)
 {
@@ -189,7 +168,8 @@ static sonject_status take_keys(struct layer *layer, const char *file)
                                 "a calibration has the sections input, sonar, injection and "
                                 "measured");
         struct tree_node root = {.kind = TREE_SECTION, .entries = entry, .count = 1};
-        CHECK(check_keys(layer, &root));
+        CHECK(check_scene_keys(own, &root, &layer->path, "no key of scenes",
+                               "; what was measured goes below measured"));
         CHECK(lay_under(layer, &layer->tree->root, &root));
     }
     layer->reader->scene->calibration = copy_text(file);

@@ -194,11 +194,11 @@ bool field_is_sound(const struct field *field, const void *structure, char what[
 static const char *kind_of(const struct field *field)
 {
     static const char *const kinds[] = {
-        [FIELD_QUANTITY] = "quantity", [FIELD_COUNT32] = "count", [FIELD_COUNT64] = "count",
-        [FIELD_BOOL] = "flag",         [FIELD_WORD] = "word",     [FIELD_LABEL] = "text",
-        [FIELD_TEXT] = "text",         [FIELD_PATH] = "file",     [FIELD_FILE] = "file",
-        [FIELD_SECTION] = "section",   [FIELD_NAMED] = "name",    [FIELD_ENTRIES] = "list",
-        [FIELD_SPECIAL] = "special",
+        [FIELD_QUANTITY] = "quantity", [FIELD_UNIT] = "special",    [FIELD_COUNT32] = "count",
+        [FIELD_COUNT64] = "count",     [FIELD_BOOL] = "flag",       [FIELD_WORD] = "word",
+        [FIELD_LABEL] = "text",        [FIELD_TEXT] = "text",       [FIELD_PATH] = "file",
+        [FIELD_FILE] = "file",         [FIELD_SECTION] = "section", [FIELD_NAMED] = "name",
+        [FIELD_ENTRIES] = "list",      [FIELD_SPECIAL] = "special",
     };
     return field->kind == FIELD_SPECIAL && field->is_list ? "list" : kinds[field->kind];
 }
@@ -239,7 +239,7 @@ bool field_quantity(const struct field *field, enum quantity *quantity)
     *quantity = field->quantity;
     if (field->kind == FIELD_QUANTITY)
         return true;
-    for (size_t i = 0; field->kind == FIELD_SPECIAL && i < COUNT(quantity_texts); i++)
+    for (size_t i = 0; strcmp(kind_of(field), "special") == 0 && i < COUNT(quantity_texts); i++)
         if (strcmp(unit_of(field), quantity_texts[i].units) == 0) {
             *quantity = (enum quantity)i;
             return true;
@@ -258,11 +258,12 @@ static bool is_of_choice(const struct section *section, const char *key)
     return false;
 }
 
-/* The default, as a scene file may say it; "" for none. */
+/* The default, as a scene file may say it; "" for none: one that is out of bounds is none, too. */
 static void tell_preset(const struct section *section, const struct field *field, char text[64])
 {
     const double preset = shown(field, field->preset);
     const bool is_none = field->is_required || is_of_choice(section, field->key) || isnan(preset) ||
+                         (preset == 0.0 && !field->words[0] && !is_within(field, 0.0)) ||
                          (preset == 0.0 && (field->bounds & ZERO_IS_NONE));
     text[0] = 0;
     if (is_none)
@@ -401,4 +402,31 @@ bool scene_key_find(const struct section *top, const char *path, const char **ne
             return field->kind == FIELD_SPECIAL && *path;
         *section = field->section;
     }
+}
+
+bool scene_key_is_known(const char *path, char hint[HINT_CAPACITY])
+{
+    const char *near;
+    const struct section *section;
+    const bool is_known = scene_key_find(&scene_section, path, &near, &section);
+    hint[0] = '\0';
+    if (near)
+        snprintf(hint, HINT_CAPACITY, "; did you mean '%s'?", near);
+    return is_known;
+}
+
+sonject_status check_scene_keys(const struct tree *tree, const struct tree_node *node,
+                                struct key_path *path, const char *what, const char *behind)
+{
+    for (size_t i = 0; i < node->count; i++) {
+        const struct tree_entry *entry = &node->entries[i];
+        char hint[HINT_CAPACITY];
+        const size_t before =
+            entry->key ? key_path_add(path, entry->key) : key_path_add_index(path, i);
+        if (entry->key && !scene_key_is_known(path->text, hint))
+            return tree_failure(tree, entry->place, path->text, "%s%s%s", what, hint, behind);
+        CHECK(check_scene_keys(tree, &entry->value, path, what, behind));
+        key_path_shorten(path, before);
+    }
+    return SONJECT_OK;
 }

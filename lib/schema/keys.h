@@ -16,9 +16,11 @@
 #include "schema/yaml_tree.h"
 
 #define FIELD_WORDS_MAX 20
+#define HINT_CAPACITY   80
 
 enum field_kind {
     FIELD_QUANTITY, /* double; or a section, if the row has one */
+    FIELD_UNIT,     /* double: what one of a file's numbers stands for, "2.54 cm" or "mm" */
     FIELD_COUNT32,  /* uint32_t */
     FIELD_COUNT64,  /* uint64_t */
     FIELD_BOOL,     /* bool */
@@ -30,7 +32,7 @@ enum field_kind {
     FIELD_SECTION,  /* a structure; the same one as its parent's where offset is 0 */
     FIELD_NAMED,    /* the same, or a single text that `read` takes into the structure */
     FIELD_ENTRIES,  /* an array of structures, which the section fills, and how many there are */
-    FIELD_SPECIAL   /* no single member: read by a function of its own */
+    FIELD_SPECIAL   /* no single member: read by a function of its own; NULL: before the table is */
 };
 
 /* What bounds of a number mean. */
@@ -104,6 +106,7 @@ struct section {
 #define LABEL(its)              .kind = FIELD_LABEL, MEMBER(its)
 #define TEXT(its)               .kind = FIELD_TEXT, MEMBER(its)
 #define SPECIAL(reads, told)    .kind = FIELD_SPECIAL, .read = (reads), .unit = (told)
+#define LENGTH_UNIT(its)        .kind = FIELD_UNIT, .unit = "m, km, cm, mm", MEMBER(its)
 #define REQUIRED                .is_required = true
 #define HIDDEN                  .is_hidden = true
 #define SETS(its, value)                                                                           \
@@ -195,12 +198,20 @@ bool field_quantity(const struct field *field, enum quantity *quantity);
 bool scene_key_find(const struct section *top, const char *path, const char **near,
                     const struct section **section);
 
+/* The same of scenes: else hint gets "; did you mean 'x'?", "" where nothing is near. */
+bool scene_key_is_known(const char *path, char hint[HINT_CAPACITY]);
+
+/* That scenes have all keys of a node, which lies at the path. what: is said of others, before the
+ * hint; behind: after it. Errors: INPUT. */
+sonject_status check_scene_keys(const struct tree *tree, const struct tree_node *node,
+                                struct key_path *path, const char *what, const char *behind);
+
 /* ---- The sections. The whole file's structure is struct scene. */
 
 extern const struct section scene_section, input_section, sonar_section, pulse_section,
     seabed_section, forward_section, relief_section, relief_grid_section, surface_section,
     material_section, medium_section, layer_section, injection_section, elements_section,
-    object_section, part_section, user_section, mesh_section;
+    object_section, part_section, mesh_section;
 
 /* ---- Reading. */
 
@@ -210,8 +221,7 @@ struct reader {
     struct report *report;
     const struct tree *tree;
     struct scene *scene;
-    bool allows_user_shapes; /* code in files is wanted */
-    bool takes_geometry;     /* of the input file, once all is read */
+    bool takes_geometry; /* of the input file, once all is read */
     enum altitude_source altitude_by;
     bool takes_first_range;
     const char *moved_folder; /* as in struct scene_source */
@@ -257,10 +267,6 @@ bool is_word(const struct tree_node *node, const char *word);
 sonject_status read_quantity(struct reader *reader, const struct tree_node *node,
                              enum quantity quantity, double *value);
 
-/* Reads what one of a file's numbers stands for: a length, "2.54 cm", or a unit by itself, "mm". */
-sonject_status read_length_unit(struct reader *reader, const struct tree_node *node,
-                                double *unit_m);
-
 /* Reads a text as the name of a file: one in the file is meant from the file's folder, one of an
  * override from where the user is. On success *path is the caller's, for free(). */
 sonject_status read_path(struct reader *reader, const struct tree_node *node, char **path);
@@ -271,20 +277,22 @@ const struct number_array *find_array(const struct reader *reader, const char *p
 /* The same as read_path for a file that must be there, or an array in its place. */
 sonject_status read_existing_path(struct reader *reader, const struct tree_node *node, char **path);
 
+/* Reads the table whose file, or array in its place, a text names. */
+sonject_status read_number_table(struct reader *reader, const struct tree_node *node,
+                                 const struct table_format *format, struct number_table *table);
+
 /* Reads the version of a format, which is 1. */
 sonject_status read_version(struct reader *reader, const struct tree_node *node, void *structure);
 
 /* Reads the list of objects into the reader's scene. */
 sonject_status read_objects(struct reader *reader, const struct tree_node *node, void *structure);
 
-/* Read a mesh and a user's code into the scene; structure: the sonject_object_params that has it.
- */
+/* Reads a mesh into the scene; structure: the sonject_object_params that has it. */
 sonject_status read_mesh(struct reader *reader, const struct tree_node *node, void *structure);
-sonject_status read_user_shape(struct reader *reader, const struct tree_node *node,
-                               void *structure);
 
-/* Whether names are the same but for '_' and '-' in place of blanks. */
-bool is_same_name(const char *given, const char *name);
+/* Finds the number of a material by its name, or of a sediment whose grains are known. */
+sonject_status find_material(struct reader *reader, const struct tree_node *node, bool of_sediments,
+                             uint32_t *index);
 
 /* Take the name of a material, and of the seabed's, whose backscatter stays the seabed's own.
  * structure: a sonject_material_params. */

@@ -25,6 +25,7 @@ struct named_material {
  * "APL-UW High-Frequency Ocean Environmental Acoustic Models Handbook", TR 9407 (1994), table 2, as
  * commonly tabulated; their Lambert part is Mackenzie's. */
 static const struct named_material materials[] = {
+    {"steel", 0.0, 0.0, 0.0, 0.0, 0.0, NAN}, /* what there is without any key */
     {"concrete", 2.3, 2.1, 0.01, 1.0e-3, 0.063, NAN},
     {"rubber", 1.1, 1.03, 0.05, 0.5e-3, 0.02, NAN},
     {"wood", 0.9, 1.3, 0.02, 1.0e-3, 0.05, NAN},
@@ -37,7 +38,8 @@ static const struct named_material materials[] = {
     {"clay", 1.145, 0.9801, 0.00148, 1.0e-3, 1.9953e-3, 9.0},
 };
 
-bool is_same_name(const char *given, const char *name)
+/* Whether names are the same but for '_' and '-' in place of blanks. */
+static bool is_same_name(const char *given, const char *name)
 {
     for (; *name; given++, name++) {
         const char letter = *given == '_' || *given == '-' ? ' ' : *given;
@@ -49,51 +51,60 @@ bool is_same_name(const char *given, const char *name)
 
 bool material_named(const char *name, sonject_material_params *material)
 {
-    if (is_same_name(name, "steel")) {
-        section_defaults(&material_section, material, NULL);
-        return true;
-    }
-    for (size_t i = 0; i < COUNT(materials); i++) {
-        const struct named_material *named = &materials[i];
-        if (!is_same_name(name, named->name))
-            continue;
-        section_defaults(&material_section, material, NULL);
+    size_t i = 0;
+    while (i < COUNT(materials) && !is_same_name(name, materials[i].name))
+        i++;
+    if (i == COUNT(materials))
+        return false;
+    section_defaults(&material_section, material, NULL);
+    if (i > 0) {
         material->reflection_kind = SONJECT_REFLECTION_FLUID;
-        material->density_ratio = named->density_ratio;
-        material->speed_ratio = named->speed_ratio;
-        material->loss = named->loss;
-        material->roughness_m = named->roughness_m;
-        material->lambert = named->lambert;
-        return true;
+        material->density_ratio = materials[i].density_ratio;
+        material->speed_ratio = materials[i].speed_ratio;
+        material->loss = materials[i].loss;
+        material->roughness_m = materials[i].roughness_m;
+        material->lambert = materials[i].lambert;
     }
-    return false;
+    return true;
 }
 
 const char *material_name(uint32_t index)
 {
-    return index == 0 ? "steel" : index <= COUNT(materials) ? materials[index - 1].name : NULL;
+    return index < COUNT(materials) ? materials[index].name : NULL;
 }
 
 double material_grain_size(uint32_t index)
 {
-    return index == 0 ? NAN : materials[index - 1].grain_size_phi;
+    return materials[index].grain_size_phi;
+}
+
+sonject_status find_material(struct reader *reader, const struct tree_node *node, bool of_sediments,
+                             uint32_t *index)
+{
+    const char *names[COUNT(materials)];
+    struct word_list list = {{0}, 0};
+    const char *name = read_text(reader, node);
+    if (!name)
+        return SONJECT_ERROR_INPUT;
+    for (uint32_t i = 0; material_name(i); i++) {
+        if (of_sediments && isnan(material_grain_size(i)))
+            continue;
+        *index = i;
+        if (is_same_name(name, material_name(i)))
+            return SONJECT_OK;
+        names[list.count] = material_name(i);
+        list_word(&list, names[list.count]);
+    }
+    return refuse_word(reader, node, name, &list, nearest_word(name, names, list.count));
 }
 
 sonject_status read_material_name(struct reader *reader, const struct tree_node *node,
                                   void *structure)
 {
-    const char *names[COUNT(materials) + 1];
-    struct word_list list = {{0}, 0};
-    const char *name = read_text(reader, node);
-    if (!name)
-        return SONJECT_ERROR_INPUT;
-    if (material_named(name, structure))
-        return SONJECT_OK;
-    while (material_name((uint32_t)list.count)) {
-        names[list.count] = material_name((uint32_t)list.count);
-        list_word(&list, names[list.count]);
-    }
-    return refuse_word(reader, node, name, &list, nearest_word(name, names, list.count));
+    uint32_t index;
+    CHECK(find_material(reader, node, false, &index));
+    material_named(material_name(index), structure);
+    return SONJECT_OK;
 }
 
 /* The sediment's backscatter stays the seabed's own. */

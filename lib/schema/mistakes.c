@@ -30,19 +30,6 @@ static bool is_kept(const struct mistakes *mistakes, const struct tree *tree, co
     return false;
 }
 
-static bool make_room(struct mistakes *mistakes)
-{
-    if (mistakes->count < mistakes->capacity)
-        return true;
-    const size_t capacity = 2 * mistakes->capacity + 8;
-    struct mistake *list = realloc(mistakes->list, capacity * sizeof *list);
-    if (!list)
-        return false;
-    mistakes->list = list;
-    mistakes->capacity = capacity;
-    return true;
-}
-
 static void find_order(size_t order[5], const struct tree *tree, const struct tree_place *place)
 {
     const bool is_named = tree->named_at.override || tree->named_at.line > 0;
@@ -73,9 +60,12 @@ void mistakes_add(struct mistakes *mistakes, const struct tree *tree,
         return;
     const size_t file_bytes = strlen(tree->file) + 1;
     const size_t path_bytes = strlen(path) + 1;
-    const bool has_room = mistakes->count < MISTAKES_MAX && make_room(mistakes);
-    if (has_room)
+    struct mistake *list = NULL;
+    if (mistakes->count < MISTAKES_MAX)
+        list = grow_doubling(mistakes->list, mistakes->count, sizeof *list);
+    if (list)
         added.file = malloc(file_bytes + path_bytes + (line ? strlen(line) + 1 : 0));
+    mistakes->list = list ? list : mistakes->list;
     if (!added.file) {
         mistakes->uncounted += line != NULL;
         return;

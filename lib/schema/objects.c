@@ -36,14 +36,12 @@ END_SECTION(tail_end, tail_end)
                  [SONJECT_END_SPHERICAL] = "spherical"},                                           \
     .section = &end##_section
 
-#define SIZE(its) QUANTITY(its, LENGTH), POSITIVE, NONE_IF_ZERO
+#define SIZE(its) QUANTITY(its, LENGTH), POSITIVE
 
 #define SHAPE_WORD(NUMBER, name, traits) [SHAPE_##NUMBER] = #name,
 #define SHAPE_FIELDS                                                                               \
     {"shape", "of the object or part; objects are at least half a wavelength large",               \
      WORD(shape) = {ALL_SHAPES(SHAPE_WORD)[SHAPE_PARTS] = ""}, .preset = SHAPE_SPHERE},            \
-        {"user", "code that is the shape, where that is user", .kind = FIELD_SPECIAL,              \
-         .section = &user_section, .read = read_user_shape},                                       \
         {"length", "overall along the nose", SIZE(length_m)},                                      \
         {"width", "overall across the nose", SIZE(width_m)},                                       \
         {"diameter", "overall; of cones below", SIZE(diameter_m)},                                 \
@@ -338,10 +336,7 @@ static const struct section target_section = {ROWS(target_fields), .choice = "sh
 
 static struct reader reader_of_target(const struct reader *reader, const struct target_text *target)
 {
-    return (struct reader){.report = reader->report,
-                           .tree = &target->tree,
-                           .scene = reader->scene,
-                           .allows_user_shapes = reader->allows_user_shapes};
+    return (struct reader){.report = reader->report, .tree = &target->tree, .scene = reader->scene};
 }
 
 /* Reads the file that the target names, all but its parts. */
@@ -438,7 +433,6 @@ static const struct field object_fields[] = {
     {"class", "label for training; by default the shape", LABEL(class_name)},
     SHAPE_FIELDS,
     {"mesh", "number in the scene", HIDDEN, COUNT32(mesh, 0, 0)},
-    {"user", "number in the scene", HIDDEN, COUNT32(user_shape, 0, 0)},
     {"position",
      "ground point under the centre: centre, {along_track: , slant_range: } or {row: , column: }",
      CENTRE_WORD, .section = &position_section},

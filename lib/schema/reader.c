@@ -39,7 +39,7 @@ sonject_status read_quantity(struct reader *reader, const struct tree_node *node
     return SONJECT_OK;
 }
 
-sonject_status read_length_unit(struct reader *reader, const struct tree_node *node, double *unit_m)
+static sonject_status read_unit(struct reader *reader, const struct tree_node *node, double *unit_m)
 {
     char problem[200];
     char one[40] = "1 ";
@@ -246,6 +246,8 @@ static sonject_status read_value(struct reader *reader, const struct field *fiel
         if (field->section && node->kind != TREE_TEXT)
             return read_section(reader, field->section, node, structure);
         return read_number(reader, field, node, destination);
+    case FIELD_UNIT:
+        return read_unit(reader, node, destination);
     case FIELD_COUNT32:
         status = read_count(reader, field, node, &count);
         if (status == SONJECT_OK)
@@ -278,7 +280,7 @@ static sonject_status read_value(struct reader *reader, const struct field *fiel
     case FIELD_SPECIAL:
         break;
     }
-    return SONJECT_ERROR_INPUT; /* never: it has a function */
+    return SONJECT_OK;
 }
 
 /* Whether a node is a word that stands for a number. */

@@ -146,18 +146,6 @@ static sonject_status choose_band(struct reader *reader, struct tree *tree)
     return status == SONJECT_OK ? lay_over(reader, tree, &tree->root, &band->value) : status;
 }
 
-static sonject_status list_bands(struct reader *reader, char **names)
-{
-    const struct tree_node *root = &reader->tree->root;
-    const struct tree_entry *bands = tree_find(root, "bands");
-    const bool is_open = bands && !tree_find(root, "band");
-    static const struct tree_node none;
-    *names = NULL;
-    CHECK(is_open ? check_bands(reader, &bands->value) : SONJECT_OK);
-    *names = join_names(is_open ? &bands->value : &none);
-    return *names ? SONJECT_OK : report_out_of_memory(reader->report, "the names of bands");
-}
-
 /* ---- The file. */
 
 static sonject_status apply_overrides(struct tree *tree, const struct scene_source *source)
@@ -177,7 +165,6 @@ static sonject_status fill_scene(struct tree *tree, const struct scene_source *s
     struct reader reader = {.report = tree->report,
                             .tree = tree,
                             .scene = scene,
-                            .allows_user_shapes = source->allows_user_shapes,
                             .moved_folder = source->moved_folder,
                             .moved_overrides = source->moved_overrides,
                             .arrays = source->arrays,
@@ -270,9 +257,15 @@ sonject_status scene_source_bands(const struct scene_source *source, struct repo
     struct tree tree;
     tree_init(&tree, report, source->path);
     struct reader reader = {.report = report, .tree = &tree};
+    static const struct tree_node none;
     *names = NULL;
     sonject_status status = scene_source_tree(source, &tree);
-    THEN(status, list_bands(&reader, names));
+    const struct tree_entry *bands = tree_find(&tree.root, "bands");
+    const struct tree_node *open = bands && !tree_find(&tree.root, "band") ? &bands->value : &none;
+    if (open != &none)
+        THEN(status, check_bands(&reader, open));
+    if (status == SONJECT_OK && !(*names = join_names(open)))
+        status = report_out_of_memory(report, "the names of bands");
     tree_clear(&tree);
     return status;
 }

@@ -30,7 +30,6 @@ struct scene_source {
     const char *made_calibration; /* file that stands for input.calibration: auto; NULL: none */
     struct number_array *arrays;  /* by their names, which are their keys' values */
     size_t array_count;
-    bool allows_user_shapes;
     bool takes_pixels;   /* the input may be pixels that a call is given: none of path, uniform and
                             synthetic */
     bool *are_relations; /* told by a reading that fails with INPUT: that each value would do by

@@ -49,25 +49,6 @@ sonject_status scene_source_keep_tree(struct scene_source *source, struct report
     return status;
 }
 
-/* Every key of a value, below the path that it is set at. */
-static sonject_status check_keys(const struct tree *tree, const struct tree_node *node,
-                                 struct key_path *path)
-{
-    for (size_t i = 0; i < node->count; i++) {
-        const struct tree_entry *entry = &node->entries[i];
-        const struct section *section;
-        const char *near;
-        const size_t before =
-            entry->key ? key_path_add(path, entry->key) : key_path_add_index(path, i);
-        if (entry->key && !scene_key_find(&scene_section, path->text, &near, &section))
-            return tree_failure(tree, entry->place, path->text, "unknown key%s%s%s",
-                                near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-        CHECK(check_keys(tree, &entry->value, path));
-        key_path_shorten(path, before);
-    }
-    return SONJECT_OK;
-}
-
 /* Whether an override is of the key, or of one below it. */
 static bool is_below(const char *override, const char *key, size_t length)
 {
@@ -137,19 +118,17 @@ static sonject_status check_override(struct scene_source *source, struct report 
                                      const char *override)
 {
     struct tree *tree = &source->tree;
-    const struct section *section;
-    const char *near;
+    char hint[HINT_CAPACITY];
     const struct tree_node *node;
     CHECK(scene_source_keep_tree(source, report));
     CHECK(tree_override(tree, override, &node));
     const char *key = tree->override_paths[tree->override_count - 1];
     const struct tree_place place = {key, 1, 1};
-    if (!scene_key_find(&scene_section, key, &near, &section))
-        return tree_failure(tree, place, key, "there is no such key%s%s%s",
-                            near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    if (!scene_key_is_known(key, hint))
+        return tree_failure(tree, place, key, "there is no such key%s", hint);
     struct key_path path = {"", 0};
     path.length = (size_t)snprintf(path.text, sizeof path.text, "%.200s", key);
-    return check_keys(tree, node, &path);
+    return check_scene_keys(tree, node, &path, "unknown key", "");
 }
 
 sonject_status scene_source_set(struct scene_source *source, struct report *report, const char *key,

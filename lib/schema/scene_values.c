@@ -229,12 +229,10 @@ static bool find_spot(struct spot *spot, const char *path)
 sonject_status scene_source_get(struct scene_source *source, struct report *report, const char *key,
                                 char **json)
 {
-    const struct section *section;
-    const char *near = NULL;
+    char hint[HINT_CAPACITY];
     *json = NULL;
-    if (*key && !scene_key_find(&scene_section, key, &near, &section))
-        return input_failure(report, key, "there is no such key%s%s%s",
-                             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    if (*key && !scene_key_is_known(key, hint))
+        return input_failure(report, key, "there is no such key%s", hint);
     CHECK(scene_source_keep_tree(source, report));
     struct spot spot = whole_scene(source);
     json_t *value = find_spot(&spot, key) ? json_of(source, &spot) : json_null();

@@ -79,18 +79,12 @@ struct heights_text {
     sonject_relief_params grid;
 };
 
-static sonject_status read_heights_unit(struct reader *reader, const struct tree_node *node,
-                                        void *structure)
-{
-    return read_length_unit(reader, node, &((struct heights_text *)structure)->unit_m);
-}
-
 #define STRUCTURE struct heights_text
 static const struct field heights_fields[] = {
     {"file", "image or array of one channel: rows along-track, columns in ground range",
      .kind = FIELD_FILE, MEMBER(path), REQUIRED},
     {"array", "in an HDF5 or MATLAB file of several: its name", TEXT(array)},
-    {"unit", "of the file's numbers", SPECIAL(read_heights_unit, "m, km, cm, mm"), REQUIRED},
+    {"unit", "of the file's numbers", LENGTH_UNIT(unit_m), REQUIRED},
     {"positive", "where larger numbers lie: up (heights) or down (depths)",
      WORD(positive) = {[POSITIVE_UP] = "up", [POSITIVE_DOWN] = "down"}},
     {"offset", "height over the mean seabed where the file has 0", QUANTITY(offset_m, LENGTH),
@@ -256,29 +250,13 @@ static void relate_seabed(struct check *check, const void *structure)
 
 /* ---- Sediments whose backscatter is modelled (scene/sediment.h). */
 
-#define SEDIMENTS_MAX 32
-
 static sonject_status read_sediment(struct reader *reader, const struct tree_node *node,
                                     void *structure)
 {
-    const char *names[SEDIMENTS_MAX];
-    struct word_list list = {{0}, 0};
-    const char *name = read_text(reader, node);
-    const char *known;
-    if (!name)
-        return SONJECT_ERROR_INPUT;
-    for (uint32_t i = 0; (known = material_name(i)) != NULL; i++) {
-        const double grain_size_phi = material_grain_size(i);
-        if (isnan(grain_size_phi) || list.count == SEDIMENTS_MAX)
-            continue;
-        if (is_same_name(name, known)) {
-            ((sonject_seabed_params *)structure)->grain_size_phi = grain_size_phi;
-            return SONJECT_OK;
-        }
-        names[list.count] = known;
-        list_word(&list, known);
-    }
-    return refuse_word(reader, node, name, &list, nearest_word(name, names, list.count));
+    uint32_t index;
+    CHECK(find_material(reader, node, true, &index));
+    ((sonject_seabed_params *)structure)->grain_size_phi = material_grain_size(index);
+    return SONJECT_OK;
 }
 
 #define STRUCTURE sonject_seabed_params

@@ -19,7 +19,7 @@ enum {
     IMAGINARY_PART
 };
 
-static sonject_status read_table(struct reader *reader, const struct tree_node *node,
+sonject_status read_number_table(struct reader *reader, const struct tree_node *node,
                                  const struct table_format *format, struct number_table *table)
 {
     char *path = NULL;
@@ -45,7 +45,7 @@ static sonject_status read_response_file(struct reader *reader, const struct tre
     struct number_table table;
     const char *what = NULL;
     double largest = 0.0;
-    CHECK(read_table(reader, node, &format, &table));
+    CHECK(read_number_table(reader, node, &format, &table));
     const int position = table.values[TIME] ? TIME : POSITION;
     const double *positions = table.values[position];
     for (int part = REAL_PART; part <= IMAGINARY_PART; part++)
@@ -73,7 +73,7 @@ static sonject_status read_motion_file(struct reader *reader, const struct tree_
                                         .most = {SCALE_MAX_M, 0.0, most},
                                         .rises = true};
     struct number_table table;
-    CHECK(read_table(reader, node, &format, &table));
+    CHECK(read_number_table(reader, node, &format, &table));
     const sonject_status status =
         motion_table_set(motion, reader->report, table.values[0], table.values[2], table.count);
     number_table_clear(&table);

@@ -272,9 +272,9 @@ static sonject_status take_row(void *user, const struct table_row *row)
 sonject_status number_table_refuse(const struct number_table *table, struct report *report,
                                    size_t sample, size_t column, const char *what)
 {
-    return report_failure(report, SONJECT_ERROR_INPUT, "%s:%zu: %s: %s", table->file,
-                          sample < table->count ? table->lines[sample] : table->last_line,
-                          table->format->names[column], what);
+    return table_refuse(report, table->file,
+                        sample < table->count ? table->lines[sample] : table->last_line,
+                        table->format->names[column], "%s", what);
 }
 
 static sonject_status check_samples(const struct number_table *table, struct report *report)

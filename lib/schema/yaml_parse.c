@@ -161,7 +161,6 @@ static sonject_status build_node(struct builder *builder, const yaml_event_t *ev
             return refuse(builder, event, no_marks);
         node->kind = TREE_TEXT;
         node->is_quoted = event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
-        node->is_block = event->data.scalar.style == YAML_LITERAL_SCALAR_STYLE;
         return copy_scalar(builder, event, &node->text);
     case YAML_SEQUENCE_START_EVENT:
         if (is_marked(event->data.sequence_start.anchor, event->data.sequence_start.tag))

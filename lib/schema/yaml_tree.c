@@ -40,18 +40,6 @@ void tree_node_clear(struct tree_node *node)
     node->place = place;
 }
 
-static sonject_status make_room(struct tree *tree, struct tree_node *node)
-{
-    if (node->count < node->capacity)
-        return SONJECT_OK;
-    const size_t capacity = node->capacity == 0 ? 4 : 2 * node->capacity;
-    struct tree_entry *entries = realloc(node->entries, capacity * sizeof *entries);
-    CHECK_MEMORY(tree->report, entries, "the scene file");
-    node->entries = entries;
-    node->capacity = capacity;
-    return SONJECT_OK;
-}
-
 sonject_status tree_append(struct tree *tree, struct tree_node *node, const struct key_path *path,
                            const char *key, struct tree_place place, struct tree_entry **entry)
 {
@@ -61,7 +49,9 @@ sonject_status tree_append(struct tree *tree, struct tree_node *node, const stru
     if (tree->node_count >= TREE_NODES_MAX)
         return tree_failure(tree, place, path->text,
                             "is one value too many: a file may have %d; split it", TREE_NODES_MAX);
-    CHECK(make_room(tree, node));
+    struct tree_entry *entries = grow_doubling(node->entries, node->count, sizeof *entries);
+    CHECK_MEMORY(tree->report, entries, "the scene file");
+    node->entries = entries;
     char *own_key = key ? copy_text(key) : NULL;
     if (key && !own_key)
         return report_out_of_memory(tree->report, "the scene file");

@@ -33,12 +33,10 @@ struct tree_place {
 struct tree_node {
     enum tree_kind kind;
     bool is_quoted; /* a text in quotes or in a block */
-    bool is_block;  /* a block that keeps its lines: they follow the place's */
     struct tree_place place;
     char *text;                 /* of a TREE_TEXT; NULL: no value at all */
     struct tree_entry *entries; /* of the other two */
     size_t count;
-    size_t capacity;
 };
 
 struct tree_entry {
@@ -125,7 +123,7 @@ struct mistake;
 /* All zero: none. mistakes_tell frees what it owns. */
 struct mistakes {
     struct mistake *list;
-    size_t count, capacity;
+    size_t count;
     size_t uncounted; /* that there was no room for */
     size_t relations; /* of those that are told: values of which each would do by itself */
 };

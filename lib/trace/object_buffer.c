@@ -9,7 +9,6 @@
 #include "trace/fan.h"
 #include "trace/fouling.h"
 #include "trace/rough.h"
-#include "user/snippet.h"
 
 #define MARGIN_M    1.0e-3 /* beyond the heights, so that rays cross them all between the bounds */
 #define WORD        4
@@ -226,25 +225,8 @@ static void write_mesh(uint32_t *words, const struct mesh *mesh)
         write_words(words, &at, mesh->normals, normal_words(mesh));
 }
 
-/* Writes the records of users' shapes, one for each part that shows one; words: NULL, to find where
- * they end alone. Returns that. */
-static size_t write_users(const struct tracer *tracer, const struct part_list *parts,
-                          struct object_record *records, uint32_t *words, size_t at)
-{
-    for (uint32_t i = 0; i < parts->count; i++) {
-        const struct user_shape *shape = placement_of(tracer, parts, i)->size.user_shape;
-        if (!shape)
-            continue;
-        const struct user_record record = user_record_of(shape);
-        records[i].mesh_words = (uint32_t)(at - i * WORDS_OF(struct object_record));
-        if (words)
-            memcpy(words + at, &record, sizeof record);
-        at += ALIGNED(WORDS_OF(record));
-    }
-    return at;
-}
-
-/* Likewise the records of fouling, which changes what rough parts alone return. */
+/* Writes the records of fouling, which changes what rough parts alone return; words: NULL, to find
+ * where they end alone. Returns that. */
 static size_t write_fouling(const struct tracer *tracer, const struct part_list *parts,
                             struct object_record *records, uint32_t *words, size_t at)
 {
@@ -300,8 +282,7 @@ static sonject_status write_buffer(struct tracer *tracer, struct object_record *
                                    device_buffer *buffer)
 {
     size_t begin[SCENE_MESHES_MAX];
-    const size_t users_begin = lay_out(tracer, parts, begin);
-    const size_t fouling_begin = write_users(tracer, parts, records, NULL, users_begin);
+    const size_t fouling_begin = lay_out(tracer, parts, begin);
     const size_t tree_begin = write_fouling(tracer, parts, records, NULL, fouling_begin);
     const size_t count = tree_begin + tree->count;
     if (count > WORDS_MOST || count * WORD > tracer->device->allocation_limit)
@@ -316,7 +297,6 @@ static sonject_status write_buffer(struct tracer *tracer, struct object_record *
             records[i].mesh_words = (uint32_t)(begin[mesh - tracer->scene->meshes] -
                                                i * WORDS_OF(struct object_record));
     }
-    write_users(tracer, parts, records, words, users_begin);
     write_fouling(tracer, parts, records, words, fouling_begin);
     if (tree->count > 0)
         records[0].tree_words = (uint32_t)tree_begin;

@@ -1,5 +1,5 @@
 /* What kernels know of targets. The buffer that they find objects in: a record of each part, behind
- * them the seabed's relief (kernels/layout.h), the meshes, what users' shapes are told and,
+ * them the seabed's relief (kernels/layout.h), the meshes and,
  * where there are many, the hierarchy over all (kernels/object_tree.h). Rays of a launch that is
  * aimed at one part can meet few others: of much clutter, only what lies in the way goes to the
  * device. And spheres that hold the targets: what rays from the seabed are led to. */

@@ -259,11 +259,6 @@ static void overall_size(const struct placement *placement, double *half_length,
     *radius = placement->size.radius_about_nose_m;
     if (placement->shape == SHAPE_SPHERE)
         *half_length = 0.0;
-    /* unless it is slender, a user's shape has its own sphere */
-    if (placement->shape == SHAPE_USER && *half_length <= 2.0 * *radius) {
-        *half_length = 0.0;
-        *radius = placement->bounding_radius_m;
-    }
 }
 
 /* Few spheres are all gone through at each hit, so more of them cost more than they save; where

@@ -12,7 +12,7 @@
 #define ZEROS_MOST  4                  /* within a run: a new one takes two numbers */
 
 typedef char block_head_is_packed[sizeof(struct block_head) == 56 ? 1 : -1];
-typedef char sums_head_is_packed[sizeof(struct sums_head) == 312 ? 1 : -1];
+typedef char sums_head_is_packed[sizeof(struct sums_head) == 272 ? 1 : -1];
 
 bool block_digest(struct block_head *head, const void *content)
 {
@@ -277,7 +277,6 @@ static bool read_head(struct sums_file *file, char *content, size_t bytes, uint6
            is_terminated(identity->code, sizeof identity->code) &&
            is_terminated(identity->scene, sizeof identity->scene) &&
            is_terminated(identity->image, sizeof identity->image) &&
-           is_terminated(identity->device, sizeof identity->device) &&
            is_terminated(head->launches, sizeof head->launches) && head->shard >= 1 &&
            head->shard <= head->shards && head->first <= head->last && head->is_last <= 1 &&
            head->records == records && read_source(file, content + sizeof *head, content + bytes);
@@ -286,17 +285,11 @@ static bool read_head(struct sums_file *file, char *content, size_t bytes, uint6
 /* False where memory lacks. */
 static bool note_sums(struct sums_file *file, uint64_t records, uint64_t at, uint64_t bytes)
 {
-    const struct sums_block block = {at, bytes};
-    if ((records & (records + 1)) == 0) { /* 0, 1, 3, 7...: room for twice as many */
-        struct sums_block *more =
-            records < SIZE_MAX / sizeof *more / 4
-                ? realloc(file->sums, (size_t)(2 * records + 1) * sizeof *more)
-                : NULL;
-        if (!more)
-            return false;
-        file->sums = more;
-    }
-    file->sums[records] = block;
+    struct sums_block *more = grow_doubling(file->sums, (size_t)records, sizeof *more);
+    if (!more)
+        return false;
+    file->sums = more;
+    file->sums[records] = (struct sums_block){at, bytes};
     return true;
 }
 

@@ -1,6 +1,6 @@
 /* Files of sums: what one process traced of a shard, or of everything, in one go.
  *
- *   "sonject sums 07\n"
+ *   "sonject sums 08\n"
  *   blocks: kind, bytes (64 bits each), digest (XXH3 of kind, bytes and content, 32 digits in 40
  *   bytes), content
  *     sums  how many sums there are; then runs of those that are not all 0: number of the first,
@@ -28,10 +28,9 @@
 struct sums_identity {
     char version[40]; /* of sonject */
     char code[SUMS_DIGEST_CAPACITY];
-    char scene[SUMS_DIGEST_CAPACITY];  /* everything that the result depends on,
-                                           but not the image file's name */
-    char image[SUMS_DIGEST_CAPACITY];  /* size and pixels of the patch alone */
-    char device[SUMS_DIGEST_CAPACITY]; /* "" unless the result depends on it: user shapes */
+    char scene[SUMS_DIGEST_CAPACITY]; /* everything that the result depends on,
+                                          but not the image file's name */
+    char image[SUMS_DIGEST_CAPACITY]; /* size and pixels of the patch alone */
 };
 
 struct sums_head {
@@ -149,7 +148,7 @@ sonject_status sums_chain_find(struct sums_chain *chain, struct report *report,
                                const struct sums_folder *folder, uint64_t shard);
 
 /* Blocks, as tests make them, too. */
-#define SUMS_MAGIC       "sonject sums 07\n"
+#define SUMS_MAGIC       "sonject sums 08\n"
 #define SUMS_MAGIC_BYTES 16
 
 enum block_kind {

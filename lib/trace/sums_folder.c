@@ -7,84 +7,60 @@
 #include "base/memory.h"
 #include "trace/sums_file.h"
 
-/* The names of checkpoints, in their order, and what they say. */
-struct listing {
-    struct folder_names list;
-    struct listed {
-        char *path; /* owned */
-        uint64_t shard, shards;
-    } * files;
-    size_t count;
-};
-
-/* Files of an earlier format have their names, too, so that they are refused, not overlooked. */
-static bool parse_name(const char *text, struct listed *name)
+/* What a checkpoint's name says; false: it is none's. Files of an earlier format have such names,
+ * too, so that they are refused, not overlooked. */
+static bool parse_name(const char *text, uint64_t *shard, uint64_t *shards)
 {
     uint64_t first, last;
     int end = 0;
-    return sscanf(text, "shard-%" SCNu64 "-of-%" SCNu64 "-%" SCNu64 "-%" SCNu64 "%n", &name->shard,
-                  &name->shards, &first, &last, &end) == 4 &&
+    return sscanf(text, "shard-%" SCNu64 "-of-%" SCNu64 "-%" SCNu64 "-%" SCNu64 "%n", shard, shards,
+                  &first, &last, &end) == 4 &&
            end > 0 && (strcmp(text + end, ".sums") == 0 || strcmp(text + end, ".stint") == 0);
 }
 
-static void listing_clear(struct listing *listing)
+/* Names that begin as those of checkpoints, in their order. */
+static sonject_status list_names(struct folder_names *list, struct report *report, const char *path)
 {
-    for (size_t i = 0; i < listing->count; i++)
-        free(listing->files[i].path);
-    free(listing->files);
-    folder_names_clear(&listing->list);
+    return folder_names_read(list, report, path, "shard-");
 }
 
-/* To be given to listing_clear, also on failure. */
-static sonject_status listing_read(struct listing *listing, struct report *report, const char *path)
-{
-    struct listed file;
-    memset(listing, 0, sizeof *listing);
-    CHECK(folder_names_read(&listing->list, report, path, "shard-"));
-    listing->files = allocate_array(listing->list.count, sizeof *listing->files);
-    CHECK_MEMORY(report, listing->files, path);
-    for (size_t i = 0; i < listing->list.count; i++) {
-        if (!parse_name(listing->list.names[i], &file))
-            continue;
-        file.path = path_join(path, listing->list.names[i]);
-        CHECK_MEMORY(report, file.path, "a file name");
-        listing->files[listing->count++] = file;
-    }
-    return SONJECT_OK;
-}
-
-static sonject_status open_one(struct sums_folder *folder, struct report *report,
-                               const struct listed *name, bool drops_damaged)
+static sonject_status open_one(struct sums_folder *folder, struct report *report, const char *path,
+                               uint64_t shard, uint64_t shards, bool drops_damaged)
 {
     struct sums_file *file = &folder->files[folder->count];
-    const sonject_status status = sums_file_open(file, report, name->path);
+    const sonject_status status = sums_file_open(file, report, path);
     if (status == SONJECT_ERROR_INPUT && drops_damaged) {
-        file_discard(name->path);
-        report_log(report, "%s was damaged: it is traced again", name->path);
+        file_discard(path);
+        report_log(report, "%s was damaged: it is traced again", path);
         report->message[0] = '\0';
         return SONJECT_OK;
     }
     CHECK(status);
     folder->count++;
-    return file->head.shard == name->shard && file->head.shards == name->shards
+    return file->head.shard == shard && file->head.shards == shards
                ? SONJECT_OK
-               : input_failure(report, name->path,
+               : input_failure(report, path,
                                "is another shard's: give it back its name, or delete it");
 }
 
 sonject_status sums_folder_read(struct sums_folder *folder, struct report *report, const char *path,
                                 uint64_t shard, size_t most, bool drops_damaged)
 {
-    struct listing listing;
+    struct folder_names list;
+    uint64_t its, shards;
     memset(folder, 0, sizeof *folder);
-    sonject_status status = listing_read(&listing, report, path);
-    folder->files = allocate_array(listing.count, sizeof *folder->files);
-    if (status == SONJECT_OK && !folder->files)
-        status = report_out_of_memory(report, path);
-    for (size_t i = 0; status == SONJECT_OK && i < listing.count && folder->count < most; i++)
-        if (shard == 0 || listing.files[i].shard == shard)
-            status = open_one(folder, report, &listing.files[i], drops_damaged);
-    listing_clear(&listing);
+    CHECK(list_names(&list, report, path));
+    folder->files = allocate_array(list.count, sizeof *folder->files);
+    sonject_status status = folder->files ? SONJECT_OK : report_out_of_memory(report, path);
+    for (size_t i = 0; status == SONJECT_OK && i < list.count && folder->count < most; i++) {
+        if (!parse_name(list.names[i], &its, &shards) || (shard != 0 && its != shard))
+            continue;
+        char *file = path_join(path, list.names[i]);
+        status = file ? open_one(folder, report, file, its, shards, drops_damaged)
+                      : report_out_of_memory(report, "a file name");
+        free(file);
+    }
+    folder_names_clear(&list);
     return status;
 }
 
@@ -99,24 +75,31 @@ void sums_folder_clear(struct sums_folder *folder)
 sonject_status sums_folder_shards(struct report *report, const char *path, uint64_t but,
                                   uint64_t *shards)
 {
-    struct listing listing;
-    const sonject_status status = listing_read(&listing, report, path);
+    struct folder_names list;
+    uint64_t shard, others;
     *shards = 0;
-    for (size_t i = 0; *shards == 0 && i < listing.count; i++)
-        if (listing.files[i].shards != but)
-            *shards = listing.files[i].shards;
-    listing_clear(&listing);
-    return status;
+    CHECK(list_names(&list, report, path));
+    for (size_t i = 0; *shards == 0 && i < list.count; i++)
+        if (parse_name(list.names[i], &shard, &others) && others != but)
+            *shards = others;
+    folder_names_clear(&list);
+    return SONJECT_OK;
 }
 
 void sums_folder_remove(const char *path)
 {
     struct report ignored = {{0}, NULL, NULL};
-    struct listing listing;
-    (void)listing_read(&listing, &ignored, path);
-    for (size_t i = 0; i < listing.count; i++)
-        file_discard(listing.files[i].path);
-    listing_clear(&listing);
+    struct folder_names list;
+    uint64_t shard, shards;
+    (void)list_names(&list, &ignored, path); /* on failure it is empty */
+    for (size_t i = 0; i < list.count; i++) {
+        char *file =
+            parse_name(list.names[i], &shard, &shards) ? path_join(path, list.names[i]) : NULL;
+        if (file)
+            file_discard(file);
+        free(file);
+    }
+    folder_names_clear(&list);
     folder_tidy(path);
     folder_discard(path);
 }

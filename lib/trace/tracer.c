@@ -10,7 +10,6 @@
 #include "trace/fan.h"
 #include "trace/fouling.h"
 #include "trace/object_buffer.h"
-#include "user/snippet.h"
 
 #define PI 3.14159265358979323846
 /* Tallies of a launch: more are mapped and cleared anew by each, fewer leave a GPU idle. */
@@ -238,9 +237,8 @@ sonject_status launch_begin(struct launch *launch, struct tracer *tracer,
     launch->device = tracer->device;
     if (tracer->checkpoint && tracer->checkpoint->files)
         return SONJECT_OK;
-    return scene_kernel_create(tracer->report, tracer->device, tracer->scene,
-                               is_plain ? PROGRAM_PLAIN : PROGRAM_FULL, program, kernel_name,
-                               &launch->kernel);
+    return kernel_create(tracer->report, tracer->device, program,
+                         is_plain ? PROGRAM_PLAIN : PROGRAM_FULL, kernel_name, &launch->kernel);
 }
 
 void launch_end(struct launch *launch)

@@ -8,7 +8,7 @@ LIB = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "lib"
 ARCHIVE = pathlib.Path(os.environ["SONJECT_LIBRARY"]).parent / "libsonject_internal.a"
 
 ROOMS = ["api", "dataset", "inject", "measure", "elements", "form", "trace", "schema", "swath",
-         "scene", "user", "mesh", "medium", "image", "device", "base"]  # each sees what follows
+         "scene", "mesh", "medium", "image", "device", "base"]  # each sees what follows
 
 
 def symbols_of_rooms():

@@ -128,12 +128,12 @@ FROZEN = SOURCE / "tests" / "frozen"
 
 @pytest.mark.parametrize("wheel", ["win_amd64"], indirect=True)
 def test_windows_gives_the_builds_files(command, tmp_path):
-    """Of all frozen scenes, but of HDF5 and of shapes by code. Messages end their lines otherwise.
+    """Of all frozen scenes, but of HDF5. Messages end their lines otherwise.
     Colours of pictures and bent rays come from the C library's own logarithms and cosines: rays may
     change a pixel in ten thousand."""
     scenes = set(re.findall(r"^\[(\w+)\]", (FROZEN / "scenes.txt").read_text(encoding="utf-8"), re.M))
     answer = subprocess.run([sys.executable, FROZEN / "outputs.py", COMMAND, *command, "--keep", tmp_path / "kept", "--scenes",
-                             ",".join(sorted(scenes - {"convert", "formats", "user_shape"}))],
+                             ",".join(sorted(scenes - {"convert", "formats"}))],
                             check=False, capture_output=True, text=True)
     lines = answer.stdout.splitlines()
     assert re.fullmatch(r"\d+ of \d+ lines differ", lines[-1])

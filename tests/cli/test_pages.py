@@ -81,7 +81,6 @@ ELSEWHERE = {
     r"sonject init |sonject run line\.yaml|sonject quicklook line\.xtf|sonject campaign line_campaign": ("tests/cli/test_init.py", "first_detector.md"),
     r"python3 bindings/python/examples/train_detector": ("bindings/python/tests/test_train_detector.py", "train_detector"),
     r"sonject fit ": ("tests/cli/test_fit.py", '"fit"'),
-    r"sonject run tools/scenes/user_shape\.yaml": ("tests/cli/test_user_shapes.py", "user_shape"),
     r"parallel |sbatch |scontrol |array=.* run |RequeueExit": ("tests/cli/test_job_scripts.py", "documented("),
     # which is said there
     r"condor_submit |dask |python3 tools/slurm/dask": ("tools/slurm/README.md", "It does not run those for HTCondor and Dask"),
@@ -299,7 +298,6 @@ MISTAKES = {
                                 "burial: 9 cm, level: {target_strength: -120 dB}}' && false",
     "no device has ...": "sonject run scene.yaml -o nowhere --device none",
     "missing of ... shards: ...": "sonject run scene.yaml -o part --shard 1/2 && sonject merge part",
-    "is code that would run with your rights ...": "sonject check tools/scenes/user_shape.yaml",
 }
 
 
@@ -423,5 +421,4 @@ def test_settings_that_scenes_propose_are_taken(scene):
 
     settings = suggested_settings(scene)
     if settings:
-        sonject.Scene.read(SOURCE / scene, [text for text in settings if "path" not in text],
-                           allows_user_shapes=True).close()
+        sonject.Scene.read(SOURCE / scene, [text for text in settings if "path" not in text]).close()

@@ -115,7 +115,6 @@ MAKES(mapping, clEnqueueMapBuffer,
        size_t bytes, cl_uint count, const cl_event *before, cl_event *event, cl_int *answer),
       (queue, buffer, waits, flags, offset, bytes, count, before, event, answer))
 ANSWERS(clFinish, (cl_command_queue queue), (queue))
-ANSWERS(clRetainContext, (cl_context context), (context))
 
 RELEASES(clReleaseContext, cl_context)
 RELEASES(clReleaseCommandQueue, cl_command_queue)

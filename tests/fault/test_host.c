@@ -106,6 +106,7 @@ static void live_differently(const char *folder)
 struct opencl {
     cl_device_id device;
     cl_context context;
+    char name[128]; /* of the device */
 };
 
 /* Opens the first device and builds and runs a kernel on it. */
@@ -119,6 +120,9 @@ static struct opencl use_opencl(void)
     assert_int_equal(clGetPlatformIDs(1, &platform, NULL), CL_SUCCESS);
     assert_int_equal(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &opencl.device, NULL),
                      CL_SUCCESS);
+    assert_int_equal(
+        clGetDeviceInfo(opencl.device, CL_DEVICE_NAME, sizeof opencl.name, opencl.name, NULL),
+        CL_SUCCESS);
     opencl.context = clCreateContext(NULL, 1, &opencl.device, NULL, NULL, &answer);
     assert_non_null(opencl.context);
     cl_command_queue queue = clCreateCommandQueue(opencl.context, opencl.device, 0, &answer);
@@ -160,8 +164,7 @@ static void work(const struct opencl *opencl, const char *folder)
     sonject_run_params run = {.struct_size = sizeof run};
     sonject_scene *none;
     char *text = NULL;
-    params.opencl_context = opencl->context;
-    params.opencl_device = opencl->device;
+    params.device_name = opencl->name;
     assert_int_equal(sonject_context_create(&params, &context), SONJECT_OK);
     assert_int_equal(sonject_scene_read(context, "there is none.yaml", NULL, &none),
                      SONJECT_ERROR_INPUT);

@@ -70,13 +70,12 @@ static void expect(sonject_status status, const struct report *report, bool has_
             fail("not one line", report->message);
 }
 
-/* With code of users allowed; among the targets in ../targets. */
+/* Among the targets in ../targets. */
 static void read_scene(const char *text)
 {
     struct report report = {{0}, NULL, NULL};
     struct scene scene;
-    const struct scene_source source = {
-        .path = "scenes/fuzz.yaml", .text = text, .allows_user_shapes = true};
+    const struct scene_source source = {.path = "scenes/fuzz.yaml", .text = text};
     scene_init(&scene);
     expect(scene_source_read(&source, &report, &scene), &report, true);
     scene_clear(&scene);

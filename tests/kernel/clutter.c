@@ -15,7 +15,7 @@ static void shape_object(sonject_object_params *object, uint32_t number, double 
                          uint32_t *counter)
 {
     object_init(object);
-    object->shape = number % SHAPE_USER; /* all but users' and parts */
+    object->shape = number % SHAPE_PARTS; /* all but that */
     object->length_m = size * (0.5 + draw(counter));
     object->width_m = 0.6 * object->length_m;
     object->height_m = 0.15 * object->length_m;

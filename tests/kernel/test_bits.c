@@ -10,7 +10,6 @@
 #include "kernel/reference_solids.h"
 #include "mesh_arrays.h"
 #include "physics/bench.h"
-#include "physics/user_codes.h"
 
 #define ROWS    96
 #define COLUMNS 128
@@ -110,17 +109,10 @@ static void place_more_shapes(struct bench *bench)
 
 static void place_crowd(struct bench *bench)
 {
-    sonject_user_shape_params params = {0};
-    params.name = "sphere.cl";
-    params.code = SPHERE_CODE;
-    params.bounding_radius_m = params.parameters[0] = 0.2;
-    params.parameter_count = 1;
-    EXPECT_OK(&bench->report,
-              user_shapes_append(&bench->scene.user_shapes, &bench->report, &params));
     bench_add_tetrahedron(bench);
     for (int i = 0; i < 22; i++) {
-        const enum shape_kind shape = i == 0 ? SHAPE_MESH : i == 1 ? SHAPE_USER : SHAPE_SPHERE;
-        bench_place(bench_add(bench, shape, 0.0, 0.0, i < 2 ? 0.0 : 0.08 + 0.002 * i),
+        const enum shape_kind shape = i == 0 ? SHAPE_MESH : SHAPE_SPHERE;
+        bench_place(bench_add(bench, shape, 0.0, 0.0, i == 0 ? 0.0 : 0.08 + 0.002 * i),
                     12.0 + 18.0 * (i % 5), 15.0 + 22.0 * (i / 5), 0.0, 0.0, 0.0);
     }
 }
@@ -612,25 +604,6 @@ TEST(test_tiles_by_all_ways)
     on_scenes_with(TILES, compare_tiles);
 }
 
-/* One core of an OpenCL device; false: it cannot be divided. */
-static bool take_one_core(struct bench *bench, sonject_context_params *params)
-{
-    const cl_device_partition_property one_core[] = {CL_DEVICE_PARTITION_BY_COUNTS, 1,
-                                                     CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
-    /* never released: a thread of PoCL may still be busy with its last event, which does not hold a
-     * sub-device */
-    static cl_device_id core;
-    cl_uint cores = 0;
-    cl_int error = CL_SUCCESS;
-    if (clCreateSubDevices(bench->device->id, one_core, 1, &core, &cores) != CL_SUCCESS ||
-        cores != 1)
-        return false;
-    params->opencl_context = clCreateContext(NULL, 1, &core, NULL, NULL, &error);
-    params->opencl_device = core;
-    assert_int_equal(error, CL_SUCCESS);
-    return true;
-}
-
 /* One core of a device instead of all. */
 TEST(test_one_core)
 {
@@ -640,8 +613,8 @@ TEST(test_one_core)
     struct device *all_cores = bench.tracer.device;
     sonject_context_params params = {
         .struct_size = sizeof params, .device_name = bench_device, .threads = 1};
-    if (!native_is_named(all_cores->name) && !take_one_core(&bench, &params)) {
-        print_message("%s cannot be divided\n", bench_device);
+    if (!native_is_named(all_cores->name)) {
+        print_message("%s takes all its cores\n", bench_device);
         bench_close(&bench);
         return;
     }
@@ -659,8 +632,6 @@ TEST(test_one_core)
     device_close(&bench.tracer.device);
     bench.tracer.device = all_cores;
     bench_close(&bench);
-    if (params.opencl_context)
-        clReleaseContext(params.opencl_context);
 }
 
 int main(void)

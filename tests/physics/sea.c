@@ -178,20 +178,6 @@ void sea_add_mesh(struct sea *sea, const struct triangles *mesh, double unit_m,
     scene->mesh_count++;
 }
 
-void sea_add_code(struct sea *sea, const char *name, const char *code, double bounding_radius_m,
-                  double first, double second)
-{
-    sonject_user_shape_params params = {0};
-    params.name = name;
-    params.code = code;
-    params.bounding_radius_m = bounding_radius_m;
-    params.parameter_count = 2;
-    params.parameters[0] = first;
-    params.parameters[1] = second;
-    EXPECT_OK(&sea->bench->report,
-              user_shapes_append(&sea->bench->scene.user_shapes, &sea->bench->report, &params));
-}
-
 void sea_add_mound(struct sea *sea, double radius_m, double height_m, double beyond_m)
 {
     struct relief_feature *mound =

@@ -101,10 +101,6 @@ struct triangles {
 void sea_add_mesh(struct sea *sea, const struct triangles *mesh, double unit_m,
                   double smooth_angle_rad);
 
-/* The scene's next shape by code (user_codes.h); bounds are taken from its bounding radius. */
-void sea_add_code(struct sea *sea, const char *name, const char *code, double bounding_radius_m,
-                  double first, double second);
-
 /* A tetrahedron within 0.5 m of its middle. */
 #define sea_add_tetrahedron(sea) bench_add_tetrahedron((sea)->bench)
 

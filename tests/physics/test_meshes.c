@@ -4,7 +4,6 @@
  */
 #include "../kernel/mesh_samples.h"
 #include "sea.h"
-#include "user_codes.h"
 
 CLAIMS_COMPILE
 
@@ -27,8 +26,7 @@ static void add_sample(struct sea *sea, struct mesh_sample *sample, double unit_
 
 enum ball {
     SPHERE,
-    MESH,
-    USER
+    MESH
 };
 
 /* Facets of 90 deg/128: they lie up to BALL (0.0123 rad)^2 / 6 = 6 um, at the middles of the
@@ -39,7 +37,7 @@ enum ball {
 static sonject_object_params *add_ball(struct sea *sea, enum ball kind, int subdivisions,
                                        double height)
 {
-    static const enum shape_kind shapes[] = {SHAPE_SPHERE, SHAPE_MESH, SHAPE_USER};
+    static const enum shape_kind shapes[] = {SHAPE_SPHERE, SHAPE_MESH};
     struct mesh_sample sample;
     sonject_object_params *object =
         sea_add(sea, shapes[kind], 0.0, 0.0, kind == SPHERE ? 2.0 * BALL : 0.0);
@@ -47,8 +45,6 @@ static sonject_object_params *add_ball(struct sea *sea, enum ball kind, int subd
     if (kind == MESH) {
         sample_sphere(&sample, subdivisions);
         add_sample(sea, &sample, BALL, 0.0);
-    } else if (kind == USER) {
-        sea_add_code(sea, "sphere.cl", SPHERE_CODE, BALL, BALL, 0.0);
     }
     return object;
 }
@@ -98,8 +94,8 @@ CLAIM(facets_converge_to_the_sphere)
  * depth over the radius, 1e-4, and by the few rays between both outlines. */
 CLAIM(rough_balls_are_lit_like_the_sphere)
 {
-    struct tile_sums sums[3];
-    for (enum ball kind = SPHERE; kind <= USER; kind++) {
+    struct tile_sums sums[2];
+    for (enum ball kind = SPHERE; kind <= MESH; kind++) {
         struct sea *sea = sea_open(ROWS, COLUMNS, FAR_M);
         make_rough(add_ball(sea, kind, SUBDIVISIONS, -0.2), 0.1);
         sea_rough(sea, &sums[kind], NULL);

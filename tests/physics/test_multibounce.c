@@ -209,48 +209,34 @@ CLAIM(a_sphere_and_a_plate)
     }
 }
 
-/* A strip of a tube about x, 0.15 m long. parameters: radius, least y */
-static const char strip_code[] =
-    "float met(float3 p, float3 d, float t, float nearest, const float *a)\n"
-    "{\n"
-    "    const float3 q = p + t * d;\n"
-    "    return t > nearest && fabs(q.x) <= 0.075f && q.y >= a[1] ? t : INFINITY;\n"
-    "}\n"
-    "float shape_distance(float3 p, float3 d, float nearest, const float *a)\n"
-    "{\n"
-    "    const float u = d.y * d.y + d.z * d.z;\n"
-    "    const float v = p.y * d.y + p.z * d.z;\n"
-    "    const float root = sqrt(v * v - u * (p.y * p.y + p.z * p.z - a[0] * a[0]));\n"
-    "    return fmin(met(p, d, (-v - root) / u, nearest, a),\n"
-    "                met(p, d, (-v + root) / u, nearest, a));\n"
-    "}\n"
-    "float3 shape_normal(float3 p, const float *a) { return (float3)(0.0f, p.y, p.z); }\n";
-
 /* The inner side of a tube gathers sound on a line before the plate: -pi/2. */
 CLAIM(a_caustic)
 {
-    static const double radii[] = {1.0, 0.4}; /* focal lengths at 45 degrees: 0.35 and 0.14 m */
+    static const double radii[] = {
+        1.0, 0.2}; /* focal lengths across the tube at 45 degrees: 0.71 and 0.14 m */
     static const double distances[] = {0.09, 0.45};
-    static const double widths[] = {0.06, 0.25}; /* of the plate, which must not hide the tube */
+    static const double widths[] = {0.1, 0.4}; /* of the plate, which must not hide the tube */
     for (int i = 0; i < 4; i++) {
-        const double radius = radii[i / 2], half_angle = 0.06 / radius;
+        const double radius = radii[i / 2], half_angle = fmin(0.3 / radius, 1.2);
+        const double length = 0.15;
         struct sea *sea = open_at(2);
-        sea_add(sea, SHAPE_USER, 0.0, 0.0, 0.0)->burial_m = -1.0;
-        sea_add_code(sea, "strip.cl", strip_code, hypot(radius, 0.075), radius,
-                     radius * cos(half_angle));
-        sea->bench->scene.user_shapes.shapes[0].is_open = true;
-        add_plate(sea, 0.15, widths[i / 2]);
+        sonject_object_params *tube = sea_add(sea, SHAPE_CYLINDER, length, 0.0, 2.0 * radius);
+        tube->burial_m = -1.0;
+        tube->nose_end = tube->tail_end = SONJECT_END_OPEN;
+        add_plate(sea, 0.4, widths[i / 2]);
         sea_ready(sea);
         const struct sight sight = sight_of(sea, 3.0);
         const bool is_aside = i % 2 == 1;
-        double normal[3], own_y[3], centre[3];
-        lay_plate(sea, &sight, is_aside ? sight.along : sight.up, distances[i / 2], normal);
+        const double *onward = is_aside ? sight.along : sight.up;
+        double normal[3], own_y[3], centre[3], axis[3];
+        lay_plate(sea, &sight, onward, distances[i / 2], normal);
         mix(-1.0, normal, 0.0, normal, own_y);
         mix(1.0, sight.middle, radius, normal, centre);
-        sea_put(sea, 0, centre, is_aside ? sight.up : sight.along, own_y);
+        mix(sqrt(0.5), onward, -sqrt(0.5), sight.to_sonar, axis); /* sound comes in by an end */
+        sea_put(sea, 0, centre, axis, own_y);
         const struct multibounce_way way = straight_way(sea);
         const struct face inside = {
-            0, FACE_INSIDE_TUBE, radius, {-0.075, -half_angle}, {0.075, half_angle}};
+            0, FACE_INSIDE_TUBE, radius, {-0.5 * length, -half_angle}, {0.5 * length, half_angle}};
         const struct face plate = face_of_plane(sea, 1);
         const double range = multibounce_range(&way, sight.middle, sea_centre(sea, 1));
         print_message("%.2f m away, %s\n", distances[i / 2], is_aside ? "along" : "across");

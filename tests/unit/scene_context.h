@@ -29,8 +29,7 @@ static void set(sonject_scene *scene, const char *key, const char *value)
 static sonject_scene *read_text(const char *path, const char *text)
 {
     sonject_scene *scene = NULL;
-    const sonject_scene_read_params params = {
-        .struct_size = sizeof params, .text = text, .allows_user_shapes = 1};
+    const sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
     EXPECT_OK(&context->report, sonject_scene_read(context, path, &params, &scene));
     return scene;
 }

@@ -9,13 +9,12 @@
 /* Reads a scene file as the library's calls do. */
 static inline sonject_status read_scene_file(struct report *report, const char *path,
                                              const char *const *overrides, size_t count,
-                                             bool allows_user_shapes, struct scene *scene)
+                                             struct scene *scene)
 {
     struct scene_source source;
     char *text;
     size_t bytes;
     memset(&source, 0, sizeof source);
-    source.allows_user_shapes = allows_user_shapes;
     sonject_status status = scene_file_load(report, path, &text, &bytes);
     if (status == SONJECT_OK)
         status = scene_source_keep(&source, report, path, text, overrides, count);
@@ -86,20 +85,12 @@ static inline void write_scene(const char *text, size_t bytes)
     write_file("scene.yaml", text, bytes);
 }
 
-/* Reads the file that is there, with users' code if that is allowed. overrides may be NULL if count
- * is 0. */
-static inline sonject_status read_scene_with(const char *const *overrides, size_t count,
-                                             bool allows_user_shapes)
+/* Reads the file that is there. overrides may be NULL if count is 0. */
+static inline sonject_status read_scene(const char *const *overrides, size_t count)
 {
     scene_clear(&folder->scene);
     folder->report.message[0] = 0;
-    return read_scene_file(&folder->report, folder->file, overrides, count, allows_user_shapes,
-                           &folder->scene);
-}
-
-static inline sonject_status read_scene(const char *const *overrides, size_t count)
-{
-    return read_scene_with(overrides, count, false);
+    return read_scene_file(&folder->report, folder->file, overrides, count, &folder->scene);
 }
 
 static inline void expect_scene_taken(const char *text)

@@ -36,8 +36,6 @@ static const char file[] = "sonject: 1\ninput:\n  path: swath.tif\n  " GEOMETRY 
 #define H_GRID          "row_spacing: 1, column_spacing: 1, first_ground_range: 30"
 #define A_MOUND         "radius: 1 m, height: 10 cm"
 #define A_PART(keys)    "objects[0]={parts: [{" keys "}]}"
-#define A_USER          "shape: user, user: {bounding_radius: 1"
-#define BOULDER         SOURCE_ROOT "/tools/targets/boulder_relief.cl"
 #define SOLID           SOURCE_ROOT "/tests/unit/tetrahedron.obj"
 #define A_CYLINDER      "objects[0]={shape: cylinder, length: 1, diameter: 0.5}"
 static const struct base {
@@ -87,10 +85,8 @@ static const struct base {
     {"objects[].tail_end", NULL, A_CYLINDER},
     {"objects[].material.glossy.", NULL, "objects[0].material={glossy: {albedo: 0.2}}"},
     {"objects[].material.fluid.", NULL, "objects[0].material={fluid: {density: 6, speed: 3}}"},
-    {"objects[].parts[].user.", NULL, A_PART(A_USER ", file: " BOULDER "}")},
     {"objects[].parts[].", NULL, A_PART("shape: sphere, diameter: 1")},
     {"objects[].mesh.", NULL, "objects[0]={shape: mesh, mesh: {file: '" SOLID "'}}"},
-    {"objects[].user.", NULL, "objects[0]={" A_USER ", file: " BOULDER "}}"},
 };
 
 enum type {
@@ -109,7 +105,6 @@ enum structure {
     OF_OBJECT,
     OF_PART,
     OF_MESH,
-    OF_USER_SHAPE,
     OF_FEATURE,
     OF_GRID,
     OF_LAYER
@@ -130,7 +125,6 @@ static const struct key_case {
 #define O(type, member)                    MEMBER_OF(OF_OBJECT, sonject_object_params, type, member)
 #define P(type, member)                    MEMBER_OF(OF_PART, struct scene_part, type, member)
 #define M(type, member)                    MEMBER_OF(OF_MESH, struct mesh, type, member)
-#define U(type, member)                    MEMBER_OF(OF_USER_SHAPE, struct user_shape, type, member)
 #define R(type, member)                    MEMBER_OF(OF_FEATURE, struct relief_feature, type, member)
 #define G(type, member)                    MEMBER_OF(OF_GRID, sonject_relief_params, type, member)
 #define L(type, index, member)                                                                     \
@@ -409,19 +403,6 @@ static const struct key_case {
     {"objects[].parts[].material.reflection", "-0.75", P(DOUBLE, shape.material.reflection), -0.75},
     {"objects[].parts[].material", "gravel", P(U32, shape.material.reflection_kind),
      SONJECT_REFLECTION_FLUID},
-    {"objects[].user.bounding_radius", "90 cm", U(DOUBLE, bounding_radius_m), 0.9},
-    {"objects[].user.half_length", "30 cm", U(DOUBLE, half_length_m), 0.3},
-    {"objects[].user.half_width", "20 cm", U(DOUBLE, half_width_m), 0.2},
-    {"objects[].user.half_height", "10 cm", U(DOUBLE, half_height_m), 0.1},
-    {"objects[].user.open", "true", U(BOOL, is_open), 1.0},
-    /* how code and numbers arrive: test_user_shapes.c */
-    {"objects[].user.parameters", "[1, 2]", NOTHING},
-    {"objects[].user.file", BOULDER, NOTHING, .other = "objects[0]={" A_USER "}}"},
-    {"objects[].user.code", "float shape_distance(); float3 shape_normal();", NOTHING,
-     .other = "objects[0]={" A_USER "}}"},
-    {"objects[].parts[].user.bounding_radius", "90 cm", U(DOUBLE, bounding_radius_m), 0.9,
-     .other = A_PART(A_USER ", file: " BOULDER "}")},
-    /* how code and numbers arrive: test_user_shapes.c */
 };
 
 /* All keys, for json_decref. */
@@ -472,7 +453,6 @@ static inline const void *structure_of(const struct scene *scene, const struct k
                                       [OF_OBJECT] = scene->objects,
                                       [OF_PART] = scene->parts,
                                       [OF_MESH] = scene->meshes,
-                                      [OF_USER_SHAPE] = scene->user_shapes.shapes,
                                       [OF_FEATURE] = scene->relief.features,
                                       [OF_GRID] = &scene->relief.grid,
                                       [OF_LAYER] = scene->water_layers};
@@ -539,7 +519,7 @@ static inline sonject_status read_case(const struct key_case *key, const char *v
         overrides[count++] = override;
     }
     write_scene(text, strlen(text));
-    return read_scene_with(overrides, count, true);
+    return read_scene(overrides, count);
 }
 
 #endif

@@ -21,7 +21,6 @@ TEST(test_unknown_keys)
          ":6:20: objects[1].lenght: unknown key; did you mean 'length'?"},
         {OBJECT "sphere\n    \xC3\xA9tat: 1 m\n    diameter: 1 m\n",
          ":6:5: objects[0].\xC3\xA9tat: unknown key; known here are target, name, class, shape, "
-         "user, "
          "length, width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, "
          "position, heading, pitch, roll, burial, level, material, fouling, parts"},
     };
@@ -361,7 +360,7 @@ TEST(test_a_missing_file_is_named)
     struct report report = {{0}, NULL, NULL};
     struct scene scene;
     scene_init(&scene);
-    assert_int_equal(read_scene_file(&report, "/tmp/absent-scene.yaml", NULL, 0, false, &scene),
+    assert_int_equal(read_scene_file(&report, "/tmp/absent-scene.yaml", NULL, 0, &scene),
                      SONJECT_ERROR_INPUT);
     assert_string_equal(report.message,
                         "/tmp/absent-scene.yaml: there is no such scene file; check its name");

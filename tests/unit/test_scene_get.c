@@ -41,8 +41,6 @@ TEST(values_are_numbers_texts_sections_and_lists)
         {"objects[0].material", "steel", "\"steel\""},
         {"objects[0].parts", "[{parts: [{shape: sphere, diameter: 50 cm}]}]",
          "[{\"parts\": [{\"shape\": \"sphere\", \"diameter\": 0.5}]}]"},
-        {"objects[0].user.code", "\"float a;\\n\"", "\"float a;\\n\""},
-        {"objects[0].user.parameters", "[1, 0.5, 1e3]", "[1, 0.5, 1000.0]"},
         {"injection.seed", "18446744073709551615", "\"18446744073709551615\""},
         {"injection.seed", "9007199254740993", "9007199254740993"},
         {"injection.interactions", "2", "2"},

@@ -115,7 +115,6 @@ TEST(test_what_no_key_names_counts)
                              &scene.objects[0].material.reflection_kind,
                              &scene.objects[0].burial_kind,
                              &scene.objects[0].mesh,
-                             &scene.objects[0].user_shape,
                              &scene.motion.params.sways[SONJECT_SWAYS_CAPACITY - 1].phase_rad,
                              &scene.motion.params.yaws[SONJECT_YAWS_CAPACITY - 1].phase_rad,
                              &scene.motion.yaw_table.along_track_m[3],

@@ -10,7 +10,7 @@
 
 static const char *const examples[] = {"demo",    "elements", "figure4", "figure5",
                                        "figure6", "figure7",  "layers",  "relief",
-                                       "shapes",  "surface",  "targets", "user_shape"};
+                                       "shapes",  "surface",  "targets"};
 
 /* How many are tried of each example. */
 static size_t mutations_wanted(void)
@@ -59,14 +59,13 @@ static sonject_status read_bytes(const char *text, size_t bytes)
 {
     if (memchr(text, 0, bytes)) {
         write_scene(text, bytes);
-        return read_scene_with(NULL, 0, true);
+        return read_scene(NULL, 0);
     }
     char *copy = malloc(bytes + 1);
     assert_non_null(copy);
     memcpy(copy, text, bytes);
     copy[bytes] = 0;
-    const struct scene_source source = {
-        .path = folder->file, .text = copy, .allows_user_shapes = true};
+    const struct scene_source source = {.path = folder->file, .text = copy};
     scene_clear(&folder->scene);
     const sonject_status status = scene_source_read(&source, &folder->report, &folder->scene);
     free(copy);

@@ -225,7 +225,7 @@ TEST(test_targets_that_are_wrong)
         {"sonject_target: 1\nwidth: 1\nparts: [{shape: sphere, diameter: 1}]\n",
          ":2:8: width: the parts have shapes of their own; remove it"},
         {"sonject_target: 1\ntarget: target.yaml\nshape: sphere\ndiameter: 1\n",
-         ":2:1: target: unknown key; known here are sonject_target, name, class, shape, user, "
+         ":2:1: target: unknown key; known here are sonject_target, name, class, shape, "
          "length, "
          "width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, material, "
          "fouling, parts"},

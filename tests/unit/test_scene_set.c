@@ -6,9 +6,6 @@
 #include "scene_context.h"
 #include "temporary_folder.h"
 
-#define CODE                                                                                       \
-    "float shape_distance(float3 p, float3 d, float n, const float *k) {return INFINITY;}\\n"      \
-    "float3 shape_normal(float3 p, const float *k) {return p;}\\n"
 #define HEAD                                                                                       \
     "sonject: 1\n"                                                                                 \
     "input: {geometry: {row_spacing: 0.1, column_spacing: 0.1, first_slant_range: 40}}\n"          \
@@ -134,34 +131,22 @@ TEST(values_are_checked_by_the_call_that_uses_the_scene)
     sonject_scene_release(&scene);
 }
 
-/* Code in a target's file is a program as much as in the scene's own. */
-TEST(a_target_is_that_of_a_file_and_its_code_needs_consent)
+TEST(a_target_is_that_of_a_file)
 {
-    static const char relief[] = "{target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml}";
-    sonject_scene *careful = NULL;
-    sonject_scene_read_params params = {.struct_size = sizeof params, .text = HEAD};
-    uint32_t count;
     sonject_scene *scene = read_text(NULL, HEAD);
     set(scene, "objects[0]",
         "{target: " SOURCE_ROOT "/tools/targets/crab_pot_frame.yaml, burial: {fraction: 0.25}}");
-    set(scene, "objects[1]", relief);
     expect_same(scene,
                 read_text(NULL, HEAD "objects:\n  - {target: " SOURCE_ROOT
                                      "/tools/targets/crab_pot_frame.yaml, burial: {fraction: "
-                                     "0.25}}\n  - {target: " SOURCE_ROOT
-                                     "/tools/targets/boulder_relief.yaml}\n"));
-    EXPECT_OK(&context->report, sonject_scene_read(context, NULL, &params, &careful));
-    set(careful, "objects[0]", relief);
-    assert_int_equal(sonject_scene_object_count(careful, &count), SONJECT_ERROR_INPUT);
-    sonject_scene_release(&careful);
+                                     "0.25}}\n"));
 }
 
 TEST(the_text_of_a_scene_is_the_scene)
 {
     char *text = NULL;
     sonject_scene *scene = read_text(NULL, HEAD);
-    set(scene, "objects[0]",
-        "{name: \"a \\\"b\\\"\", shape: user, user: {bounding_radius: 1, code: \"" CODE "\"}}");
+    set(scene, "objects[0]", "{name: \"a \\\"b\\\"\", shape: sphere, diameter: 1}");
     set(scene, "objects[0].position", "{row: 3, column: 4}");
     EXPECT_OK(&context->report, sonject_scene_text(scene, &text));
     expect_same(scene, read_text(NULL, text));

@@ -284,20 +284,4 @@ TEST(test_extents_of_meshes)
     mesh_clear(&mesh);
 }
 
-/* Of a user's shape the lesser of a box and a sphere is known. */
-TEST(test_extents_of_user_shapes)
-{
-    static const double upward[3] = {0.0, 0.0, 1.0}, slanting[3] = {0.6, 0.0, 0.8};
-    const struct user_shape shape = {
-        .bounding_radius_m = 1.0, .half_length_m = 1.0, .half_width_m = 1.0, .half_height_m = 0.8};
-    struct shape_size size;
-    sonject_object_params object;
-    object_init(&object);
-    object.shape = SHAPE_USER;
-    shape_size_init(&size, &object);
-    shape_size_of_user_shape(&size, &shape);
-    assert_true(fabs(shape_extent(&size, SHAPE_USER, upward) - 0.8) < 1e-9);
-    assert_true(fabs(shape_extent(&size, SHAPE_USER, slanting) - 1.0) < 1e-9); /* the sphere's */
-}
-
 TEST_PROGRAM(NULL, NULL)

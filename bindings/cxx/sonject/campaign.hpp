@@ -24,13 +24,11 @@ class campaign
   public:
     /* overrides: "key.path=value" of the campaign's keys. */
     campaign(const context &context, const std::string &path,
-             const std::vector<std::string> &overrides = std::vector<std::string>(),
-             bool allows_user_shapes = false)
+             const std::vector<std::string> &overrides = std::vector<std::string>())
         : context_(context.get()), handle_(nullptr)
     {
         const std::vector<const char *> texts = detail::pointers_to(overrides);
         sonject_scene_read_params params = defaults<sonject_scene_read_params>();
-        params.allows_user_shapes = allows_user_shapes;
         params.overrides = texts.data();
         params.override_count = static_cast<std::uint32_t>(texts.size());
         check(sonject_campaign_read(context_, path.c_str(), &params, &handle_));

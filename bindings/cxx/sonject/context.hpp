@@ -25,8 +25,6 @@ using log = std::function<void(sonject_log_level level, const char *line)>;
 /* What a context is made from; empty texts and null handles: the defaults. */
 struct context_options {
     std::string device_name;
-    void *opencl_context = nullptr; /* a host's cl_context and cl_device_id */
-    void *opencl_device = nullptr;
     sonject::log log;
     bool decodes_in_process = false; /* images and HDF5, else by a child process */
     std::uint32_t threads = 0;       /* of a launch on the device native; 0: one a processor */
@@ -43,8 +41,6 @@ class context
     {
         sonject_context_params params = defaults<sonject_context_params>();
         params.device_name = options.device_name.empty() ? nullptr : options.device_name.c_str();
-        params.opencl_context = options.opencl_context;
-        params.opencl_device = options.opencl_device;
         params.decodes_in_process = options.decodes_in_process;
         params.threads = options.threads;
         params.run_tasks = options.run_tasks;

@@ -225,11 +225,10 @@ class scene
 /* The scene that a text describes, YAML or JSON; name: for messages, and where names of files are
  * meant from. */
 inline scene scene_of_text(const context &context, const std::string &text,
-                           const std::string &name = "scene", bool allows_user_shapes = false)
+                           const std::string &name = "scene")
 {
     sonject_scene_read_params params = defaults<sonject_scene_read_params>();
     params.text = text.c_str();
-    params.allows_user_shapes = allows_user_shapes;
     return scene(context, name, std::vector<std::string>(), params);
 }
 

@@ -146,20 +146,18 @@ def merge(
     scene: Optional[Scene] = None,
     progress: Optional[Progress] = None,
     context: Optional[Context] = None,
-    allows_user_shapes: bool = False,
     labels: Iterable[Union[str, LabelFormat]] = (),
 ) -> bool:
     """Makes the result of all shards in folder, as run would have without shards.
 
-    scene: where it was traced from no scene file; else the shards know their scene;
-    allows_user_shapes: as of Scene.read; labels: as of run.
+    scene: where it was traced from no scene file; else the shards know their scene; labels: as of
+    run.
     False, with nothing done, if folder already held the finished result.
     """
     context = _context_of(scene, context)
     params = filled(
         s.sonject_merge_params,
         folder=file_name("folder", folder),
-        allows_user_shapes=bool(allows_user_shapes),
         labels=_label_sum(labels),
     )
     return context.complete(
@@ -181,7 +179,6 @@ def form(
     progress: Optional[Progress] = None,
     context: Optional[Context] = None,
     *,
-    allows_user_shapes: bool = False,
     labels: Iterable[Union[str, LabelFormat]] = (),
     overwrites: bool = False,
 ) -> bool:
@@ -189,7 +186,7 @@ def form(
 
     overrides: as of Scene.read, of bandwidth, pulse, resolution, response, measured_response and
     motion of the sonar, and of input.path; scene: where it was traced from no scene file, or
-    instead of overrides; allows_user_shapes: as of Scene.read; labels and overwrites: as of run.
+    instead of overrides; labels and overwrites: as of run.
     False, with nothing done, if folder already held the finished result of the same inputs.
     """
     context = _context_of(scene, context)
@@ -200,7 +197,6 @@ def form(
         folder=file_name("folder", folder),
         overrides=ctypes.cast(texts, ctypes.POINTER(ctypes.c_char_p)),
         override_count=len(texts),
-        allows_user_shapes=bool(allows_user_shapes),
         labels=_label_sum(labels),
         overwrites=bool(overwrites),
     )

@@ -45,13 +45,10 @@ class Campaign(Handle):
         path: PathLike,
         overrides: Overrides = (),
         context: Optional[Context] = None,
-        *,
-        allows_user_shapes: bool = False,
     ) -> None:
         context = default_context() if context is None else context
         texts = override_texts(overrides)
-        consent = bool(allows_user_shapes)
-        params = filled(s.sonject_scene_read_params, allows_user_shapes=consent, override_count=len(texts),
+        params = filled(s.sonject_scene_read_params, override_count=len(texts),
                         overrides=ctypes.cast(texts, ctypes.POINTER(ctypes.c_char_p)))
         pointer = context.make(
             s.sonject_campaign,
@@ -64,11 +61,10 @@ class Campaign(Handle):
         self._source = (
             os.path.abspath(os.fsdecode(path)),
             [os.fsdecode(text) for text in texts],
-            consent,
         )
 
     def __reduce__(self) -> Any:
-        return _read_again, self._source
+        return Campaign, self._source
 
     def _summary(self) -> str:
         return f"of {counted(len(self), 'image')}"
@@ -153,10 +149,6 @@ class Campaign(Handle):
         )
 
 
-def _read_again(path: str, overrides: list[str], allows_user_shapes: bool) -> Campaign:
-    return Campaign(path, overrides, allows_user_shapes=allows_user_shapes)
-
-
 def merge_campaign(
     folder: PathLike, progress: Optional[Progress] = None, context: Optional[Context] = None
 ) -> None:
@@ -177,7 +169,6 @@ def fit_campaign(
     boxes: Union[str, LabelPart] = "both",
     progress: Optional[Progress] = None,
     context: Optional[Context] = None,
-    allows_user_shapes: bool = False,
 ) -> None:
     """Writes a campaign file like the one at path whose targets measure as real contacts do.
 
@@ -187,8 +178,7 @@ def fit_campaign(
     """
     context = default_context() if context is None else context
     texts = override_texts(overrides)
-    consent = bool(allows_user_shapes)
-    params = filled(s.sonject_scene_read_params, allows_user_shapes=consent, override_count=len(texts),
+    params = filled(s.sonject_scene_read_params, override_count=len(texts),
                     overrides=ctypes.cast(texts, ctypes.POINTER(ctypes.c_char_p)))
     fit_params = filled(s.sonject_campaign_fit_params, part=choice("boxes", LabelPart, boxes),
                         contacts=file_name("contacts", contacts),

@@ -149,9 +149,8 @@ class Context:
     device: part of the device's name, None for the one that SONJECT_DEVICE names, else a GPU, else
     native, this processor; log: called with a level of logging, WARNING for notes that a user must
     see and else INFO, and a line, as a logger's log is; None for that of the logger "sonject";
-    opencl_context, opencl_device: addresses of a host's cl_context and cl_device_id to work in; decodes_in_process:
-    read images and HDF5 here, not in a child (a damaged file may end this); threads: of a launch on
-    native, 0 for one a processor.
+    decodes_in_process: read images and HDF5 here, not in a child (a damaged file may end this);
+    threads: of a launch on native, 0 for one a processor.
 
     Calls from several threads on one context wait for each other; use a context per thread to work
     at once. The device native works in forked children, too; OpenCL's are refused in a child whose
@@ -162,8 +161,6 @@ class Context:
         self,
         device: Optional[str] = None,
         log: Optional[Callable[[int, str], Any]] = None,
-        opencl_context: Optional[int] = None,
-        opencl_device: Optional[int] = None,
         decodes_in_process: bool = False,
         threads: int = 0,
     ) -> None:
@@ -177,8 +174,6 @@ class Context:
         params = filled(
             s.sonject_context_params,
             device_name=optional_file_name("device", device),
-            opencl_context=opencl_context,
-            opencl_device=opencl_device,
             decodes_in_process=int(decodes_in_process),
             threads=threads,
         )

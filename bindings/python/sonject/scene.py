@@ -37,8 +37,8 @@ class Scene(Handle):
 
     A number is in m, Hz, m/s, degrees, s; a text may say another unit. Sections are dictionaries,
     lists may be arrays. Where the image is an array that a call is given, ``input`` says its
-    geometry alone. Names of files are meant from the working directory. allows_user_shapes: shapes
-    may be code, which then can do what the process can; context: None for the thread's own one.
+    geometry alone. Names of files are meant from the working directory. context: None for the
+    thread's own one.
     """
 
     _noun = "scene"
@@ -47,13 +47,11 @@ class Scene(Handle):
         self,
         *,
         context: Optional[Context] = None,
-        allows_user_shapes: bool = False,
         **keys: Unpack[SceneKeys],
     ) -> None:
         context = default_context() if context is None else context
         text = plain_text("scene", key_text("scene", {"sonject": 1, **keys}))
-        super().__init__(context, _read(context, None, allows_user_shapes, text=text))
-        self._allows_user_shapes = allows_user_shapes
+        super().__init__(context, _read(context, None, text=text))
 
     @classmethod
     def read(
@@ -61,8 +59,6 @@ class Scene(Handle):
         path: PathLike,
         overrides: Overrides = (),
         context: Optional[Context] = None,
-        *,
-        allows_user_shapes: bool = False,
     ) -> "Scene":
         """Reads a scene file; of one with bands the override "band" chooses one of ``Scene.bands``.
 
@@ -71,16 +67,15 @@ class Scene(Handle):
         """
         context = default_context() if context is None else context
         texts = override_texts(overrides)
-        pointer = _read(context, file_name("path", path), allows_user_shapes,
+        pointer = _read(context, file_name("path", path),
                         overrides=texts, override_count=len(texts))
-        return cls._adopt(context, pointer, allows_user_shapes)
+        return cls._adopt(context, pointer)
 
     @classmethod
-    def _adopt(cls, context: Context, pointer: Any, allows_user_shapes: bool = False) -> "Scene":
+    def _adopt(cls, context: Context, pointer: Any) -> "Scene":
         """The scene behind a handle that the library made."""
         scene = cls.__new__(cls)
         Handle.__init__(scene, context, pointer)
-        scene._allows_user_shapes = allows_user_shapes
         return scene
 
     @staticmethod
@@ -182,13 +177,13 @@ class Scene(Handle):
     __hash__ = None  # type: ignore[assignment]  # what it says may change
 
     def __copy__(self) -> "Scene":
-        return _of_text(self._whole_text(), self._allows_user_shapes, self._context)
+        return _of_text(self._whole_text(), self._context)
 
     def __deepcopy__(self, _memo: Any) -> "Scene":
         return self.__copy__()
 
     def __reduce__(self) -> Any:
-        return _of_text, (self._whole_text(), self._allows_user_shapes)
+        return _of_text, (self._whole_text(),)
 
     def _summary(self) -> str:
         return f"of {counted(self.object_count, 'object')}"
@@ -208,17 +203,17 @@ class Scene(Handle):
         return count.value
 
 
-def _read(context: Context, path: Optional[bytes], allows_user_shapes: bool, **given: Any) -> Any:
+def _read(context: Context, path: Optional[bytes], **given: Any) -> Any:
     if "overrides" in given:
         given["overrides"] = ctypes.cast(given["overrides"], ctypes.POINTER(ctypes.c_char_p))
-    params = filled(s.sonject_scene_read_params, allows_user_shapes=bool(allows_user_shapes), **given)
+    params = filled(s.sonject_scene_read_params, **given)
     return context.make(s.sonject_scene, "sonject_scene_read", context, path, ctypes.byref(params))
 
 
-def _of_text(content: str, allows_user_shapes: bool, context: Optional[Context] = None) -> Scene:
+def _of_text(content: str, context: Optional[Context] = None) -> Scene:
     context = default_context() if context is None else context
-    pointer = _read(context, None, allows_user_shapes, text=plain_text("scene", content))
-    return Scene._adopt(context, pointer, allows_user_shapes)
+    pointer = _read(context, None, text=plain_text("scene", content))
+    return Scene._adopt(context, pointer)
 
 
 def _tables(key: str, value: Any) -> Iterator[str]:

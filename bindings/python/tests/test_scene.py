@@ -13,19 +13,6 @@ from conftest import COLUMNS, GEOMETRY, KEYS, ROWS
 from sonject import keys
 
 TETRAHEDRON = "v 0 0 0\nv 600 0 0\nv 0 600 0\nv 0 0 400\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
-SPHERE = """
-float shape_distance(float3 p, float3 d, float nearest, const float *a)
-{
-    const float square = a[0] * a[0] - dot(p, p);
-    if (square < 0.0f)
-        return INFINITY;
-    return -sqrt(square) > nearest ? -sqrt(square) : sqrt(square) > nearest ? sqrt(square) : INFINITY;
-}
-float3 shape_normal(float3 p, const float *a)
-{
-    return p;
-}
-"""
 
 
 def image(patch, scene):
@@ -203,16 +190,12 @@ def test_contexts_close_scenes_that_are_equal():
 
 @pytest.mark.parametrize("duplicate", [copy.copy, copy.deepcopy, lambda each: pickle.loads(pickle.dumps(each))])
 def test_a_copy_is_a_scene_of_its_own(make_scene, amplitude_patch, duplicate):
-    shape = {"shape": "user", "user": {"code": SPHERE, "bounding_radius": 0.25, "parameters": [0.25]},
-             "heading": "0.35 rad"}
-    with pytest.raises(sonject.SonjectError, match="code that would run with your rights"):
-        make_scene(objects=[shape])
-    scene = make_scene(objects=[shape], allows_user_shapes=True)
+    scene = make_scene(objects=[{"shape": "sphere", "diameter": 0.5, "heading": "0.35 rad"}])
     before = image(amplitude_patch, scene)
     other = duplicate(scene)
     assert other == scene and image(amplitude_patch, other) == before
     assert (other.context is scene.context) == (duplicate in (copy.copy, copy.deepcopy))
-    other["objects[0].user.parameters"] = [0.2]
+    other["objects[0].diameter"] = 0.4
     assert other != scene and image(amplitude_patch, other) != before
     assert image(amplitude_patch, scene) == before
 

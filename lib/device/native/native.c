@@ -37,7 +37,7 @@ struct instruction_set {
     const char *name;
     uint32_t width;
     uint32_t features, registers; /* bits that the processor and the system must have */
-    native_program programs[2][PROGRAM_PROBE_USER_SHAPE]; /* by variant */
+    native_program programs[2][PROGRAM_COUNT]; /* by variant */
 };
 
 DECLARE(baseline_full)
@@ -237,16 +237,10 @@ static sonject_status native_clear(struct report *report, struct device *device,
 
 static sonject_status native_kernel_create(struct report *report, struct device *device,
                                            enum device_program program,
-                                           enum program_variant variant,
-                                           const struct user_code *code, const char *name,
+                                           enum program_variant variant, const char *name,
                                            device_kernel *kernel)
 {
     const struct instruction_set *set = find_instruction_set(device->width);
-    if (code)
-        return report_failure(report, SONJECT_ERROR_DEVICE,
-                              "device '%s' has no compiler, which users' shapes need: name another "
-                              "(`sonject devices` lists them)",
-                              device->name);
     if (!set)
         return report_failure(report, SONJECT_ERROR_DEVICE,
                               "device '%s' has no kernels of %u lanes", device->name,

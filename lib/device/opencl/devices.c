@@ -36,9 +36,6 @@ const char *opencl_error_name(cl_int error)
         NAME(CL_OUT_OF_RESOURCES),
         NAME(CL_OUT_OF_HOST_MEMORY),
         NAME(CL_BUILD_PROGRAM_FAILURE),
-        NAME(CL_COMPILE_PROGRAM_FAILURE),
-        NAME(CL_LINKER_NOT_AVAILABLE),
-        NAME(CL_LINK_PROGRAM_FAILURE),
         NAME(CL_MAP_FAILURE),
         NAME(CL_INVALID_VALUE),
         NAME(CL_INVALID_DEVICE),
@@ -107,21 +104,6 @@ sonject_status driver_enter(struct report *report)
 void driver_leave(void)
 {
     pthread_mutex_unlock(&one_at_a_time);
-}
-
-void host_context_retain(struct report *report, void *opencl_context)
-{
-    if (opencl_context && driver_claim(report) == SONJECT_OK)
-        clRetainContext(opencl_context);
-}
-
-void host_context_release(void *opencl_context)
-{
-    const long first = __atomic_load_n(&process_of_driver, __ATOMIC_SEQ_CST);
-    const bool is_inherited =
-        first != 0 && first != process_number(); /* then nothing may be released */
-    if (opencl_context && !is_inherited)
-        clReleaseContext(opencl_context);
 }
 
 /* None may be for want of memory: the loader passes over drivers that cannot be loaded. */
@@ -249,18 +231,17 @@ static sonject_status choose_device(struct report *report, const char *name,
     if (count == 0)
         return report_failure(report, SONJECT_ERROR_DEVICE,
                               "no OpenCL device found: install a driver, such as the package "
-                              "pocl-opencl-icd for the CPU%s",
-                              name ? ", or name the device native" : "; users' shapes need one");
+                              "pocl-opencl-icd for the CPU, or name the device native");
     return report_failure(report, SONJECT_ERROR_DEVICE,
                           "no device has '%s' in its name: `sonject devices` lists them", name);
 }
 
 /* The device's record, made for its first user and released by its last. */
-static struct shared_device *find_shared(cl_device_id id, cl_context host_context, cl_int *error)
+static struct shared_device *find_shared(cl_device_id id, cl_int *error)
 {
     *error = CL_SUCCESS;
     struct shared_device *device = devices_in_use;
-    while (device && (device->id != id || device->host_context != host_context))
+    while (device && device->id != id)
         device = device->next;
     if (!device) {
         device = allocate_array(1, sizeof *device);
@@ -268,17 +249,12 @@ static struct shared_device *find_shared(cl_device_id id, cl_context host_contex
             *error = CL_OUT_OF_HOST_MEMORY;
             return NULL;
         }
-        if (host_context)
-            *error = clRetainContext(host_context);
-        else
-            device->context = clCreateContext(NULL, 1, &id, NULL, NULL, error);
+        device->context = clCreateContext(NULL, 1, &id, NULL, NULL, error);
         if (*error != CL_SUCCESS) {
             free(device);
             return NULL;
         }
         device->id = id;
-        if (host_context)
-            device->context = device->host_context = host_context;
         device->next = devices_in_use;
         devices_in_use = device;
     }
@@ -300,11 +276,10 @@ static void release_shared(struct shared_device *device)
     free(device);
 }
 
-static sonject_status open_queue(struct report *report, struct device *device,
-                                 cl_context host_context)
+static sonject_status open_queue(struct report *report, struct device *device)
 {
     cl_int error;
-    device->shared = find_shared(device->id, host_context, &error);
+    device->shared = find_shared(device->id, &error);
     CHECK(opencl_answer(report, device, "clCreateContext", error));
     device->context = device->shared->context;
     cl_command_queue queue = clCreateCommandQueue(device->context, device->id, 0, &error);
@@ -343,18 +318,11 @@ void opencl_close(struct device *device)
     driver_leave();
 }
 
-static sonject_status open_in_driver(struct report *report, const sonject_context_params *params,
-                                     const char *name, struct device *device)
+static sonject_status open_in_driver(struct report *report, const char *name, struct device *device)
 {
-    struct found_device chosen = {NULL, params->opencl_device, 0};
-    if (params->opencl_context) {
-        clGetDeviceInfo(chosen.id, CL_DEVICE_TYPE, sizeof chosen.type, &chosen.type, NULL);
-        clGetDeviceInfo(chosen.id, CL_DEVICE_PLATFORM, sizeof chosen.platform, &chosen.platform,
-                        NULL);
-    } else {
-        CHECK(choose_device(report, name, &chosen));
-    }
+    struct found_device chosen = {NULL, NULL, 0};
     sonject_device_info info;
+    CHECK(choose_device(report, name, &chosen));
     describe(chosen.id, chosen.type, chosen.platform, &info);
     device_take_info(device, &info);
     device->calls = &opencl_calls;
@@ -363,14 +331,13 @@ static sonject_status open_in_driver(struct report *report, const sonject_contex
     device->group_items = device->is_cpu ? 1 : GPU_GROUP;
     device->is_pocl = strcmp(info.platform, "Portable Computing Language") == 0;
     CHECK(check_abilities(report, device));
-    return open_queue(report, device, params->opencl_context);
+    return open_queue(report, device);
 }
 
-sonject_status opencl_open(struct report *report, const sonject_context_params *params,
-                           const char *name, struct device *device)
+sonject_status opencl_open(struct report *report, const char *name, struct device *device)
 {
     CHECK(driver_enter(report));
-    const sonject_status status = open_in_driver(report, params, name, device);
+    const sonject_status status = open_in_driver(report, name, device);
     driver_leave();
     return status;
 }

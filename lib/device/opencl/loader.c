@@ -55,7 +55,6 @@ OBJECT(cl_context, clCreateContext,
         void(CL_CALLBACK *notify)(const char *, const void *, size_t, void *), void *user,
         cl_int *error),
        (properties, count, devices, notify, user, error))
-STATUS(clRetainContext, (cl_context context), (context))
 STATUS(clReleaseContext, (cl_context context), (context))
 OBJECT(cl_command_queue, clCreateCommandQueue,
        (cl_context context, cl_device_id device, cl_command_queue_properties properties,
@@ -72,16 +71,6 @@ STATUS(clBuildProgram,
        (cl_program program, cl_uint count, const cl_device_id *devices, const char *options,
         void(CL_CALLBACK *notify)(cl_program, void *), void *user),
        (program, count, devices, options, notify, user))
-STATUS(clCompileProgram,
-       (cl_program program, cl_uint count, const cl_device_id *devices, const char *options,
-        cl_uint header_count, const cl_program *headers, const char **header_names,
-        void(CL_CALLBACK *notify)(cl_program, void *), void *user),
-       (program, count, devices, options, header_count, headers, header_names, notify, user))
-OBJECT(cl_program, clLinkProgram,
-       (cl_context context, cl_uint count, const cl_device_id *devices, const char *options,
-        cl_uint program_count, const cl_program *programs,
-        void(CL_CALLBACK *notify)(cl_program, void *), void *user, cl_int *error),
-       (context, count, devices, options, program_count, programs, notify, user, error))
 STATUS(clGetProgramBuildInfo,
        (cl_program program, cl_device_id device, cl_program_build_info what, size_t capacity,
         void *value, size_t *size),

@@ -23,7 +23,6 @@ struct shared_device {
     struct shared_device *next;
     size_t users;
     cl_device_id id;
-    cl_context host_context; /* NULL: `context` is the library's own */
     cl_context context;
     size_t program_count;
     struct kept_program programs[PROGRAMS_KEPT]; /* the one used last first */
@@ -51,7 +50,6 @@ extern const struct device_calls opencl_calls;
 void opencl_close(struct device *device);
 sonject_status opencl_kernel_create(struct report *report, struct device *device,
                                     enum device_program program, enum program_variant variant,
-                                    const struct user_code *code, const char *name,
-                                    device_kernel *kernel);
+                                    const char *name, device_kernel *kernel);
 
 #endif

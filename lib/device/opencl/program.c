@@ -1,4 +1,4 @@
-/* Kernels: embedded sources, with or without code of users linked to them. */
+/* Kernels of the embedded sources. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,24 +11,17 @@
 #define OPTIONS_CAPACITY 256
 
 /* No fast-math of any kind; correctly rounded division where the compiler has to be told. */
-static size_t language_options(const struct device *device, char options[OPTIONS_CAPACITY])
+static void program_options(const struct device *device, enum program_variant variant,
+                            char options[OPTIONS_CAPACITY])
 {
     cl_device_fp_config precision = 0;
     clGetDeviceInfo(device->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof precision, &precision, NULL);
-    return (size_t)snprintf(options, OPTIONS_CAPACITY, "-cl-std=CL1.2%s",
-                            precision & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT
-                                ? " -cl-fp32-correctly-rounded-divide-sqrt"
-                                : "");
-}
-
-static void program_options(const struct device *device, enum program_variant variant,
-                            bool has_user_code, char options[OPTIONS_CAPACITY])
-{
-    const size_t length = language_options(device, options);
-    snprintf(options + length, OPTIONS_CAPACITY - length, " -DWIDTH=%u -DGROUP_ITEMS=%u%s%s",
+    snprintf(options, OPTIONS_CAPACITY, "-cl-std=CL1.2%s -DWIDTH=%u -DGROUP_ITEMS=%u%s",
+             precision & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT
+                 ? " -cl-fp32-correctly-rounded-divide-sqrt"
+                 : "",
              (unsigned)device->width, (unsigned)device->group_items,
-             variant == PROGRAM_PLAIN ? " -DPLAIN" : "",
-             has_user_code ? " -DWITH_USER_SHAPES" : "");
+             variant == PROGRAM_PLAIN ? " -DPLAIN" : "");
 }
 
 /* A program to be built, and what came of it, to be told when the driver is left. */
@@ -38,13 +31,11 @@ struct building {
     const struct embedded_source *source;
     const char *name; /* of the kernel */
     device_kernel *kernel;
-    const struct user_code *code; /* unit_count 0: none */
     char options[OPTIONS_CAPACITY];
     char key[HASH_TEXT_CAPACITY];
     const char *call; /* the last one, of OpenCL; NULL: none yet */
     cl_int error;
     cl_program failed; /* has the log; NULL: none */
-    size_t unit;       /* that did not compile; unit_count: the library's own source */
     double seconds;    /* 0: it was there */
 };
 
@@ -55,8 +46,6 @@ static sonject_status make_key(struct report *report, struct building *building)
     CHECK_MEMORY(report, hash, "the name of a program");
     hash_add_text(hash, building->source->name);
     hash_add_text(hash, building->options);
-    for (size_t i = 0; i < building->code->unit_count; i++)
-        hash_add_text(hash, building->code->units[i]);
     hash_end(hash, building->key);
     return SONJECT_OK;
 }
@@ -71,82 +60,38 @@ static sonject_status tell_failure(struct report *report, const struct building 
     if (clGetProgramBuildInfo(building->failed, device->id, CL_PROGRAM_BUILD_LOG, bytes, log,
                               NULL) != CL_SUCCESS)
         log[0] = '\0';
-    sonject_status status;
-    if (building->unit < building->code->unit_count &&
-        building->error == CL_COMPILE_PROGRAM_FAILURE) {
-        status = building->code->explain(report, device, building->code->user, building->unit, log);
-    } else {
-        /* the first error says what is wrong, warnings before it do not */
-        const char *error = strstr(log, "error:");
-        const char *first = error ? error : log;
-        const size_t length = strcspn(first, "\n");
-        status = report_failure(
-            report, SONJECT_ERROR_DEVICE, "device '%s' cannot build %s: %s: %.*s%s", device->name,
-            building->source->name, opencl_error_name(building->error),
-            (int)(length < 511 ? length : 511), first,
-            error ? "" : ": has its cache, such as ~/.cache/pocl, room on the disk?");
-    }
+    /* the first error says what is wrong, warnings before it do not */
+    const char *error = strstr(log, "error:");
+    const char *first = error ? error : log;
+    const size_t length = strcspn(first, "\n");
+    const sonject_status status =
+        report_failure(report, SONJECT_ERROR_DEVICE, "device '%s' cannot build %s: %s: %.*s%s",
+                       device->name, building->source->name, opencl_error_name(building->error),
+                       (int)(length < 511 ? length : 511), first,
+                       error ? "" : ": has its cache, such as ~/.cache/pocl, room on the disk?");
     free(log);
     return status;
 }
 
-/* One translation unit, to be linked or not; NULL: see `building`. */
-static cl_program compile(struct building *building, const char *text, const char *more,
-                          const char *options, bool is_linked)
+/* NULL: see `building`. */
+static cl_program compile(struct building *building)
 {
     /* LLVM removes its files at a signal, and so fails in what it was about. Kernels that are known
      * to be right are built again, for the caller to stop as it does elsewhere. */
-    int tries = is_linked ? 1 : 3;
+    int tries = 3;
     const struct device *device = building->device;
-    const char *pieces[] = {text, more};
     building->call = "clCreateProgramWithSource";
-    cl_program program =
-        clCreateProgramWithSource(device->context, more ? 2 : 1, pieces, NULL, &building->error);
+    cl_program program = clCreateProgramWithSource(
+        device->context, 1, (const char *[]){building->source->text}, NULL, &building->error);
     if (building->error != CL_SUCCESS)
         return NULL;
     do
-        building->error = is_linked ? clCompileProgram(program, 1, &device->id, options, 0, NULL,
-                                                       NULL, NULL, NULL)
-                                    : clBuildProgram(program, 1, &device->id, options, NULL, NULL);
+        building->error = clBuildProgram(program, 1, &device->id, building->options, NULL, NULL);
     while (building->error == CL_BUILD_PROGRAM_FAILURE && --tries > 0);
     if (building->error == CL_SUCCESS)
         return program;
     building->failed = program;
     return NULL;
-}
-
-/* The source with all units; NULL: see `building`. */
-static cl_program compile_and_link(struct building *building)
-{
-    const struct user_code *code = building->code;
-    cl_program programs[PROGRAM_UNITS_MAX + 1];
-    cl_program linked = NULL;
-    char options[OPTIONS_CAPACITY];
-    cl_uint count = 0;
-    bool compiles = true;
-    language_options(building->device, options);
-    for (building->unit = 0; compiles && building->unit <= code->unit_count; building->unit++) {
-        programs[count] =
-            building->unit < code->unit_count
-                ? compile(building, code->units[count], NULL, options, true)
-                : compile(building, building->source->text, code->calls, building->options, true);
-        compiles = programs[count] != NULL;
-        if (!compiles)
-            break;
-        count++;
-    }
-    if (compiles) {
-        building->call = "clLinkProgram, which users' shapes need,";
-        linked = clLinkProgram(building->device->context, 1, &building->device->id, "", count,
-                               programs, NULL, NULL, &building->error);
-        if (building->error != CL_SUCCESS) {
-            building->failed = linked;
-            linked = NULL;
-        }
-    }
-    while (count > 0)
-        clReleaseProgram(programs[--count]);
-    return linked;
 }
 
 /* Makes a program the first of those kept, from the place where it was. */
@@ -175,9 +120,7 @@ static cl_program build(struct building *building)
     struct shared_device *shared = building->device->shared;
     const double start = clock_seconds();
     struct kept_program kept;
-    kept.program = building->code->unit_count > 0
-                       ? compile_and_link(building)
-                       : compile(building, building->source->text, NULL, building->options, false);
+    kept.program = compile(building);
     if (!kept.program)
         return NULL;
     building->seconds = clock_seconds() - start;
@@ -210,18 +153,15 @@ static void build_kernel(void *building)
 
 sonject_status opencl_kernel_create(struct report *report, struct device *device,
                                     enum device_program program, enum program_variant variant,
-                                    const struct user_code *code, const char *name,
-                                    device_kernel *kernel)
+                                    const char *name, device_kernel *kernel)
 {
-    static const struct user_code none = {0};
     struct building building = {.report = report,
                                 .device = device,
                                 .source = &embedded_sources[program],
                                 .name = name,
                                 .kernel = kernel,
-                                .code = code ? code : &none,
                                 .error = CL_SUCCESS};
-    program_options(device, variant, code != NULL, building.options);
+    program_options(device, variant, building.options);
     CHECK(make_key(report, &building));
     CHECK(driver_claim(report));
     make_kernel(&building, false);

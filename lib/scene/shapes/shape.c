@@ -9,7 +9,6 @@ const struct shape_key_name shape_keys[] = {
     {"width", SHAPE_HAS_WIDTH},
     {"diameter", SHAPE_HAS_DIAMETER},
     {"height", SHAPE_HAS_HEIGHT},
-    {"user", SHAPE_HAS_CODE},
     {"top_diameter", SHAPE_HAS_TOP_DIAMETER},
     {"front_height", SHAPE_HAS_FRONT_HEIGHT},
     {"nose_end", SHAPE_HAS_ENDS},
@@ -60,8 +59,6 @@ void shape_size_init_in_scene(struct shape_size *size, const struct scene *scene
     shape_size_init(size, object);
     if (object->shape == SHAPE_MESH)
         shape_size_of_mesh(size, &scene->meshes[object->mesh]);
-    if (object->shape == SHAPE_USER)
-        shape_size_of_user_shape(size, &scene->user_shapes.shapes[object->user_shape]);
 }
 
 bool shape_is_convex(const struct shape_size *size, uint32_t shape)
@@ -99,23 +96,9 @@ void shape_record_init(struct object_record *record, const struct shape_size *si
         row->record(record, size);
 }
 
-/* 0 is a length that nobody gave, else rows of keys keep them in their bounds. */
-static void check_sizes(struct check *check, const sonject_object_params *object, uint32_t needs)
-{
-    if (needs & SHAPE_HAS_LENGTH)
-        check_positive_length(check, "length", object->length_m);
-    if (needs & SHAPE_HAS_WIDTH)
-        check_positive_length(check, "width", object->width_m);
-    if (needs & SHAPE_HAS_DIAMETER)
-        check_positive_length(check, "diameter", object->diameter_m);
-    if (needs & SHAPE_HAS_HEIGHT)
-        check_positive_length(check, "height", object->height_m);
-}
-
 void check_shape(struct check *check, const sonject_object_params *object)
 {
     const struct shape *shape = shape_of(object->shape);
-    check_sizes(check, object, shape->needs);
     if (shape->check)
         shape->check(check, object);
 }

@@ -30,14 +30,13 @@ struct shape_size {
     double ring_radius_m; /* torus: of the ring's section */
     double front_height_m;
     struct end_size nose, tail;
-    const struct mesh *mesh;             /* of a mesh; borrowed from the scene */
-    const struct user_shape *user_shape; /* likewise */
+    const struct mesh *mesh; /* of a mesh; borrowed from the scene */
     /* Radii of a sphere about the origin and of a cylinder about the nose axis that hold it. */
     double bounding_radius_m, radius_about_nose_m;
     /* m; INFINITY where nothing is bent. Edges and tips do not count, nor what of a cone is nearer
      * to its axis than this. It decides how dense the rays on it are. */
     double least_radius_of_curvature_m;
-    uint32_t flat; /* bits of enum flat_axis: faces that it has; of a mesh or code not known: 0 */
+    uint32_t flat; /* bits of enum flat_axis: faces that it has; of a mesh not known: 0 */
 };
 
 /* Keys that say what a shape is. */
@@ -46,11 +45,10 @@ enum shape_key {
     SHAPE_HAS_WIDTH = 2,
     SHAPE_HAS_DIAMETER = 4,
     SHAPE_HAS_HEIGHT = 8,
-    SHAPE_HAS_CODE = 16,
-    SHAPE_HAS_TOP_DIAMETER = 32,
-    SHAPE_HAS_FRONT_HEIGHT = 64,
-    SHAPE_HAS_ENDS = 128,
-    SHAPE_HAS_MESH = 256
+    SHAPE_HAS_TOP_DIAMETER = 16,
+    SHAPE_HAS_FRONT_HEIGHT = 32,
+    SHAPE_HAS_ENDS = 64,
+    SHAPE_HAS_MESH = 128
 };
 
 /* Their names, up to a NULL. */
@@ -89,17 +87,15 @@ ALL_SHAPES(SHAPE_DECLARATION)
 /* By its number, enum shape_kind; NULL for an unknown one. */
 const struct shape *shape_of(uint32_t shape);
 
-/* The sizes of an object; those of a mesh and of a user's shape are not known without the scene. */
+/* The sizes of an object; those of a mesh are not known without the scene. */
 void shape_size_init(struct shape_size *size, const sonject_object_params *object);
 void shape_size_init_in_scene(struct shape_size *size, const struct scene *scene,
                               const sonject_object_params *object);
 
 /* What is borrowed. */
 void shape_size_of_mesh(struct shape_size *size, const struct mesh *mesh);
-void shape_size_of_user_shape(struct shape_size *size, const struct user_shape *shape);
 
-/* The largest p . v over the points p of a shape (its support function), v of any length. Exact but
- * for user shapes, of which only a box and a sphere about them are known: the lesser of both. */
+/* The largest p . v over the points p of a shape (its support function), v of any length. */
 double shape_extent(const struct shape_size *size, uint32_t shape, const double v[3]);
 
 /* Whether no straight line from its surface outwards meets it again, as is_convex in

@@ -1,20 +1,14 @@
-/* The keys of shapes that files describe: meshes of triangles, and code of users. */
+/* The keys of meshes: the file, and how its numbers are meant. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "base/memory.h"
-#include "base/text.h"
 #include "schema/keys.h"
-
-/* ---- Meshes: the file, and how its numbers are meant. */
 
 /* Lengths of targets. */
 #define LEAST_M 0.01
 #define MOST_M  100.0
-
-#define PARAMETER_MOST 1e30 /* of numbers for users' code */
 
 /* What is said about a mesh. */
 struct mesh_text {
@@ -33,12 +27,6 @@ enum file_axis {
     AXIS_Y_REVERSED,
     AXIS_Z_REVERSED
 };
-
-static sonject_status read_unit(struct reader *reader, const struct tree_node *node,
-                                void *structure)
-{
-    return read_length_unit(reader, node, &((struct mesh_text *)structure)->unit_m);
-}
 
 /* 1, 2, 3, negative where reversed, as struct mesh_options has it. */
 static int signed_axis(uint32_t axis)
@@ -83,7 +71,7 @@ static sonject_status finish_mesh(struct reader *reader, const struct tree_node 
     }
 static const struct field mesh_fields[] = {
     {"file", "of triangles: STL, OBJ or PLY", .kind = FIELD_FILE, MEMBER(path), REQUIRED},
-    {"unit", "of the file's numbers, by default m", SPECIAL(read_unit, "m, km, cm, mm")},
+    {"unit", "of the file's numbers, by default m", LENGTH_UNIT(unit_m)},
     {"nose", "axis of the file that is the object's nose", WORD(nose) = AXIS_WORDS},
     {"up", "axis of the file that is up when level", WORD(up) = AXIS_WORDS, .preset = AXIS_Z},
     {"open", "a mesh that is not watertight is taken as thin sheets; by default it is refused",
@@ -150,123 +138,5 @@ sonject_status read_mesh(struct reader *reader, const struct tree_node *node, vo
     THEN(status, load(reader, file ? &file->value : node, &mesh, &shape->mesh));
     key_path_shorten(&reader->path, before);
     free(mesh.path);
-    return status;
-}
-
-/* ---- Code. */
-
-/* A shape on its way into the scene. */
-struct user_text {
-    sonject_user_shape_params shape; /* first */
-    char *name, *code;               /* owned */
-};
-
-static sonject_status read_code_file(struct reader *reader, const struct tree_node *node,
-                                     void *structure)
-{
-    char excerpt[400];
-    struct user_text *user = structure;
-    size_t bytes;
-    sonject_status status = read_existing_path(reader, node, &user->name);
-    if (status != SONJECT_OK)
-        return status;
-    status = file_read_whole(reader->report, user->name, SNIPPET_BYTES_MAX, &user->code, &bytes);
-    if (status == SONJECT_OK && strlen(user->code) != bytes)
-        status = refuse_value(reader, node, "%s contains a character 0; remove it",
-                              text_excerpt(excerpt, sizeof excerpt, user->name));
-    return status;
-}
-
-/* The compiler counts lines as the file does, where a block shows them as they are. */
-static sonject_status read_code(struct reader *reader, const struct tree_node *node,
-                                void *structure)
-{
-    struct user_text *user = structure;
-    const char *text = read_text(reader, node);
-    if (!text)
-        return SONJECT_ERROR_INPUT;
-    user->code = copy_text(text);
-    user->name = copy_text(node->place.override ? "code" : reader->tree->file);
-    user->shape.first_line =
-        node->place.override ? 1 : (uint32_t)(node->place.line + (node->is_block ? 1 : 0));
-    return user->code && user->name ? SONJECT_OK
-                                    : report_out_of_memory(reader->report, "a shape's code");
-}
-
-static sonject_status read_parameter(struct reader *reader, const struct tree_node *node,
-                                     void *structure)
-{
-    struct user_text *user = structure;
-    return read_quantity(reader, node, QUANTITY_NUMBER,
-                         &user->shape.parameters[user->shape.parameter_count++]);
-}
-
-static sonject_status read_parameters(struct reader *reader, const struct tree_node *node,
-                                      void *structure)
-{
-    static const struct list parameters = {0, SONJECT_USER_PARAMETERS_CAPACITY,
-                                           " of numbers, [1, 0.5]", read_parameter};
-    return read_list(reader, node, &parameters, structure);
-}
-
-static void relate_user_shape(struct check *check, const void *structure)
-{
-    const sonject_user_shape_params *shape = structure;
-    for (uint32_t i = 0; check->status == SONJECT_OK && i < shape->parameter_count; i++)
-        check_within(check, "parameters", shape->parameters[i], -PARAMETER_MOST, PARAMETER_MOST,
-                     "");
-}
-
-/* Of a sonject_user_shape_params, with which a struct user_text begins. */
-#define STRUCTURE sonject_user_shape_params
-static const struct field user_fields[] = {
-    {"file", "OpenCL C with the functions shape_distance and shape_normal",
-     SPECIAL(read_code_file, "file name")},
-    {"code", "the same, here: code: |", SPECIAL(read_code, "text")},
-    {"bounding_radius", "of a sphere about the origin that holds the shape",
-     QUANTITY(bounding_radius_m, LENGTH), POSITIVE, REQUIRED},
-    {"half_length",
-     "of a box that holds it, by which it rests on the seabed; by default the radius",
-     QUANTITY(half_length_m, LENGTH), FROM_ZERO, NONE_IF_ZERO},
-    {"half_width", "of that box; by default the radius", QUANTITY(half_width_m, LENGTH), FROM_ZERO,
-     NONE_IF_ZERO},
-    {"half_height", "of that box; by default the radius", QUANTITY(half_height_m, LENGTH),
-     FROM_ZERO, NONE_IF_ZERO},
-    {"open", "a surface without inside, which reflects on both sides", FLAG(is_open)},
-    {"parameters", "numbers for the functions, at most 16",
-     SPECIAL(read_parameters, "list of numbers")},
-};
-const struct section user_section = {ROWS(user_fields), .choice = "file code",
-                                     .relations = relate_user_shape, .bytes = sizeof(STRUCTURE)};
-#undef STRUCTURE
-
-/* The end of a name that is too long for messages. */
-static const char *short_name(const char *name)
-{
-    const size_t length = strlen(name);
-    const char *end = length > SNIPPET_NAME_MAX ? name + length - SNIPPET_NAME_MAX : name;
-    while (((unsigned char)*end & 0xc0u) == 0x80u)
-        end++;
-    return end;
-}
-
-sonject_status read_user_shape(struct reader *reader, const struct tree_node *node, void *structure)
-{
-    sonject_object_params *object = structure;
-    struct user_text user;
-    memset(&user, 0, sizeof user);
-    if (!reader->allows_user_shapes)
-        return refuse_value(reader, node,
-                            "is code that would run with your rights; if you trust who wrote it, "
-                            "use --allow-user-shapes");
-    sonject_status status = read_section(reader, &user_section, node, &user);
-    if (status == SONJECT_OK && user.code) {
-        user.shape.name = short_name(user.name);
-        user.shape.code = user.code;
-        status = user_shapes_append(&reader->scene->user_shapes, reader->report, &user.shape);
-        object->user_shape = reader->scene->user_shapes.count - 1;
-    }
-    free(user.name);
-    free(user.code);
     return status;
 }
