@@ -48,17 +48,14 @@ static sonject_status measure_rows(struct sonject_campaign *campaign, uint32_t n
     const size_t rows = (size_t)swath->layout.rows;
     /* as check_water_column */
     const bool may_show_water = scene->water_layer_count == 0 && scene->relief.count == 0;
-    const struct recording *recording = swath_file_recording(file);
     sonject_geometry_params geometry = scene->geometry;
-    /* of all rows, as in pictures of the line */
-    const double spacing_m = scene->has_files_geometry && recording
-                                 ? recording_geometry_of(recording, 0, rows).row_spacing_m
-                                 : NAN;
-    if (spacing_m > 0.0) /* not of a line that ends where it began */
-        geometry.row_spacing_m = spacing_m;
+    struct noted_geometry noted;
+    geometry_notes_read(file, &noted);
+    if (scene->has_files_geometry) /* of all rows, as in the file's picture */
+        (void)geometry_notes_tell(&noted, &geometry);
     double *altitudes = allocate_array(rows, sizeof *altitudes);
     CHECK_MEMORY(campaign->report, altitudes, "the altitudes");
-    row_altitudes(scene, recording, &(struct region){.rows = rows}, altitudes);
+    row_altitudes(scene, swath_file_recording(file), &(struct region){.rows = rows}, altitudes);
     const sonject_status status = campaign_measure(campaign->report, &campaign->campaign, number,
                                                    &geometry, altitudes, may_show_water);
     free(altitudes);

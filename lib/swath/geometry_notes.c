@@ -331,6 +331,19 @@ static struct recording_geometry line_geometry(const struct scene *scene,
     return geometry;
 }
 
+/* Rows of a patch are as far apart as its own pings, those of the line's picture as far as all
+ * pings are on average: the patch's middle lies where that has it. A line that ends where it began
+ * has no such average. */
+static double first_along_track(const struct recording *recording, double row_spacing_m,
+                                uint64_t first, uint64_t count)
+{
+    struct noted_geometry line;
+    read_recording(recording, &line);
+    return line.row_spacing_m > 0.0
+               ? (line.row_spacing_m - row_spacing_m) * ((double)first + 0.5 * (double)(count - 1))
+               : 0.0;
+}
+
 static sonject_status take_recording(struct report *report, const struct scene *scene,
                                      const struct recording *recording, struct wanted *wanted)
 {
@@ -355,6 +368,8 @@ static sonject_status take_recording(struct report *report, const struct scene *
         return input_failure(report, scene->input_path,
                              "has no altitudes: give the sonar's altitude instead of from_file");
     wanted->where.row_spacing_m = geometry.row_spacing_m;
+    wanted->where.first_along_track_m =
+        first_along_track(recording, geometry.row_spacing_m, first, count);
     wanted->where.column_spacing_m = geometry.column_spacing_m;
     wanted->where.first_slant_range_m = geometry.first_slant_range_m;
     wanted->where.side =
