@@ -13,6 +13,7 @@
 #include "inject/scene_hash.h"
 #include "schema/scene_file.h"
 #include "swath/geometry_notes.h"
+#include "swath/quicklook.h"
 
 #define TRIALS_MAX 20000 /* scenes, about as many milliseconds at the most */
 
@@ -70,6 +71,13 @@ static uint32_t side_of_nadir(const sonject_geometry_params *geometry)
     return geometry->side == SONJECT_SIDE_PORT ? RECORDED_PORT : RECORDED_STARBOARD;
 }
 
+const char *swath_side_word(const struct swath_plan *swath)
+{
+    static const char *const words[] = {
+        "", [RECORDED_PORT] = "port", [RECORDED_STARBOARD] = "starboard"};
+    return words[swath->side];
+}
+
 /* Size and room of a swath, whose scene tells its geometry. */
 static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t number)
 {
@@ -95,8 +103,33 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
         status = measure_rows(campaign, number, &trial.scene, file);
         tell_calibration_doubts(campaign->report, &trial.scene);
     }
+    if (status == SONJECT_OK)
+        report_log(campaign->report,
+                   "%s%s%s: avoid and range_over_altitude leave %.4g %% of the places for images",
+                   swath->written, swath->side ? ", " : "", swath_side_word(swath),
+                   100.0 * crop_places_left(&swath->room));
     swath_file_close(&file);
     trial_clear(&trial);
+    return status;
+}
+
+sonject_status campaign_draw_swath(struct sonject_campaign *campaign, uint32_t number,
+                                   const char *picture)
+{
+    const struct swath_plan *swath = &campaign->campaign.swaths[number];
+    const sonject_quicklook_params params = {.image = swath->path, .picture = picture};
+    struct trial trial;
+    struct region *boxes = allocate_array(swath->avoid_count, sizeof *boxes);
+    CHECK_MEMORY(campaign->report, boxes, "the boxes to avoid");
+    for (size_t i = 0; i < swath->avoid_count; i++)
+        boxes[i] = swath->avoid[i].pixels;
+    sonject_status status = trial_read(&trial, campaign, number, CATEGORY_EMPTY, 0, 0, 0, NULL);
+    const struct image_options options = {trial.scene.channel, trial.scene.array,
+                                          trial.scene.transfer, !trial.scene.has_files_geometry,
+                                          trial.scene.geometry};
+    THEN(status, draw_quicklook(campaign->report, &params, &options, boxes, swath->avoid_count));
+    trial_clear(&trial);
+    free(boxes);
     return status;
 }
 

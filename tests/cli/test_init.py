@@ -163,7 +163,7 @@ def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
 def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     """All but the last, which needs scikit-learn: test_train_detector.py runs that."""
     page = (pathlib.Path(os.environ["SONJECT_SOURCE"]) / "docs" / "first_detector.md").read_text()
-    begin, run, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
+    begin, run, check, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
     write_mesh(tmp_path)
     (tmp_path / "rock.obj").rename(tmp_path / "my_mine.obj")
     write_line(tmp_path)
@@ -172,6 +172,7 @@ def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     assert answer.returncode == 0, answer.stderr
     assert "array: {length: 0.508 m}" in (tmp_path / "line.yaml").read_text()  # 0.886 wavelengths over it
     sonject.done(*run[1:])
+    assert re.findall(r"line.xtf, (\w+): .* leave 100 % of the places", sonject.done(*check[1:]).stderr) == ["port", "starboard"]
     sonject.done(*campaign[1:], "--set", "images=10")
     for name in "line_quicklook.png", "line_starboard_quicklook.png", "one/report.html", "set/report.html", "set/data.yaml", "set/train/coco.json", "set/val/coco.json", train[2]:
         assert (tmp_path / name).exists()
