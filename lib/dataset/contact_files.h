@@ -19,6 +19,7 @@ enum labelled_part {
 struct labelled_contact {
     uint32_t image;  /* number in the set's list */
     uint32_t part;   /* enum labelled_part: of which box is */
+    uint32_t side;   /* enum recorded_side, of a recording; 0: not told */
     sonject_box box; /* around the part, or around both */
 };
 

@@ -219,6 +219,7 @@ struct reader {
     const struct number_array *arrays; /* in place of files */
     size_t array_count;
     const char *made_calibration; /* file that stands for input.calibration: auto; NULL: none */
+    bool has_no_channels;         /* the input is an image: input.channel does not count */
     bool takes_pixels;            /* the input may be pixels that a call is given */
     struct key_path path;         /* of the section or key that is read */
 };
