@@ -40,11 +40,8 @@ static sonject_status make(sonject_context *context, const void *verb_options,
 {
     const struct campaign_options *options = verb_options;
     sonject_campaign *campaign = NULL;
-    const sonject_scene_read_params reading = {.struct_size = sizeof(reading),
-                                               .allows_user_shapes = options->allows_user_shapes,
-                                               .overrides = options->overrides.texts,
-                                               .override_count =
-                                                   (uint32_t)options->overrides.count};
+    const sonject_scene_read_params reading =
+        reading_of(&options->overrides, options->allows_user_shapes);
     sonject_campaign_run_params params = {.struct_size = sizeof(params)};
     shard_parse("campaign", options->shard, &params.shard_index, &params.shard_count);
     params.exit_after_s = options->exit_after.value;

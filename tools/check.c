@@ -35,11 +35,8 @@ static int work(const void *verb_options)
     const bool is_whole = is_campaign(options->path);
     const sonject_context_params params = {.struct_size = sizeof params,
                                            .log = is_whole ? progress_log : NULL};
-    const sonject_scene_read_params reading = {.struct_size = sizeof reading,
-                                               .allows_user_shapes = options->allows_user_shapes,
-                                               .overrides = options->overrides.texts,
-                                               .override_count =
-                                                   (uint32_t)options->overrides.count};
+    const sonject_scene_read_params reading =
+        reading_of(&options->overrides, options->allows_user_shapes);
     sonject_context *context = NULL;
     sonject_campaign *campaign = NULL;
     sonject_scene *scene = NULL;

@@ -462,11 +462,8 @@ sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t i
                                    struct attempts *attempts, char reason[REASON_CAPACITY],
                                    struct image_plan *plan, struct scene *scene);
 
-/* Opens and measures the swaths, splits them, tries scenes with all that may be drawn, and makes
- * the campaign's hash. Errors: INPUT, STORAGE, UNSUPPORTED, MEMORY. */
-sonject_status campaign_check(struct sonject_campaign *campaign);
-
-/* Draws a measured swath with the boxes to avoid. Errors: as of sonject_quicklook. */
+/* Draws a measured swath with the boxes to avoid; not one with pixels that are no numbers. Errors:
+ * as of sonject_quicklook, without INPUT. */
 sonject_status campaign_draw_swath(struct sonject_campaign *campaign, uint32_t number,
                                    const char *picture);
 

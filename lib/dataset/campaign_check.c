@@ -130,7 +130,7 @@ sonject_status campaign_draw_swath(struct sonject_campaign *campaign, uint32_t n
     THEN(status, draw_quicklook(campaign->report, &params, &options, boxes, swath->avoid_count));
     trial_clear(&trial);
     free(boxes);
-    return status;
+    return status == SONJECT_ERROR_INPUT ? SONJECT_OK : status;
 }
 
 static sonject_status try_scene(struct sonject_campaign *campaign, struct hash *hash,
@@ -258,7 +258,9 @@ static sonject_status make_inputs(struct sonject_campaign *campaign, struct hash
                               campaign->hash);
 }
 
-sonject_status campaign_check(struct sonject_campaign *campaign)
+/* Opens and measures the swaths, splits them, tries scenes with all that may be drawn, and makes
+ * the campaign's hash. */
+static sonject_status check_all(struct sonject_campaign *campaign)
 {
     struct campaign *plan = &campaign->campaign;
     char code[HASH_TEXT_CAPACITY];
@@ -312,7 +314,7 @@ static sonject_status fill(struct sonject_campaign *campaign, const struct campa
     CHECK(take_classes(campaign));
     campaign->swath_hashes = allocate_array(plan->swath_count, sizeof *campaign->swath_hashes);
     CHECK_MEMORY(campaign->report, campaign->swath_hashes, "the campaign");
-    return campaign_check(campaign);
+    return check_all(campaign);
 }
 
 sonject_status campaign_open(struct report *report, const struct campaign_source *source,

@@ -209,21 +209,6 @@ static sonject_status find_part(const struct contact_table *table, const struct 
     return SONJECT_OK;
 }
 
-static sonject_status find_side(const struct contact_table *table, const struct table_row *row,
-                                uint32_t *side)
-{
-    char excerpt[40];
-    const char *word = field_of_column(table, row, COLUMN_SIDE);
-    *side = strcmp(word, "port") == 0        ? RECORDED_PORT
-            : strcmp(word, "starboard") == 0 ? RECORDED_STARBOARD
-                                             : 0;
-    if (*word == 0 || *side != 0)
-        return SONJECT_OK;
-    return table_refuse(table->reader->report, table->file, row->line, table->names[COLUMN_SIDE],
-                        "'%s' is neither port nor starboard",
-                        text_excerpt(excerpt, sizeof excerpt, word));
-}
-
 static sonject_status take_row(void *user, const struct table_row *row)
 {
     struct contact_table *table = user;
@@ -252,7 +237,14 @@ static sonject_status take_row(void *user, const struct table_row *row)
         name++; /* it keeps spreadsheets from taking a name for a formula */
     snprintf(place, sizeof place, "%s:%zu", table->file, row->line);
     CHECK(find_part(table, row, &part));
-    CHECK(find_side(table, row, &image.side));
+    const char *side = field_of_column(table, row, COLUMN_SIDE);
+    image.side = strcmp(side, "port") == 0        ? RECORDED_PORT
+                 : strcmp(side, "starboard") == 0 ? RECORDED_STARBOARD
+                                                  : 0;
+    if (*side && image.side == 0)
+        return table_refuse(reader->report, table->file, row->line, table->names[COLUMN_SIDE],
+                            "'%s' is neither port nor starboard",
+                            text_excerpt(excerpt, sizeof excerpt, side));
     CHECK(contact_reader_find_image(reader, place, name, &image.number));
     return contact_reader_add(reader, place, &image, part,
                               &(struct labelled_box){sides[1], sides[0], sides[3], sides[2]});

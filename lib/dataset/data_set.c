@@ -154,8 +154,7 @@ static json_t *head_of(const struct sonject_campaign *campaign, const struct dev
         {"outputs", outputs}, {"swaths", swaths});
 }
 
-/* Pictures of the swaths that have something to avoid, for the report: whoever merges has no
- * swaths. One with pixels that are no numbers has none. */
+/* Pictures of the swaths that have something to avoid, for the report: who merges has no swaths. */
 static sonject_status draw_swaths(struct sonject_campaign *campaign, const char *folder)
 {
     struct report *report = campaign->report;
@@ -166,10 +165,8 @@ static sonject_status draw_swaths(struct sonject_campaign *campaign, const char 
         CHECK(path_in(report, path, folder, SWATHS_FOLDER));
         CHECK(folder_make(report, path));
         CHECK(path_in(report, path, folder, SWATHS_FOLDER "/%u.png", (unsigned)i));
-        const sonject_status status =
-            file_exists(path) ? SONJECT_OK : campaign_draw_swath(campaign, i, path);
-        if (status != SONJECT_OK && status != SONJECT_ERROR_INPUT)
-            return status;
+        if (!file_exists(path))
+            CHECK(campaign_draw_swath(campaign, i, path));
     }
     return SONJECT_OK;
 }

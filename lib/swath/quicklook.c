@@ -113,19 +113,16 @@ static sonject_status to_ground_range(struct report *report, const char *path, e
     return SONJECT_OK;
 }
 
-/* Two pixels wide, so that it is seen where a browser makes the picture smaller. */
 static void draw_box(struct canvas *canvas, const struct plot_place *place,
                      const struct view_image *image, const struct region *box)
 {
     static const struct colour orange = {255, 160, 0};
     const double down = place->height / (double)(image->rows * image->block);
     const double across = place->width / (double)(image->columns * image->block);
-    const int64_t x = place->left + (int64_t)(across * (double)box->first_column);
-    const int64_t y = place->top + (int64_t)(down * (double)box->first_row);
-    const int64_t width = (int64_t)ceil(across * (double)box->columns);
-    const int64_t height = (int64_t)ceil(down * (double)box->rows);
-    canvas_frame(canvas, x, y, width, height, orange);
-    canvas_frame(canvas, x - 1, y - 1, width + 2, height + 2, orange);
+    canvas_frame(canvas, place->left + (int64_t)(across * (double)box->first_column),
+                 place->top + (int64_t)(down * (double)box->first_row),
+                 (int64_t)ceil(across * (double)box->columns),
+                 (int64_t)ceil(down * (double)box->rows), orange);
 }
 
 static sonject_status draw(struct report *report, const struct plot_frame *frame,

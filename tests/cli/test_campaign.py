@@ -134,7 +134,7 @@ def test_every_image_has_its_files(whole):
 
 def test_what_is_avoided_is_shown_and_what_is_left_is_told(command, whole):
     """Of rows and columns at which chips may begin: those from which one reaches within 2 pixels of the box are left out. Its
-    frame, the one orange thing in the picture, has 20 of 110 rows, and 70 of 150 columns, and two pixels more to either side."""
+    frame, the one orange thing in the picture, has 20 of 110 rows, and 70 of 150 columns, and a pixel more to either side."""
     rows, columns = numpy.mgrid[:ROWS - CHIP + 1, :COLUMNS - CHIP + 1]
     left = numpy.mean((rows >= 20 + 2) | (columns + CHIP <= 80 - 2))
     told = command("check", "campaign.yaml")
@@ -146,7 +146,7 @@ def test_what_is_avoided_is_shown_and_what_is_left_is_told(command, whole):
     down, across = numpy.nonzero((picture == (255, 160, 0)).all(axis=2))
     panel = numpy.nonzero((picture.max(axis=2) < 250).mean(axis=1) > 0.4)[0]  # rows of pixels that show seabed
     up = round((panel.max() - panel.min()) / ROWS)
-    assert numpy.ptp(down) + 1 == 20 * up + 4 and numpy.ptp(across) + 1 == 70 * up + 4
+    assert numpy.ptp(down) + 1 == 20 * up + 2 and numpy.ptp(across) + 1 == 70 * up + 2
 
 
 def test_no_swath_is_in_two_splits_and_classes_are_balanced_in_each(whole):
