@@ -80,7 +80,7 @@ struct field {
 struct section {
     const struct field *fields;
     size_t count;
-    /* Keys of which exactly one is to be there, separated by blanks, "a b"; or pairs of which one
+    /* Keys of which exactly one is to be there, separated by blanks, "a b"; or sets of which one
      * is, "a+b c+d". NULL: any. */
     const char *choice;
     /* Whether values fit each other; NULL: they do. */

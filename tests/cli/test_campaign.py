@@ -1056,7 +1056,7 @@ HOSTILE = [
      "shows nothing at 90 to 95 m along the track and slant ranges of 40 to 41 m"),
     (["swaths[0].avoid=[{along_track: [2 m, 1 m], slant_range: [40 m, 41 m]}]"], "swaths[0].avoid[0].along_track",
      "begins at 2 m, which is not below its end, 1 m"),
-    (["swaths[0].avoid=[{row: 2, column: 1, rows: 3}]"], "swaths[0].avoid[0].columns", "is missing"),
+    (["swaths[0].avoid=[{row: 2, column: 1, rows: 3}]"], "swaths[0].avoid[0]", "row and column and rows and columns; give one of these"),
     (["chip.slant_range=[60 m, 70 m]"], "swath0.png", "60 to 70 m"),
     (["chip.columns=all", "chip.range_over_altitude=[8, 9]"], "swath0.png", "8 to 9 times the sonar's altitude"),
     (["swaths[1].path=swath0.png", "swaths[2].path=swath0.png"], "too few for 2 splits", "swath"),
