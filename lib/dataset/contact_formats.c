@@ -261,14 +261,7 @@ sonject_status contacts_of_table(struct contact_reader *reader, const char *path
 
 #define LEVELS_MAX COUNT(((struct extent_quantiles *)0)->levels)
 
-static sonject_status read_later(struct reader *reader, const struct tree_node *node,
-                                 void *structure)
-{
-    (void)reader, (void)node, (void)structure; /* lists are read when all are there */
-    return SONJECT_OK;
-}
-
-#define LIST      .kind = FIELD_SPECIAL, .read = read_later
+#define LIST      .kind = FIELD_SPECIAL /* lists are read when all are there */
 #define STRUCTURE struct extent_quantiles
 static const struct field quantile_fields[] = {
     {"highlight_along", "extents of highlights along track", LIST},

@@ -73,7 +73,8 @@ struct field {
     const struct section *section;
     const char
         *unit; /* as told to users, where kind and quantity do not say it; what an entry is */
-    /* Reads the key in a way of its own, into the section's structure; FIELD_NAMED: a text. */
+    /* Reads the key in a way of its own, into the section's structure; FIELD_NAMED: a text. NULL of
+     * FIELD_SPECIAL: it is read elsewhere. */
     sonject_status (*read)(struct reader *reader, const struct tree_node *node, void *structure);
 };
 

@@ -278,7 +278,7 @@ static sonject_status read_value(struct reader *reader, const struct field *fiel
     case FIELD_SPECIAL:
         break;
     }
-    return SONJECT_ERROR_INPUT; /* never: it has a function */
+    return SONJECT_OK; /* it is read elsewhere */
 }
 
 /* Whether a node is a word that stands for a number. */

@@ -452,16 +452,6 @@ sonject_status read_version(struct reader *reader, const struct tree_node *node,
                               "must be 1, the version of the format that is read here");
 }
 
-/* What these keys say was done when the bands were laid over the file. */
-static sonject_status read_band(struct reader *reader, const struct tree_node *node,
-                                void *structure)
-{
-    (void)reader;
-    (void)node;
-    (void)structure;
-    return SONJECT_OK;
-}
-
 /* Geometry and altitude, where they are the input file's to tell. */
 static void take_recording(struct reader *reader)
 {
@@ -516,9 +506,10 @@ static sonject_status finish_scene(struct reader *reader, const struct tree_node
 #define STRUCTURE struct scene
 static const struct field scene_fields[] = {
     {"sonject", "version of the format, 1", SPECIAL(read_version, "whole number"), REQUIRED},
-    {"band", "which of the bands this scene is", SPECIAL(read_band, "a band's name")},
+    /* what these two say was done when the bands were laid over the file */
+    {"band", "which of the bands this scene is", SPECIAL(NULL, "a band's name")},
     {"bands", "by name, the keys in which each of several sonars differs from the rest of the file",
-     SPECIAL(read_band, "sections of the scene's keys")},
+     SPECIAL(NULL, "sections of the scene's keys")},
     {"input", "where the image comes from: path, uniform or synthetic, and geometry",
      SAME(input_section), REQUIRED},
     {"patch", "part of the swath that is worked on; by default all of it",
