@@ -37,10 +37,7 @@ static sonject_status make(sonject_context *context, const void *verb_options,
 {
     const struct campaign_options *options = verb_options;
     sonject_campaign *campaign = NULL;
-    const sonject_scene_read_params reading = {.struct_size = sizeof(reading),
-                                               .overrides = options->overrides.texts,
-                                               .override_count =
-                                                   (uint32_t)options->overrides.count};
+    const sonject_scene_read_params reading = reading_of(&options->overrides);
     sonject_campaign_run_params params = {.struct_size = sizeof(params)};
     shard_parse("campaign", options->shard, &params.shard_index, &params.shard_count);
     params.exit_after_s = options->exit_after.value;

@@ -1,29 +1,48 @@
-/* sonject check: a scene against its image, without tracing. */
+/* sonject check: a scene against its image, without tracing; or a campaign against its swaths. */
 #include <stddef.h>
+#include <stdio.h>
+#include <string.h>
 
 #include <sonject/sonject.h>
 
+#include "base/system/file_system.h"
 #include "stage.h"
 #include "verbs.h"
 
-struct check_options {
-    struct scene_arguments scene;
-};
-
 static const struct argument arguments[] = {
     {"--set", NULL, "KEY.PATH=VALUE", "replaces or adds a key of the scene; may be repeated",
-     ARGUMENT_TEXTS, false, offsetof(struct check_options, scene.overrides)},
+     ARGUMENT_TEXTS, false, offsetof(struct scene_arguments, overrides)},
 };
+
+static bool is_campaign(const char *path)
+{
+    char line[256];
+    bool is = false;
+    uint64_t bytes;
+    FILE *file = byte_file_open(path, &bytes); /* of no pipe */
+    while (file && !is && fgets(line, sizeof line, file))
+        is = strncmp(line, "sonject_campaign:", 17) == 0;
+    if (file)
+        fclose(file);
+    return is;
+}
 
 static int work(const void *verb_options)
 {
-    const struct check_options *options = verb_options;
+    const struct scene_arguments *options = verb_options;
+    const bool is_whole = is_campaign(options->path);
+    const sonject_context_params params = {.struct_size = sizeof params,
+                                           .log = is_whole ? progress_log : NULL};
+    const sonject_scene_read_params reading = reading_of(&options->overrides);
     sonject_context *context = NULL;
+    sonject_campaign *campaign = NULL;
     sonject_scene *scene = NULL;
-    sonject_status status = sonject_context_create(NULL, &context);
+    sonject_status status = sonject_context_create(&params, &context);
     if (status == SONJECT_OK)
-        status = scene_arguments_read(context, &options->scene, &scene);
-    const int code = scene_show(context, status, scene);
+        status = is_whole ? sonject_campaign_read(context, options->path, &reading, &campaign)
+                          : sonject_scene_read(context, options->path, &reading, &scene);
+    const int code = campaign ? EXIT_CODE_DONE : scene_show(context, status, scene);
+    sonject_campaign_release(&campaign);
     sonject_scene_release(&scene);
     sonject_context_release(&context);
     return code;
@@ -31,12 +50,12 @@ static int work(const void *verb_options)
 
 const struct verb check_verb = {
     .name = "check",
-    .summary = "checks a scene against its image and draws the geometry",
+    .summary = "checks a scene against its image and draws the geometry, or a campaign",
     .operand = "SCENE.yaml",
-    .operand_offset = offsetof(struct check_options, scene.path),
+    .operand_offset = offsetof(struct scene_arguments, path),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes = "",
-    .options_size = sizeof(struct check_options),
+    .options_size = sizeof(struct scene_arguments),
     .work = work,
 };

@@ -46,10 +46,7 @@ static sonject_status make(sonject_context *context, const void *verb_options,
                            struct progress *progress, int *was_finished)
 {
     const struct fit_options *options = verb_options;
-    const sonject_scene_read_params reading = {.struct_size = sizeof(reading),
-                                               .overrides = options->overrides.texts,
-                                               .override_count =
-                                                   (uint32_t)options->overrides.count};
+    const sonject_scene_read_params reading = reading_of(&options->overrides);
     sonject_campaign_fit_params params = {.struct_size = sizeof(params),
                                           .contacts = options->contacts,
                                           .fitted = options->stage.output};

@@ -167,23 +167,19 @@ static bool ask(struct interview *interview, const struct question *question)
 static bool ask_altitude(struct interview *interview)
 {
     struct question question = altitude;
-    char text[3 * ANSWER];
-    const char *average = interview->has_returns ? "median" : "mean";
-    size_t length = (size_t)snprintf(text, sizeof text, "altitude of the sonar over the seabed (");
-    if (interview->has_returns)
-        length += (size_t)snprintf(text + length, sizeof text - length,
-                                   "first_return: where it begins in each ping");
-    if (interview->has_returns && interview->altitude_m > 0.0)
-        length += (size_t)snprintf(text + length, sizeof text - length, ", %.4g m in the median",
-                                   interview->altitude_m);
+    const bool has_returns = interview->has_returns;
+    char text[3 * ANSWER], median[ANSWER] = "", recorded[ANSWER] = "";
+    if (interview->altitude_m > 0.0)
+        snprintf(median, sizeof median, ", %.4g m in the median", interview->altitude_m);
     if (interview->has_altitude)
-        length += (size_t)snprintf(
-            text + length, sizeof text - length, "%sfrom_file: as recorded, %.4g m in the %s",
-            interview->has_returns ? "; " : "", interview->recorded_altitude_m, average);
-    if (interview->has_returns || interview->has_altitude) {
-        snprintf(text + length, sizeof text - length, "; or a number)");
+        snprintf(recorded, sizeof recorded, "from_file: as recorded, %.4g m in the %s; ",
+                 interview->recorded_altitude_m, has_returns ? "median" : "mean");
+    snprintf(text, sizeof text, "altitude of the sonar over the seabed (%s%s%s%sor a number)",
+             has_returns ? "first_return: where it begins in each ping" : "",
+             has_returns ? median : "", has_returns ? "; " : "", recorded);
+    if (has_returns || interview->has_altitude) {
         question.text = text;
-        question.usual = interview->has_returns ? "first_return" : "from_file";
+        question.usual = has_returns ? "first_return" : "from_file";
     }
     return ask(interview, &question);
 }

@@ -36,13 +36,17 @@ int stage_work(const struct stage_options *stage, stage_function function, const
     return code;
 }
 
+sonject_scene_read_params reading_of(const struct text_list *overrides)
+{
+    return (sonject_scene_read_params){.struct_size = sizeof(sonject_scene_read_params),
+                                       .overrides = overrides->texts,
+                                       .override_count = (uint32_t)overrides->count};
+}
+
 sonject_status scene_arguments_bands(sonject_context *context,
                                      const struct scene_arguments *arguments, char **names)
 {
-    const sonject_scene_read_params params = {.struct_size = sizeof(params),
-                                              .overrides = arguments->overrides.texts,
-                                              .override_count =
-                                                  (uint32_t)arguments->overrides.count};
+    const sonject_scene_read_params params = reading_of(&arguments->overrides);
     return sonject_scene_bands(context, arguments->path, &params, names);
 }
 

@@ -77,6 +77,9 @@ struct scene_arguments {
 sonject_status scene_arguments_bands(sonject_context *context,
                                      const struct scene_arguments *arguments, char **names);
 
+/* Of a scene or campaign with these overrides. */
+sonject_scene_read_params reading_of(const struct text_list *overrides);
+
 /* As sonject_scene_read. */
 sonject_status scene_arguments_read(sonject_context *context,
                                     const struct scene_arguments *arguments, sonject_scene **scene);

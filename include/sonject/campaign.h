@@ -125,10 +125,10 @@ typedef struct sonject_campaign_fit_params {
     uint32_t struct_size;
     uint32_t part; /* sonject_label_part */
     /* Real contacts, ten or more: a COCO file (.json); a .csv file with the columns image, row,
-     * column, rows, columns; a folder of YOLO's texts or of VOC's XML; or a .yaml file of published
-     * quantiles of extents. Images are read as the campaign's scene reads its swaths; geometry and
-     * altitude are the image's own where it tells them, and a swath's own keys hold for an image
-     * with its file name. */
+     * column, rows, columns (and side, port or starboard, of a recording); a folder of YOLO's texts
+     * or of VOC's XML; or a .yaml file of published quantiles of extents. Images are read as the
+     * campaign's scene reads its swaths; geometry and altitude are the image's own where it tells
+     * them, and a swath's own keys hold for an image with its file name. */
     const char *contacts;
     const char *fitted; /* the campaign file to write, in the folder of the one that is fitted; a
                            page and its picture come beside it: ".html", ".png"; where the scene's

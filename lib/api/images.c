@@ -43,7 +43,7 @@ sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklo
     CHECK(check_quicklook(report, &taken));
     CHECK(image_options_take(report, taken.channel, taken.array, taken.transfer, taken.geometry,
                              &options));
-    return draw_quicklook(report, &taken, &options);
+    return draw_quicklook(report, &taken, &options, NULL, 0);
 }
 
 static sonject_status check_conversion(struct report *report, const sonject_convert_params *params)

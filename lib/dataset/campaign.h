@@ -129,6 +129,9 @@ struct crop_places {
 
 void crop_places_clear(struct crop_places *room);
 
+/* The share of the places that chips have if nothing is to be avoided. */
+double crop_places_left(const struct crop_places *room);
+
 /* The place that two deviates of [0, 1) choose: rows by the number of places that they have, and
  * all places of a row alike, set back to a block's first pixel. The room must have places. */
 void crop_sample(const struct crop_places *room, double along_track, double range, uint64_t *row,
@@ -190,6 +193,9 @@ struct swath_plan {
     int jpeg_quality;                     /* that images are coded with; 0: without loss */
     uint32_t split_number;
 };
+
+/* "port", "starboard", or "". */
+const char *swath_side_word(const struct swath_plan *swath);
 
 struct split {
     char name[SPLIT_NAME_CAPACITY];
@@ -453,9 +459,10 @@ sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t i
                                    struct attempts *attempts, char reason[REASON_CAPACITY],
                                    struct image_plan *plan, struct scene *scene);
 
-/* Opens and measures the swaths, splits them, tries scenes with all that may be drawn, and makes
- * the campaign's hash. Errors: INPUT, STORAGE, UNSUPPORTED, MEMORY. */
-sonject_status campaign_check(struct sonject_campaign *campaign);
+/* Draws a measured swath with the boxes to avoid; not one with pixels that are no numbers. Errors:
+ * as of sonject_quicklook, without INPUT. */
+sonject_status campaign_draw_swath(struct sonject_campaign *campaign, uint32_t number,
+                                   const char *picture);
 
 /* Whether the campaign has an image of that id. Errors: ARGUMENT. */
 sonject_status campaign_check_id(const struct sonject_campaign *campaign, uint64_t id);

@@ -13,6 +13,7 @@
 #include "inject/scene_hash.h"
 #include "schema/scene_file.h"
 #include "swath/geometry_notes.h"
+#include "swath/quicklook.h"
 
 #define TRIALS_MAX 20000 /* scenes, about as many milliseconds at the most */
 
@@ -48,17 +49,14 @@ static sonject_status measure_rows(struct sonject_campaign *campaign, uint32_t n
     const size_t rows = (size_t)swath->layout.rows;
     /* as check_water_column */
     const bool may_show_water = scene->water_layer_count == 0 && scene->relief.count == 0;
-    const struct recording *recording = swath_file_recording(file);
     sonject_geometry_params geometry = scene->geometry;
-    /* of all rows, as in pictures of the line */
-    const double spacing_m = scene->has_files_geometry && recording
-                                 ? recording_geometry_of(recording, 0, rows).row_spacing_m
-                                 : NAN;
-    if (spacing_m > 0.0) /* not of a line that ends where it began */
-        geometry.row_spacing_m = spacing_m;
+    struct noted_geometry noted;
+    geometry_notes_read(file, &noted);
+    if (scene->has_files_geometry) /* of all rows, as in the file's picture */
+        (void)geometry_notes_tell(&noted, &geometry);
     double *altitudes = allocate_array(rows, sizeof *altitudes);
     CHECK_MEMORY(campaign->report, altitudes, "the altitudes");
-    row_altitudes(scene, recording, &(struct region){.rows = rows}, altitudes);
+    row_altitudes(scene, swath_file_recording(file), &(struct region){.rows = rows}, altitudes);
     const sonject_status status = campaign_measure(campaign->report, &campaign->campaign, number,
                                                    &geometry, altitudes, may_show_water);
     free(altitudes);
@@ -71,6 +69,13 @@ static uint32_t side_of_nadir(const sonject_geometry_params *geometry)
     if (!(geometry->nadir_column > 0.0))
         return 0;
     return geometry->side == SONJECT_SIDE_PORT ? RECORDED_PORT : RECORDED_STARBOARD;
+}
+
+const char *swath_side_word(const struct swath_plan *swath)
+{
+    static const char *const words[] = {
+        "", [RECORDED_PORT] = "port", [RECORDED_STARBOARD] = "starboard"};
+    return words[swath->side];
 }
 
 /* Size and room of a swath, whose scene tells its geometry. */
@@ -98,9 +103,34 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
         status = measure_rows(campaign, number, &trial.scene, file);
         tell_calibration_doubts(campaign->report, &trial.scene);
     }
+    if (status == SONJECT_OK)
+        report_log(campaign->report,
+                   "%s%s%s: avoid and range_over_altitude leave %.4g %% of the places for images",
+                   swath->written, swath->side ? ", " : "", swath_side_word(swath),
+                   100.0 * crop_places_left(&swath->room));
     swath_file_close(&file);
     trial_clear(&trial);
     return status;
+}
+
+sonject_status campaign_draw_swath(struct sonject_campaign *campaign, uint32_t number,
+                                   const char *picture)
+{
+    const struct swath_plan *swath = &campaign->campaign.swaths[number];
+    const sonject_quicklook_params params = {.image = swath->path, .picture = picture};
+    struct trial trial;
+    struct region *boxes = allocate_array(swath->avoid_count, sizeof *boxes);
+    CHECK_MEMORY(campaign->report, boxes, "the boxes to avoid");
+    for (size_t i = 0; i < swath->avoid_count; i++)
+        boxes[i] = swath->avoid[i].pixels;
+    sonject_status status = trial_read(&trial, campaign, number, CATEGORY_EMPTY, 0, 0, 0, NULL);
+    const struct image_options options = {trial.scene.channel, trial.scene.array,
+                                          trial.scene.transfer, !trial.scene.has_files_geometry,
+                                          trial.scene.geometry};
+    THEN(status, draw_quicklook(campaign->report, &params, &options, boxes, swath->avoid_count));
+    trial_clear(&trial);
+    free(boxes);
+    return status == SONJECT_ERROR_INPUT ? SONJECT_OK : status;
 }
 
 static sonject_status try_scene(struct sonject_campaign *campaign, struct hash *hash,
@@ -227,7 +257,9 @@ static sonject_status make_inputs(struct sonject_campaign *campaign, struct hash
                               campaign->hash);
 }
 
-sonject_status campaign_check(struct sonject_campaign *campaign)
+/* Opens and measures the swaths, splits them, tries scenes with all that may be drawn, and makes
+ * the campaign's hash. */
+static sonject_status check_all(struct sonject_campaign *campaign)
 {
     struct campaign *plan = &campaign->campaign;
     char code[HASH_TEXT_CAPACITY];
@@ -281,7 +313,7 @@ static sonject_status fill(struct sonject_campaign *campaign, const struct campa
     CHECK(take_classes(campaign));
     campaign->swath_hashes = allocate_array(plan->swath_count, sizeof *campaign->swath_hashes);
     CHECK_MEMORY(campaign->report, campaign->swath_hashes, "the campaign");
-    return campaign_check(campaign);
+    return check_all(campaign);
 }
 
 sonject_status campaign_open(struct report *report, const struct campaign_source *source,

@@ -61,6 +61,11 @@ void crop_places_clear(struct crop_places *room)
     memset(room, 0, sizeof *room);
 }
 
+double crop_places_left(const struct crop_places *room)
+{
+    return (double)room->places / ((double)room->chips.rows * (double)room->chips.columns);
+}
+
 static uint64_t part_of(uint64_t count, double u)
 {
     const uint64_t part = (uint64_t)floor((double)count * u);

@@ -68,19 +68,6 @@ static sonject_status read_slant_range(struct reader *reader, const struct tree_
     return campaign_read_lengths(reader, node, ((struct avoided_box *)structure)->slant_range_m);
 }
 
-static sonject_status finish_box(struct reader *reader, const struct tree_node *node,
-                                 void *structure)
-{
-    static const char *const counts[] = {"rows", "columns"};
-    const bool is_in_pixels = tree_find(node, "row") != NULL;
-    (void)structure;
-    for (int i = 0; i < 2; i++)
-        if ((tree_find(node, counts[i]) != NULL) != is_in_pixels)
-            refuse_key(reader, node, counts[i],
-                       is_in_pixels ? "is missing" : "goes with row and column, in pixels");
-    return SONJECT_OK;
-}
-
 #define STRUCTURE struct avoided_box
 static const struct field box_fields[] = {
     {"along_track", "from where to where", SPECIAL(read_along_track, "list of two lengths")},
@@ -91,7 +78,7 @@ static const struct field box_fields[] = {
     {"columns", "number of columns", COUNT64(pixels.columns, 0, PIXELS_MAX)},
 };
 static const struct section box_section = {
-    ROWS(box_fields), .choice = "row+column along_track+slant_range", .finish = finish_box};
+    ROWS(box_fields), .choice = "along_track+slant_range row+column+rows+columns"};
 #undef STRUCTURE
 
 static sonject_status read_box(struct reader *reader, const struct tree_node *node, void *structure)

@@ -144,6 +144,7 @@ sonject_status contact_reader_add(struct contact_reader *reader, const char *pla
     struct labelled_contact *contact = &contacts[set->count++];
     contact->image = image->number;
     contact->part = part;
+    contact->side = image->side;
     take_pixels(box->row, box->rows, image->rows, &contact->box.first_row, &contact->box.rows);
     take_pixels(box->column, box->columns, image->columns, &contact->box.first_column,
                 &contact->box.columns);
@@ -156,6 +157,7 @@ static int compare_contacts(const void *one, const void *other)
 {
     const struct labelled_contact *a = one, *b = other;
     const uint64_t keys[][2] = {{a->image, b->image},
+                                {a->side, b->side},
                                 {a->box.first_row, b->box.first_row},
                                 {a->box.first_column, b->box.first_column},
                                 {a->box.rows, b->box.rows},
@@ -244,7 +246,8 @@ static void pair_all(struct contact_set *set)
         return;
     qsort(contacts, set->count, sizeof *contacts, compare_contacts);
     for (size_t start = 0, end; start < set->count; start = end) {
-        for (end = start; end < set->count && contacts[end].image == contacts[start].image;)
+        for (end = start; end < set->count && contacts[end].image == contacts[start].image &&
+                          contacts[end].side == contacts[start].side;)
             end++;
         pair_parts(&contacts[start], end - start);
     }

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "dataset/contact_reader.h"
 #include "schema/keys.h"
+#include "swath/recording.h"
 
 /* ---- COCO. */
 
@@ -98,7 +99,7 @@ static sonject_status read_annotations(struct coco *coco, const json_t *annotati
     {
         char place[LABEL_PLACE];
         double sides[4];
-        struct labelled_image image;
+        struct labelled_image image = {0, 0, 0, 0};
         uint32_t part = reader->part;
         const json_t *box = json_object_get(annotation, "bbox");
         bool is_box = json_array_size(box) == 4;
@@ -142,14 +143,15 @@ enum column {
     COLUMN_COLUMNS,
     COLUMN_PART,
     COLUMN_CLASS,
+    COLUMN_SIDE,
     COLUMNS
 };
 
 /* Names of columns: of a plain table, and of the library's own, whose row and column are a centre's
  * and whose fields of a box are empty where nothing of a contact is seen. */
 static const char *const column_names[2][COLUMNS] = {
-    {"image", "row", "column", "rows", "columns", "part", "class"},
-    {"image", "box_row", "box_column", "box_rows", "box_columns", "part", "class"}};
+    {"image", "row", "column", "rows", "columns", "part", "class", "side"},
+    {"image", "box_row", "box_column", "box_rows", "box_columns", "part", "class", "side"}};
 
 struct contact_table {
     struct contact_reader *reader;
@@ -211,7 +213,7 @@ static sonject_status take_row(void *user, const struct table_row *row)
 {
     struct contact_table *table = user;
     struct contact_reader *reader = table->reader;
-    struct labelled_image image = {0, 0, 0};
+    struct labelled_image image = {0, 0, 0, 0};
     char place[LABEL_PLACE], excerpt[40];
     double sides[4];
     size_t empty = 0;
@@ -235,6 +237,14 @@ static sonject_status take_row(void *user, const struct table_row *row)
         name++; /* it keeps spreadsheets from taking a name for a formula */
     snprintf(place, sizeof place, "%s:%zu", table->file, row->line);
     CHECK(find_part(table, row, &part));
+    const char *side = field_of_column(table, row, COLUMN_SIDE);
+    image.side = strcmp(side, "port") == 0        ? RECORDED_PORT
+                 : strcmp(side, "starboard") == 0 ? RECORDED_STARBOARD
+                                                  : 0;
+    if (*side && image.side == 0)
+        return table_refuse(reader->report, table->file, row->line, table->names[COLUMN_SIDE],
+                            "'%s' is neither port nor starboard",
+                            text_excerpt(excerpt, sizeof excerpt, side));
     CHECK(contact_reader_find_image(reader, place, name, &image.number));
     return contact_reader_add(reader, place, &image, part,
                               &(struct labelled_box){sides[1], sides[0], sides[3], sides[2]});
@@ -251,14 +261,7 @@ sonject_status contacts_of_table(struct contact_reader *reader, const char *path
 
 #define LEVELS_MAX COUNT(((struct extent_quantiles *)0)->levels)
 
-static sonject_status read_later(struct reader *reader, const struct tree_node *node,
-                                 void *structure)
-{
-    (void)reader, (void)node, (void)structure; /* lists are read when all are there */
-    return SONJECT_OK;
-}
-
-#define LIST      .kind = FIELD_SPECIAL, .read = read_later
+#define LIST      .kind = FIELD_SPECIAL /* lists are read when all are there */
 #define STRUCTURE struct extent_quantiles
 static const struct field quantile_fields[] = {
     {"highlight_along", "extents of highlights along track", LIST},

@@ -31,6 +31,7 @@ struct labelled_box {
 struct labelled_image {
     uint32_t number;        /* in the set's list */
     uint64_t rows, columns; /* 0: not known */
+    uint32_t side;          /* likewise */
 };
 
 /* What a class is of: its name tells, or it is `part`. */

@@ -92,7 +92,7 @@ static void add_text(void *user, const XML_Char *text, int length)
 static void end_object(struct voc *voc)
 {
     const double *numbers = voc->numbers;
-    struct labelled_image image = {0, 0, 0};
+    struct labelled_image image = {0, 0, 0, 0};
     char place[LABEL_PLACE];
     bool has_box = true;
     for (int i = XMIN; i <= YMAX; i++)

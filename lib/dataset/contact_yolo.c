@@ -182,7 +182,7 @@ static sonject_status take_line(struct yolo *yolo, const char *place, const char
 
 static sonject_status read_text(struct yolo *yolo, const char *path, const char *name)
 {
-    struct labelled_image image = {0, 0, 0};
+    struct labelled_image image = {0, 0, 0, 0};
     char place[LABEL_PLACE], file[TABLE_FILE_CAPACITY];
     char *text;
     size_t bytes, number = 0;

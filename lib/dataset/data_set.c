@@ -15,7 +15,7 @@
 #include "base/text.h"
 #include "dataset/run.h"
 
-#define FORMAT_VERSION 3
+#define FORMAT_VERSION 4
 #define HEAD_FILE      "campaign.json"
 #define LAST_FILE      "dataset.json"
 
@@ -95,7 +95,7 @@ static void remove_all(const struct data_set *set)
     for (size_t i = 0; i < count; i++)
         discard(set->folder, documents[i]);
     discard(set->folder, "times.json");
-    static const char *const numbered[] = {CALIBRATIONS_FOLDER, CHIPS_FOLDER};
+    static const char *const numbered[] = {CALIBRATIONS_FOLDER, CHIPS_FOLDER, SWATHS_FOLDER};
     for (size_t i = 0; i < COUNT(numbered); i++)
         if (path_in(&ignored, path, set->folder, "%s", numbered[i]) == SONJECT_OK)
             remove_numbered(&ignored, path);
@@ -136,9 +136,9 @@ static json_t *head_of(const struct sonject_campaign *campaign)
             &swaths,
             JSON_OBJECT({"path", json_string(swath->written)},
                         {"hash", json_string(campaign->swath_hashes[i])},
-                        {"side", swath->side == RECORDED_PORT        ? json_string("port")
-                                 : swath->side == RECORDED_STARBOARD ? json_string("starboard")
-                                                                     : json_null()},
+                        {"side", swath->side ? json_string(swath_side_word(swath)) : json_null()},
+                        {"avoid", json_count(swath->avoid_count)},
+                        {"left", json_number(crop_places_left(&swath->room))},
                         {"split", json_string(plan->splits[swath->split_number].name)},
                         {"jpeg_quality", swath->jpeg_quality > 0 ? json_integer(swath->jpeg_quality)
                                                                  : json_null()}));
@@ -150,6 +150,23 @@ static json_t *head_of(const struct sonject_campaign *campaign)
         {"empty", json_number(plan->empty)}, {"clutter_alone", json_number(plan->clutter_alone)},
         {"rows", side_of(plan->chip_rows)}, {"columns", side_of(plan->chip_columns)},
         {"splits", splits}, {"classes", classes}, {"outputs", outputs}, {"swaths", swaths});
+}
+
+/* Pictures of the swaths that have something to avoid, for the report: who merges has no swaths. */
+static sonject_status draw_swaths(struct sonject_campaign *campaign, const char *folder)
+{
+    struct report *report = campaign->report;
+    char path[PATH_CAPACITY];
+    for (uint32_t i = 0; i < campaign->campaign.swath_count; i++) {
+        if (campaign->campaign.swaths[i].avoid_count == 0)
+            continue;
+        CHECK(path_in(report, path, folder, SWATHS_FOLDER));
+        CHECK(folder_make(report, path));
+        CHECK(path_in(report, path, folder, SWATHS_FOLDER "/%u.png", (unsigned)i));
+        if (!file_exists(path))
+            CHECK(campaign_draw_swath(campaign, i, path));
+    }
+    return SONJECT_OK;
 }
 
 /* Whose images the folder holds; those of another campaign are removed where they may be. */
@@ -182,6 +199,7 @@ sonject_status data_set_begin(struct data_set *set, struct sonject_campaign *cam
     if (status == SONJECT_OK && !is_same)
         status = json_document_write(report, head_of(campaign), 9, path);
     THEN(status, data_set_open(set, report, folder));
+    THEN(status, draw_swaths(campaign, folder));
     for (size_t i = 0; status == SONJECT_OK && i < plan->split_count; i++)
         status = each_folder(report, folder, plan->splits[i].name, plan->outputs, folder_make);
     return status;

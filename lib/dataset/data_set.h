@@ -64,7 +64,8 @@ sonject_status data_set_has_image(const struct data_set *set, size_t split, uint
 
 /* Writes report.html and its pictures from images that are all there: contact_sheet.png, and below
  * CHIPS_FOLDER what browsers do not show. Errors: as data_set_finish. */
-#define CHIPS_FOLDER "chips"
+#define CHIPS_FOLDER  "chips"
+#define SWATHS_FOLDER "swaths" /* their pictures, by their numbers */
 sonject_status write_report_page(const struct data_set *set);
 
 #define SHEET_CELLS 64 /* at most, of a picture of images */

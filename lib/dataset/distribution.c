@@ -234,17 +234,7 @@ static sonject_status read_limits(struct reader *reader, const struct tree_node 
     return check_limits(reader, node, distribution);
 }
 
-/* Its numbers are read when all are there, since they share a unit. */
-static sonject_status read_later(struct reader *reader, const struct tree_node *node,
-                                 void *structure)
-{
-    (void)reader;
-    (void)node;
-    (void)structure;
-    return SONJECT_OK;
-}
-
-#define LATER .kind = FIELD_SPECIAL, .read = read_later
+#define LATER .kind = FIELD_SPECIAL /* read when all are there, since they share a unit */
 static const struct field normal_fields[] = {
     {"mean", "of the normal distribution before it is cut off", LATER, REQUIRED},
     {"deviation", "its standard deviation", LATER, REQUIRED},

@@ -45,7 +45,7 @@ static sonject_status measure_real(struct fit *fit)
         const struct labelled_contact *contact = &set->contacts[i];
         const char *image = set->images[contact->image];
         struct contact_chip chip;
-        sonject_status status = contact_chip_read(fit->campaign, image, &contact->box, &chip);
+        sonject_status status = contact_chip_read(fit->campaign, image, contact, &chip);
         THEN(status, contact_chip_measure(fit->report, &chip, contact->part, &fit->real[i]));
         fit->swaths[i] = chip.swath;
         const bool is_shown = status == SONJECT_OK && fit->real_chip_count < FIT_SHOWN &&

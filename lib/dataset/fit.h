@@ -26,7 +26,7 @@ void contact_chip_clear(struct contact_chip *chip);
 /* Cuts a labelled contact out of its image, as the campaign's scene reads such an image; geometry
  * and altitude are the image's own where it tells them. Errors: as scenes and swaths. */
 sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *image,
-                                 const sonject_box *label, struct contact_chip *chip);
+                                 const struct labelled_contact *contact, struct contact_chip *chip);
 
 /* The chip around the target of a campaign's image; pad: pixels by which labels are wider than what
  * they are around. *is_seen: whether there is anything to label. Errors: MEMORY. */

@@ -91,17 +91,19 @@ static const struct swath_plan *swath_of_image(const struct campaign *campaign, 
 }
 
 /* The campaign's scene for an image that nothing is injected into. swath: the campaign's of it, or
- * NULL. patch: NULL, all of it. */
+ * NULL. side: of a recording that is wanted; 0: as swath or scene say. patch: NULL, all of it, of
+ * which the altitude does not count. */
 static sonject_status read_image_scene(struct sonject_campaign *campaign, const char *image,
-                                       const struct swath_plan *swath,
+                                       const struct swath_plan *swath, uint32_t side,
                                        const struct window_box *patch, bool tells_geometry,
                                        bool tells_altitude, struct scene *scene)
 {
     const size_t keys = swath ? swath->key_count : 0;
     const size_t number = swath ? (size_t)(swath - campaign->campaign.swaths) : 0;
     char patch_text[160], path[PATH_CAPACITY], name[HASH_TEXT_CAPACITY];
-    struct scene_source source = {.overrides = allocate_array(keys + 5, sizeof *source.overrides),
-                                  .moved_overrides = keys};
+    struct scene_source source = {.overrides = allocate_array(keys + 6, sizeof *source.overrides),
+                                  .moved_overrides = keys,
+                                  .has_no_channels = !swath_file_has_channels(image)};
     CHECK_MEMORY(campaign->report, source.overrides, "a contact's scene");
     if (swath && campaign->calibrations)
         source.made_calibration = campaign->calibrations[number];
@@ -110,7 +112,12 @@ static sonject_status read_image_scene(struct sonject_campaign *campaign, const 
     source.overrides[source.override_count++] = "objects=[]";
     if (tells_geometry)
         source.overrides[source.override_count++] = "input.geometry=from_file";
-    if (tells_altitude && !swath) /* else the campaign's scene tells it, as of injected ones */
+    if (side != 0 && !(swath && swath->side == side))
+        source.overrides[source.override_count++] =
+            side == RECORDED_PORT ? "input.channel=port" : "input.channel=starboard";
+    if (!patch)
+        source.overrides[source.override_count++] = "sonar.altitude=1 m";
+    else if (tells_altitude && !swath) /* else the campaign's scene tells it, as of injected ones */
         source.overrides[source.override_count++] = "sonar.altitude=from_file";
     if (patch) {
         snprintf(patch_text, sizeof patch_text,
@@ -148,13 +155,14 @@ static uint32_t side_of_label(const sonject_box *label, double nadir_column)
 
 /* What an image says of itself. nadir_column: 0 where it shows one side. */
 static sonject_status describe_image(struct sonject_campaign *campaign, const char *image,
-                                     struct raster_layout *layout, bool *tells_geometry,
-                                     bool *tells_altitude, double *nadir_column)
+                                     uint32_t side, struct raster_layout *layout,
+                                     bool *tells_geometry, bool *tells_altitude,
+                                     double *nadir_column)
 {
     struct scene scene;
     struct swath_file *file = NULL;
-    CHECK(read_image_scene(campaign, image, swath_of_image(&campaign->campaign, image, 0), NULL,
-                           false, false, &scene));
+    CHECK(read_image_scene(campaign, image, swath_of_image(&campaign->campaign, image, side), side,
+                           NULL, false, false, &scene));
     sonject_status status =
         swath_file_open_array(campaign->report, image, scene.channel, scene.array, &file);
     if (status == SONJECT_OK) {
@@ -172,8 +180,9 @@ static sonject_status describe_image(struct sonject_campaign *campaign, const ch
 }
 
 sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *image,
-                                 const sonject_box *label, struct contact_chip *chip)
+                                 const struct labelled_contact *contact, struct contact_chip *chip)
 {
+    const sonject_box *label = &contact->box;
     struct raster_layout layout = {0};
     struct scene scene;
     struct swath swath;
@@ -181,8 +190,8 @@ sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *
     bool tells_altitude = false;
     double nadir_column = 0.0;
     memset(chip, 0, sizeof *chip);
-    CHECK(
-        describe_image(campaign, image, &layout, &tells_geometry, &tells_altitude, &nadir_column));
+    CHECK(describe_image(campaign, image, contact->side, &layout, &tells_geometry, &tells_altitude,
+                         &nadir_column));
     if (label->first_row >= layout.rows || label->rows > layout.rows - label->first_row ||
         label->first_column >= layout.columns ||
         label->columns > layout.columns - label->first_column)
@@ -198,9 +207,15 @@ sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *
     sonject_box inner = *label;
     inner.first_row -= window.first_row;
     inner.first_column -= window.first_column;
-    const uint32_t side = side_of_label(label, nadir_column);
+    const uint32_t side = contact->side ? contact->side : side_of_label(label, nadir_column);
     const struct swath_plan *plan = swath_of_image(&campaign->campaign, image, side);
-    CHECK(read_image_scene(campaign, image, plan, &window, tells_geometry, tells_altitude, &scene));
+    if (side == 0 && swath_of_image(&campaign->campaign, image, RECORDED_PORT) !=
+                         swath_of_image(&campaign->campaign, image, RECORDED_STARBOARD))
+        return input_failure(campaign->report, image,
+                             "has two sides that are swaths of the campaign: name its contacts in "
+                             "a table (.csv) with a column side, port or starboard");
+    CHECK(read_image_scene(campaign, image, plan, contact->side, &window, tells_geometry,
+                           tells_altitude, &scene));
     if (side != 0)
         scene.geometry.side = side == RECORDED_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
     sonject_status status = swath_open_stored(campaign->report, &scene, &campaign->store, &swath);

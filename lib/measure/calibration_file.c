@@ -113,18 +113,16 @@ static sonject_status compare_altitudes(struct report *report, const struct reco
     return SONJECT_OK;
 }
 
-/* Of this image; where altitude and first return differ, shadows do. */
+/* Of this image; who takes that altitude all the same is told what to write by runs and checks. */
 static void tell_altitude(struct report *report, const char *image, const struct calibration *found)
 {
     const double share = found->recorded_share;
     if (share > 0.0 && fabs(share - 1.0) > ALTITUDES_ALIKE)
-        report_note(
-            report,
-            "%s: the recorded altitude, %.2f m in the median, is %.0f %% %s the first "
-            "return, and sonar.altitude: from_file makes shadows too %s: if the first return is "
-            "right, write sonar.altitude: first_return",
-            path_name(image), found->recorded_altitude_m, 100.0 * fabs(share - 1.0),
-            share < 1.0 ? "below" : "above", share < 1.0 ? "long" : "short");
+        report_note(report,
+                    "%s: the recorded altitude, %.2f m in the median, is %.0f %% %s the first "
+                    "return, and would make shadows too %s",
+                    path_name(image), found->recorded_altitude_m, 100.0 * fabs(share - 1.0),
+                    share < 1.0 ? "below" : "above", share < 1.0 ? "long" : "short");
 }
 
 static sonject_status write_results(struct report *report, const sonject_calibrate_params *params,

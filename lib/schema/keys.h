@@ -75,14 +75,15 @@ struct field {
     const struct section *section;
     const char
         *unit; /* as told to users, where kind and quantity do not say it; what an entry is */
-    /* Reads the key in a way of its own, into the section's structure; FIELD_NAMED: a text. */
+    /* Reads the key in a way of its own, into the section's structure; FIELD_NAMED: a text. NULL of
+     * FIELD_SPECIAL: it is read elsewhere. */
     sonject_status (*read)(struct reader *reader, const struct tree_node *node, void *structure);
 };
 
 struct section {
     const struct field *fields;
     size_t count;
-    /* Keys of which exactly one is to be there, separated by blanks, "a b"; or pairs of which one
+    /* Keys of which exactly one is to be there, separated by blanks, "a b"; or sets of which one
      * is, "a+b c+d". NULL: any. */
     const char *choice;
     /* Whether values fit each other; NULL: they do. */
@@ -229,6 +230,7 @@ struct reader {
     const struct number_array *arrays; /* in place of files */
     size_t array_count;
     const char *made_calibration; /* file that stands for input.calibration: auto; NULL: none */
+    bool has_no_channels;         /* the input is an image: input.channel does not count */
     bool takes_pixels;            /* the input may be pixels that a call is given */
     struct key_path path;         /* of the section or key that is read */
 };

@@ -280,7 +280,7 @@ static sonject_status read_value(struct reader *reader, const struct field *fiel
     case FIELD_SPECIAL:
         break;
     }
-    return SONJECT_OK;
+    return SONJECT_OK; /* it is read elsewhere */
 }
 
 /* Whether a node is a word that stands for a number. */
@@ -352,11 +352,11 @@ static sonject_status find_missing(struct reader *reader, const struct section *
 /* "a, b and c" of "a b c"; "a and b, or c and d" of "a+b c+d". */
 static void tell_choice(const char *choice, char text[200])
 {
-    const bool is_of_pairs = strchr(choice, '+') != NULL;
+    const bool is_of_sets = strchr(choice, '+') != NULL;
     size_t length = 0;
     for (; *choice && length < 190; choice++) {
         const char *joint = *choice == '+'            ? " and "
-                            : is_of_pairs             ? ", or "
+                            : is_of_sets              ? ", or "
                             : strchr(choice + 1, ' ') ? ", "
                                                       : " and ";
         if (*choice == ' ' || *choice == '+')
@@ -372,26 +372,26 @@ static sonject_status check_choice_given(struct reader *reader, const struct sec
                                          const struct tree_node *node)
 {
     const char *rest = section->choice;
-    const bool is_of_pairs = strchr(rest, '+') != NULL;
+    const bool is_of_sets = strchr(rest, '+') != NULL;
     size_t whole = 0, begun = 0;
     bool are_right = true;
     char key[64], told[200];
     while (next_key(&rest, key)) {
-        char *plus = strchr(key, '+');
-        if (plus)
-            *plus = ' '; /* two keys, separated by a blank */
+        size_t keys = 1;
+        for (char *plus; (plus = strchr(key, '+')) != NULL; keys++)
+            *plus = ' '; /* keys, separated by blanks */
         begun += count_given(node, key) > 0;
-        whole += count_given(node, key) == (plus ? 2 : 1);
+        whole += count_given(node, key) == keys;
         are_right = are_right && are_sound(reader, key);
     }
     const bool may_lack = section->may_lack || (section == &input_section && reader->takes_pixels);
     if (begun == 1 ? whole == 1 : begun == 0 && may_lack)
         return SONJECT_OK;
-    if (!are_right && (begun == 0 || is_of_pairs))
+    if (!are_right && (begun == 0 || is_of_sets))
         return SONJECT_ERROR_INPUT; /* one is there, misspelt */
     tell_choice(section->choice, told);
-    if (is_of_pairs)
-        return refuse_value(reader, node, "needs %s; give one pair", told);
+    if (is_of_sets)
+        return refuse_value(reader, node, "needs %s; give one of these", told);
     return refuse_value(reader, node, "%s of %s is there; give one",
                         begun == 0 ? "none" : "more than one", told);
 }

@@ -229,6 +229,8 @@ static sonject_status read_channel(struct reader *reader, const struct tree_node
     char excerpt[40];
     uint64_t number = 0;
     const char *text = node->kind == TREE_TEXT && node->text ? node->text : "";
+    if (reader->has_no_channels)
+        return SONJECT_OK;
     if (is_word(node, "port"))
         scene->channel = SONJECT_CHANNEL_PORT;
     else if (is_word(node, "starboard"))

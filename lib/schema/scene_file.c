@@ -170,6 +170,7 @@ static sonject_status fill_scene(struct tree *tree, const struct scene_source *s
                             .arrays = source->arrays,
                             .array_count = source->array_count,
                             .made_calibration = source->made_calibration,
+                            .has_no_channels = source->has_no_channels,
                             .takes_pixels = source->takes_pixels};
     sonject_status status = apply_overrides(tree, source);
     if (reading_ends(status))

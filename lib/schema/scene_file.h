@@ -30,11 +30,12 @@ struct scene_source {
     const char *made_calibration; /* file that stands for input.calibration: auto; NULL: none */
     struct number_array *arrays;  /* by their names, which are their keys' values */
     size_t array_count;
-    bool takes_pixels;   /* the input may be pixels that a call is given: none of path, uniform and
-                            synthetic */
-    bool *are_relations; /* told by a reading that fails with INPUT: that each value would do by
-                            itself, but not with the others; NULL: not told */
-    struct tree tree;    /* of text and overrides, while something is set; empty: not made */
+    bool has_no_channels; /* the input is an image, whatever input.channel says */
+    bool takes_pixels;    /* the input may be pixels that a call is given: none of path, uniform and
+                             synthetic */
+    bool *are_relations;  /* told by a reading that fails with INPUT: that each value would do by
+                             itself, but not with the others; NULL: not told */
+    struct tree tree;     /* of text and overrides, while something is set; empty: not made */
 };
 
 /* Takes the text over (for free(), also on failure) and copies the rest. Errors: MEMORY. */

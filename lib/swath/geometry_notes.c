@@ -312,35 +312,18 @@ static bool takes_altitude(const struct scene *scene, const struct wanted *wante
     return wanted->wish.altitude_by == ALTITUDE_RECORDED && scene->pings.count == 0;
 }
 
-/* The altitude at the objects' pings, where no patch is chosen: one of a whole line may be far off
- * there, and with it every shadow. is_told: the file tells the rows' spacing, too. */
-static struct recording_geometry line_geometry(const struct scene *scene,
-                                               const struct recording *recording, bool is_told,
-                                               uint64_t first, uint64_t count)
-{
-    struct recording_geometry geometry = recording_geometry_of(recording, first, count);
-    if (scene->patch.rows > 0)
-        return geometry;
-    const double row_spacing = is_told ? geometry.row_spacing_m : scene->geometry.row_spacing_m;
-    if (rows_of_objects(scene, recording->rows, row_spacing, &first, &count)) {
-        const struct recording_geometry there = recording_geometry_of(recording, first, count);
-        geometry.altitude_m = there.altitude_m;
-        geometry.lowest_altitude_m = there.lowest_altitude_m;
-        geometry.highest_altitude_m = there.highest_altitude_m;
-    }
-    return geometry;
-}
-
+/* Rows of a patch are as far apart as its own pings, those of the line's picture as far as all
+ * pings are on average: the patch's middle lies where that has it. A line that ends where it began
+ * has no such average. Where no patch is chosen the altitude is that at the objects' pings: one of
+ * a whole line may be far off there, and with it every shadow. */
 static sonject_status take_recording(struct report *report, const struct scene *scene,
                                      const struct recording *recording, struct wanted *wanted)
 {
     uint64_t first, count;
+    struct noted_geometry line;
     *wanted->key = "patch";
     CHECK(patch_rows(report, scene, recording->rows, &first, &count));
-    const struct recording_geometry geometry =
-        takes_altitude(scene, wanted)
-            ? line_geometry(scene, recording, wanted->wish.geometry, first, count)
-            : recording_geometry_of(recording, first, count);
+    const struct recording_geometry geometry = recording_geometry_of(recording, first, count);
     *wanted->key = "input.geometry";
     if (wanted->wish.geometry && !(geometry.row_spacing_m > 0.0))
         return input_failure(report, scene->input_path,
@@ -350,17 +333,27 @@ static sonject_status take_recording(struct report *report, const struct scene *
                                  ? "fewer than two of its pings have a position"
                                  : "the patch's pings all have the same position",
                              geometry.column_spacing_m, geometry.first_slant_range_m);
-    *wanted->key = "sonar.altitude";
-    if (takes_altitude(scene, wanted) && !(geometry.altitude_m > 0.0))
-        return input_failure(report, scene->input_path,
-                             "has no altitudes: give the sonar's altitude instead of from_file");
+    read_recording(recording, &line);
+    const double middle = (double)first + 0.5 * (double)(count - 1);
+    wanted->where.first_along_track_m =
+        line.row_spacing_m > 0.0 ? (line.row_spacing_m - geometry.row_spacing_m) * middle : 0.0;
     wanted->where.row_spacing_m = geometry.row_spacing_m;
     wanted->where.column_spacing_m = geometry.column_spacing_m;
     wanted->where.first_slant_range_m = geometry.first_slant_range_m;
-    wanted->where.side =
-        recording->side == RECORDED_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
-    if (takes_altitude(scene, wanted))
-        keep_altitude(scene, &geometry, wanted);
+    wanted->where.side = line.side;
+    if (!takes_altitude(scene, wanted))
+        return SONJECT_OK;
+    if (scene->patch.rows == 0)
+        (void)rows_of_objects(scene, recording->rows,
+                              wanted->wish.geometry ? geometry.row_spacing_m
+                                                    : scene->geometry.row_spacing_m,
+                              &first, &count);
+    const struct recording_geometry there = recording_geometry_of(recording, first, count);
+    *wanted->key = "sonar.altitude";
+    if (!(there.altitude_m > 0.0))
+        return input_failure(report, scene->input_path,
+                             "has no altitudes: give the sonar's altitude instead of from_file");
+    keep_altitude(scene, &there, wanted);
     return SONJECT_OK;
 }
 

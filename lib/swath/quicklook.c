@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "image/canvas.h"
 #include "image/plot.h"
 #include "image/raster.h"
 #include "swath/conversion.h"
@@ -112,16 +113,32 @@ static sonject_status to_ground_range(struct report *report, const char *path, e
     return SONJECT_OK;
 }
 
+static void draw_box(struct canvas *canvas, const struct plot_place *place,
+                     const struct view_image *image, const struct region *box)
+{
+    static const struct colour orange = {255, 160, 0};
+    const double down = place->height / (double)(image->rows * image->block);
+    const double across = place->width / (double)(image->columns * image->block);
+    canvas_frame(canvas, place->left + (int64_t)(across * (double)box->first_column),
+                 place->top + (int64_t)(down * (double)box->first_row),
+                 (int64_t)ceil(across * (double)box->columns),
+                 (int64_t)ceil(down * (double)box->rows), orange);
+}
+
 static sonject_status draw(struct report *report, const struct plot_frame *frame,
-                           const struct view_image *image, const char *path)
+                           const struct view_image *image, const struct region *boxes,
+                           size_t box_count, const char *path)
 {
     const struct plot_panel panel = {"", image->amplitude, false};
-    uint8_t *picture = NULL;
-    uint32_t height, width;
-    CHECK(plot_panels(report, frame, &panel, 1, &picture, &height, &width, NULL));
-    const struct raster_layout layout = {height, width, 3, PIXEL_UINT8};
-    sonject_status status = raster_file_write(report, path, &layout, NULL, NULL, 0, picture);
-    free(picture);
+    struct canvas picture;
+    struct plot_place place;
+    CHECK(plot_panels(report, frame, &panel, 1, &picture.rgb, &picture.height, &picture.width,
+                      &place));
+    for (size_t i = 0; i < box_count; i++)
+        draw_box(&picture, &place, image, &boxes[i]);
+    const struct raster_layout layout = {picture.height, picture.width, 3, PIXEL_UINT8};
+    sonject_status status = raster_file_write(report, path, &layout, NULL, NULL, 0, picture.rgb);
+    free(picture.rgb);
     return status;
 }
 
@@ -160,7 +177,8 @@ static enum range_axis fill_frame(struct plot_frame *frame, const sonject_quickl
 }
 
 sonject_status draw_quicklook(struct report *report, const sonject_quicklook_params *params,
-                              const struct image_options *options)
+                              const struct image_options *options, const struct region *boxes,
+                              size_t box_count)
 {
     struct swath_file *file = NULL;
     struct view_image image = {0, 0, 1, NULL};
@@ -173,7 +191,7 @@ sonject_status draw_quicklook(struct report *report, const sonject_quicklook_par
         if (params->range_axis == SONJECT_AXIS_GROUND)
             status = to_ground_range(report, params->image, axis, altitude, &image, &frame);
     }
-    THEN(status, draw(report, &frame, &image, params->picture));
+    THEN(status, draw(report, &frame, &image, boxes, box_count, params->picture));
     swath_file_close(&file);
     free(image.amplitude);
     return status;

@@ -5,10 +5,12 @@
 #include <sonject/run.h>
 
 #include "base/report.h"
+#include "image/raster.h"
 #include "scene/params.h"
 
-/* sonject_quicklook, whose parameters are checked. */
+/* sonject_quicklook, whose parameters are checked; boxes of pixels are framed in it. */
 sonject_status draw_quicklook(struct report *report, const sonject_quicklook_params *params,
-                              const struct image_options *options);
+                              const struct image_options *options, const struct region *boxes,
+                              size_t box_count);
 
 #endif

@@ -58,9 +58,6 @@ struct recording_geometry {
 /* Whether one altitude cannot stand for all of the rows: it changes by more than a tenth. */
 bool recording_altitude_varies(const struct recording_geometry *geometry);
 
-/* False for a ping that the recorder left empty, or had no navigation for. */
-bool ping_has_position(const struct recorded_ping *ping);
-
 /* Geometry of the rows first_row... first_row + count - 1 (within the layout): spacing from the
  * straight line between the first and the last position. Pings without a position, or an altitude,
  * are passed over; where too few have one, the pings around the rows stand in. */

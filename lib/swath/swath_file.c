@@ -80,6 +80,12 @@ static const struct swath_format *format_of(const char *path)
     return format;
 }
 
+bool swath_file_has_channels(const char *path)
+{
+    const struct swath_format *format = format_of(path);
+    return format && format->has_channels;
+}
+
 sonject_status swath_file_open_beside(struct report *report, const char *path, const char *other,
                                       int32_t channel, const char *array, struct swath_file **file)
 {

@@ -18,6 +18,9 @@ struct swath_file;
 sonject_status swath_file_open_array(struct report *report, const char *path, int32_t channel,
                                      const char *array, struct swath_file **file);
 
+/* Whether it is a file of a recording's channels; false also for one that cannot be read. */
+bool swath_file_has_channels(const char *path);
+
 /* The same where channel and array may be meant for another file that is opened too, or for both:
  * each takes what its kind has. other: NULL for none. */
 sonject_status swath_file_open_beside(struct report *report, const char *path, const char *other,

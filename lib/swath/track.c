@@ -15,7 +15,8 @@
 #define HIGHEST_LATITUDE  89.9             /* beyond, east and west mean nothing */
 #define COURSE_ROWS       25.0             /* to either side, of which the course is the mean */
 
-bool ping_has_position(const struct recorded_ping *ping)
+/* False for a ping that the recorder left empty, or had no navigation for. */
+static bool ping_has_position(const struct recorded_ping *ping)
 {
     return ping->easting != 0.0 || ping->northing != 0.0;
 }

@@ -120,7 +120,7 @@ def test_every_image_has_its_files(whole):
     found = records(whole)
     assert sorted(record["id"] for record in found) == list(range(IMAGES))
     expected = {"campaign.json", "dataset.json", "report.html", "contact_sheet.png",
-                "train/coco.json", "test/coco.json", "classes.txt", "data.yaml", "croissant.json"}
+                "train/coco.json", "test/coco.json", "classes.txt", "data.yaml", "croissant.json", "swaths/0.png"}
     for record in found:
         assert record["image"] == f"images/{record['id']:08d}.png"
         expected |= {of_image(record, kind, ".png")
@@ -129,6 +129,23 @@ def test_every_image_has_its_files(whole):
         expected |= {of_image(record, "labels", ".txt"), of_image(record, "voc", ".xml")}
     assert set(contents(whole)) == expected
     assert len({record["seed"] for record in found}) == IMAGES
+
+
+def test_what_is_avoided_is_shown_and_what_is_left_is_told(command, whole):
+    """Of rows and columns at which chips may begin: those from which one reaches within 2 pixels of the box are left out. Its
+    frame, the one orange thing in the picture, has 20 of 110 rows, and 70 of 150 columns, and a pixel more to either side."""
+    rows, columns = numpy.mgrid[:ROWS - CHIP + 1, :COLUMNS - CHIP + 1]
+    left = numpy.mean((rows >= 20 + 2) | (columns + CHIP <= 80 - 2))
+    told = command("check", "campaign.yaml")
+    assert (told.returncode, told.stdout) == (0, "")
+    assert told.stderr == "".join(f"sonject: swath{i}.png: avoid and range_over_altitude leave {100 * share:.4g} % of the places "
+                                  "for images\n" for i, share in enumerate((left, 1, 1)))
+    assert [round(swath["left"], 6) for swath in page_data(whole)["swaths"]] == [round(left, 6), 1, 1]
+    picture = read_png(whole / "swaths" / "0.png")
+    down, across = numpy.nonzero((picture == (255, 160, 0)).all(axis=2))
+    panel = numpy.nonzero((picture.max(axis=2) < 250).mean(axis=1) > 0.4)[0]  # rows of pixels that show seabed
+    up = round((panel.max() - panel.min()) / ROWS)
+    assert numpy.ptp(down) + 1 == 20 * up + 2 and numpy.ptp(across) + 1 == 70 * up + 2
 
 
 def test_no_swath_is_in_two_splits_and_classes_are_balanced_in_each(whole):
@@ -334,7 +351,7 @@ def test_one_image_alone_is_the_same(command, whole, ground):
     number = next(record["id"] for record in records(whole) if record["target"] == TARGETS[1])
     assert command("campaign", "campaign.yaml", "-o", "alone", "--only", number).returncode == 0
     alone = contents(ground / "alone")
-    assert len(alone) == 10  # its nine files and campaign.json
+    assert len(alone) == 11  # its nine files, campaign.json and swaths/0.png
     assert alone.items() <= contents(whole).items()
 
 
@@ -1038,7 +1055,7 @@ HOSTILE = [
      "shows nothing at 90 to 95 m along the track and slant ranges of 40 to 41 m"),
     (["swaths[0].avoid=[{along_track: [2 m, 1 m], slant_range: [40 m, 41 m]}]"], "swaths[0].avoid[0].along_track",
      "begins at 2 m, which is not below its end, 1 m"),
-    (["swaths[0].avoid=[{row: 2, column: 1, rows: 3}]"], "swaths[0].avoid[0].columns", "is missing"),
+    (["swaths[0].avoid=[{row: 2, column: 1, rows: 3}]"], "swaths[0].avoid[0]", "row and column and rows and columns; give one of these"),
     (["chip.slant_range=[60 m, 70 m]"], "swath0.png", "60 to 70 m"),
     (["chip.columns=all", "chip.range_over_altitude=[8, 9]"], "swath0.png", "8 to 9 times the sonar's altitude"),
     (["swaths[1].path=swath0.png", "swaths[2].path=swath0.png"], "too few for 2 splits", "swath"),

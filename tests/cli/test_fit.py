@@ -7,8 +7,11 @@ import numpy
 import pytest
 
 from conftest import page_data
+from made_swaths import COLUMNS, ROWS, Made
+from test_init import init
 import fitting
 import images
+import recordings
 
 
 # So rough that targets have no glints, whose rays would be nine tenths of all work. The nightly
@@ -126,3 +129,28 @@ def test_contacts_are_measured_side_by_side(sonject, tmp_path):
         ratio = abs(swath["column"] + 47.5 - 599.5) * 0.05 / 5
         is_port = swath["column"] < 600
         assert limits[1 if is_port else 2][0] <= ratio <= limits[1 if is_port else 2][1]
+
+
+def test_contacts_of_a_recording_are_on_one_of_its_sides_or_on_chips(sonject, tmp_path):
+    """Twelve stones on the starboard side, and twelve targets on the campaign's own chips, which are TIFF without channels."""
+    sides = [Made("amplitude", water=numpy.full(ROWS, 100), seed=seed).numbers for seed in (1, 2)]
+    contacts = "image,row,column,rows,columns,side\n"
+    for row in range(60, 780, 60):
+        sides[1][row:row + 6, 300:306], sides[1][row:row + 6, 306:336] = 40000, 20
+        contacts += f"line.xtf,{row - 2},298,10,40,starboard\n"
+    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=100 * 30 / COLUMNS * numpy.ones(ROWS)))
+    assert init(sonject, "line.xtf", "--channel", "port", "--campaign", answers=["", "100 kHz", "30 kHz", ""]).returncode == 0
+    (tmp_path / "start.yaml").write_text(fitting.campaign({**fitting.START, "level": (7, 12)}, 12, 3, 64, 96, ("box",), ROUGH).replace(
+        "scene.yaml", "line.yaml").replace("swaths: [{path: seabed_1.tif}, {path: seabed_2.tif}]", "swaths:" + "".join(
+            f"\n  - path: line.xtf\n    set: {{input.channel: {side}}}" for side in ("port", "starboard"))))
+    sonject.done("campaign", "start.yaml", "-o", "set", "--quiet")
+    for path in sorted((tmp_path / "set" / "all" / "records").glob("*.json")):
+        column, row, columns, rows = json.loads(path.read_text())["annotations"][0]["bbox"]
+        contacts += f"set/all/images/{path.stem}.tif,{row},{column},{rows},{columns},\n"
+    (tmp_path / "contacts.csv").write_text(contacts.replace("starboard", ""))
+    done = sonject("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml")
+    assert done.returncode == 3 and "line.xtf: has two sides that are swaths of the campaign" in done.stderr
+    (tmp_path / "contacts.csv").write_text(contacts)
+    sonject.done("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml", "--quiet")
+    found = [sum(extent["bins"]) for extent in page_data(tmp_path, "fitted.html")["fit"] if extent]
+    assert min(found) > 18, found  # of 24: the port side shows none of the stones

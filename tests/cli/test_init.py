@@ -163,7 +163,7 @@ def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
 def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     """All but the last, which needs scikit-learn: test_train_detector.py runs that."""
     page = (pathlib.Path(os.environ["SONJECT_SOURCE"]) / "docs" / "first_detector.md").read_text()
-    begin, run, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
+    begin, run, check, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
     write_mesh(tmp_path)
     (tmp_path / "rock.obj").rename(tmp_path / "my_mine.obj")
     write_line(tmp_path)
@@ -172,6 +172,7 @@ def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     assert answer.returncode == 0, answer.stderr
     assert "array: {length: 0.508 m}" in (tmp_path / "line.yaml").read_text()  # 0.886 wavelengths over it
     sonject.done(*run[1:])
+    assert re.findall(r"line.xtf, (\w+): .* leave 100 % of the places", sonject.done(*check[1:]).stderr) == ["port", "starboard"]
     sonject.done(*campaign[1:], "--set", "images=10")
     for name in "line_quicklook.png", "line_starboard_quicklook.png", "one/report.html", "set/report.html", "set/data.yaml", "set/train/coco.json", "set/val/coco.json", train[2]:
         assert (tmp_path / name).exists()
@@ -221,8 +222,9 @@ def test_both_sides_of_an_image_are_two_swaths(sonject, tmp_path):
     sonject.done("campaign", "both_campaign.yaml", "-o", "set", "--set", "images=4")
 
 
-def test_places_to_avoid_are_in_metres_of_the_pictures_axes(sonject, tmp_path):
-    """Which are those of all pings' mean spacing, 10 cm, though the first half sails slowly and the other fast."""
+def test_places_along_the_track_are_as_the_pictures_axes_have_them(sonject, tmp_path):
+    """Which are those of all pings' mean spacing, 10 cm, though the first half sails slowly and the other fast: chips'
+    middles are right, and rows 5 from them, 10 % of 48, by 5 cm each. A line that ends where it began has no such axis."""
     sides = [Made("amplitude", water=numpy.full(ROWS, 100), seed=seed).numbers for seed in (1, 2)]
     along = numpy.cumsum(numpy.where(numpy.arange(ROWS) < ROWS / 2, 0.05, 0.15))
     (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, row_spacing=along, altitudes=numpy.full(ROWS, 5.0)))
@@ -233,6 +235,14 @@ def test_places_to_avoid_are_in_metres_of_the_pictures_axes(sonject, tmp_path):
     records = [json.loads(path.read_text()) for path in (tmp_path / "set").glob("*/records/*.json")]
     rows = {split: [record["swath"]["row"] for record in records if record["split"] == split] for split in ("train", "val")}
     assert 301 <= min(rows["train"]) < 400 and min(rows["val"]) < 100, rows  # port is for training
+    truths = [json.loads((tmp_path / "set" / record["split"] / record["files"][1]["name"]).read_text()) for record in records]
+    rows, found = numpy.transpose([(record["swath"]["row"] + it["row"], it["along_track_m"])
+                                   for record, truth in zip(records, truths) for it in truth["objects"]])
+    assert len(rows) > 20 and max(rows) - min(rows) > 300
+    assert found == pytest.approx((along[-1] - along[0]) / (ROWS - 1) * rows, abs=0.05 * 5)
+    back = numpy.interp(numpy.arange(ROWS), [0, ROWS / 2, ROWS - 1], [0, 20, 0])
+    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, row_spacing=back, altitudes=numpy.full(ROWS, 5.0)))
+    sonject.done("campaign", "line_campaign.yaml", "-o", "back", "--set", "images=4", "--set", "chip.rows=48")
 
 
 def test_one_image_has_no_splits_and_a_target_may_be_a_file(sonject, image):

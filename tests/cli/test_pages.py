@@ -78,7 +78,7 @@ ELSEWHERE = {
     r"python3 tests/physics/report\.py": (".ci/run", "tests/physics/report.py"),
     r"PYTHONPATH=\.\.\. ": ("tests/meson.build", "'bindings' / 'python' / 'tests'"),
     r"for i in 1 2 3; do sonject seabed|sonject campaign tools/campaigns/": ("tests/cli/test_campaign.py", "minefield.yaml"),
-    r"sonject init |sonject run line\.yaml|sonject quicklook line\.xtf|sonject campaign line_campaign": ("tests/cli/test_init.py", "first_detector.md"),
+    r"sonject init |sonject run line\.yaml|sonject quicklook line\.xtf|sonject (check|campaign) line_campaign": ("tests/cli/test_init.py", "first_detector.md"),
     r"python3 bindings/python/examples/train_detector": ("bindings/python/tests/test_train_detector.py", "train_detector"),
     r"sonject fit ": ("tests/cli/test_fit.py", '"fit"'),
     r"parallel |sbatch |scontrol |array=.* run |RequeueExit": ("tests/cli/test_job_scripts.py", "documented("),

@@ -191,10 +191,10 @@ TEST(test_keys_that_exclude_or_need_each_other)
          "diameter, 1 m, not 0.5 m"},
         {OBJECT "sphere\n    diameter: 1\n    position: {row: 1}\n",
          ":7:15: objects[0].position: needs along_track and slant_range, or row and column; give "
-         "one pair"},
+         "one of these"},
         {OBJECT "sphere\n    diameter: 1\n    position: {row: 1, slant_range: 40}\n",
          ":7:15: objects[0].position: needs along_track and slant_range, or row and column; give "
-         "one pair"},
+         "one of these"},
         {OBJECT "sphere\n    diameter: 1\n    position: {row: 2e12, column: 2e12}\n",
          ":7:21: objects[0].position.row: must be -1...1.09951e+12, not 2e+12\n"
          ":7:35: objects[0].position.column: must be -1...1.09951e+12, not 2e+12"},
