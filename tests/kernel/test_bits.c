@@ -43,7 +43,7 @@ enum object_set {
     RINGS,       /* meshes, one with smooth normals */
     CLUTTER,     /* so many that a tree is searched, and groups of targets are aimed at */
     TWO_OBJECTS,
-    CROWD /* a mesh, a user's shape and spheres, too many for one launch */
+    CROWD /* a mesh and spheres, too many for one launch */
 };
 
 static const struct scene_case {

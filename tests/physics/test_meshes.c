@@ -1,7 +1,6 @@
 /* Meshes against the shapes that they stand for: glints of facets by physical optics, energies and
- * shadows (users' shapes beside them), plates as large as their facets, sheets
- * with two sides, smooth surfaces that coarse facets stand for; one mesh shown by several objects.
- */
+ * shadows, plates as large as their facets, sheets with two sides, smooth surfaces that coarse
+ * facets stand for; one mesh shown by several objects. */
 #include "../kernel/mesh_samples.h"
 #include "sea.h"
 

@@ -1,4 +1,4 @@
-/* How far shapes reach, against clouds of points that lie in them, meshes and users' shapes against
+/* How far shapes reach, against clouds of points that lie in them, meshes against
  * the shapes that they stand for; and how they rest on the seabed. */
 #include "claims.h"
 #include "kernel/mesh_samples.h"
