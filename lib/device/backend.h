@@ -40,6 +40,9 @@ void native_describe(sonject_device_info *info);
 sonject_status native_open(struct report *report, const sonject_context_params *params,
                            struct device *device);
 
+/* Bytes that a buffer of it was asked for. */
+size_t native_buffer_bytes(device_buffer buffer);
+
 /* Devices of OpenCL, of which there may be none. gpu: the first GPU's place, *count if there is
  * none. Errors: DEVICE, MEMORY. */
 sonject_status opencl_list(struct report *report, sonject_device_info *devices, size_t capacity,

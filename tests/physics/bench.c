@@ -1,6 +1,5 @@
 #include "bench.h"
 
-#include <malloc.h>
 
 #include "claims.h"
 #include "device/opencl/opencl.h"
@@ -186,7 +185,7 @@ size_t bench_buffer_bytes(struct bench *bench, device_buffer buffer)
 {
     size_t bytes = 0;
     if (native_is_named(bench->tracer.device->name))
-        return malloc_usable_size(buffer);
+        return native_buffer_bytes(buffer);
     assert_int_equal(clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, NULL),
                      CL_SUCCESS);
     return bytes;

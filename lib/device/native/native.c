@@ -14,7 +14,6 @@
 
 #define NAME "native"
 
-#define ALIGNMENT  16
 #define KEPT_LEAST ((size_t)128 << 10) /* bytes of a buffer that is kept */
 #define KEPT_MOST  ((size_t)8 << 20)
 
@@ -135,12 +134,16 @@ static sonject_status native_claim(struct report *report)
     return SONJECT_OK;
 }
 
-/* Lies before each buffer, and keeps it aligned. The system clears what it lends page by page,
- * which took a third of a short call's time: some large buffers are kept for the next call. */
+/* Lies before each buffer. The system clears what it lends page by page, which took a third of a
+ * short call's time: some large buffers are kept for the next call. */
 struct buffer_head {
-    size_t bytes;
-    char padding[ALIGNMENT - sizeof(size_t)];
+    size_t capacity, bytes; /* that it has, that were asked for; together they keep it aligned */
 };
+
+size_t native_buffer_bytes(device_buffer buffer)
+{
+    return ((const struct buffer_head *)buffer - 1)->bytes;
+}
 
 static void native_close(struct device *device)
 {
@@ -163,7 +166,7 @@ static struct buffer_head *take_kept(size_t bytes)
 {
     for (size_t i = 0; i < COUNT(kept); i++) {
         struct buffer_head *head = __atomic_exchange_n(&kept[i], NULL, __ATOMIC_ACQ_REL);
-        if (head && head->bytes >= bytes && head->bytes / 2 <= bytes)
+        if (head && head->capacity >= bytes && head->capacity / 2 <= bytes)
             return head;
         if (head && !put_back(i, head))
             free(head);
@@ -179,8 +182,9 @@ static sonject_status native_reserve(struct report *report, struct device *devic
     if (!head) {
         head = bytes > SIZE_MAX - sizeof *head ? NULL : malloc(sizeof *head + bytes);
         CHECK_MEMORY(report, head, "a buffer of the device");
-        head->bytes = bytes;
+        head->capacity = bytes;
     }
+    head->bytes = bytes;
     *buffer = head + 1;
     return SONJECT_OK;
 }
@@ -188,7 +192,7 @@ static sonject_status native_reserve(struct report *report, struct device *devic
 static void native_release(device_buffer buffer)
 {
     struct buffer_head *head = (struct buffer_head *)buffer - 1;
-    const bool is_kept = head->bytes >= KEPT_LEAST && head->bytes <= KEPT_MOST;
+    const bool is_kept = head->capacity >= KEPT_LEAST && head->capacity <= KEPT_MOST;
     for (size_t i = 0; is_kept && i < COUNT(kept); i++)
         if (put_back(i, head))
             return;
