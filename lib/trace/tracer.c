@@ -19,12 +19,12 @@
 
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 49 * 4 ? 1 : -1];
-typedef char fan_record_is_packed[sizeof(struct fan_record) == 81 * 4 ? 1 : -1];
+typedef char fan_record_is_packed[sizeof(struct fan_record) == 82 * 4 ? 1 : -1];
 typedef char chain_record_is_packed[sizeof(struct chain_record) == 46 * 4 ? 1 : -1];
 typedef char target_record_is_packed[sizeof(struct target_record) == 17 * 4 ? 1 : -1];
 typedef char sphere_group_is_packed[sizeof(struct sphere_group) == 64 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
-typedef char image_pair_record_is_packed[sizeof(struct image_pair_record) == 49 * 4 ? 1 : -1];
+typedef char image_pair_record_is_packed[sizeof(struct image_pair_record) == 51 * 4 ? 1 : -1];
 typedef char multibounce_record_is_packed[sizeof(struct multibounce_record) == 13 * 4 ? 1 : -1];
 typedef char
     multibounce_echo_record_is_packed[sizeof(struct multibounce_echo_record) == 6 * 4 ? 1 : -1];
