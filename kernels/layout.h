@@ -18,15 +18,17 @@
 #endif
 
 /* Programs are built in two variants. Most scenes are plain: they have neither meshes nor relief
- * nor fouling, and trace up to a tenth faster without. */
+ * nor fouling, nor targets in layers that bend sound, and trace up to a tenth faster without. */
 #ifdef PLAIN
 #define HAS_MESHES  0
 #define HAS_RELIEF  0
 #define HAS_FOULING 0
+#define HAS_SLICES  0
 #else
 #define HAS_MESHES  1
 #define HAS_RELIEF  1
 #define HAS_FOULING 1
+#define HAS_SLICES  1
 #endif
 
 /* What a random number is for; part of its key. */

@@ -22,6 +22,14 @@ FUNCTION float bottom_of_slice(GLOBAL const struct ray_piece_record *slice)
     return slice->offset[0];
 }
 
+/* The upward part of the direction there of a ray of the straight water. */
+FUNCTION vfloat slope_in_slice(GLOBAL const struct ray_piece_record *slice,
+                               const struct fan_ray *straight)
+{
+    const vfloat level = straight->direction.y * slice->offset[1];
+    return -SQUARE_ROOT(larger(1.0f - level * level, SPLAT(1.0e-6f)));
+}
+
 /* The line in a slice of a ray of the straight water. */
 FUNCTION struct fan_ray ray_in_slice(const struct fan_record *fan,
                                      GLOBAL const struct ray_piece_record *slice,
@@ -35,8 +43,7 @@ FUNCTION struct fan_ray ray_in_slice(const struct fan_record *fan,
     struct fan_ray ray;
     ray.direction.x = SPLAT(0.0f);
     ray.direction.y = straight->direction.y * slice->offset[1];
-    ray.direction.z =
-        -SQUARE_ROOT(larger(1.0f - ray.direction.y * ray.direction.y, SPLAT(1.0e-6f)));
+    ray.direction.z = slope_in_slice(slice, straight);
     ray.upward.x = SPLAT(0.0f);
     ray.upward.y = -ray.direction.z;
     ray.upward.z = ray.direction.y;
@@ -64,6 +71,19 @@ struct sliced_hit {
     struct aspect_ray squinted;
     mask is_over_straight_water;
 };
+
+/* Whether anything may be met between two heights. */
+FUNCTION int is_reached(GLOBAL const struct object_record *objects, int count, float bottom,
+                        float top)
+{
+    if (count > OBJECTS_IN_LOOP)
+        return 1;
+    for (int i = 0; i < count; i++)
+        if (objects[i].centre_z + objects[i].bounding_radius > bottom &&
+            objects[i].centre_z - objects[i].bounding_radius < top)
+            return 1;
+    return 0;
+}
 
 /* What a ray meets in its slice, into the lanes that meet something. top: of the slice, the bottom
  * of the next one; NULL: it is the highest. to_bottom: along the fan's ray. */
@@ -110,33 +130,39 @@ FUNCTION struct sliced_hit find_sliced_hit(const struct fan_record *fan,
     hit.ray = *straight;
     hit.squinted = *squinted;
     hit.is_over_straight_water = MASK_OF(elevation != elevation);
-    if (fan->table.slices < 2) {
+    if (!HAS_SLICES || fan->table.slices < 2) {
         hit.nearest = find_nearest_hit(objects, fan->objects, squinted->start, squinted->direction,
                                        -fan->reference_range);
         return hit;
     }
-    struct fan_ray ray = *straight;
     struct aspect_ray aspect = *squinted;
+    const vfloat aside = aspect.sine / aspect.cosine;
+    float bottom = bottom_of_slice(slice_of_table(fan, pieces, 1));
+    vfloat x = aspect.start.x + distance_to_height(straight, bottom) * aside; /* at the bottom */
     hit.nearest.distance = SPLAT(FAR_AWAY);
     hit.nearest.object = VINT_OF(SPLAT(-1.0f));
-    meet_in_slice(fan, objects, &ray, &aspect, slice_of_table(fan, pieces, 1), SPLAT(FAR_AWAY),
+    meet_in_slice(fan, objects, straight, &aspect, slice_of_table(fan, pieces, 1), SPLAT(FAR_AWAY),
                   &hit);
     const vfloat in_straight_water = hit.nearest.distance;
     for (int i = 1; i < fan->table.slices; i++) {
         GLOBAL const struct ray_piece_record *slice = slice_of_table(fan, pieces, i);
-        const vfloat to_bottom_below = distance_to_height(&ray, bottom_of_slice(slice));
-        ray = ray_in_slice(fan, slice, straight, elevation);
-        const vfloat to_bottom = distance_to_height(&ray, bottom_of_slice(slice));
-        aspect.start.y = ray.closest.y;
-        aspect.start.z = ray.closest.z;
-        aspect.start.x =
-            aspect.start.x + (to_bottom_below - to_bottom) * (aspect.sine / aspect.cosine);
-        aspect.direction.y = ray.direction.y * aspect.cosine;
-        aspect.direction.z = ray.direction.z * aspect.cosine;
-        meet_in_slice(fan, objects, &ray, &aspect,
-                      i + 1 < fan->table.slices ? slice_of_table(fan, pieces, i + 1) : 0, to_bottom,
-                      &hit);
+        GLOBAL const struct ray_piece_record *next =
+            i + 1 < fan->table.slices ? slice_of_table(fan, pieces, i + 1) : 0;
+        const float top = next ? bottom_of_slice(next) : FAR_AWAY;
+        if (is_reached(objects, fan->objects, bottom, top)) {
+            const struct fan_ray ray = ray_in_slice(fan, slice, straight, elevation);
+            const vfloat to_bottom = distance_to_height(&ray, bottom);
+            aspect.start = ray.closest;
+            aspect.start.x = x - to_bottom * aside;
+            aspect.direction.y = ray.direction.y * aspect.cosine;
+            aspect.direction.z = ray.direction.z * aspect.cosine;
+            meet_in_slice(fan, objects, &ray, &aspect, next, to_bottom, &hit);
+        }
+        x = x + (top - bottom) / slope_in_slice(slice, straight) * aside;
+        bottom = top;
     }
+    hit.ray.upward.y = -hit.ray.direction.z;
+    hit.ray.upward.z = hit.ray.direction.y;
     hit.is_over_straight_water = MASK_OF(hit.nearest.distance != in_straight_water);
     return hit;
 }

@@ -25,8 +25,8 @@ static double grazing_degrees(const struct patch_view *view, double processor_ra
 static void describe_water(struct growing_text *text, const struct ray_path *path)
 {
     const struct water *water = path->water;
-    growing_text_add(text, "water      %.1f m/s around seabed and objects",
-                     water->straight_speed_mps);
+    growing_text_add(text, "water      %.1f m/s around seabed%s", water->straight_speed_mps,
+                     water->slices == 1 ? " and objects" : "");
     if (water->count == 1)
         growing_text_add(text, "\n");
     else

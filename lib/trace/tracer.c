@@ -232,7 +232,8 @@ sonject_status launch_run(struct launch *launch, struct tracer *tracer)
 sonject_status launch_begin(struct launch *launch, struct tracer *tracer,
                             enum device_program program, const char *kernel_name)
 {
-    bool is_plain = tracer->scene->mesh_count == 0 && !tracer->relief;
+    bool is_plain =
+        tracer->scene->mesh_count == 0 && !tracer->relief && tracer->view.water.water->slices == 1;
     for (uint32_t i = 0; i < tracer->scene->object_count; i++)
         is_plain = is_plain && !object_is_fouled(tracer, i);
     launch->device = tracer->device;

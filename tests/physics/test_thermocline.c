@@ -27,6 +27,8 @@ static const struct profile {
     {"sharp thermocline", {{0.0, 1490.0, 2.0, 1490.0}, {2.0, 1496.0, 25.0, 1496.0}}},
 };
 
+static const struct profile even = {"one sound speed", {{0.0, 1490.0, 25.0, 1490.0}}};
+
 /* Height over the seabed and processor range of each profile's targets. */
 static const double places[][2] = {{1.0, 30.0}, {1.6, 55.0}, {2.3, 70.0}, {4.0, 40.0}, {6.0, 90.0}};
 
@@ -37,9 +39,9 @@ static struct sea *open_sea(const struct profile *profile, size_t rows, size_t c
     size_t count = 0;
     for (const struct piece *piece = profile->pieces;
          piece < profile->pieces + PIECES && piece->top > 0.0; piece++) {
-        /* thinner than the library's own slices, which it makes of these */
+        /* as thin as those that the library makes of a profile */
         const double rise = piece->speed_above - piece->speed_below;
-        const size_t thin = (size_t)(fabs(rise) / 0.02) + 1;
+        const size_t thin = (size_t)(fabs(rise) / 0.05) + 1;
         for (size_t i = 0; i < thin; i++) {
             const struct water_layer layer = {
                 piece->bottom + (piece->top - piece->bottom) * (double)i / (double)thin,
@@ -164,13 +166,13 @@ static void expect_time(const char *what, double time, double expected)
 }
 
 /* A small Lambert plate that faces its ray: all of it is equally far, but for the wavefront's
- * curvature, 10 um. */
+ * curvature, some 40 um. */
 static void expect_plate(const struct profile *profile, double height, double range)
 {
-    const double side = 0.1;
+    const double side = 0.2;
     struct sea *sea = open_sea(profile, 41, 241, range);
     sea->sonar->bandwidth_hz = 15e3; /* columns sample the pulse's energy */
-    sea->injection->ray_scale = 64.0;
+    sea->injection->ray_scale = 16.0;
     sea->seabed->lambert = 1e-9;
     sonject_object_params *object = sea_add(sea, SHAPE_PLANE, side, side, 0.0);
     object->burial_m = -height;
@@ -192,7 +194,9 @@ static void expect_plate(const struct profile *profile, double height, double ra
     }
     const double pixel = sea->geometry->column_spacing_m * sea->geometry->row_spacing_m;
     const double point = sea_pulse_energy(sea) * sea_window_energy(sea);
-    expect_time("of its echo", (range + moment / sum) / REFERENCE, sound.time);
+    expect_time("of its echo",
+                (range + moment / sum - side * side / (24.0 * REFERENCE * sound.time)) / REFERENCE,
+                sound.time);
     expect_close("level, dB re that of the plate", decibels_of_energy(sum * pixel / point),
                  decibels_of_energy(0.1 * side * side * pow(sound.amplitude, 2.0)), LEVEL_DB);
 }
@@ -221,7 +225,6 @@ static double sphere_excess(const struct profile *profile, double height, double
 
 CLAIM(echoes_from_within_layers)
 {
-    static const struct profile even = {"one sound speed", {{0.0, 1490.0, 25.0, 1490.0}}};
     const double excess = sphere_excess(&even, 1.0, 55.0);
     for (size_t i = 0; i < COUNT(profiles); i++)
         for (size_t k = 0; k < COUNT(places); k++) {
@@ -229,6 +232,23 @@ CLAIM(echoes_from_within_layers)
             expect_close("level of the glint over that in one sound speed, dB",
                          sphere_excess(&profiles[i], places[k][0], places[k][1]), excess, LEVEL_DB);
         }
+}
+
+/* Where more than fans from the sonar meets targets, they lie in straight water; and rays that turn
+ * over the seabed are not followed. */
+CLAIM(what_is_refused)
+{
+    struct sea *sea = open_sea(&profiles[3], 61, 281, 55.0);
+    sonject_object_params *object = sea_add_sphere(sea, 0.15, 3.0);
+    sea_ready(sea);
+    assert_true(sea->bench->water.slices == 2);
+    sea->injection->interactions = 2;
+    EXPECT_REFUSED(sea, "begin below 3.30 m over the seabed",
+                   scene_lay_water(&sea->bench->scene, &sea->bench->report, &sea->bench->water));
+    sea->injection->interactions = 1;
+    object->burial_m = -21.0;
+    EXPECT_REFUSED(sea, "begin below 21.30 m",
+                   scene_lay_water(&sea->bench->scene, &sea->bench->report, &sea->bench->water));
 }
 
 /* ---- shadows ---- */
@@ -275,4 +295,35 @@ CLAIM(shadows_along_bent_rays)
         expect_close("shadow ends, column", shadow_edge(visibility, middle, 799), far, 0.08);
         expect_below("visibility in the middle", visibility[middle], 0.02);
     }
+}
+
+/* ---- aspects ---- */
+
+/* A pillar's echo and shadow, as a synthetic aperture sees them. */
+static const struct image *pillar_in(const struct profile *profile)
+{
+    struct sea *sea = open_sea(profile, 161, 400, 44.0);
+    sea->sonar->aperture_rad = 0.3;
+    sonject_object_params *object = sea_add(sea, SHAPE_BOX, 0.6, 0.4, 0.0);
+    object->height_m = 3.0;
+    place_in_metres(object, 2.0, 42.0);
+    make_rough(object, 0.1);
+    return sea_image(sea);
+}
+
+/* Where sound speed hardly changes, squinted rays meet the pillar where straight ones do. */
+CLAIM(squinted_rays_go_on_from_slice_to_slice)
+{
+    static const struct profile slight = {
+        "slight step", {{0.0, 1490.0, 1.5, 1490.0}, {1.5, 1490.15, 25.0, 1490.15}}};
+    const struct image *bent = pillar_in(&slight), *straight = pillar_in(&even);
+    double change[2] = {0.0, 0.0}, sum[2] = {0.0, 0.0};
+    for (size_t i = 0; i < straight->pixels; i++) {
+        change[0] += fabs((double)bent->target_energy[i] - (double)straight->target_energy[i]);
+        change[1] += fabs((double)bent->lost_energy[i] - (double)straight->lost_energy[i]);
+        sum[0] += straight->target_energy[i];
+        sum[1] += straight->lost_energy[i];
+    }
+    expect_below("change of the echo", change[0] / sum[0], 0.02);
+    expect_below("change of the shadow", change[1] / sum[1], 0.02);
 }
