@@ -315,7 +315,8 @@ static const struct image *pillar_in(const struct profile *profile)
 CLAIM(squinted_rays_go_on_from_slice_to_slice)
 {
     static const struct profile slight = {
-        "slight step", {{0.0, 1490.0, 1.5, 1490.0}, {1.5, 1490.15, 25.0, 1490.15}}};
+        "slight steps",
+        {{0.0, 1490.0, 1.0, 1490.0}, {1.0, 1490.15, 2.0, 1490.15}, {2.0, 1490.3, 25.0, 1490.3}}};
     const struct image *bent = pillar_in(&slight), *straight = pillar_in(&even);
     double change[2] = {0.0, 0.0}, sum[2] = {0.0, 0.0};
     for (size_t i = 0; i < straight->pixels; i++) {
