@@ -107,17 +107,24 @@ FUNCTION struct aspect_ray beam_ray_of(const struct fan_record *fan, const struc
     return squinted;
 }
 
+/* The ray of the fan itself. */
+FUNCTION struct aspect_ray broadside_aspect(const struct fan_ray *ray)
+{
+    struct aspect_ray broadside;
+    broadside.start = ray->closest;
+    broadside.direction = ray->direction;
+    broadside.sine = SPLAT(0.0f);
+    broadside.cosine = SPLAT(1.0f);
+    broadside.weight = SPLAT(1.0f);
+    return broadside;
+}
+
 /* The ray of the fan itself where the launch has one aspect only. track_strip: the ray's strip,
  * counted over the whole track; jitter: uniform in 0...1. */
 FUNCTION struct aspect_ray aspect_ray_of(const struct fan_record *fan, const struct fan_ray *ray,
                                          RECORD_WORD track_strip, word number, vfloat jitter)
 {
-    struct aspect_ray squinted;
-    squinted.start = ray->closest;
-    squinted.direction = ray->direction;
-    squinted.sine = SPLAT(0.0f);
-    squinted.cosine = SPLAT(1.0f);
-    squinted.weight = SPLAT(1.0f);
+    struct aspect_ray squinted = broadside_aspect(ray);
     if (!has_aspects(fan) && !has_beam(fan))
         return squinted;
     const vfloat share = aspect_share(fan, track_strip, number, jitter);

@@ -19,6 +19,8 @@ struct fan_ray {
     vfloat wavefront;         /* m; the wavefront's width per rad of elevation there; it grows by
                                1 m per m, and without layers it is the range */
     vfloat spreading;         /* of layers: struct arrival; else of no meaning */
+    vfloat range_per_metre;   /* along it: 1 but in slices */
+    vfloat turn;              /* of its direction per rad of elevation: likewise */
 };
 
 /* x: track position; elevation: rad over the direction from the track to the origin.
@@ -42,6 +44,8 @@ FUNCTION struct fan_ray fan_ray_at(const struct fan_record *fan,
     ray.range_at_closest = -offset * sine / (1.0f + cosine);
     ray.wavefront = fan->reference_range + ray.range_at_closest;
     ray.spreading = SPLAT(1.0f);
+    ray.range_per_metre = SPLAT(1.0f);
+    ray.turn = SPLAT(1.0f);
     if (fan->table.pieces > 0) {
         const struct table_ray bent = look_up_ray(fan->table, pieces, elevation);
         offset = bent.offset;
@@ -55,6 +59,12 @@ FUNCTION struct fan_ray fan_ray_at(const struct fan_record *fan,
     return ray;
 }
 
+/* Range at a distance along a ray, less the reference range. */
+FUNCTION vfloat range_along(const struct fan_ray *ray, vfloat distance)
+{
+    return ray->range_at_closest + ray->range_per_metre * distance;
+}
+
 /* What layers do to the amplitude of an echo from a point of the ray, over that in isovelocity
  * water: there and back, normalised by the square of the range. */
 FUNCTION vfloat refraction_gain(const struct fan_record *fan, const struct fan_ray *ray,
@@ -62,7 +72,7 @@ FUNCTION vfloat refraction_gain(const struct fan_record *fan, const struct fan_r
 {
     if (fan->table.pieces == 0)
         return SPLAT(1.0f);
-    const vfloat range = fan->reference_range + (ray->range_at_closest + distance);
+    const vfloat range = fan->reference_range + range_along(ray, distance);
     const vfloat ground = fan->table.ground_range + (ray->closest.y + distance * ray->direction.y);
     return ray->spreading * range * range / (ground * (ray->wavefront + distance));
 }

@@ -18,15 +18,17 @@
 #endif
 
 /* Programs are built in two variants. Most scenes are plain: they have neither meshes nor relief
- * nor fouling, and trace up to a tenth faster without. */
+ * nor fouling, nor targets in layers that bend sound, and trace up to a tenth faster without. */
 #ifdef PLAIN
 #define HAS_MESHES  0
 #define HAS_RELIEF  0
 #define HAS_FOULING 0
+#define HAS_SLICES  0
 #else
 #define HAS_MESHES  1
 #define HAS_RELIEF  1
 #define HAS_FOULING 1
+#define HAS_SLICES  1
 #endif
 
 /* What a random number is for; part of its key. */
@@ -132,9 +134,13 @@ enum tile_plane {
     TILE_PLANES = 3
 };
 
-/* Where the rays of a source are that layers of water bend: pieces of elevation, each a cubic. */
+/* Where the rays of a source are that layers of water bend: pieces of elevation, each a cubic.
+ * Behind those of the straight water lie, slice by slice, the slice itself (its offset: height of
+ * its bottom in the frame, its sound speed over the straight water's, the reciprocal) and as many
+ * pieces twice: offsets, with the spreading, and in the same place ranges. */
 struct ray_table_record {
     RECORD_INT pieces; /* 0: no layers, rays are straight */
+    RECORD_INT slices; /* layers that targets reach into, the straight water included */
     RECORD_INT first_piece;
     float first_elevation; /* rad from the central direction */
     float pieces_per_radian, radians_per_piece;

@@ -1,5 +1,5 @@
 /* Rays bent by layers of water, as the host has worked them out: for each elevation the straight
- * line that a ray follows around seabed and targets (kernels/MATH.md, "Layers"). */
+ * line that a ray follows in the straight water or a slice (kernels/MATH.md, "Layers"). */
 #ifndef SONJECT_KERNELS_RAY_TABLE_H
 #define SONJECT_KERNELS_RAY_TABLE_H
 

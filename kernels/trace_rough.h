@@ -10,6 +10,7 @@
 #include "random.h"
 #include "reflectivity_map.h"
 #include "seabed.h"
+#include "slices.h"
 #include "surface.h"
 #include "tally.h"
 
@@ -273,9 +274,11 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     const vfloat strip_of_cell = fan->strip_width * step * squinted.cosine;
     const vfloat to_seabed = seabed_distance(fan, objects, squinted.start, squinted.direction,
                                              SPLAT(-fan->reference_range), is_ray);
-    const struct nearest_hit nearest = find_nearest_hit(objects, fan->objects, squinted.start,
-                                                        squinted.direction, -fan->reference_range);
-    const mask on_object = is_ray & MASK_OF(nearest.distance < to_seabed);
+    const struct sliced_hit target =
+        find_sliced_hit(fan, pieces, objects, lower + across * step, &ray, &squinted);
+    const struct nearest_hit nearest = target.nearest;
+    const mask on_object =
+        is_ray & (target.is_over_straight_water | MASK_OF(nearest.distance < to_seabed));
     /* a point source at the receiver sees what its rays meet: nothing is to be tested */
     vfloat source_along = SPLAT(0.5f), source_across = SPLAT(0.5f);
     if (fan->source_side > 0.0f)
@@ -286,16 +289,18 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
 
     const vfloat to_target = SELECT(on_object, nearest.distance, SPLAT(0.0f));
     const vfloat target_distance = to_target * squinted.cosine;
-    vfloat target_range = ray.range_at_closest + target_distance;
-    const vfloat target_gain = refraction_gain(fan, &ray, target_distance);
+    vfloat target_range = range_along(&target.ray, target_distance);
+    const vfloat target_gain = refraction_gain(fan, &target.ray, target_distance);
     vfloat target_weight = squinted.weight * fan->quanta;
     if (has_beam(fan))
         target_weight = target_weight * beam_spread(fan, &squinted, target_range);
-    const vfloat target_area = strip_of_cell * (ray.wavefront + target_distance) *
+    const vfloat target_area = strip_of_cell * target.ray.turn *
+                               (target.ray.wavefront + target_distance) *
                                (target_gain * target_gain) * target_weight;
     const vfloat energy =
-        target_area * scattering_of_targets(fan, objects, &ray, &squinted, nearest, on_object,
-                                            source_along, source_across, &target_range, outcome);
+        target_area * scattering_of_targets(fan, objects, &target.ray, &target.squinted, nearest,
+                                            on_object, source_along, source_across, &target_range,
+                                            outcome);
     if (has_beam(fan))
         target_range = whole_range(fan, &squinted, target_range);
 
@@ -317,7 +322,8 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     if (has_aspects(fan)) {
         if (has_relief(fan))
             seabed_strips = track_strip_at(fan, bed.point.x);
-        target_strips = track_strip_at(fan, squinted.start.x + squinted.direction.x * to_target);
+        target_strips =
+            track_strip_at(fan, target.squinted.start.x + target.squinted.direction.x * to_target);
     }
     STORE_VFLOAT(kept, echo->seabed);
     STORE_VFLOAT(energy, echo->target);

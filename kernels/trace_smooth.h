@@ -8,6 +8,7 @@
 #include "intersection.h"
 #include "random.h"
 #include "seabed.h"
+#include "slices.h"
 #include "surface.h"
 #include "tally.h"
 
@@ -22,6 +23,7 @@ struct smooth_echo {
 /* A ray and the cell of wavefront that it stands for. */
 struct wavefront_cell {
     struct fan_ray ray;
+    vfloat elevation;
     mask is_ray;
     float width_along;                    /* m */
     vfloat offset_along, fraction_across; /* where the ray met it: m off its middle; 0...1 */
@@ -54,10 +56,9 @@ FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
     cell.offset_along = (along - 0.5f) * cell.width_along;
     const float middle = strip_position(fan, strip) +
                          ((float)stratum + 0.5f - 0.5f * (float)fan->strata) * cell.width_along;
-    cell.ray =
-        fan_ray_at(fan, pieces, middle + cell.offset_along,
-                   fan->first_elevation +
-                       (VFLOAT_OF(number) + cell.fraction_across + shift) * fan->elevation_step);
+    cell.elevation = fan->first_elevation +
+                     (VFLOAT_OF(number) + cell.fraction_across + shift) * fan->elevation_step;
+    cell.ray = fan_ray_at(fan, pieces, middle + cell.offset_along, cell.elevation);
     return cell;
 }
 
@@ -168,24 +169,29 @@ FUNCTION struct smooth_cells trace_smooth_group(const struct fan_record *fan,
 {
     const struct wavefront_cell cell = wavefront_cell_at(
         fan, pieces, strip, stratum, cell_shift_of(fan, strip, stratum), key, first_ray);
-    const struct fan_ray ray = cell.ray;
-    const struct nearest_hit nearest =
-        find_nearest_hit(objects, fan->objects, ray.closest, ray.direction, -fan->reference_range);
+    const struct aspect_ray broadside = broadside_aspect(&cell.ray);
+    const struct sliced_hit hit =
+        find_sliced_hit(fan, pieces, objects, cell.elevation, &cell.ray, &broadside);
+    const struct nearest_hit nearest = hit.nearest;
+    const struct fan_ray ray = hit.ray;
     const mask on_object = cell.is_ray & MASK_OF(nearest.object == fan->only_object);
-    const vfloat to_seabed = seabed_distance(fan, objects, ray.closest, ray.direction,
+    const vfloat to_seabed = seabed_distance(fan, objects, cell.ray.closest, cell.ray.direction,
                                              SPLAT(-fan->reference_range), on_object);
     struct smooth_cells cells;
-    cells.is_hit = on_object & MASK_OF(nearest.distance < to_seabed);
+    cells.is_hit = on_object & (hit.is_over_straight_water | MASK_OF(nearest.distance < to_seabed));
     const vfloat distance = SELECT(cells.is_hit, nearest.distance, SPLAT(0.0f));
     const GLOBAL struct object_record *object = &objects[fan->only_object];
     const struct vector3 normal = object_normal(object, ray.closest, ray.direction, distance);
     const vfloat cosine = larger(-dot3(normal, ray.direction), SPLAT(1.0e-6f));
-    const vfloat range = ray.range_at_closest + distance;
-    /* the path's gradient along a direction q across the ray is -2 n.q/(n.d) */
-    cells.phase =
-        integrate_cell(fan, &cell, 2.0f * normal.x / cosine,
-                       2.0f * dot3(normal, ray.upward) / cosine, range, ray.wavefront + distance);
-    cells.phase.amplitude = cells.phase.amplitude * refraction_gain(fan, &ray, distance);
+    const vfloat range = range_along(&ray, distance);
+    /* the path's gradient along a direction q across the ray is -2 n.q/(n.d), in ranges that count
+     * wavelengths */
+    const vfloat gradient = 2.0f * ray.range_per_metre;
+    cells.phase = integrate_cell(fan, &cell, gradient * normal.x / cosine,
+                                 gradient * dot3(normal, ray.upward) / cosine, range,
+                                 ray.turn * (ray.wavefront + distance));
+    cells.phase.amplitude =
+        cells.phase.amplitude * ray.range_per_metre * refraction_gain(fan, &ray, distance);
     smooth_reflection(&object->surface, cosine, &cells.reflection_real,
                       &cells.reflection_imaginary);
     return cells;

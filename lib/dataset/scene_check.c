@@ -24,8 +24,8 @@ static double grazing_degrees(const struct patch_view *view, double processor_ra
 static void describe_water(struct growing_text *text, const struct ray_path *path)
 {
     const struct water *water = path->water;
-    growing_text_add(text, "water      %.1f m/s around seabed and objects",
-                     water->straight_speed_mps);
+    growing_text_add(text, "water      %.1f m/s around seabed%s", water->straight_speed_mps,
+                     water->slices == 1 ? " and objects" : "");
     if (water->count == 1)
         growing_text_add(text, "\n");
     else
@@ -109,12 +109,6 @@ static sonject_status describe_patch(struct growing_text *text, struct report *r
     return SONJECT_OK;
 }
 
-/* Length on the ground of the shadow of something high up at a ground range. */
-static double shadow_length(const struct patch_view *view, double ground_range, double top)
-{
-    return top > 0.0 ? top / tan(ray_path_grazing(&view->water, ground_range, top)) : 0.0;
-}
-
 static void describe_objects(struct growing_text *text, const struct scene *scene,
                              const struct patch_view *view, const struct placements *placements)
 {
@@ -122,7 +116,7 @@ static void describe_objects(struct growing_text *text, const struct scene *scen
         const struct placed_object *object = &placements->objects[i];
         const double *origin = object->origin;
         const double range = ray_path_range(&view->water, origin[1], origin[2]) * view->range_ratio;
-        const double grazing = ray_path_grazing(&view->water, origin[1], origin[2]);
+        const double grazing = ray_path_direction(&view->water, origin[1], origin[2]);
         growing_text_add(
             text,
             "object %-3u %s (%s): row %.1f, slant range %.2f m, grazing angle %.1f deg, top "
@@ -130,7 +124,7 @@ static void describe_objects(struct growing_text *text, const struct scene *scen
             (unsigned)(i + 1), scene->objects[i].name, shape_name(scene->objects[i].shape),
             (double)scene->patch.first_row + view_row_of_x(view, origin[0]), range,
             grazing * DEGREES_PER_RADIAN, object->top_m,
-            shadow_length(view, origin[1], object->top_m));
+            ray_path_shadow(&view->water, origin[1], object->top_m, 0.0));
     }
 }
 
@@ -206,7 +200,8 @@ static void draw_plan(struct growing_text *text, const struct patch_view *view,
         const double top = part->centre[2] + placement_extent(part, upward);
         const double low[2] = {part->centre[0] - x, part->centre[1] - y};
         const double high[2] = {part->centre[0] + x, part->centre[1] + y};
-        const double end[2] = {high[0], high[1] + shadow_length(view, part->centre[1], top)};
+        const double end[2] = {high[0],
+                               high[1] + ray_path_shadow(&view->water, part->centre[1], top, 0.0)};
         mark(plan, view, low, high, '#');
         mark(plan, view, low, end, ':');
     }

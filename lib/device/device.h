@@ -130,7 +130,7 @@ enum device_program {
 
 /* Each program is built in two ways: see kernels/layout.h. */
 enum program_variant {
-    PROGRAM_PLAIN, /* without meshes, relief and fouling, as most scenes are */
+    PROGRAM_PLAIN, /* without meshes, relief, fouling and slices, as most scenes are */
     PROGRAM_FULL
 };
 

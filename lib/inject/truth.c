@@ -180,8 +180,9 @@ static void locate(const struct tracer *tracer, uint32_t number, sonject_object_
     truth->slant_range_m = ray_path_range(&view->water, origin[1], origin[2]) * view->range_ratio;
     truth->row = view_row_of_x(view, origin[0]);
     truth->column = view_column_of_range(view, truth->slant_range_m);
-    truth->grazing_rad = ray_path_grazing(&view->water, origin[1], origin[2]);
-    truth->transmission_loss_db = transmission_loss(tracer, origin, truth->grazing_rad);
+    const double ray = ray_path_grazing(&view->water, origin[1], origin[2]);
+    truth->grazing_rad = ray_path_direction(&view->water, origin[1], origin[2]);
+    truth->transmission_loss_db = transmission_loss(tracer, origin, ray);
 }
 
 /* What is expected of a pixel with one object alone, over plain seabed: its echo, what came by way

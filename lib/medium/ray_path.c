@@ -69,13 +69,39 @@ static double between(double low, double high, double bottom, double top)
     return fmax(0.0, fmin(high, top) - fmax(low, bottom));
 }
 
-/* Height of layer i that the path crosses before the sound's last stretch through the straight
- * water, which begins at that water's upper edge, or at the seabed. */
-static double crossed_height(const struct ray_path *path, const struct legs *legs, size_t i)
+/* The sound's last stretch: in the straight water, from its upper edge or the seabed to a height;
+ * or in a slice down to it. */
+struct stretch {
+    size_t layer;
+    double height_m; /* that it crosses */
+    double speed_mps;
+};
+
+static struct stretch last_stretch(const struct ray_path *path, double height)
+{
+    const struct water *water = path->water;
+    const struct water_layer *layers = water->layers;
+    size_t i = 0;
+    while (path->bounces == 0 && i + 1 < water->slices && layers[i + 1].bottom_m < height)
+        i++;
+    struct stretch last = {i, path->comes_from_seabed ? height : layers[1].bottom_m - height,
+                           layers[i].speed_mps};
+    if (i > 0)
+        last.height_m =
+            fmin(i + 1 < water->count ? layers[i + 1].bottom_m : INFINITY, path->sonar_height_m) -
+            height;
+    return last;
+}
+
+/* Height of layer i that the path crosses before the last stretch. */
+static double crossed_height(const struct ray_path *path, const struct legs *legs,
+                             const struct stretch *last, size_t i)
 {
     const struct water *water = path->water;
     const double bottom = water->layers[i].bottom_m;
     const double top = i + 1 < water->count ? water->layers[i + 1].bottom_m : INFINITY;
+    if (last->layer > 0 && i <= last->layer)
+        return 0.0;
     double height = between(legs->first_low, legs->first_high, bottom, top) +
                     between(legs->last_low, legs->last_high, bottom, top);
     if (legs->whole > 0)
@@ -92,18 +118,13 @@ static uint32_t crossings(const struct legs *legs, double height)
            (height > legs->last_low && height < legs->last_high);
 }
 
-/* The last stretch: through the straight water up or down to a height. */
-static double last_height(const struct ray_path *path, double height)
-{
-    return path->comes_from_seabed ? height : path->water->layers[1].bottom_m - height;
-}
-
 /* The fastest water on the path. */
-static double fastest(const struct ray_path *path, const struct legs *legs, double last)
+static double fastest(const struct ray_path *path, const struct legs *legs,
+                      const struct stretch *last)
 {
-    double speed = last > 0.0 ? path->water->straight_speed_mps : 0.0;
+    double speed = last->height_m > 0.0 ? last->speed_mps : 0.0;
     for (size_t i = 0; i < path->water->count; i++)
-        if (crossed_height(path, legs, i) > 0.0)
+        if (crossed_height(path, legs, last, i) > 0.0)
             speed = fmax(speed, path->water->layers[i].speed_mps);
     return speed;
 }
@@ -128,17 +149,17 @@ static void add_layer(struct sums *sums, double height, double speed, double fas
     sums->growth += height * speed / (sine * sine * sine);
 }
 
-static struct sums sum_path(const struct ray_path *path, const struct legs *legs, double last,
-                            double fastest_speed, double x)
+static struct sums sum_path(const struct ray_path *path, const struct legs *legs,
+                            const struct stretch *last, double fastest_speed, double x)
 {
     struct sums sums = {0.0, 0.0, 0.0, 0.0};
     for (size_t i = 0; i < path->water->count; i++) {
-        const double height = crossed_height(path, legs, i);
+        const double height = crossed_height(path, legs, last, i);
         if (height > 0.0)
             add_layer(&sums, height, path->water->layers[i].speed_mps, fastest_speed, x);
     }
-    if (last > 0.0)
-        add_layer(&sums, last, path->water->straight_speed_mps, fastest_speed, x);
+    if (last->height_m > 0.0)
+        add_layer(&sums, last->height_m, last->speed_mps, fastest_speed, x);
     return sums;
 }
 
@@ -156,10 +177,10 @@ static double plane_transmission(const struct water_layer *one, const struct wat
 
 /* Planes between equal densities are those of a profile, which changes gently: they pass all. */
 static double transmission(const struct ray_path *path, const struct legs *legs,
-                           double ray_parameter)
+                           const struct stretch *last, double ray_parameter)
 {
     double share = 1.0;
-    for (size_t i = 0; i + 1 < path->water->count; i++) {
+    for (size_t i = last->layer; i + 1 < path->water->count; i++) {
         const struct water_layer *below = &path->water->layers[i];
         const struct water_layer *above = &path->water->layers[i + 1];
         if (below->density != above->density)
@@ -173,6 +194,7 @@ static struct arrival straight_ray(const struct ray_path *path, double grazing, 
 {
     const double drop = path->image_height_m - height;
     struct arrival ray;
+    ray.grazing_rad = grazing;
     ray.straight_range_m = drop / sin(grazing);
     ray.ground_range_m = ray.straight_range_m * cos(grazing);
     ray.length_m = ray.straight_range_m;
@@ -183,36 +205,44 @@ static struct arrival straight_ray(const struct ray_path *path, double grazing, 
 
 struct arrival ray_path_arrival(const struct ray_path *path, double grazing_rad, double height_m)
 {
-    static const struct arrival none = {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
+    static const struct arrival none = {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
     if (path->is_straight)
         return straight_ray(path, grazing_rad, height_m);
     const struct legs legs = legs_of(path);
-    const double last = last_height(path, height_m);
-    const double speed = path->water->straight_speed_mps;
-    const double fastest_speed = fastest(path, &legs, last);
-    const double cosine = cos(grazing_rad);
-    const double sine = fabs(sin(grazing_rad));
-    const double fast_cosine = cosine * fastest_speed / speed;
+    const struct stretch last = last_stretch(path, height_m);
+    const double straight_speed = path->water->straight_speed_mps;
+    const double fastest_speed = fastest(path, &legs, &last);
+    const double speed = last.speed_mps;
+    double cosine = cos(grazing_rad);
+    double sine = fabs(sin(grazing_rad));
+    const double fast_cosine = cosine * fastest_speed / straight_speed;
     if (!(fast_cosine < 1.0))
         return none;
     const struct sums sums =
-        sum_path(path, &legs, last, fastest_speed,
+        sum_path(path, &legs, &last, fastest_speed,
                  fast_cosine / sqrt((1.0 - fast_cosine) * (1.0 + fast_cosine)));
     const double at_sonar = water_layer_at(path->water, path->sonar_height_m)->speed_mps / speed;
     struct arrival ray;
+    ray.grazing_rad = grazing_rad;
+    if (last.layer > 0) {
+        cosine *= speed / straight_speed;
+        sine = sqrt((1.0 - cosine) * (1.0 + cosine));
+        ray.grazing_rad = acos(cosine);
+    }
     ray.ground_range_m = sums.range;
-    ray.straight_range_m = sums.time * speed;
+    ray.straight_range_m = sums.time * straight_speed;
     ray.length_m = sums.length;
     ray.wavefront_m = sums.growth * sine * sine / speed;
-    ray.spreading = at_sonar * cosine * sine * transmission(path, &legs, cosine / speed) /
+    ray.spreading = at_sonar * cosine * sine * transmission(path, &legs, &last, cosine / speed) /
                     sqrt(1.0 - pow(cosine * at_sonar, 2.0));
     return ray;
 }
 
 /* x of the ray whose range (or, for a time, whose travel time) is the wanted one. Both grow with x:
  * dr/dx = dr/dp dp/dx and dt/dp = p dr/dp. */
-static double find_ray(const struct ray_path *path, const struct legs *legs, double last,
-                       double fastest_speed, double wanted, bool is_time)
+static double find_ray(const struct ray_path *path, const struct legs *legs,
+                       const struct stretch *last, double fastest_speed, double wanted,
+                       bool is_time)
 {
     double low = 0.0, high = INFINITY;
     double x = 1.0;
@@ -239,15 +269,16 @@ static double find_ray(const struct ray_path *path, const struct legs *legs, dou
 /* The ray to a height of which the range, or the travel time, is known. */
 struct found_ray {
     struct legs legs;
-    double last, fastest_speed, x;
+    struct stretch last;
+    double fastest_speed, x;
 };
 
 static struct found_ray ray_to(const struct ray_path *path, double height, double wanted,
                                bool is_time)
 {
-    struct found_ray ray = {legs_of(path), last_height(path, height), 0.0, 0.0};
-    ray.fastest_speed = fastest(path, &ray.legs, ray.last);
-    ray.x = find_ray(path, &ray.legs, ray.last, ray.fastest_speed, wanted, is_time);
+    struct found_ray ray = {legs_of(path), last_stretch(path, height), 0.0, 0.0};
+    ray.fastest_speed = fastest(path, &ray.legs, &ray.last);
+    ray.x = find_ray(path, &ray.legs, &ray.last, ray.fastest_speed, wanted, is_time);
     return ray;
 }
 
@@ -261,12 +292,33 @@ double ray_path_grazing(const struct ray_path *path, double ground_range_m, doub
     return path->comes_from_seabed ? -grazing : grazing;
 }
 
+double ray_path_direction(const struct ray_path *path, double ground_range_m, double height_m)
+{
+    const double grazing = ray_path_grazing(path, ground_range_m, height_m);
+    if (path->is_straight)
+        return grazing;
+    const struct stretch last = last_stretch(path, height_m);
+    return last.layer == 0 ? grazing
+                           : acos(cos(grazing) * last.speed_mps / path->water->straight_speed_mps);
+}
+
+double ray_path_shadow(const struct ray_path *path, double ground_range_m, double top_m,
+                       double ground_m)
+{
+    if (!(top_m > ground_m))
+        return 0.0;
+    const double grazing = ray_path_grazing(path, ground_range_m, top_m);
+    if (path->water->slices == 1)
+        return (top_m - ground_m) / tan(grazing);
+    return ray_path_arrival(path, grazing, ground_m).ground_range_m - ground_range_m;
+}
+
 double ray_path_range(const struct ray_path *path, double ground_range_m, double height_m)
 {
     if (path->is_straight)
         return hypot(ground_range_m, path->image_height_m - height_m);
     const struct found_ray ray = ray_to(path, height_m, ground_range_m, false);
-    return sum_path(path, &ray.legs, ray.last, ray.fastest_speed, ray.x).time *
+    return sum_path(path, &ray.legs, &ray.last, ray.fastest_speed, ray.x).time *
            path->water->straight_speed_mps;
 }
 
@@ -278,10 +330,10 @@ double ray_path_ground_range(const struct ray_path *path, double straight_range_
         return square > 0.0 ? sqrt(square) : 0.0;
     }
     const struct legs legs = legs_of(path);
-    const double last = last_height(path, 0.0);
+    const struct stretch last = last_stretch(path, 0.0);
     const double time = straight_range_m / path->water->straight_speed_mps;
-    if (time <= sum_path(path, &legs, last, fastest(path, &legs, last), 0.0).time)
+    if (time <= sum_path(path, &legs, &last, fastest(path, &legs, &last), 0.0).time)
         return 0.0;
     const struct found_ray ray = ray_to(path, 0.0, time, true);
-    return sum_path(path, &ray.legs, ray.last, ray.fastest_speed, ray.x).range;
+    return sum_path(path, &ray.legs, &ray.last, ray.fastest_speed, ray.x).range;
 }

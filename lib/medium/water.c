@@ -15,7 +15,11 @@
 
 #define STEPS_PER_SPEED     20000.0
 #define KELVIN_AT_0_CELSIUS 273.0 /* the papers' own, without the 0.15 */
-#define JOINED_DIFFERENCE   0.002 /* of layers that targets reach into, relative */
+#define JOINED_DIFFERENCE   0.002 /* of layers that become the straight water, relative */
+/* Of a slice's sound speed, relative, on which levels depend, by its half over the square of the
+ * tangent of the grazing angle; and of the way straight up within it. */
+#define SLICE_DIFFERENCE 3.0e-5
+#define SLICE_ERROR_M    5.0e-6
 
 struct stack {
     struct water_layer *layers; /* room for WATER_LAYERS_MAX */
@@ -187,10 +191,11 @@ static sonject_status join_below(struct water *water, struct report *report, dou
             fabs(layer->density / density - 1.0) > JOINED_DIFFERENCE)
             return report_failure(
                 report, SONJECT_ERROR_INPUT,
-                "the objects, up to %.2f m over the seabed, reach into layers of water that differ "
-                "by more than 1/500 (%.1f m/s at %.2f m, %.1f m/s on average): targets must lie "
-                "below the layers that refract",
-                highest, layer->speed_mps, layer->bottom_m, 1.0 / slowness);
+                "layers of water that differ by more than 1/500 (%.1f m/s at %.2f m, %.1f m/s on "
+                "average) begin below %.2f m over the seabed, the height of its relief or, with "
+                "injection.interactions above 1, a transducer's side or objects over the sonar, "
+                "of the objects: take that away, or let the layers begin higher",
+                layer->speed_mps, layer->bottom_m, 1.0 / slowness, highest);
     }
     /* what is left of the highest one stays a layer */
     water->layers[within].bottom_m = highest;
@@ -203,9 +208,54 @@ static sonject_status join_below(struct water *water, struct report *report, dou
     return SONJECT_OK;
 }
 
+/* The mean over so many layers. */
+static double mean_slowness(const struct water_layer *layers, size_t count)
+{
+    double time = 0.0;
+    for (size_t i = 0; i < count; i++)
+        time += (layers[i + 1].bottom_m - layers[i].bottom_m) / layers[i].speed_mps;
+    return time / (layers[count].bottom_m - layers[0].bottom_m);
+}
+
+/* Whether so many layers may be one slice. */
+static bool are_near(const struct water_layer *layers, size_t count)
+{
+    const double slowness = mean_slowness(layers, count);
+    double lead = 0.0; /* of the way straight up to the top of a layer, m */
+    for (size_t i = 0; i < count; i++) {
+        const double excess = 1.0 / (layers[i].speed_mps * slowness) - 1.0;
+        lead += (layers[i + 1].bottom_m - layers[i].bottom_m) * excess;
+        if (fabs(excess) > SLICE_DIFFERENCE || fabs(lead) > SLICE_ERROR_M ||
+            layers[i].density != layers[0].density)
+            return false;
+    }
+    return true;
+}
+
+/* Joins what begins below a height into slices, from the seabed upwards. */
+static void slice_below(struct water *water, double highest)
+{
+    struct water_layer *layers = water->layers;
+    size_t kept = 0;
+    water->slices = 1;
+    for (size_t first = 0, end; first < water->count; first = end) {
+        struct water_layer slice = layers[first];
+        end = first + 1;
+        while (end + 1 < water->count && layers[end].bottom_m < highest &&
+               are_near(&layers[first], end + 1 - first))
+            end++;
+        if (end > first + 1)
+            slice.speed_mps = 1.0 / mean_slowness(&layers[first], end - first);
+        if (slice.bottom_m < highest)
+            water->slices = kept + 1;
+        layers[kept++] = slice;
+    }
+    water->count = kept;
+}
+
 sonject_status water_init(struct water *water, struct report *report,
                           const struct water_layer *layers, size_t count,
-                          double isovelocity_speed_mps, double highest_m)
+                          double isovelocity_speed_mps, double straight_m, double sliced_m)
 {
     const struct water_layer isovelocity = {0.0, isovelocity_speed_mps, 1.0};
     memset(water, 0, sizeof *water);
@@ -214,12 +264,13 @@ sonject_status water_init(struct water *water, struct report *report,
     CHECK_MEMORY(report, water->layers, "the layers of water");
     memcpy(water->layers, count > 0 ? layers : &isovelocity, water->count * sizeof *water->layers);
     join_equals(water);
-    const sonject_status status = join_below(water, report, highest_m);
+    const sonject_status status = join_below(water, report, straight_m);
     if (status != SONJECT_OK) {
         water_clear(water);
         return status;
     }
     join_equals(water);
+    slice_below(water, sliced_m);
     water->straight_speed_mps = water->layers[0].speed_mps;
     return SONJECT_OK;
 }

@@ -1,7 +1,7 @@
-/* Water in level layers, what it absorbs, and how sound crosses it. Sound that the tracer follows
- * stays in the straight water: the lowest layer, which reaches from the seabed over all targets and
- * has one sound speed. A path leads from the sonar, or from its image in level boundaries, to
- * there. Pure functions; x along-track plays no part, since layers are level. */
+/* Water in level layers, what it absorbs, and how sound crosses it. The lowest layer is the
+ * straight water. Targets lie in it, or reach into layers over it, the slices. A path leads from
+ * the sonar, or from its image in level boundaries, to the straight water, and straight from the
+ * sonar to the slices too. Pure functions; x along-track plays no part, since layers are level. */
 #ifndef SONJECT_MEDIUM_WATER_H
 #define SONJECT_MEDIUM_WATER_H
 
@@ -49,17 +49,20 @@ struct sea_water {
 struct water {
     struct water_layer *layers; /* owned; neighbours differ; the first is the straight water */
     size_t count;
+    size_t slices; /* layers that targets reach into, the straight water included */
     double straight_speed_mps;
 };
 
-/* Lays the water: neighbours that do not differ are joined, and so are those that targets reach
- * into, up to highest_m over the seabed, at the speed that keeps the travel time straight up. count
- * 0: isovelocity water. On success *water is the caller's for water_clear; on failure nothing is
- * held. Errors: INPUT (a layer that targets reach into differs from all of them joined by more than
- * 1/500), MEMORY. */
+/* Lays the water: neighbours that do not differ are joined, and so are those up to straight_m over
+ * the seabed, at the speed that keeps the travel time straight up. Those that targets reach into,
+ * up to sliced_m, are slices: of them, neighbours are joined where that moves the travel time
+ * straight up by no more than 5 um of way anywhere. count 0: isovelocity water. On success *water
+ * is the caller's for water_clear; on failure nothing is held. Errors: INPUT (a layer up to
+ * straight_m differs from all of them joined by more than 1/500), MEMORY. */
 sonject_status water_init(struct water *water, struct report *report,
                           const struct water_layer *layers, size_t count,
-                          double isovelocity_speed_mps, double highest_m);
+                          double isovelocity_speed_mps, double straight_m, double sliced_m);
+
 void water_clear(struct water *water);
 
 /* The layer at a height over the seabed. */
@@ -84,9 +87,10 @@ struct ray_path ray_path_direct(const struct water *water, double sonar_height_m
 struct ray_path ray_path_image(const struct water *water, double sonar_height_m, double depth_m,
                                uint32_t bounces, bool comes_from_seabed);
 
-/* Sound at a point of the straight water. Grazing angles are those of its direction there, in rad,
- * positive downwards. */
+/* Sound at a point of the straight water or a slice. Rays are known by their grazing angles in the
+ * straight water, in rad, positive downwards. */
 struct arrival {
+    double grazing_rad;      /* of the sound's direction at the point itself */
     double ground_range_m;   /* from the sonar, horizontal */
     double straight_range_m; /* travel time times the straight water's speed */
     double length_m;         /* of the path */
@@ -96,14 +100,21 @@ struct arrival {
                                 transmit is in it. In isovelocity water s = cos of the angle */
 };
 
-/* The ray that comes to a height with a grazing angle: positive, or negative for a path that comes
+/* The ray of a grazing angle as it comes to a height: positive, or negative for a path that comes
  * from the seabed, where height_m is above it. INFINITY all over for an angle that no sound from
  * the source has (total reflection on the path). */
 struct arrival ray_path_arrival(const struct ray_path *path, double grazing_rad, double height_m);
 
-/* Grazing angle at which sound from the source meets a point of the straight water: a guarded
- * Newton iteration. ground_range_m > 0. */
+/* Grazing angle of the ray from the source to a point: a guarded Newton iteration. NaN where it
+ * turns back over the straight water. ground_range_m > 0. */
 double ray_path_grazing(const struct ray_path *path, double ground_range_m, double height_m);
+
+/* Grazing angle of the sound at a point itself. */
+double ray_path_direction(const struct ray_path *path, double ground_range_m, double height_m);
+
+/* Length, on ground of a height, of the shadow of something up there; 0 if it is not over it. */
+double ray_path_shadow(const struct ray_path *path, double ground_range_m, double top_m,
+                       double ground_m);
 
 /* Ground range at which sound meets the seabed after a travel time of straight_range_m over the
  * straight speed; 0 before it gets there at all. */

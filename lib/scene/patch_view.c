@@ -21,8 +21,13 @@ sonject_status scene_lay_water(const struct scene *scene, struct report *report,
         CHECK(object_top(scene, report, i, &top));
         highest = fmax(highest, top);
     }
+    highest += highest_seabed;
+    /* what else may meet targets than fans from the sonar stays in water of one sound speed */
+    const bool is_sliced = scene->injection.interactions == 1 &&
+                           scene->sonar.transducer_side_m == 0.0 &&
+                           highest < scene->sonar.altitude_m;
     return water_init(water, report, scene->water_layers, scene->water_layer_count,
-                      scene->medium.sound_speed_mps, highest + highest_seabed);
+                      scene->medium.sound_speed_mps, is_sliced ? highest_seabed : highest, highest);
 }
 
 double scene_reference_speed(const struct scene *scene)

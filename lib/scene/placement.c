@@ -72,8 +72,7 @@ double placement_shadow_end(const struct placement *placement, const struct patc
 {
     const double top = placement->centre[2] + placement_extent(placement, upward);
     const double end = placement->centre[1] + placement_extent(placement, outward);
-    return top > ground_m ? end + (top - ground_m) / tan(ray_path_grazing(&view->water, end, top))
-                          : end;
+    return end + ray_path_shadow(&view->water, end, top, ground_m);
 }
 
 /* How far some parts reach along a direction, from the origin that their centres are counted from;

@@ -67,7 +67,7 @@ double placement_half_extent(const struct placement *placement, const double dir
  * the centre to the centre. */
 double placement_range(const struct placement *placement, const struct patch_view *view);
 
-/* Grazing angle, rad, of the sound that comes to the centre. */
+/* Grazing angle, rad, of the ray to the centre (medium/water.h). */
 double placement_grazing(const struct placement *placement, const struct patch_view *view);
 
 /* Ground range at which the shadow of the part's top ends on ground of a height; that of its far

@@ -25,14 +25,20 @@ void ray_table_clear(struct ray_table *table)
     memset(table, 0, sizeof *table);
 }
 
-/* The height where the last stretch of straight water begins. */
+/* The height where the last stretch of straight water begins, or the highest slice. */
 static double edge_height(const struct ray_path *path)
 {
-    return path->comes_from_seabed ? 0.0 : path->water->layers[1].bottom_m;
+    const struct water *water = path->water;
+    if (path->comes_from_seabed)
+        return 0.0;
+    return water->slices < water->count
+               ? fmin(water->layers[water->slices].bottom_m, path->sonar_height_m)
+               : path->sonar_height_m;
 }
 
-/* The elevations at which sound comes to points (ground range, height), over the direction in which
- * it comes to the origin. Points beyond the straight water count as its edge. */
+/* The elevations of rays to points (ground range, height), over that to the origin. Points beyond
+ * the straight water or its slices count as their edge; those that no ray comes to are infinitely
+ * high. */
 static struct elevations elevations_of_points(const struct ray_path *path,
                                               double origin_grazing_rad, const double (*points)[2],
                                               size_t count)
@@ -45,7 +51,7 @@ static struct elevations elevations_of_points(const struct ray_path *path,
         const double elevation =
             origin_grazing_rad - ray_path_grazing(path, fmax(points[i][0], NEAREST_M), height);
         elevations.lowest = fmin(elevations.lowest, elevation);
-        elevations.highest = fmax(elevations.highest, elevation);
+        elevations.highest = isnan(elevation) ? INFINITY : fmax(elevations.highest, elevation);
     }
     return elevations;
 }
@@ -54,41 +60,55 @@ static struct elevations elevations_of_points(const struct ray_path *path,
 struct aim {
     const struct ray_path *path;
     double ground_range, height, grazing, range;
+    /* of the slice in which rays are lines; at the edge height, which lies in it, sound is followed
+     * up to there */
+    double edge, speed_ratio;
 };
 
-/* The ray of an elevation where it passes closest to the origin. */
+/* The line of an elevation where it passes closest to the origin; growths are per rad of it. */
 struct passing_ray {
-    double offset, offset_growth, range, spreading;
+    double offset, offset_growth, range, range_growth, spreading;
 };
 
 static struct passing_ray pass(const struct aim *aim, double elevation)
 {
-    const double grazing = aim->grazing - elevation;
-    const double edge = edge_height(aim->path);
-    const struct arrival ray = ray_path_arrival(aim->path, grazing, edge);
+    const double straight = aim->grazing - elevation;
+    const struct arrival ray = ray_path_arrival(aim->path, straight, aim->edge);
+    const double grazing = ray.grazing_rad;
     const double beyond = ray.ground_range_m - aim->ground_range;
-    const double above = edge - aim->height;
+    const double above = aim->edge - aim->height;
     const double along = beyond * cos(grazing) - above * sin(grazing);
+    const double turn =
+        aim->speed_ratio == 1.0 ? 1.0 : aim->speed_ratio * sin(straight) / sin(grazing);
     struct passing_ray passing;
     passing.offset = beyond * sin(grazing) + above * cos(grazing);
-    passing.offset_growth = ray.wavefront_m - along;
-    passing.range = ray.straight_range_m - along - aim->range;
+    passing.offset_growth = (ray.wavefront_m - along) * turn;
+    passing.range = ray.straight_range_m - along / aim->speed_ratio - aim->range;
+    passing.range_growth = -passing.offset * turn / aim->speed_ratio;
     passing.spreading = ray.spreading;
     return passing;
+}
+
+/* The cubic over `step` rad between two values that grow by so much per rad. */
+static void cubic_between(float cubic[4], double lower, double lower_growth, double upper,
+                          double upper_growth, double step)
+{
+    const double rise = upper - lower;
+    const double first = step * lower_growth;
+    const double last = step * upper_growth;
+    cubic[0] = (float)lower;
+    cubic[1] = (float)first;
+    cubic[2] = (float)(3.0 * rise - 2.0 * first - last);
+    cubic[3] = (float)(first + last - 2.0 * rise);
 }
 
 /* The cubic between two rays `step` rad apart. */
 static struct ray_piece_record piece_between(const struct passing_ray *lower,
                                              const struct passing_ray *upper, double step)
 {
-    const double rise = upper->offset - lower->offset;
-    const double first = step * lower->offset_growth;
-    const double last = step * upper->offset_growth;
     struct ray_piece_record piece;
-    piece.offset[0] = (float)lower->offset;
-    piece.offset[1] = (float)first;
-    piece.offset[2] = (float)(3.0 * rise - 2.0 * first - last);
-    piece.offset[3] = (float)(first + last - 2.0 * rise);
+    cubic_between(piece.offset, lower->offset, lower->offset_growth, upper->offset,
+                  upper->offset_growth, step);
     piece.range = (float)lower->range;
     piece.spreading = (float)lower->spreading;
     piece.spreading_growth = (float)(upper->spreading - lower->spreading);
@@ -104,8 +124,9 @@ static double error_between(const struct aim *aim, const struct passing_ray *low
     return fabs(cubic - pass(aim, middle).offset);
 }
 
+/* ranges: NULL, or pieces of the ranges alone. */
 static double fill_pieces(const struct aim *aim, const struct ray_table_record *record,
-                          struct ray_piece_record *pieces)
+                          struct ray_piece_record *pieces, struct ray_piece_record *ranges)
 {
     const double step = record->radians_per_piece;
     double worst = 0.0;
@@ -118,7 +139,36 @@ static double fill_pieces(const struct aim *aim, const struct ray_table_record *
         const double error = error_between(aim, &lower, &upper, middle, step);
         worst = isfinite(error) ? fmax(worst, error) : INFINITY;
         pieces[i] = piece_between(&lower, &upper, step);
+        if (ranges)
+            cubic_between(ranges[i].offset, lower.range, lower.range_growth, upper.range,
+                          upper.range_growth, step);
         lower = upper;
+    }
+    return worst;
+}
+
+/* The pieces of the straight water and its slices, as struct ray_table_record has them. Returns the
+ * worst error. */
+static double fill_slices(struct aim *aim, const struct ray_table_record *record,
+                          struct ray_piece_record *pieces)
+{
+    const struct water *water = aim->path->water;
+    const double straight_edge =
+        water->slices == 1 ? edge_height(aim->path) : water->layers[1].bottom_m;
+    aim->edge = straight_edge;
+    aim->speed_ratio = 1.0;
+    double worst = fill_pieces(aim, record, pieces, NULL);
+    pieces += record->pieces;
+    for (size_t i = 1; i < water->slices; i++, pieces += 1 + 2 * record->pieces) {
+        const double top =
+            i + 1 < water->slices ? water->layers[i + 1].bottom_m : edge_height(aim->path);
+        aim->edge = 0.5 * (water->layers[i].bottom_m + top);
+        aim->speed_ratio = water->layers[i].speed_mps / water->straight_speed_mps;
+        memset(pieces, 0, (1 + 2 * (size_t)record->pieces) * sizeof *pieces);
+        pieces->offset[0] = (float)(water->layers[i].bottom_m - aim->height);
+        pieces->offset[1] = (float)aim->speed_ratio;
+        pieces->offset[2] = (float)(1.0 / aim->speed_ratio);
+        worst = fmax(worst, fill_pieces(aim, record, pieces + 1, pieces + 1 + record->pieces));
     }
     return worst;
 }
@@ -135,25 +185,31 @@ static sonject_status ray_table_add(struct ray_table *table, struct report *repo
     record->ground_range = (float)ground_range_m;
     if (path->is_straight)
         return SONJECT_OK;
-    const struct aim aim = {path, ground_range_m, height_m,
-                            ray_path_grazing(path, ground_range_m, height_m),
-                            ray_path_range(path, ground_range_m, height_m)};
+    struct aim aim = {path,
+                      ground_range_m,
+                      height_m,
+                      ray_path_grazing(path, ground_range_m, height_m),
+                      ray_path_range(path, ground_range_m, height_m),
+                      0.0,
+                      1.0};
+    const size_t slices = path->water->slices;
+    record->slices = (int32_t)slices;
     record->first_piece = (int32_t)table->count;
     record->first_elevation = (float)elevations.lowest;
     double error = INFINITY;
     for (int32_t count = PIECES_FEWEST; count <= PIECES_MOST && error > OFFSET_ERROR_M;
          count *= 4) {
-        const size_t total = table->count + (size_t)count;
+        const size_t total = table->count + (size_t)count + (slices - 1) * (1 + 2 * (size_t)count);
         struct ray_piece_record *pieces = realloc(table->pieces, total * sizeof *pieces);
         CHECK_MEMORY(report, pieces, "the rays through the layers");
         table->pieces = pieces;
         record->pieces = count;
         record->radians_per_piece = (float)((elevations.highest - elevations.lowest) / count);
         record->pieces_per_radian = 1.0f / record->radians_per_piece;
-        error = fill_pieces(&aim, record, pieces + table->count);
+        error = fill_slices(&aim, record, pieces + table->count);
     }
-    table->count += (size_t)record->pieces;
-    if (error > OFFSET_ERROR_M)
+    table->count += (size_t)record->pieces + (slices - 1) * (1 + 2 * (size_t)record->pieces);
+    if (!(error <= OFFSET_ERROR_M))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "sound reaches %.1f m ground range so near to total reflection by a "
                               "layer of water that its rays cannot be told apart: move the patch "
@@ -338,15 +394,16 @@ struct elevations elevations_of_object(const struct tracer *tracer, uint32_t par
     const struct placement *placement = &tracer->placements[part];
     const double *centre = placement->centre;
     const double grazing = ray_path_grazing(path, centre[1], centre[2]);
-    const double upward[3] = {0.0, sin(grazing), cos(grazing)};
+    const double there = ray_path_direction(path, centre[1], centre[2]);
+    const double upward[3] = {0.0, sin(there), cos(there)};
     const double across = MARGIN * placement_half_extent(placement, upward);
     const double along = placement->bounding_radius_m;
     double corners[4][2];
     for (int i = 0; i < 4; i++) {
         const double up = i & 1 ? across : -across;
         const double away = i & 2 ? along : -along;
-        corners[i][0] = centre[1] + up * sin(grazing) + away * cos(grazing);
-        corners[i][1] = centre[2] + up * cos(grazing) - away * sin(grazing);
+        corners[i][0] = centre[1] + up * sin(there) + away * cos(there);
+        corners[i][1] = centre[2] + up * cos(there) - away * sin(there);
     }
     return elevations_of_points(path, grazing, (const double(*)[2])corners, 4);
 }

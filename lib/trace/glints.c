@@ -101,7 +101,7 @@ static struct sight sight_of_part(const struct tracer *tracer, uint32_t part,
                                   const struct ray_path *path)
 {
     const struct placement *placement = &tracer->placements[part];
-    const double grazing = ray_path_grazing(path, placement->centre[1], placement->centre[2]);
+    const double grazing = ray_path_direction(path, placement->centre[1], placement->centre[2]);
     struct sight sight;
     for (int i = 0; i < 3; i++) {
         const double *axis = placement->axes[i];

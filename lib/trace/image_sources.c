@@ -90,7 +90,9 @@ static double reach_from(const struct sound_source *source, const struct placeme
     const double grazing = source_grazing(source, placement);
     const double radius =
         ray_path_arrival(&source->path, grazing, placement->centre[2]).wavefront_m;
-    const double sight[3] = {0.0, cos(grazing), -sin(grazing)};
+    const double there =
+        ray_path_direction(&source->path, placement->centre[1], placement->centre[2]);
+    const double sight[3] = {0.0, cos(there), -sin(there)};
     const double bound = placement->bounding_radius_m;
     return 1.01 * placement_half_extent(placement, sight) + bound * bound / (radius - bound);
 }

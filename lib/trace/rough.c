@@ -198,10 +198,9 @@ static sonject_status init_fan(struct rough_trace *trace, struct tracer *tracer,
     patch_fan_aim(fan, tracer, &trace->grid, has_map);
     if (is_beam)
         beam_record_init(fan, tracer);
-    sonject_status status =
-        fan_edges_init(&trace->edges, fan, tracer, &trace->grid, nearest, rays_per_bin);
-    THEN(status,
-         patch_rays_init(&trace->launch.rays, &trace->launch.fan.table, tracer, &trace->grid));
+    /* which tells whether there are rays over all objects */
+    sonject_status status = patch_rays_init(&trace->launch.rays, &fan->table, tracer, &trace->grid);
+    THEN(status, fan_edges_init(&trace->edges, fan, tracer, &trace->grid, nearest, rays_per_bin));
     trace->launch.fan.stream = STREAM_ROUGH_RAYS;
     aspects_record_init(&trace->launch.fan, tracer, &trace->grid);
     trace->launch.fan.seabed_lambert = (float)tracer->view.seabed_lambert;

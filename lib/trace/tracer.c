@@ -18,12 +18,12 @@
 
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 49 * 4 ? 1 : -1];
-typedef char fan_record_is_packed[sizeof(struct fan_record) == 81 * 4 ? 1 : -1];
+typedef char fan_record_is_packed[sizeof(struct fan_record) == 82 * 4 ? 1 : -1];
 typedef char chain_record_is_packed[sizeof(struct chain_record) == 46 * 4 ? 1 : -1];
 typedef char target_record_is_packed[sizeof(struct target_record) == 17 * 4 ? 1 : -1];
 typedef char sphere_group_is_packed[sizeof(struct sphere_group) == 64 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
-typedef char image_pair_record_is_packed[sizeof(struct image_pair_record) == 49 * 4 ? 1 : -1];
+typedef char image_pair_record_is_packed[sizeof(struct image_pair_record) == 51 * 4 ? 1 : -1];
 typedef char multibounce_record_is_packed[sizeof(struct multibounce_record) == 13 * 4 ? 1 : -1];
 typedef char
     multibounce_echo_record_is_packed[sizeof(struct multibounce_echo_record) == 6 * 4 ? 1 : -1];
@@ -231,7 +231,8 @@ sonject_status launch_run(struct launch *launch, struct tracer *tracer)
 sonject_status launch_begin(struct launch *launch, struct tracer *tracer,
                             enum device_program program, const char *kernel_name)
 {
-    bool is_plain = tracer->scene->mesh_count == 0 && !tracer->relief;
+    bool is_plain =
+        tracer->scene->mesh_count == 0 && !tracer->relief && tracer->view.water.water->slices == 1;
     for (uint32_t i = 0; i < tracer->scene->object_count; i++)
         is_plain = is_plain && !object_is_fouled(tracer, i);
     launch->device = tracer->device;

@@ -109,7 +109,7 @@ TEST(test_lambert_is_that_of_the_seabed_in_view)
 {
     struct report report = {{0}, NULL, NULL};
     static struct water_layer layer = {0.0, 1500.0, 1.0};
-    static const struct water water = {&layer, 1, 1500.0};
+    static const struct water water = {&layer, 1, 1, 1500.0};
     static const double first_m[] = {0.0, 12.0};
     static const double middle_m[] = {0.5 * (10.0 + 16.0), 12.0 + 8.0};
     for (int i = 0; i < 2; i++) {

@@ -134,7 +134,7 @@ static void make_view(struct patch_view *view, struct scene *scene, sonject_side
 {
     struct report report = {{0}, NULL, NULL};
     static struct water_layer layer = {0.0, 1500.0, 1.0};
-    static const struct water water = {&layer, 1, 1500.0};
+    static const struct water water = {&layer, 1, 1, 1500.0};
     scene_init(scene);
     scene->geometry.first_slant_range_m = 40.0;
     scene->geometry.side = side;

@@ -22,7 +22,7 @@ static void expect_relative(const char *what, double measured, double expected, 
 static void lay(struct water *water, const struct water_layer *layers, size_t count,
                 double highest_m)
 {
-    EXPECT_OK(&report, water_init(water, &report, layers, count, 1500.0, highest_m));
+    EXPECT_OK(&report, water_init(water, &report, layers, count, 1500.0, highest_m, 0.0));
 }
 
 static struct ray_path way_of(const struct water *water, const struct reference_way *folded)
@@ -554,7 +554,8 @@ static void expect_refused(const struct water_layer *layers, size_t count)
 {
     struct water water;
     memset(&water, 0, sizeof water);
-    assert_int_equal(water_init(&water, &report, layers, count, 1500.0, 1.0), SONJECT_ERROR_INPUT);
+    assert_int_equal(water_init(&water, &report, layers, count, 1500.0, 1.0, 0.0),
+                     SONJECT_ERROR_INPUT);
     print_message("%s\n", report.message);
     assert_null(water.layers);
     /* nothing stands that high */
