@@ -55,14 +55,14 @@ struct water {
 
 /* Lays the water: neighbours that do not differ are joined, and so are those up to straight_m over
  * the seabed, at the speed that keeps the travel time straight up. Those that targets reach into,
- * up to sliced_m, are slices: of them, neighbours are joined where that moves the travel time
- * straight up by no more than 5 um of way anywhere. count 0: isovelocity water. On success *water
- * is the caller's for water_clear; on failure nothing is held. Errors: INPUT (a layer up to
- * straight_m differs from all of them joined by more than 1/500), MEMORY. */
+ * up to sliced_m, are slices: of them, neighbours are joined where that changes no one's speed by
+ * more than 3e-5, and the travel time straight up by no more than 5 um of way anywhere. count 0:
+ * isovelocity water. On success *water is the caller's for water_clear; on failure nothing is held.
+ * Errors: INPUT (a layer up to straight_m differs from all of them joined by more than 1/500),
+ * MEMORY. */
 sonject_status water_init(struct water *water, struct report *report,
                           const struct water_layer *layers, size_t count,
                           double isovelocity_speed_mps, double straight_m, double sliced_m);
-
 void water_clear(struct water *water);
 
 /* The layer at a height over the seabed. */

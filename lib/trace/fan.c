@@ -60,9 +60,8 @@ static struct elevations elevations_of_points(const struct ray_path *path,
 struct aim {
     const struct ray_path *path;
     double ground_range, height, grazing, range;
-    /* of the slice in which rays are lines; at the edge height, which lies in it, sound is followed
-     * up to there */
-    double edge, speed_ratio;
+    double edge; /* a height in the slice where rays are lines, down to which sound is followed */
+    double speed_ratio; /* of the slice over the straight water */
 };
 
 /* The line of an elevation where it passes closest to the origin; growths are per rad of it. */
