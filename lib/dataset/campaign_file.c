@@ -339,7 +339,8 @@ static const struct field chip_fields[] = {
     {"slant_range", "[nearest, farthest] of images' middles, or of objects where columns: all",
      SPECIAL(read_range, "list of two lengths")},
     {"range_over_altitude",
-     "[least, most] of the same over the sonar's altitude there; images may then begin in the "
+     "[least, most] of the slant range there over the sonar's altitude; images may then begin in "
+     "the "
      "water "
      "column",
      SPECIAL(read_ratio, "list of two numbers"), .range = "1..." TEXT_OF(RATIO_MAX)},

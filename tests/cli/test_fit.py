@@ -151,6 +151,8 @@ def test_contacts_of_a_recording_are_on_one_of_its_sides_or_on_chips(sonject, tm
     done = sonject("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml")
     assert done.returncode == 3 and "line.xtf: has two sides that are swaths of the campaign" in done.stderr
     (tmp_path / "contacts.csv").write_text(contacts)
-    sonject.done("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml", "--quiet")
+    done = sonject.done("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml")
+    unmatched = page_data(tmp_path, "fitted.html")["unmatched"]  # stones of one size beside drawn targets
+    assert unmatched and f"{len(unmatched)} of the contacts' measures are not matched by injected ones" in done.stderr
     found = [sum(extent["bins"]) for extent in page_data(tmp_path, "fitted.html")["fit"] if extent]
     assert min(found) > 18, found  # of 24: the port side shows none of the stones
