@@ -1,6 +1,5 @@
 #include "bench.h"
 
-
 #include "claims.h"
 #include "device/opencl/opencl.h"
 #include "mesh_arrays.h"
