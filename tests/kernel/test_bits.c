@@ -479,8 +479,7 @@ static void on_scenes_with(unsigned flags, body *run)
     for (size_t w = 0; w < width_count; w++)
         devices[w] = bench_open_width(&bench, widths[w]);
     for (size_t i = 0; i < COUNT(scenes); i++)
-        if (scenes[i].flags & flags &&
-            !(scenes[i].objects == CROWD && native_is_named(bench.device->name))) { /* has code */
+        if (scenes[i].flags & flags) {
             scene_clear(&bench.scene);
             scene_init(&bench.scene);
             bench_set_layers(&bench, NULL, 0);

@@ -91,8 +91,8 @@ size_t bench_widths(uint32_t widths[BENCH_WIDTHS]);
 struct CMUnitTest;
 int bench_run_on_devices(const struct CMUnitTest *tests, size_t count);
 
-/* The same on the default device alone; compiles: on the first that compiles users' code. */
-int bench_run_on_one(const struct CMUnitTest *tests, size_t count, bool compiles);
+/* The same on the default device alone. */
+int bench_run_on_default(const struct CMUnitTest *tests, size_t count);
 
 /* The names of all devices; the number of them. */
 #define BENCH_DEVICES 16

@@ -24,15 +24,6 @@
     }                                                                                              \
     static void name(void)
 
-/* In a program whose claims have users' code: they are held on a device that compiles it. */
-#define CLAIMS_COMPILE                                                                             \
-    __attribute__((constructor)) static void compile_claims(void)                                  \
-    {                                                                                              \
-        claims_compile();                                                                          \
-    }
-
-void claims_compile(void);
-
 void add_claim(const char *name, void (*hold)(void));
 
 /* Memory of zeros until the claim ends. */

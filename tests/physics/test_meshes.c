@@ -4,8 +4,6 @@
 #include "../kernel/mesh_samples.h"
 #include "sea.h"
 
-CLAIMS_COMPILE
-
 #define ROWS    121
 #define COLUMNS 121
 #define FAR_M   50.0

@@ -2,8 +2,6 @@
  * of physical optics (multibounce_reference.h). Levels are systematic: 0.2 dB. */
 #include "multibounce_reference.h"
 
-CLAIMS_COMPILE
-
 #define ROWS       101
 #define COLUMNS    201
 #define RANGE      50.0

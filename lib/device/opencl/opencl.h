@@ -7,15 +7,16 @@
 #include <CL/cl.h>
 #include <CL/cl_ext.h>
 
-#include "base/hash.h"
 #include "device/backend.h"
 
-/* All the library's own programs for a device, and those with code of users used last. */
-#define PROGRAMS_KEPT 64
+/* More than all of a device, at some widths. */
+#define PROGRAMS_KEPT    64
+#define OPTIONS_CAPACITY 128
 
 struct kept_program {
     cl_program program;
-    char key[HASH_TEXT_CAPACITY];
+    const struct embedded_source *source;
+    char options[OPTIONS_CAPACITY];
 };
 
 /* What contexts share of a device. Only for use between driver_enter and driver_leave. */
@@ -25,7 +26,7 @@ struct shared_device {
     cl_device_id id;
     cl_context context;
     size_t program_count;
-    struct kept_program programs[PROGRAMS_KEPT]; /* the one used last first */
+    struct kept_program programs[PROGRAMS_KEPT];
 };
 
 /* Claims the driver and locks it, until driver_leave: drivers find their devices anew in each

@@ -8,8 +8,6 @@
 #include "base/system/process.h"
 #include "device/opencl/opencl.h"
 
-#define OPTIONS_CAPACITY 256
-
 /* No fast-math of any kind; correctly rounded division where the compiler has to be told. */
 static void program_options(const struct device *device, enum program_variant variant,
                             char options[OPTIONS_CAPACITY])
@@ -32,23 +30,11 @@ struct building {
     const char *name; /* of the kernel */
     device_kernel *kernel;
     char options[OPTIONS_CAPACITY];
-    char key[HASH_TEXT_CAPACITY];
     const char *call; /* the last one, of OpenCL; NULL: none yet */
     cl_int error;
     cl_program failed; /* has the log; NULL: none */
     double seconds;    /* 0: it was there */
 };
-
-/* Digits that stand for what a program is made of, on its device; the source is its name's. */
-static sonject_status make_key(struct report *report, struct building *building)
-{
-    struct hash *hash = hash_begin();
-    CHECK_MEMORY(report, hash, "the name of a program");
-    hash_add_text(hash, building->source->name);
-    hash_add_text(hash, building->options);
-    hash_end(hash, building->key);
-    return SONJECT_OK;
-}
 
 static sonject_status tell_failure(struct report *report, const struct building *building)
 {
@@ -94,40 +80,30 @@ static cl_program compile(struct building *building)
     return NULL;
 }
 
-/* Makes a program the first of those kept, from the place where it was. */
-static void put_first(struct shared_device *shared, size_t place, struct kept_program kept)
-{
-    memmove(shared->programs + 1, shared->programs, place * sizeof *shared->programs);
-    shared->programs[0] = kept;
-}
-
 static cl_program find_kept(const struct building *building)
 {
-    struct shared_device *shared = building->device->shared;
-    for (size_t i = 0; i < shared->program_count; i++) {
-        if (strcmp(shared->programs[i].key, building->key) == 0) {
-            put_first(shared, i, shared->programs[i]);
-            return shared->programs[0].program;
-        }
-    }
+    const struct shared_device *shared = building->device->shared;
+    for (size_t i = 0; i < shared->program_count; i++)
+        if (shared->programs[i].source == building->source &&
+            strcmp(shared->programs[i].options, building->options) == 0)
+            return shared->programs[i].program;
     return NULL;
 }
 
-/* The program stays the device's, where the one that was not used for longest may go; NULL: see
+/* The program stays the device's, in the place of the last one where there is no room; NULL: see
  * `building`. */
 static cl_program build(struct building *building)
 {
     struct shared_device *shared = building->device->shared;
     const double start = clock_seconds();
-    struct kept_program kept;
-    kept.program = compile(building);
+    struct kept_program kept = {compile(building), building->source, {0}};
     if (!kept.program)
         return NULL;
     building->seconds = clock_seconds() - start;
-    memcpy(kept.key, building->key, sizeof kept.key);
+    memcpy(kept.options, building->options, sizeof kept.options);
     if (shared->program_count == PROGRAMS_KEPT)
         clReleaseProgram(shared->programs[--shared->program_count].program);
-    put_first(shared, shared->program_count++, kept);
+    shared->programs[shared->program_count++] = kept;
     return kept.program;
 }
 
@@ -162,7 +138,6 @@ sonject_status opencl_kernel_create(struct report *report, struct device *device
                                 .kernel = kernel,
                                 .error = CL_SUCCESS};
     program_options(device, variant, building.options);
-    CHECK(make_key(report, &building));
     CHECK(driver_claim(report));
     make_kernel(&building, false);
     const sonject_status waited =
