@@ -49,23 +49,19 @@ FUNCTION struct nearest_hit find_nearest_ahead(const struct fan_record *fan,
     return nearest;
 }
 
-/* The first surface on a ray; left_behind: of where it starts. */
-FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
-                                         GLOBAL const struct object_record *objects,
-                                         enum wanted_face wanted, struct vector3 start,
-                                         struct vector3 direction, float minimum, vint left_behind,
-                                         mask is_ray)
+/* What a ray meets on the nearest object, or on the seabed if that is nearer. */
+FUNCTION struct chain_hit hit_of_ray(const struct fan_record *fan,
+                                     GLOBAL const struct object_record *objects,
+                                     enum wanted_face wanted, struct vector3 start,
+                                     struct vector3 direction, const struct nearest_hit *nearest,
+                                     vfloat to_seabed, mask is_ray)
 {
-    const vfloat to_seabed =
-        seabed_distance(fan, objects, start, direction, SPLAT(minimum), is_ray);
-    const struct nearest_hit nearest = find_nearest_ahead(fan, objects, start, direction, minimum,
-                                                          SPLAT(FAR_AWAY), 0, left_behind, is_ray);
-    const mask on_object = MASK_OF(nearest.distance < to_seabed);
+    const mask on_object = MASK_OF(nearest->distance < to_seabed);
     struct chain_hit hit;
-    hit.distance = smaller(nearest.distance, to_seabed);
+    hit.distance = smaller(nearest->distance, to_seabed);
     hit.is_hit = is_ray & MASK_OF(hit.distance < 0.5f * FAR_AWAY);
     hit.distance = SELECT(hit.is_hit, hit.distance, SPLAT(0.0f));
-    hit.surface = SELECT(on_object, nearest.object, VINT_OF(SPLAT(-1.0f)));
+    hit.surface = SELECT(on_object, nearest->object, VINT_OF(SPLAT(-1.0f)));
     hit.point = along3(start, direction, hit.distance);
     hit.back = reversed3(direction);
     struct surface_face face;
@@ -91,6 +87,39 @@ FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
     hit.point = lifted_point(hit.point, &face);
     hit.left_behind = SELECT(is_outer, hit.left_behind, VINT_OF(SPLAT(-1.0f)));
     return hit;
+}
+
+/* The first surface on a ray; left_behind: of where it starts. */
+FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
+                                         GLOBAL const struct object_record *objects,
+                                         enum wanted_face wanted, struct vector3 start,
+                                         struct vector3 direction, float minimum, vint left_behind,
+                                         mask is_ray)
+{
+    const vfloat to_seabed =
+        seabed_distance(fan, objects, start, direction, SPLAT(minimum), is_ray);
+    const struct nearest_hit nearest = find_nearest_ahead(fan, objects, start, direction, minimum,
+                                                          SPLAT(FAR_AWAY), 0, left_behind, is_ray);
+    return hit_of_ray(fan, objects, wanted, start, direction, &nearest, to_seabed, is_ray);
+}
+
+/* The same where a ray meets its own object, whatever else may hide that. */
+FUNCTION struct chain_hit find_hit_on(const struct fan_record *fan,
+                                      GLOBAL const struct object_record *objects,
+                                      struct vector3 start, struct vector3 direction, float minimum,
+                                      vint object, mask is_ray)
+{
+    struct nearest_hit nearest = {SPLAT(FAR_AWAY), object};
+    for (int i = surface_after(-1, fan->objects, object, is_ray); i < fan->objects;
+         i = surface_after(i, fan->objects, object, is_ray)) {
+        const mask here = is_ray & MASK_OF(object == i);
+        if (ANY(here))
+            nearest.distance =
+                SELECT(here, object_distance(&objects[i], start, direction, SPLAT(minimum)),
+                       nearest.distance);
+    }
+    return hit_of_ray(fan, objects, FACE_OF_SCATTERING, start, direction, &nearest, SPLAT(FAR_AWAY),
+                      is_ray);
 }
 
 /* Whether chains meet the sea surface. */
@@ -187,15 +216,19 @@ struct chain {
 };
 
 /* Sends out rays from the sonar at x. cell: m rad, the piece of wavefront that a ray stands for,
- * along the track and in elevation. Random numbers are left to be set. */
+ * along the track and in elevation. only: objects that alone are looked for, lane by lane; 0: the
+ * first surface is. Random numbers are left to be set. */
 NOINLINE void begin_chain(const struct fan_record *fan,
                           GLOBAL const struct ray_piece_record *pieces,
                           GLOBAL const struct object_record *objects, vfloat x, vfloat elevation,
-                          vfloat cell, mask is_ray, struct chain *chain)
+                          vfloat cell, const vint *only, mask is_ray, struct chain *chain)
 {
     const struct fan_ray ray = fan_ray_at(fan, pieces, x, elevation);
-    chain->hit = find_chain_hit(fan, objects, FACE_OF_SCATTERING, ray.closest, ray.direction,
-                                -fan->reference_range, VINT_OF(SPLAT(-1.0f)), is_ray);
+    const float minimum = -fan->reference_range;
+    chain->hit = only
+                     ? find_hit_on(fan, objects, ray.closest, ray.direction, minimum, *only, is_ray)
+                     : find_chain_hit(fan, objects, FACE_OF_SCATTERING, ray.closest, ray.direction,
+                                      minimum, VINT_OF(SPLAT(-1.0f)), is_ray);
     chain->choice = 0;
     chain->range = ray.range_at_closest + chain->hit.distance;
     chain->length = SPLAT(0.0f);

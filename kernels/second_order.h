@@ -170,45 +170,6 @@ FUNCTION struct places places_of_cell(const struct fan_record *fan, const struct
                           least_y);
 }
 
-/* Takes a chain from its hit on a target to a place of the seabed. samples: per m rad and m^2 of
- * the plan; rays: of the target's fan, per m rad, which may find the path, too. */
-FUNCTION void step_to_seabed(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
-                             GLOBAL const struct object_record *objects, vfloat x, vfloat y,
-                             vfloat samples, vfloat rays, struct chain *chain,
-                             struct outcome_record *outcome)
-{
-    const struct chain_hit *from = &chain->hit;
-    struct chain_hit to = seabed_below(fan, objects, x, y, chain->is_alive);
-    const struct vector3 start = start_from(from);
-    to.normal =
-        seabed_normal(fan, objects, to.point, straight_path(minus3(to.point, start)).direction);
-    /* to as little over the seabed as rays start there, so that it does not hide itself */
-    const struct source_path way = straight_path(minus3(start_from(&to), start));
-    const struct vector3 direction = way.direction;
-    to.back = reversed3(direction);
-    to.distance = way.path;
-    const vfloat leaving = dot3(from->normal, direction);
-    const vfloat arriving = dot3(to.normal, to.back);
-    mask is_open = chain->is_alive & MASK_OF(leaving > 0.0f) & MASK_OF(arriving > 0.0f);
-    if (ANY(is_open)) {
-        const vfloat scattering = scattering_at(fan, chains, objects, from, direction);
-        is_open = is_open & MASK_OF(scattering > 0.0f);
-        outcome->queries += count_lanes(is_open);
-        is_open = is_open_way(fan, objects, from, direction, way.path, is_open);
-        const vfloat opening = opening_of_plan(&to, way.spreading);
-        const vfloat found =
-            samples + rays * rough_density_at(fan, objects, from, direction) * opening;
-        chain->energy = SELECT(
-            is_open, chain->energy * (scattering * leaving * opening * chains->finer[0] / found),
-            SPLAT(0.0f));
-    }
-    to.is_hit = is_open;
-    chain->length = SELECT(is_open, way.path, SPLAT(0.0f));
-    chain->surface_before = from->surface;
-    chain->hit = to;
-    chain->is_alive = is_open;
-}
-
 /* The share of an echo that a ray from a target counts, having met the seabed; the samples count
  * the rest. */
 NOINLINE vfloat share_of_ray(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
@@ -256,83 +217,6 @@ NOINLINE vfloat share_of_ray(const struct fan_record *fan, GLOBAL const struct c
     const mask has_rays = MASK_OF(rays > 0.0f);
     const vfloat share = rays / SELECT(has_rays, rays + samples, SPLAT(1.0f));
     return SELECT(is_shared, SELECT(is_heard & has_rays, share, SPLAT(0.0f)), SPLAT(1.0f));
-}
-
-/* One group of samples of a strip; all of a cell come one after the other. */
-NOINLINE void trace_second_order_group(
-    const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-    GLOBAL const struct chain_record *chains, GLOBAL const struct object_record *objects,
-    GLOBAL const struct sphere_record *spheres, GLOBAL const float *map, GLOBAL TALLY *tallies,
-    int strip, struct random_key key, RECORD_WORD first_sample, struct outcome_record *outcome)
-{
-    GLOBAL const struct target_record *targets = targets_of(chains, spheres) + fan->target;
-    const word sample = SPLAT_WORD(first_sample) + LANE_NUMBERS;
-    const word number = SPLAT_WORD(fan->first_ray) + sample;
-    vfloat along, chosen, followed, across_x, across, uniform, chance, unused;
-    three_uniforms(key, number, 0, &along, &chosen, &followed);
-    const struct echo_cell cell = cell_number(
-        fan, chains,
-        VFLOAT_OF(sample / (RECORD_WORD)chains->cell_samples) + (float)targets->first_cell,
-        strip_position(fan, strip) + (along - 0.5f) * fan->strip_width);
-    const struct target_weights weights = weigh_targets(targets, targets->targets, &cell);
-    const mask is_followed = MASK_OF(sample < fan->rays) & MASK_OF(followed < weights.share);
-    if (!ANY(is_followed))
-        return;
-    const struct sampled_target target =
-        sample_target(targets, targets->targets, &cell, &weights, chosen, is_followed);
-    three_uniforms(key, number, 1, &across_x, &across, &chance);
-    two_uniforms(key, number, 2, &uniform, &unused);
-    struct chain chain;
-    struct chain_echo echo;
-    begin_chain(fan, pieces, objects, target.first_x + across_x * target.width,
-                target.first_elevation + across * target.elevations, SPLAT(1.0f), is_followed,
-                &chain);
-    outcome->rays += count_lanes(is_followed);
-    outcome->queries += count_lanes(is_followed);
-    chain.is_alive = chain.is_alive & MASK_OF(chain.hit.surface == target.part);
-    if (!ANY(chain.is_alive))
-        return;
-    chain.key = key;
-    chain.number = number;
-    chain.chance = chance;
-    const vfloat x = 2.0f * cell.receiver_x - chain.first_x;
-    const struct seabed_line line = line_across(fan, chain.hit.point, x, cell.receiver_x);
-    const struct places places =
-        places_of_cell(fan, &chain, &line, &cell, target.least_y - chain.hit.point.y);
-    const vfloat y = sample_place(&places, uniform);
-    const vfloat samples =
-        density_of_samples(fan, chains, target.weight, &weights, target.width * target.elevations,
-                           length_of_place(&places, y));
-    chain.is_alive = chain.is_alive & MASK_OF(samples > 0.0f);
-    step_to_seabed(fan, chains, objects, x, chain.hit.point.y + y, samples, target.rays, &chain,
-                   outcome);
-    if (!ANY(chain.is_alive))
-        return;
-    struct ways_counted ways;
-    ways.is_counted = ways.counts_reverse = chain.is_alive;
-    vfloat range;
-    const vfloat energy =
-        energy_returned(fan, pieces, chains, objects, map, &chain, receiver_of(chains, &chain), 0,
-                        3, chain.is_alive, &range, outcome);
-    keep_echo(fan, chains, ways, &chain, energy, range, SPLAT(1.0f), &echo);
-    tally_chain_echo(fan, chains, tallies, 2, &echo, outcome);
-}
-
-/* Traces the share `segment` of a strip's samples, of which the fan tells the number as its rays.
- */
-FUNCTION struct outcome_record trace_second_order_strip(
-    const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-    GLOBAL const struct chain_record *chains, GLOBAL const struct object_record *objects,
-    GLOBAL const struct sphere_record *spheres, GLOBAL const float *map, GLOBAL TALLY *tallies,
-    int strip, int segment)
-{
-    struct outcome_record outcome = {0, 0, 0, 0};
-    const struct random_key key = key_of_strip(fan, strip);
-    for (RECORD_WORD sample = first_ray_of_item(segment); sample < fan->rays;
-         sample += ray_step(fan))
-        trace_second_order_group(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
-                                 sample, &outcome);
-    return outcome;
 }
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "chain_sea_surface.h"
 #include "chain_step.h"
-#include "second_order.h"
+#include "second_order_samples.h"
 
 /* Connects the hit to the source and gives the echo. */
 FUNCTION void connect_chain(const struct fan_record *fan,
@@ -155,7 +155,7 @@ FUNCTION void begin_fan_chain(const struct fan_record *fan,
     begin_chain(fan, pieces, objects,
                 strip_position(fan, strip) + (along - 0.5f) * fan->strip_width,
                 fan->first_elevation + (VFLOAT_OF(number) + across) * fan->elevation_step,
-                SPLAT(throughput * fan->strip_width * fan->elevation_step),
+                SPLAT(throughput * fan->strip_width * fan->elevation_step), 0,
                 MASK_OF(number < fan->rays), chain);
     chain->choice = choice;
     chain->key = key;
@@ -318,9 +318,11 @@ FUNCTION struct outcome_record trace_chains_strip(
     GROUP_MEMORY float *throughputs, int strip, int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};
-    if (fan->is_sample)
-        return trace_second_order_strip(fan, pieces, chains, objects, spheres, map, tallies, strip,
-                                        segment);
+    if (fan->is_sample) {
+        trace_second_order_strip(fan, pieces, chains, objects, spheres, map, tallies, strip,
+                                 segment, &outcome);
+        return outcome;
+    }
     const struct random_key key = key_of_strip(fan, strip);
     const RECORD_WORD blocks = (fan->rays + THIN_BLOCK - 1u) / THIN_BLOCK;
     const RECORD_WORD stride = (RECORD_WORD)fan->segments;

@@ -1,0 +1,248 @@
+/* Tracing the samples of second_order.h. Of a cell far from the targets few samples are followed, and
+ * most of those begin where a target turns away from their seabed. So samples are gathered until
+ * every lane has one: first those that are followed, then those that face their seabed, of which
+ * alone it is asked what hides them. */
+#ifndef SONJECT_KERNELS_SECOND_ORDER_SAMPLES_H
+#define SONJECT_KERNELS_SECOND_ORDER_SAMPLES_H
+
+#include "second_order.h"
+
+/* The way from a hit on a target to a place of the seabed. */
+struct way_to_seabed {
+    struct chain_hit to;
+    struct source_path way;
+    vfloat leaving; /* cosine, of the way and the target's normal */
+    mask is_facing;
+};
+
+FUNCTION struct way_to_seabed way_to_seabed(const struct fan_record *fan,
+                                            GLOBAL const struct object_record *objects, vfloat x,
+                                            vfloat y, const struct chain *chain)
+{
+    const struct chain_hit *from = &chain->hit;
+    const struct vector3 start = start_from(from);
+    struct way_to_seabed found;
+    struct chain_hit *to = &found.to;
+    *to = seabed_below(fan, objects, x, y, chain->is_alive);
+    to->normal =
+        seabed_normal(fan, objects, to->point, straight_path(minus3(to->point, start)).direction);
+    /* to as little over the seabed as rays start there, so that it does not hide itself */
+    found.way = straight_path(minus3(start_from(to), start));
+    to->back = reversed3(found.way.direction);
+    to->distance = found.way.path;
+    found.leaving = dot3(from->normal, found.way.direction);
+    found.is_facing = chain->is_alive & MASK_OF(found.leaving > 0.0f) &
+                      MASK_OF(dot3(to->normal, to->back) > 0.0f);
+    return found;
+}
+
+/* Takes a chain from its hit on a target to a place of the seabed. samples: per m rad and m^2 of
+ * the plan; rays: of the target's fan, per m rad, which may find the path, too. */
+FUNCTION void step_to_seabed(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
+                             GLOBAL const struct object_record *objects,
+                             const struct way_to_seabed *found, vfloat samples, vfloat rays,
+                             struct chain *chain, struct outcome_record *outcome)
+{
+    const struct chain_hit *from = &chain->hit;
+    const struct vector3 direction = found->way.direction;
+    const vfloat scattering = scattering_at(fan, chains, objects, from, direction);
+    mask is_open = found->is_facing & MASK_OF(scattering > 0.0f);
+    outcome->queries += count_lanes(is_open);
+    is_open = is_open_way(fan, objects, from, direction, found->way.path, is_open);
+    const vfloat opening = opening_of_plan(&found->to, found->way.spreading);
+    const vfloat density =
+        samples + rays * rough_density_at(fan, objects, from, direction) * opening;
+    chain->energy =
+        SELECT(is_open,
+               chain->energy * (scattering * found->leaving * opening * chains->finer[0] / density),
+               SPLAT(0.0f));
+    chain->length = SELECT(is_open, found->way.path, SPLAT(0.0f));
+    chain->surface_before = from->surface;
+    chain->hit = found->to;
+    chain->hit.is_hit = is_open;
+    chain->is_alive = is_open;
+}
+
+/* Samples of a strip, one in each lane: where their echoes end, and what comes there. */
+struct samples {
+    word number;
+    struct echo_cell cell;
+    struct target_weights weights;
+    vfloat chosen; /* a uniform deviate, for the target's part */
+    mask is_followed;
+};
+
+FUNCTION struct samples aim_samples(const struct fan_record *fan,
+                                    GLOBAL const struct chain_record *chains,
+                                    GLOBAL const struct target_record *targets, int strip,
+                                    struct random_key key, word sample)
+{
+    struct samples samples;
+    vfloat along, followed;
+    samples.number = SPLAT_WORD(fan->first_ray) + sample;
+    three_uniforms(key, samples.number, 0, &along, &samples.chosen, &followed);
+    samples.cell = cell_number(fan, chains,
+                               VFLOAT_OF(sample / (RECORD_WORD)chains->cell_samples) +
+                                   (float)targets->first_cell,
+                               strip_position(fan, strip) + (along - 0.5f) * fan->strip_width);
+    samples.weights = weigh_targets(targets, targets->targets, &samples.cell);
+    samples.is_followed = MASK_OF(sample < fan->rays) & MASK_OF(followed < samples.weights.share);
+    return samples;
+}
+
+/* What a strip's samples are traced with. */
+struct sample_trace {
+    const struct fan_record *fan;
+    GLOBAL const struct ray_piece_record *pieces;
+    GLOBAL const struct chain_record *chains;
+    GLOBAL const struct object_record *objects;
+    GLOBAL const struct sphere_record *spheres;
+    struct random_key key;
+    int strip;
+};
+
+/* A path from the sonar by a target to the seabed. */
+struct second_order_path {
+    struct chain chain; /* at the target */
+    struct way_to_seabed onward;
+    vfloat samples, rays; /* that find it, as step_to_seabed takes them */
+};
+
+/* is_alone: whether a target is hidden is not asked yet. */
+NOINLINE void path_of_samples(const struct sample_trace *trace, word sample, mask is_sample,
+                              int is_alone, struct second_order_path *path)
+{
+    const struct fan_record *fan = trace->fan;
+    GLOBAL const struct target_record *targets =
+        targets_of(trace->chains, trace->spheres) + fan->target;
+    const struct samples samples =
+        aim_samples(fan, trace->chains, targets, trace->strip, trace->key, sample);
+    const struct sampled_target target =
+        sample_target(targets, targets->targets, &samples.cell, &samples.weights, samples.chosen,
+                      is_sample & samples.is_followed);
+    struct chain *chain = &path->chain;
+    vfloat across_x, across, uniform, unused;
+    three_uniforms(trace->key, samples.number, 1, &across_x, &across, &chain->chance);
+    two_uniforms(trace->key, samples.number, 2, &uniform, &unused);
+    const vfloat chance = chain->chance;
+    begin_chain(fan, trace->pieces, trace->objects, target.first_x + across_x * target.width,
+                target.first_elevation + across * target.elevations, SPLAT(1.0f),
+                is_alone ? &target.part : 0, is_sample & samples.is_followed, chain);
+    chain->is_alive = chain->is_alive & MASK_OF(chain->hit.surface == target.part);
+    chain->key = trace->key;
+    chain->number = samples.number;
+    chain->chance = chance;
+    const vfloat receiver_x = samples.cell.receiver_x;
+    const vfloat x = 2.0f * receiver_x - chain->first_x;
+    const struct seabed_line line = line_across(fan, chain->hit.point, x, receiver_x);
+    const struct places places =
+        places_of_cell(fan, chain, &line, &samples.cell, target.least_y - chain->hit.point.y);
+    const vfloat y = sample_place(&places, uniform);
+    path->samples =
+        density_of_samples(fan, trace->chains, target.weight, &samples.weights,
+                           target.width * target.elevations, length_of_place(&places, y));
+    path->rays = target.rays;
+    chain->is_alive = chain->is_alive & MASK_OF(path->samples > 0.0f);
+    path->onward = way_to_seabed(fan, trace->objects, x, chain->hit.point.y + y, chain);
+}
+
+/* Samples that wait until every lane has one. */
+struct waiting_samples {
+    int numbers[2 * WIDTH];
+    int count;
+};
+
+FUNCTION void add_waiting(const int numbers[WIDTH], mask is_wanted, struct waiting_samples *waiting)
+{
+    for (RECORD_WORD left = lane_bits(is_wanted); left != 0; left &= left - 1)
+        waiting->numbers[waiting->count++] = numbers[lowest_bit(left)];
+}
+
+/* Takes the last of them, fewer than WIDTH if no more wait. */
+FUNCTION mask take_waiting(struct waiting_samples *waiting, int numbers[WIDTH])
+{
+    const int taken = waiting->count < WIDTH ? waiting->count : WIDTH;
+    waiting->count -= taken;
+    for (int lane = 0; lane < WIDTH; lane++)
+        numbers[lane] = lane < taken ? waiting->numbers[waiting->count + lane] : 0;
+    return MASK_OF(LANE_NUMBERS < (RECORD_WORD)taken);
+}
+
+/* Of some samples that are followed finds those whose target faces the place on the seabed. */
+FUNCTION void find_facing(const struct sample_trace *trace, struct waiting_samples *followed,
+                          struct waiting_samples *facing, struct outcome_record *outcome)
+{
+    int numbers[WIDTH];
+    struct second_order_path path;
+    const mask is_sample = take_waiting(followed, numbers);
+    outcome->rays += count_lanes(is_sample);
+    outcome->queries += count_lanes(is_sample);
+    path_of_samples(trace, AS_WORD(LOAD_VINT(numbers)), is_sample, 1, &path);
+    add_waiting(numbers, path.onward.is_facing, facing);
+}
+
+/* Traces some of them. */
+FUNCTION void trace_facing(const struct sample_trace *trace, GLOBAL const float *map,
+                           GLOBAL TALLY *tallies, struct waiting_samples *facing,
+                           struct outcome_record *outcome)
+{
+    int numbers[WIDTH];
+    struct second_order_path path;
+    struct chain_echo echo;
+    struct chain *chain = &path.chain;
+    const mask is_sample = take_waiting(facing, numbers);
+    outcome->queries += count_lanes(is_sample);
+    path_of_samples(trace, AS_WORD(LOAD_VINT(numbers)), is_sample, 0, &path);
+    if (!ANY(path.onward.is_facing))
+        return;
+    step_to_seabed(trace->fan, trace->chains, trace->objects, &path.onward, path.samples, path.rays,
+                   chain, outcome);
+    if (!ANY(chain->is_alive))
+        return;
+    struct ways_counted ways;
+    ways.is_counted = ways.counts_reverse = chain->is_alive;
+    vfloat range;
+    const vfloat energy =
+        energy_returned(trace->fan, trace->pieces, trace->chains, trace->objects, map, chain,
+                        receiver_of(trace->chains, chain), 0, 3, chain->is_alive, &range, outcome);
+    keep_echo(trace->fan, trace->chains, ways, chain, energy, range, SPLAT(1.0f), &echo);
+    tally_chain_echo(trace->fan, trace->chains, tallies, 2, &echo, outcome);
+}
+
+/* Traces the share `segment` of a strip's samples, of which the fan tells the number as its rays.
+ */
+NOINLINE void trace_second_order_strip(const struct fan_record *fan,
+                                       GLOBAL const struct ray_piece_record *pieces,
+                                       GLOBAL const struct chain_record *chains,
+                                       GLOBAL const struct object_record *objects,
+                                       GLOBAL const struct sphere_record *spheres,
+                                       GLOBAL const float *map, GLOBAL TALLY *tallies, int strip,
+                                       int segment, struct outcome_record *outcome)
+{
+    const struct sample_trace trace = {
+        fan, pieces, chains, objects, spheres, key_of_strip(fan, strip), strip};
+    GLOBAL const struct target_record *targets = targets_of(chains, spheres) + fan->target;
+    struct waiting_samples followed, facing;
+    followed.count = facing.count = 0;
+    int is_over = 0;
+    for (RECORD_WORD first = first_ray_of_item(segment); !is_over; first += ray_step(fan)) {
+        is_over = first >= fan->rays;
+        if (!is_over) {
+            int numbers[WIDTH];
+            for (int lane = 0; lane < WIDTH; lane++)
+                numbers[lane] = (int)first + lane;
+            add_waiting(numbers,
+                        aim_samples(fan, chains, targets, strip, trace.key,
+                                    SPLAT_WORD(first) + LANE_NUMBERS)
+                            .is_followed,
+                        &followed);
+        }
+        const int least = is_over ? 1 : WIDTH; /* at the end those that are left */
+        while (followed.count >= least)
+            find_facing(&trace, &followed, &facing, outcome);
+        while (facing.count >= least)
+            trace_facing(&trace, map, tallies, &facing, outcome);
+    }
+}
+
+#endif
