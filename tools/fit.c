@@ -12,7 +12,7 @@ struct fit_options {
     const char *path;
     const char *contacts;
     const char *boxes;
-    struct text_list overrides;
+    struct text_list classes, overrides;
 };
 
 static const struct argument arguments[] = {
@@ -21,6 +21,8 @@ static const struct argument arguments[] = {
     {"--boxes", NULL, "both|highlight|shadow",
      "what labels are around where no class says it (both)", ARGUMENT_TEXT, false,
      offsetof(struct fit_options, boxes)},
+    {"--class", NULL, "NAME", "takes contacts of this class alone; may be repeated", ARGUMENT_TEXTS,
+     false, offsetof(struct fit_options, classes)},
     {"--set", NULL, "KEY=VALUE", "changes the campaign that is fitted; may be repeated",
      ARGUMENT_TEXTS, false, offsetof(struct fit_options, overrides)},
     STAGE_ARGUMENTS(struct fit_options),
@@ -49,7 +51,9 @@ static sonject_status make(sonject_context *context, const void *verb_options,
     const sonject_scene_read_params reading = reading_of(&options->overrides);
     sonject_campaign_fit_params params = {.struct_size = sizeof(params),
                                           .contacts = options->contacts,
-                                          .fitted = options->stage.output};
+                                          .fitted = options->stage.output,
+                                          .classes = options->classes.texts,
+                                          .class_count = options->classes.count};
     (void)was_finished;
     boxes_parse(options->boxes, &params.part);
     return sonject_campaign_fit(context, options->path, &reading, &params, progress_update,

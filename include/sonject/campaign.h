@@ -134,6 +134,8 @@ typedef struct sonject_campaign_fit_params {
                            page and its picture come beside it: ".html", ".png"; where the scene's
                            input.calibration is auto, a folder of that name with "_fit" for an
                            extension has calibrations of swaths and contacts' images */
+    const char *const *classes; /* contacts of these classes alone; NULL: of all */
+    size_t class_count;
 } sonject_campaign_fit_params;
 
 /* Fits a campaign to real contacts: moves what its targets draw of length, width, height and level

@@ -220,6 +220,9 @@ sonject_status sonject_campaign_fit(sonject_context *context, const char *path,
     if (fit.part > SONJECT_LABELS_SHADOW)
         return report_failure(report, SONJECT_ERROR_ARGUMENT, "part must be 0 to 2, not %u",
                               (unsigned)fit.part);
+    for (size_t i = 0; i < fit.class_count; i++)
+        if (!fit.classes || !fit.classes[i])
+            return null_argument(report, "classes");
     return context_finish(context,
                           campaign_fit(report, &context->device, &source, &fit, progress, user));
 }

@@ -52,6 +52,39 @@ uint32_t part_of_class(const char *name, uint32_t part)
                                        : part;
 }
 
+sonject_status contact_reader_count(struct contact_reader *reader, const char *class_name,
+                                    bool *is_chosen)
+{
+    const struct contact_choice *choice = reader->choice;
+    const json_int_t before = json_integer_value(json_object_get(reader->classes, class_name));
+    *is_chosen = choice->class_count == 0;
+    for (size_t i = 0; i < choice->class_count; i++)
+        *is_chosen = *is_chosen || strcmp(class_name, choice->classes[i]) == 0;
+    if (json_object_set_new_nocheck(reader->classes, class_name, json_integer(before + 1)) != 0)
+        return report_out_of_memory(reader->report, "contacts");
+    return SONJECT_OK;
+}
+
+/* "boulder (40), mine (60)", of classes that are not of parts alone; how many these are. */
+static size_t list_classes(const struct contact_reader *reader, char *text, size_t capacity)
+{
+    const char *name;
+    json_t *labels;
+    size_t count = 0, length = 0;
+    json_object_foreach(reader->classes, name, labels)
+    {
+        char excerpt[40];
+        if (part_of_class(name, UINT32_MAX) != UINT32_MAX || length + 80 > capacity)
+            continue;
+        length +=
+            (size_t)snprintf(text + length, capacity - length, "%s%s (%lld)", count > 0 ? ", " : "",
+                             text_excerpt(excerpt, sizeof excerpt, *name ? name : "no class"),
+                             (long long)json_integer_value(labels));
+        count++;
+    }
+    return count;
+}
+
 /* The path of the file of an image, for free(); NULL: there is none, or memory is out. */
 static char *find_file(const struct contact_reader *reader, const char *name, bool *has_memory)
 {
@@ -315,7 +348,8 @@ static sonject_status read_labels(struct contact_reader *reader, const char *pat
         return quantiles_of_file(reader, path);
     const bool is_coco = name_ends(path, ".json");
     reader->images = json_object();
-    CHECK_MEMORY(reader->report, reader->images, "contacts");
+    reader->classes = json_object();
+    CHECK_MEMORY(reader->report, reader->images && reader->classes, "contacts");
     if (is_coco || name_ends(path, ".csv")) {
         char *folder = path_folder(path);
         CHECK_MEMORY(reader->report, folder, "contacts");
@@ -326,21 +360,30 @@ static sonject_status read_labels(struct contact_reader *reader, const char *pat
     } else {
         CHECK(read_folder(reader, path));
     }
+    char classes[400] = "";
+    const size_t class_count = list_classes(reader, classes, sizeof classes);
+    if (reader->set->count == 0 && class_count > 0)
+        return input_failure(reader->report, path,
+                             "holds no contacts of the chosen classes, but of %s", classes);
     if (reader->set->count == 0)
         return input_failure(reader->report, path, "holds no contacts");
+    if (reader->choice->class_count == 0 && class_count > 1)
+        report_note(reader->report, "contacts of %zu classes are taken as one: %s", class_count,
+                    classes);
     pair_all(reader->set);
     return SONJECT_OK;
 }
 
-sonject_status contact_set_read(struct report *report, const char *path, uint32_t part,
-                                struct contact_set *set)
+sonject_status contact_set_read(struct report *report, const char *path,
+                                const struct contact_choice *choice, struct contact_set *set)
 {
-    struct contact_reader reader = {.report = report, .set = set, .part = part};
+    struct contact_reader reader = {.report = report, .set = set, .choice = choice};
     memset(set, 0, sizeof *set);
     const sonject_status status = read_labels(&reader, path);
     for (size_t i = 0; i < IMAGE_FOLDERS; i++)
         free(reader.folders[i]);
     json_decref(reader.images);
+    json_decref(reader.classes);
     return status;
 }
 

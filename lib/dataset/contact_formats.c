@@ -63,10 +63,22 @@ static bool read_side(const json_t *image, const char *key, uint64_t *pixels)
     return !value || (json_is_integer(value) && number > 0 && (uint64_t)number <= IMAGE_PIXELS_MAX);
 }
 
-/* An annotation's image and class. */
-static sonject_status read_references(struct coco *coco, const char *place,
-                                      const json_t *annotation, struct labelled_image *image,
-                                      uint32_t *part)
+/* The class of an annotation. */
+static sonject_status read_class(struct coco *coco, const char *place, const json_t *annotation,
+                                 const char **name)
+{
+    char digits[24];
+    const char *id = id_text(json_object_get(annotation, "category_id"), digits);
+    const json_t *entry = id ? json_object_get(coco->categories, id) : NULL;
+    if (!entry)
+        return input_failure(coco->reader->report, place,
+                             "category_id is of none of the categories");
+    *name = member_text(entry, "name");
+    return SONJECT_OK;
+}
+
+static sonject_status read_image(struct coco *coco, const char *place, const json_t *annotation,
+                                 struct labelled_image *image)
 {
     struct contact_reader *reader = coco->reader;
     char digits[24];
@@ -77,14 +89,8 @@ static sonject_status read_references(struct coco *coco, const char *place,
     if (!read_side(entry, "width", &image->columns) || !read_side(entry, "height", &image->rows))
         return input_failure(reader->report, place,
                              "its image's width or height is not a whole number of pixels");
-    CHECK(
-        contact_reader_find_image(reader, place, member_text(entry, "file_name"), &image->number));
-    id = id_text(json_object_get(annotation, "category_id"), digits);
-    entry = id ? json_object_get(coco->categories, id) : NULL;
-    if (!entry)
-        return input_failure(reader->report, place, "category_id is of none of the categories");
-    *part = part_of_class(member_text(entry, "name"), reader->part);
-    return SONJECT_OK;
+    return contact_reader_find_image(reader, place, member_text(entry, "file_name"),
+                                     &image->number);
 }
 
 static sonject_status read_annotations(struct coco *coco, const json_t *annotations)
@@ -100,7 +106,8 @@ static sonject_status read_annotations(struct coco *coco, const json_t *annotati
         char place[LABEL_PLACE];
         double sides[4];
         struct labelled_image image = {0, 0, 0, 0};
-        uint32_t part = reader->part;
+        const char *class_name = "";
+        bool is_chosen;
         const json_t *box = json_object_get(annotation, "bbox");
         bool is_box = json_array_size(box) == 4;
         snprintf(place, sizeof place, "%s: annotations[%zu]", coco->file, i);
@@ -111,8 +118,13 @@ static sonject_status read_annotations(struct coco *coco, const json_t *annotati
         if (!is_box)
             return input_failure(reader->report, place,
                                  "bbox must be four numbers of pixels, [x, y, width, height]");
-        CHECK(read_references(coco, place, annotation, &image, &part));
-        CHECK(contact_reader_add(reader, place, &image, part,
+        CHECK(read_class(coco, place, annotation, &class_name));
+        CHECK(contact_reader_count(reader, class_name, &is_chosen));
+        if (!is_chosen)
+            continue;
+        CHECK(read_image(coco, place, annotation, &image));
+        CHECK(contact_reader_add(reader, place, &image,
+                                 part_of_class(class_name, reader->choice->part),
                                  &(struct labelled_box){sides[0], sides[1], sides[2], sides[3]}));
     }
     return SONJECT_OK;
@@ -198,7 +210,7 @@ static sonject_status find_part(const struct contact_table *table, const struct 
 {
     char excerpt[40];
     const char *word = field_of_column(table, row, COLUMN_PART);
-    *part = part_of_class(field_of_column(table, row, COLUMN_CLASS), table->reader->part);
+    *part = part_of_class(field_of_column(table, row, COLUMN_CLASS), table->reader->choice->part);
     if (*word == 0)
         return SONJECT_OK;
     *part = strcmp(word, "both") == 0 ? LABELLED_BOTH : part_of_class(word, UINT32_MAX);
@@ -232,6 +244,10 @@ static sonject_status take_row(void *user, const struct table_row *row)
                                 table->names[COLUMN_ROW + k], "'%s' is not a number",
                                 text_excerpt(excerpt, sizeof excerpt, text));
     }
+    bool is_chosen;
+    CHECK(contact_reader_count(reader, field_of_column(table, row, COLUMN_CLASS), &is_chosen));
+    if (!is_chosen)
+        return SONJECT_OK;
     const char *name = field_of_column(table, row, COLUMN_IMAGE);
     if (*name == '\'' && name[1] && strchr("=+-@", name[1]))
         name++; /* it keeps spreadsheets from taking a name for a formula */

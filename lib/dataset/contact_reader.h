@@ -17,9 +17,10 @@
 struct contact_reader {
     struct report *report;
     struct contact_set *set;
-    uint32_t part;                /* of classes whose names do not tell it */
+    const struct contact_choice *choice;
     char *folders[IMAGE_FOLDERS]; /* where images are looked for; NULL: there are fewer */
     json_t *images;               /* numbers in the set by the names that labels have */
+    json_t *classes;              /* how many labels each class has */
 };
 
 /* A box as labels tell it, in pixels from the image's corner, with fractions. */
@@ -36,6 +37,10 @@ struct labelled_image {
 
 /* What a class is of: its name tells, or it is `part`. */
 uint32_t part_of_class(const char *name, uint32_t part);
+
+/* Counts a label of a class. *is_chosen: whether it is to be read. Errors: MEMORY. */
+sonject_status contact_reader_count(struct contact_reader *reader, const char *class_name,
+                                    bool *is_chosen);
 
 /* The number of the image of that name, whose file must be there, in one of the folders. place:
  * "labels.csv:3", for messages. Errors: INPUT, MEMORY. */

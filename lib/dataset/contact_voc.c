@@ -11,7 +11,8 @@
 #include "base/text.h"
 #include "dataset/contact_reader.h"
 
-#define WAY_CAPACITY 64
+#define WAY_CAPACITY   64
+#define CLASS_CAPACITY 200
 
 /* Names of the elements whose text is a number. */
 static const char *const number_ways[] = {
@@ -41,9 +42,8 @@ struct voc {
     size_t length;
     bool reads_objects; /* the second reading, since a file may name its image behind them */
     char image_name[PATH_CAPACITY];
-    bool has_class; /* the object that is read */
-    uint32_t part;
-    double numbers[NUMBERS]; /* NaN: not told */
+    char class_name[CLASS_CAPACITY]; /* of the object that is read; "": not told yet */
+    double numbers[NUMBERS];         /* NaN: not told */
 };
 
 /* Keeps the first message and ends the parsing. */
@@ -72,7 +72,7 @@ static void begin_element(void *user, const XML_Char *name, const XML_Char **att
     voc->depth++;
     voc->length = 0;
     if (strcmp(voc->way, "/annotation/object") == 0 && voc->depth == voc->depth_in_way) {
-        voc->has_class = false;
+        voc->class_name[0] = '\0';
         for (int i = XMIN; i <= YMAX; i++)
             voc->numbers[i] = NAN;
     }
@@ -97,19 +97,26 @@ static void end_object(struct voc *voc)
     bool has_box = true;
     for (int i = XMIN; i <= YMAX; i++)
         has_box = has_box && !isnan(numbers[i]);
-    if (!voc->has_class || !has_box) {
+    if (!voc->class_name[0] || !has_box) {
         refuse(voc, "an object needs a name, and a bndbox of xmin, ymin, xmax, ymax", "");
         return;
     }
+    bool is_chosen = false;
+    voc->status = contact_reader_count(voc->reader, voc->class_name, &is_chosen);
+    if (voc->status == SONJECT_OK && !is_chosen)
+        return;
     image.rows = isnan(numbers[HEIGHT]) ? 0 : (uint64_t)numbers[HEIGHT];
     image.columns = isnan(numbers[WIDTH]) ? 0 : (uint64_t)numbers[WIDTH];
     snprintf(place, sizeof place, "%s:%lu", voc->file,
              (unsigned long)XML_GetCurrentLineNumber(voc->parser));
-    voc->status = contact_reader_find_image(voc->reader, place, voc->image_name, &image.number);
+    THEN(voc->status,
+         contact_reader_find_image(voc->reader, place, voc->image_name, &image.number));
     const struct labelled_box box = {numbers[XMIN] - 1.0, numbers[YMIN] - 1.0,
                                      numbers[XMAX] - numbers[XMIN] + 1.0,
                                      numbers[YMAX] - numbers[YMIN] + 1.0};
-    THEN(voc->status, contact_reader_add(voc->reader, place, &image, voc->part, &box));
+    THEN(voc->status,
+         contact_reader_add(voc->reader, place, &image,
+                            part_of_class(voc->class_name, voc->reader->choice->part), &box));
     if (voc->status != SONJECT_OK)
         XML_StopParser(voc->parser, XML_FALSE);
 }
@@ -127,8 +134,7 @@ static void take_text(struct voc *voc, const char *text)
             refuse(voc, "is no number of pixels: ", text);
     }
     if (strcmp(voc->way, "/annotation/object/name") == 0) {
-        voc->has_class = true;
-        voc->part = part_of_class(text, voc->reader->part);
+        text_excerpt(voc->class_name, sizeof voc->class_name, text);
     } else if (strcmp(voc->way, "/annotation/filename") == 0) {
         memcpy(voc->image_name, text, strlen(text) + 1);
     }

@@ -171,10 +171,13 @@ static sonject_status take_line(struct yolo *yolo, const char *place, const char
     if (yolo->names && !name)
         return input_failure(reader->report, place, "class %s has no name in %s", class_number,
                              yolo->names_file);
+    const char *class_name = name ? json_string_value(name) : class_number;
+    bool is_chosen;
+    CHECK(contact_reader_count(reader, class_name, &is_chosen));
+    if (!is_chosen)
+        return SONJECT_OK;
     const double rows = (double)image->rows, columns = (double)image->columns;
-    return contact_reader_add(reader, place, image,
-                              name ? part_of_class(json_string_value(name), reader->part)
-                                   : reader->part,
+    return contact_reader_add(reader, place, image, part_of_class(class_name, reader->choice->part),
                               &(struct labelled_box){columns * (numbers[1] - 0.5 * numbers[3]),
                                                      rows * (numbers[2] - 0.5 * numbers[4]),
                                                      columns * numbers[3], rows * numbers[4]});

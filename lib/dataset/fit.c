@@ -457,7 +457,8 @@ static sonject_status read_all(struct fit *fit, const sonject_campaign_fit_param
     CHECK(fit_page_name(fit->report, params->fitted, "_fit", fit->folder));
     fit->campaign->folder = fit->folder;
     CHECK(fit_draws_find(&fit->draws, fit->report, &fit->campaign->campaign));
-    CHECK(contact_set_read(fit->report, params->contacts, params->part, &fit->set));
+    const struct contact_choice choice = {params->part, params->classes, params->class_count};
+    CHECK(contact_set_read(fit->report, params->contacts, &choice, &fit->set));
     if (fit->set.quantiles.count > 0) {
         take_quantiles(fit);
         return SONJECT_OK;

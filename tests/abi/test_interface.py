@@ -68,7 +68,7 @@ SIZES = {
     "sonject_box": 32,
     "sonject_calibrate_params": 64,
     "sonject_campaign_image": 192,
-    "sonject_campaign_fit_params": 24,
+    "sonject_campaign_fit_params": 40,
     "sonject_campaign_run_params": 48,
     "sonject_contact_measures": 360,
     "sonject_context_params": 56,

@@ -79,6 +79,15 @@ def test_what_cannot_be_fitted_is_told(sonject, folder, contacts, output, messag
     assert sorted(path.name for path in folder.iterdir()) == before
 
 
+def test_contacts_of_a_class_are_fitted(sonject, folder):
+    boulders = "".join(f"seabed_1.tif,{9 * i},5,9,20,boulder\n" for i in range(30))
+    (folder / "contacts.csv").write_text("image,row,column,rows,columns,class\nseabed_1.tif,5,5,9,20,mine\n" + boulders)
+    for name, message in [("mine", "has 1 contacts"),
+                          ("mime", "holds no contacts of the chosen classes, but of mine (1), boulder (30)")]:
+        done = sonject("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml", "--class", name)
+        assert done.returncode == 3 and message in done.stderr
+
+
 SIDES = """\
 sonject: 1
 input: {path: line.tif, geometry: {row_spacing: 5 cm, column_spacing: 5 cm, nadir_column: 599.5, side: port}}

@@ -153,7 +153,8 @@ static void fuzz_labels(const struct fuzzer *fuzzer, const uint8_t *bytes, size_
         struct report report = {{0}, NULL, NULL};
         struct contact_set set;
         put_file(files[i][0], bytes, count);
-        const sonject_status status = contact_set_read(&report, files[i][1], LABELLED_BOTH, &set);
+        const struct contact_choice choice = {.part = LABELLED_BOTH};
+        const sonject_status status = contact_set_read(&report, files[i][1], &choice, &set);
         expect(status, &report, true);
         if (status == SONJECT_OK && (set.count == 0) != (set.quantiles.count > 0))
             abort();

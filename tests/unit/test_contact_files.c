@@ -28,8 +28,9 @@ static void put_image(const char *name)
 /* name: of a file; "": the folder. */
 static sonject_status read_set(const char *name, uint32_t part, struct contact_set *set)
 {
+    const struct contact_choice choice = {.part = part};
     report.message[0] = '\0';
-    return contact_set_read(&report, *name ? file_in(name) : folder->path, part, set);
+    return contact_set_read(&report, *name ? file_in(name) : folder->path, &choice, set);
 }
 
 struct expected {
@@ -557,6 +558,79 @@ WITH_LABELS(test_highlight_and_shadow_are_one_contact)
     }
     put("l.csv", "image,class,row,column,rows,columns\na.npy,mine,5,10,4,3\n" S "4,13,6,9\n");
     expect_contacts("l.csv", LABELLED_HIGHLIGHT, cases[0].expected, 1);
+}
+
+/* ---- Chosen classes. */
+
+/* What was noted last. */
+static char noted[400];
+
+static void keep_note(void *user, uint32_t level, const char *line)
+{
+    (void)user;
+    (void)level;
+    snprintf(noted, sizeof noted, "%s", line);
+}
+
+/* From each format the mine's label alone, though the boulder's image is not there. */
+WITH_LABELS(test_labels_of_chosen_classes_are_read)
+{
+    static const char *const names[] = {"nothing", "mine"};
+    static const struct contact_choice choice = {
+        .part = LABELLED_BOTH, .classes = names, .class_count = 2};
+    static const char *const read[] = {"l.json", "l.csv", "", ""};
+    put_image("a.npy");
+    put("l.json", "{\"images\": [{\"id\": 1, \"file_name\": \"a.npy\"}, "
+                  "{\"id\": 2, \"file_name\": \"none.npy\"}],\n"
+                  "\"categories\": [{\"id\": 1, \"name\": \"mine\"}, "
+                  "{\"id\": 2, \"name\": \"boulder\"}],\n\"annotations\": [" ANNOTATION(
+                      "2", "2", "[1, 2, 3, 4]") "," ANNOTATION("1", "1", "[8, 3, 8, 6]") "]}");
+    put("l.csv", "image,row,column,rows,columns,class\nnone.npy,0,0,1,1,boulder\n"
+                 "a.npy,3,8,6,8,mine\n");
+    for (size_t i = 0; i < COUNT(read); i++) {
+        struct contact_set set;
+        if (i == 2) {
+            put("classes.txt", "boulder\nmine\n");
+            put("a.txt", "0 0.5 0.5 1 1\n1 0.3 0.2 0.2 0.2\n");
+        } else if (i == 3) {
+            put("a.xml", "<annotation><filename>a.npy</filename>"
+                         "<object><name>boulder</name><bndbox><xmin>1</xmin><ymin>1</ymin>"
+                         "<xmax>2</xmax><ymax>2</ymax></bndbox></object>"
+                         "<object><name>mine</name><bndbox><xmin>9</xmin><ymin>4</ymin>"
+                         "<xmax>16</xmax><ymax>9</ymax></bndbox></object></annotation>");
+        }
+        EXPECT_OK(&report, contact_set_read(&report, *read[i] ? file_in(read[i]) : folder->path,
+                                            &choice, &set));
+        assert_int_equal(set.count, 1);
+        assert_int_equal(set.image_count, 1);
+        const sonject_box *box = &set.contacts[0].box;
+        const uint64_t sides[] = {box->first_row, box->first_column, box->rows, box->columns};
+        assert_memory_equal(sides, ((const uint64_t[]){3, 8, 6, 8}), sizeof sides);
+        contact_set_clear(&set);
+    }
+}
+
+WITH_LABELS(test_classes_that_are_taken_as_one_are_told)
+{
+    static const char *const names[] = {"mime"};
+    static const struct contact_choice choice = {.classes = names, .class_count = 1};
+    struct contact_set set;
+    put_image("a.npy");
+    put("l.csv", "image,row,column,rows,columns,class\na.npy,3,8,6,8,mine\n"
+                 "a.npy,0,0,1,1,boulder\na.npy,0,4,1,1,mine\na.npy,0,4,1,1,a shadow\n");
+    const struct report_host no_user = {0};
+    report.log = keep_note;
+    report.host = &no_user;
+    EXPECT_OK(&report, read_set("l.csv", LABELLED_BOTH, &set));
+    report.log = NULL;
+    report.host = NULL;
+    contact_set_clear(&set);
+    assert_string_equal(noted, "contacts of 2 classes are taken as one: mine (2), boulder (1)");
+    assert_int_equal(contact_set_read(&report, file_in("l.csv"), &choice, &set),
+                     SONJECT_ERROR_INPUT);
+    contact_set_clear(&set);
+    assert_non_null(strstr(
+        report.message, "holds no contacts of the chosen classes, but of mine (2), boulder (1)"));
 }
 
 /* ---- Quantiles. */

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import operator
 import os
-from typing import Any, Iterator, Optional, Tuple, Union
+from typing import Any, Iterator, Optional, Sequence, Tuple, Union
 
 from . import _interface as s
 from ._classes import CampaignImage as CampaignImage
@@ -167,6 +167,7 @@ def fit_campaign(
     overrides: Overrides = (),
     *,
     boxes: Union[str, LabelPart] = "both",
+    classes: Union[str, Sequence[str]] = (),
     progress: Optional[Progress] = None,
     context: Optional[Context] = None,
 ) -> None:
@@ -175,13 +176,17 @@ def fit_campaign(
     contacts: as sonject fit takes them: a COCO file, a .csv file, a folder of YOLO's or VOC's labels,
     or a .yaml file of quantiles. fitted: the file to write, in path's folder; a page comes beside it.
     boxes: what labels are around where their class does not tell: both, highlight or shadow.
+    classes: names of those that alone are taken; none: all are.
     """
     context = default_context() if context is None else context
     texts = override_texts(overrides)
     params = filled(s.sonject_scene_read_params, override_count=len(texts),
                     overrides=ctypes.cast(texts, ctypes.POINTER(ctypes.c_char_p)))
+    names = [file_name("class", each) for each in ([classes] if isinstance(classes, str) else classes)]
     fit_params = filled(s.sonject_campaign_fit_params, part=choice("boxes", LabelPart, boxes),
                         contacts=file_name("contacts", contacts),
+                        classes=ctypes.cast((ctypes.c_char_p * len(names))(*names), ctypes.POINTER(ctypes.c_char_p)),
+                        class_count=len(names),
                         fitted=file_name("fitted", fitted))
     context.work("sonject_campaign_fit", context, file_name("path", path), ctypes.byref(params),
                  ctypes.byref(fit_params), progress=progress)

@@ -179,6 +179,15 @@ def test_a_campaign_is_fitted(tmp_path, campaign):
         sonject.fit_campaign(*files[:2], tmp_path / "there" / "fitted.yaml")
 
 
+def test_contacts_of_classes_are_fitted(tmp_path, campaign):
+    (tmp_path / "contacts.csv").write_text("image,row,column,rows,columns,class\n"
+                                           + "swath.npy,50,50,9,20,mine\nnone.npy,50,50,9,20,boulder\n")
+    files = [tmp_path / name for name in ("campaign.yaml", "contacts.csv", "fitted.yaml")]
+    for classes in ("mine", ["mime", "mine"]):
+        with pytest.raises(sonject.SonjectError, match="has 1 contacts"):
+            sonject.fit_campaign(*files, classes=classes)
+
+
 def test_a_fit_makes_the_calibrations_that_its_scene_asks_for(tmp_path, campaign):
     numbers = numpy.random.default_rng(8)
     for name in ("swath.npy", "other.npy"):
