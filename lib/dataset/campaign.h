@@ -188,8 +188,8 @@ struct swath_plan {
     struct crop_places room; /* once it is measured, as all below */
     uint64_t chip_rows, chip_columns;
     struct object_columns objects;        /* where these may lie in any image */
-    struct object_columns *block_objects; /* and in images that begin in a block of rows, where
-                                             their range over altitude is limited; owned; or NULL */
+    struct object_columns *block_objects; /* and in images of all columns that begin in a block of
+                                             rows; owned; NULL: images have fewer columns */
     int jpeg_quality;                     /* that images are coded with; 0: without loss */
     uint32_t split_number;
 };
@@ -327,8 +327,9 @@ sonject_status campaign_split(struct report *report, struct campaign *campaign,
                               char (*hashes)[HASH_TEXT_CAPACITY]);
 
 /* Finds where images may lie in a swath whose layout is known. geometry: of the scene with that
- * swath. altitudes_m: the sonar's at each row; images begin beyond the highest, so that no target
- * lies in the water column, unless they may show it and are limited in range over altitude. Errors:
+ * swath. altitudes_m: the sonar's at each row; images begin beyond the highest at their rows, so that
+ * no target lies in the water column, unless they may show it and are limited in range over
+ * altitude. Errors:
  * INPUT (no room), MEMORY. */
 sonject_status campaign_measure(struct report *report, struct campaign *campaign, size_t swath,
                                 const sonject_geometry_params *geometry, const double *altitudes_m,

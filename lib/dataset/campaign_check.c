@@ -105,7 +105,7 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
     }
     if (status == SONJECT_OK)
         report_log(campaign->report,
-                   "%s%s%s: avoid and range_over_altitude leave %.4g %% of the places for images",
+                   "%s%s%s: altitudes and avoid leave %.4g %% of the places for images",
                    swath->written, swath->side ? ", " : "", swath_side_word(swath),
                    100.0 * crop_places_left(&swath->room));
     swath_file_close(&file);

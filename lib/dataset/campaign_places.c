@@ -1,5 +1,6 @@
 /* The room that a campaign's swaths have for images and their objects. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -113,9 +114,22 @@ static void limit_columns(const struct limits *limits, double half, double near_
     *high = near_m <= far_m ? fmin(*high, floor(fmax(near, far) + 1e-9)) : -1.0;
 }
 
-/* First columns beyond the first return whose chip's middle has a slant range within the limits. An
- * image that has all columns begins where the swath does: there the limits are those of its
- * objects. False where nothing is left. */
+/* The same to the first columns of what lies beyond the first return of an altitude. */
+static void leave_out_water(const struct limits *limits, double half, double altitude_m,
+                            double *low, double *high)
+{
+    const double bottom = geometry_column(limits->geometry, altitude_m);
+    if (limits->shows_water)
+        return;
+    if (geometry_is_reversed(limits->geometry))
+        *high = fmin(*high, ceil(bottom) - 1.0 - 2.0 * half);
+    else
+        *low = fmax(*low, floor(bottom) + 1.0);
+}
+
+/* First columns of chips within the limits wherever the altitude is lowest. An image that has all
+ * columns begins where the swath does: there the limits are those of its objects. False where
+ * nothing is left. */
 static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, struct region *chips)
 {
     const struct campaign *campaign = limits->campaign;
@@ -125,16 +139,10 @@ static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, s
     const double half = has_all ? 0.0 : 0.5 * (double)(campaign->chip_columns - 1);
     const double end =
         (double)chips->first_column + (double)(has_all ? plan->chip_columns : chips->columns) - 1.0;
-    const bool has_ratio = limits->ratio.least > 0.0;
-    const bool shows_water = has_all ? has_ratio : limits->shows_water; /* objects have a ratio */
-    const double bottom =
-        geometry_column(geometry, shows_water ? limits->lowest_m : limits->highest_m);
+    const double bottom = geometry_column(geometry, limits->lowest_m);
     double low = (double)chips->first_column;
     double high = end;
-    if (is_reversed && !shows_water)
-        high = fmin(high, ceil(bottom) - 1.0 - 2.0 * half);
-    else if (!shows_water)
-        low = fmax(low, floor(bottom) + 1.0);
+    leave_out_water(limits, half, limits->lowest_m, &low, &high);
     if (campaign->has_range)
         limit_columns(limits, half, campaign->slant_range_m[0], campaign->slant_range_m[1], &low,
                       &high);
@@ -149,7 +157,8 @@ static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, s
     return low <= high;
 }
 
-#define RATIO_BLOCKS 64 /* of rows, over which the altitude is taken from its least to its most */
+#define ALTITUDE_BLOCKS                                                                            \
+    64 /* of rows, over which the altitude is taken from its least to its most */
 
 /* Blocks of first rows of chips are whole blocks of a JPEG. */
 static uint64_t jpeg_blocks(const struct crop_places *room)
@@ -157,15 +166,15 @@ static uint64_t jpeg_blocks(const struct crop_places *room)
     return (room->chips.rows + room->block_rows - 1) / room->block_rows;
 }
 
-static uint64_t ratio_blocks(const struct crop_places *room)
+static uint64_t altitude_blocks(const struct crop_places *room)
 {
     const uint64_t units = jpeg_blocks(room);
-    return units < RATIO_BLOCKS ? units : RATIO_BLOCKS;
+    return units < ALTITUDE_BLOCKS ? units : ALTITUDE_BLOCKS;
 }
 
 static uint64_t first_row_of(const struct crop_places *room, uint64_t block)
 {
-    const uint64_t units = block * jpeg_blocks(room) / ratio_blocks(room);
+    const uint64_t units = block * jpeg_blocks(room) / altitude_blocks(room);
     const uint64_t rows = units * room->block_rows;
     return room->chips.first_row + (rows < room->chips.rows ? rows : room->chips.rows);
 }
@@ -176,12 +185,12 @@ struct object_columns objects_of_chip(const struct swath_plan *plan, uint64_t fi
     if (!plan->block_objects)
         return plan->objects;
     const uint64_t unit = (first_row - room->chips.first_row) / room->block_rows;
-    return plan->block_objects[((unit + 1) * ratio_blocks(room) - 1) / jpeg_blocks(room)];
+    return plan->block_objects[((unit + 1) * altitude_blocks(room) - 1) / jpeg_blocks(room)];
 }
 
-/* Narrows columns, of objects or of chips' first pixels, to those that are within the limits of
- * range over altitude in chips that begin in a block of rows. */
-static void limit_ratio(const struct limits *limits, const struct swath_plan *plan, uint64_t block,
+/* Narrows columns, of objects or of chips' first pixels, to those that the altitudes allow in chips
+ * that begin in a block of rows. */
+static void limit_block(const struct limits *limits, const struct swath_plan *plan, uint64_t block,
                         double half, struct object_columns *columns)
 {
     const uint64_t end = first_row_of(&plan->room, block + 1) + plan->chip_rows - 1;
@@ -190,8 +199,10 @@ static void limit_ratio(const struct limits *limits, const struct swath_plan *pl
         lowest = fmin(lowest, limits->altitudes_m[row]);
         highest = fmax(highest, limits->altitudes_m[row]);
     }
-    limit_columns(limits, half, limits->ratio.least * highest, limits->ratio.most * lowest,
-                  &columns->first, &columns->last);
+    leave_out_water(limits, half, highest, &columns->first, &columns->last);
+    if (limits->ratio.least > 0.0)
+        limit_columns(limits, half, limits->ratio.least * highest, limits->ratio.most * lowest,
+                      &columns->first, &columns->last);
 }
 
 static void forbid_block(struct crop_places *room, uint64_t block, uint64_t column,
@@ -202,17 +213,17 @@ static void forbid_block(struct crop_places *room, uint64_t block, uint64_t colu
         (struct region){first, column, first_row_of(room, block + 1) - first, columns};
 }
 
-/* Forbids first pixels of chips whose range over altitude is beyond the limits: two boxes for each
- * block of rows, behind the room's others. */
-static void limit_ratios(const struct limits *limits, struct swath_plan *plan)
+/* Forbids first pixels of chips that the altitudes do not allow: two boxes for each block of rows,
+ * behind the room's others. */
+static void limit_chips(const struct limits *limits, struct swath_plan *plan)
 {
     struct crop_places *room = &plan->room;
     const struct region *chips = &room->chips;
     const double half = 0.5 * (double)(plan->chip_columns - 1);
     const uint64_t end = chips->first_column + chips->columns;
-    for (uint64_t i = 0; i < ratio_blocks(room); i++) {
+    for (uint64_t i = 0; i < altitude_blocks(room); i++) {
         struct object_columns columns = {(double)chips->first_column, (double)end - 1.0};
-        limit_ratio(limits, plan, i, half, &columns);
+        limit_block(limits, plan, i, half, &columns);
         const bool is_empty = columns.first > columns.last;
         const uint64_t from = is_empty ? end : (uint64_t)columns.first;
         const uint64_t to = is_empty ? end : (uint64_t)columns.last + 1;
@@ -229,12 +240,12 @@ static sonject_status limit_objects(struct report *report, const struct limits *
 {
     struct object_columns any = {HUGE_VAL, -1.0};
     free(plan->block_objects);
-    plan->block_objects = allocate_array(RATIO_BLOCKS, sizeof *plan->block_objects);
+    plan->block_objects = allocate_array(ALTITUDE_BLOCKS, sizeof *plan->block_objects);
     CHECK_MEMORY(report, plan->block_objects, "the places for objects");
-    for (uint64_t i = 0; i < ratio_blocks(&plan->room); i++) {
+    for (uint64_t i = 0; i < altitude_blocks(&plan->room); i++) {
         struct object_columns *columns = &plan->block_objects[i];
         *columns = plan->objects;
-        limit_ratio(limits, plan, i, 0.0, columns);
+        limit_block(limits, plan, i, 0.0, columns);
         if (columns->first > columns->last) {
             forbid_block(&plan->room, i, plan->room.chips.first_column, plan->room.chips.columns);
             continue;
@@ -296,11 +307,21 @@ static sonject_status find_box(const struct campaign *campaign, const struct swa
 {
     const double *along_m = box->along_track_m, *range_m = box->slant_range_m;
     const double first_m = geometry->first_along_track_m, row_m = geometry->row_spacing_m;
-    if (isnan(along_m[0]) ||
-        (pixels_of((along_m[0] - first_m) / row_m, (along_m[1] - first_m) / row_m,
-                   plan->layout.rows, &box->pixels.first_row, &box->pixels.rows) &&
-         pixels_of(geometry_column(geometry, range_m[0]), geometry_column(geometry, range_m[1]),
-                   plan->layout.columns, &box->pixels.first_column, &box->pixels.columns)))
+    if (isnan(along_m[0])) {
+        if (box->pixels.first_row < plan->layout.rows &&
+            box->pixels.first_column < plan->layout.columns)
+            return SONJECT_OK;
+        return tree_failure(&campaign->tree, plan->place, "swaths",
+                            "avoid: %s of %llu x %llu pixels has none at row %llu, column %llu",
+                            plan->written, (unsigned long long)plan->layout.rows,
+                            (unsigned long long)plan->layout.columns,
+                            (unsigned long long)box->pixels.first_row,
+                            (unsigned long long)box->pixels.first_column);
+    }
+    if (pixels_of((along_m[0] - first_m) / row_m, (along_m[1] - first_m) / row_m, plan->layout.rows,
+                  &box->pixels.first_row, &box->pixels.rows) &&
+        pixels_of(geometry_column(geometry, range_m[0]), geometry_column(geometry, range_m[1]),
+                  plan->layout.columns, &box->pixels.first_column, &box->pixels.columns))
         return SONJECT_OK;
     return tree_failure(&campaign->tree, plan->place, "swaths",
                         "avoid: %s shows nothing at %g to %g m along the track and slant ranges of "
@@ -344,6 +365,31 @@ static uint64_t side_of(uint32_t asked, uint64_t pixels, uint32_t edge)
     return asked > 0 ? asked : CAMPAIGN_CHIP_MIN + (pixels > taken ? pixels - taken : 0);
 }
 
+/* Tells all that is asked of images, or of objects in them, where no place is left. */
+static sonject_status refuse_swath(const struct limits *limits, const struct swath_plan *plan)
+{
+    const struct campaign *campaign = limits->campaign;
+    char asked[400] = "";
+    size_t length = 0;
+#define ASK(...) length += (size_t)snprintf(asked + length, sizeof asked - length, __VA_ARGS__)
+    if (!limits->shows_water)
+        ASK(", beyond the sonar's altitude, up to %g m", limits->highest_m);
+    if (campaign->has_range)
+        ASK(", at slant ranges of %g to %g m", campaign->slant_range_m[0],
+            campaign->slant_range_m[1]);
+    if (limits->ratio.least > 0.0)
+        ASK(", at %g to %g times the sonar's altitude, %g to %g m", limits->ratio.least,
+            limits->ratio.most, limits->lowest_m, limits->highest_m);
+    if (plan->avoid_count > 0)
+        ASK(", %u pixels away from %zu %s to avoid", (unsigned)campaign->clearance,
+            plan->avoid_count, plan->avoid_count > 1 ? "boxes" : "box");
+#undef ASK
+    return tree_failure(
+        &campaign->tree, plan->place, "swaths", "%s has no place for %s of %llu x %llu pixels%s",
+        plan->written, campaign->chip_columns > 0 ? "images" : "objects in images",
+        (unsigned long long)plan->chip_rows, (unsigned long long)plan->chip_columns, asked);
+}
+
 sonject_status campaign_measure(struct report *report, struct campaign *campaign, size_t swath,
                                 const sonject_geometry_params *geometry, const double *altitudes_m,
                                 bool may_show_water)
@@ -354,8 +400,9 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
                             .altitudes_m = altitudes_m,
                             .lowest_m = HUGE_VAL,
                             .ratio = plan->ratio.least > 0.0 ? plan->ratio : campaign->ratio};
-    const bool has_ratio = limits.ratio.least > 0.0;
-    limits.shows_water = may_show_water && has_ratio;
+    /* where images have all columns it is objects that have a ratio */
+    limits.shows_water =
+        limits.ratio.least > 0.0 && (may_show_water || campaign->chip_columns == 0);
     for (uint64_t row = 0; row < plan->layout.rows; row++) {
         limits.lowest_m = fmin(limits.lowest_m, altitudes_m[row]);
         limits.highest_m = fmax(limits.highest_m, altitudes_m[row]);
@@ -392,31 +439,23 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
     begin_at_block(block_rows, 0, &chips.first_row, &chips.rows);
     begin_at_block(block_columns, 0, &chips.first_column, &chips.columns);
     has_room = has_room && chips.rows > 0 && chips.columns > 0;
-    if (!has_room && !campaign->has_range)
-        return tree_failure(&campaign->tree, plan->place, "swaths",
-                            "no image within %s begins beyond the sonar's altitude, up to %g m",
-                            plan->written, limits.highest_m);
     if (!has_room)
-        return tree_failure(&campaign->tree, plan->place, "swaths",
-                            "no image within %s has its middle at slant ranges of %g to %g m and "
-                            "begins beyond the sonar's altitude, up to %g m",
-                            plan->written, campaign->slant_range_m[0], campaign->slant_range_m[1],
-                            limits.highest_m);
+        return refuse_swath(&limits, plan);
     struct crop_places *room = &plan->room;
     crop_places_clear(room);
     room->chips = chips;
     room->block_rows = block_rows;
     room->block_columns = block_columns;
-    room->boxes = allocate_array(plan->avoid_count + 2 * RATIO_BLOCKS + 1, sizeof *room->boxes);
+    room->boxes = allocate_array(plan->avoid_count + 2 * ALTITUDE_BLOCKS + 1, sizeof *room->boxes);
     CHECK_MEMORY(report, room->boxes, "the places for images");
     if (images_show_contacts(campaign) && plan->avoid_count > 0 && campaign->clearance == 0)
         report_note(report,
                     "chip.clearance is 0: objects may reach into contacts to avoid in %s, from "
                     "which their middles alone keep away",
                     plan->written);
-    if (has_ratio && campaign->chip_columns > 0)
-        limit_ratios(&limits, plan);
-    else if (has_ratio)
+    if (campaign->chip_columns > 0)
+        limit_chips(&limits, plan);
+    else
         CHECK(limit_objects(report, &limits, plan));
     for (size_t i = 0; i < plan->avoid_count; i++) {
         CHECK(find_box(campaign, plan, geometry, &plan->avoid[i]));
@@ -428,19 +467,5 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
         end = band_end(room, row);
         room->places += (end - row) * free_columns(room, row, 0, &column);
     }
-    if (room->places > 0)
-        return SONJECT_OK;
-    if (has_ratio)
-        return tree_failure(&campaign->tree, plan->place, "swaths",
-                            "no image within %s has %s at %g to %g times the sonar's altitude, %g "
-                            "to %g m, and keeps away from %zu contacts",
-                            plan->written,
-                            campaign->chip_columns > 0 ? "its middle" : "places for objects",
-                            limits.ratio.least, limits.ratio.most, limits.lowest_m,
-                            limits.highest_m, plan->avoid_count);
-    return tree_failure(&campaign->tree, plan->place, "swaths",
-                        "the %zu contacts to avoid in %s leave no room for images of %llu x %llu "
-                        "that stay %u pixels away from them",
-                        plan->avoid_count, plan->written, (unsigned long long)plan->chip_rows,
-                        (unsigned long long)plan->chip_columns, (unsigned)campaign->clearance);
+    return room->places > 0 ? SONJECT_OK : refuse_swath(&limits, plan);
 }

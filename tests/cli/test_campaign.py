@@ -138,7 +138,7 @@ def test_what_is_avoided_is_shown_and_what_is_left_is_told(command, whole):
     left = numpy.mean((rows >= 20 + 2) | (columns + CHIP <= 80 - 2))
     told = command("check", "campaign.yaml")
     assert (told.returncode, told.stdout) == (0, "")
-    assert told.stderr == "".join(f"sonject: swath{i}.png: avoid and range_over_altitude leave {100 * share:.4g} % of the places "
+    assert told.stderr == "".join(f"sonject: swath{i}.png: altitudes and avoid leave {100 * share:.4g} % of the places "
                                   "for images\n" for i, share in enumerate((left, 1, 1)))
     assert [round(swath["left"], 6) for swath in page_data(whole)["swaths"]] == [round(left, 6), 1, 1]
     picture = read_png(whole / "swaths" / "0.png")
@@ -1047,10 +1047,10 @@ HOSTILE = [
       'sonar.frequency: {uniform: [90 kHz, 91 kHz], steps: 1000000}}'], "grid", "more than"),
     (["chip.rows=200"], "swath0.png", "too few for images of 200 x 64"),
     (["swaths[0].avoid=[{row: 0, column: 0, rows: 1099511627776, columns: 1099511627776}]"],
-     "swath0.png", "leave no room"),
+     "swath0.png", "has no place for images"),
     (["chip.rows=all", "chip.columns=all",
       f"swaths[0].avoid=[{{row: 0, column: 0, rows: {ROWS}, columns: {COLUMNS}}}]"], "swath0.png",
-     f"no room for images of {ROWS} x {COLUMNS}"),
+     f"no place for objects in images of {ROWS} x {COLUMNS}"),
     (["swaths[0].avoid=[{along_track: [90 m, 95 m], slant_range: [40 m, 41 m]}]"], "swath0.png",
      "shows nothing at 90 to 95 m along the track and slant ranges of 40 to 41 m"),
     (["swaths[0].avoid=[{along_track: [2 m, 1 m], slant_range: [40 m, 41 m]}]"], "swaths[0].avoid[0].along_track",

@@ -175,7 +175,7 @@ static void check_places(int quality)
     swath.avoid_count = 3;
     swath.jpeg_quality = quality;
     for (int i = 0; i < 60; i++)
-        altitudes[i] = 10.0;
+        altitudes[i] = i < 40 ? 10.0 : 30.0; /* there the seabed begins at column 20 */
     assert_int_equal(campaign_measure(&report, &campaign, 0, &geometry, altitudes, true),
                      SONJECT_OK);
     for (int i = 0; i < 200; i++)
@@ -188,6 +188,7 @@ static void check_places(int quality)
     for (uint64_t row = 0; row < 60; row++)
         for (uint64_t column = 0; column < 90; column++) {
             bool is_free = row >= 1 && row + 16 < 60 && column >= 4 && column <= 56;
+            is_free = is_free && (row + 16 <= 40 || column > 20);
             for (int i = 0; i < 3; i++)
                 is_free = is_free && is_clear(&campaign, &boxes[i], row, column);
             if (quality > 0)
@@ -200,7 +201,7 @@ static void check_places(int quality)
     crop_places_clear(&swath.room);
 }
 
-TEST(test_images_lie_wherever_edges_contacts_and_ranges_let_them)
+TEST(test_images_lie_wherever_edges_contacts_ranges_and_altitudes_let_them)
 {
     check_places(0);
 }
