@@ -140,24 +140,43 @@ static json_t *quantity(double value, const char *unit)
     return json_string(text);
 }
 
-/* A key with what stood there before, and one or two numbers that stand there now. */
-static void add_row(json_t **rows, const char *key, const char *before, double first, double second,
-                    const char *unit)
+/* One or two numbers, those that are finite; `otherwise` where the first is not. */
+static json_t *numbers_document(double first, double second, const char *unit,
+                                const char *otherwise)
 {
-    json_t *after = json_array();
+    json_t *numbers = json_array();
     if (!isfinite(first))
-        return;
-    json_append(&after, quantity(first, unit));
-    if (isfinite(second))
-        json_append(&after, quantity(second, unit));
-    json_append(rows, JSON_OBJECT({"key", json_string(key)}, {"before", json_pack("[s]", before)},
-                                  {"after", after}));
+        json_append(&numbers, json_string(otherwise));
+    else
+        json_append(&numbers, quantity(first, unit));
+    if (isfinite(first) && isfinite(second))
+        json_append(&numbers, quantity(second, unit));
+    return numbers;
 }
 
-static void add_ratio(json_t **rows, const char *key, const struct ratio_limits *ratio)
+/* A key with what stood there before, and one or two numbers that stand there now, if there are. */
+static void add_row(json_t **rows, const char *key, json_t *before, double first, double second,
+                    const char *unit)
 {
-    if (ratio->least > 0.0)
-        add_row(rows, key, "", ratio->least, ratio->most, "");
+    if (isfinite(first))
+        json_append(rows, JSON_OBJECT({"key", json_string(key)}, {"before", before},
+                                      {"after", numbers_document(first, second, unit, "")}));
+    else
+        json_decref(before);
+}
+
+static void add_threshold(json_t **rows, const char *key, double before, double now)
+{
+    add_row(rows, key, numbers_document(before, NAN, " dB", "any"), now, NAN, " dB");
+}
+
+static void add_ratio(json_t **rows, const char *key, const struct ratio_limits *before,
+                      const struct ratio_limits *now)
+{
+    const double least = before->least > 0.0 ? before->least : NAN;
+    if (now->least > 0.0)
+        add_row(rows, key, numbers_document(least, before->most, "", "any"), now->least, now->most,
+                "");
 }
 
 /* Numbers before and after, in the order in which a key has them. */
@@ -165,6 +184,7 @@ static json_t *draws_document(const struct fit *fit)
 {
     const struct fit_draws *draws = &fit->draws;
     const struct fitted_selection *selection = &fit->selection;
+    const struct campaign *campaign = draws->campaign;
     json_t *rows = json_array();
     for (size_t i = 0, end; i < draws->count; i = end) {
         const char *key = draws->numbers[i].key;
@@ -178,22 +198,24 @@ static json_t *draws_document(const struct fit *fit)
         json_append(&rows,
                     JSON_OBJECT({"key", json_string(key)}, {"before", before}, {"after", after}));
     }
-    for (uint32_t i = 0; draws->has_added && i < draws->campaign->target_count; i++) {
+    for (uint32_t i = 0; draws->has_added && i < campaign->target_count; i++) {
         char key[64];
         snprintf(key, sizeof key, "targets[%u].draw.level.over_seabed", (unsigned)i);
         if (draws->lacks_level[i])
-            add_row(&rows, key, "by shape and material", draws->level_db[0], draws->level_db[1],
-                    " dB");
+            add_row(&rows, key, json_pack("[s]", "by shape and material"), draws->level_db[0],
+                    draws->level_db[1], " dB");
     }
     if (draws->has_added && draws->lacks_floor)
-        add_row(&rows, "draw.injection.noise_floor", "the scene's", draws->floor_db, NAN, " dB");
-    add_row(&rows, "visible.highlight", "", selection->highlight_db, NAN, " dB");
-    add_row(&rows, "visible.shadow", "", selection->shadow_db, NAN, " dB");
-    add_ratio(&rows, "chip.range_over_altitude", &selection->chip);
-    for (size_t i = 0; selection->swaths && i < draws->campaign->swath_count; i++) {
+        add_row(&rows, "draw.injection.noise_floor", json_pack("[s]", "the scene's"),
+                draws->floor_db, NAN, " dB");
+    add_threshold(&rows, "visible.highlight", campaign->visible_highlight_db,
+                  selection->highlight_db);
+    add_threshold(&rows, "visible.shadow", campaign->visible_shadow_db, selection->shadow_db);
+    add_ratio(&rows, "chip.range_over_altitude", &campaign->ratio, &selection->chip);
+    for (size_t i = 0; selection->swaths && i < campaign->swath_count; i++) {
         char key[64];
         snprintf(key, sizeof key, "swaths[%zu].range_over_altitude", i);
-        add_ratio(&rows, key, &selection->swaths[i]);
+        add_ratio(&rows, key, &campaign->swaths[i].ratio, &selection->swaths[i]);
     }
     return rows;
 }

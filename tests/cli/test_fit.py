@@ -51,6 +51,8 @@ def test_a_fit_comes_nearer_to_its_contacts(sonject, folder):
     assert "draw.objects[].heading\ndraw.objects[].burial.fraction" in page["unchanged"]
     (length,) = (draw for draw in page["draws"] if draw["key"] == "targets[0].draw.length")
     assert length["before"] == ["1.4 m", "3.2 m"]
+    before = {draw["key"]: draw["before"] for draw in page["draws"]}
+    assert before["visible.highlight"] == ["any"]
     assert f"length: {{log_uniform: [{', '.join(length['after'])}]}}" in text
     for extent in page["fit"]:
         assert sum(extent["bins"]) > 0 and sum(extent["before"]) > 0 and sum(extent["after"]) > 0
