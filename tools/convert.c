@@ -11,6 +11,7 @@ struct convert_options {
     const char *into;
     const char *channel;
     const char *array;
+    const char *decibels;
     struct geometry_arguments geometry;
 };
 
@@ -19,6 +20,8 @@ struct convert_options {
 static const struct argument arguments[] = {
     {"--into", NULL, "FILE", "make OUT a copy of FILE with IN's samples", ARGUMENT_TEXT, false,
      MEMBER(into)},
+    {"--db", NULL, "MIN:MAX", "make 8 bit grey levels, black and white at these over full scale",
+     ARGUMENT_TEXT, false, MEMBER(decibels)},
     {"--channel", NULL, "port|starboard|N", "of an XTF or JSF file", ARGUMENT_TEXT, false,
      MEMBER(channel)},
     {"--array", NULL, "NAME", "in an HDF5 or MATLAB file of several", ARGUMENT_TEXT, false,
@@ -37,7 +40,8 @@ static int work(const void *verb_options)
     params.into = options->into;
     params.channel = options->channel;
     params.array = options->array;
-    if (!channel_check("convert", options->channel) ||
+    if (!decibels_parse("convert", options->decibels, &params.black_db, &params.white_db) ||
+        !channel_check("convert", options->channel) ||
         !geometry_parse("convert", &options->geometry, &is_ground, &params.altitude_m, geometry,
                         &params.geometry))
         return EXIT_CODE_USAGE;
@@ -56,14 +60,15 @@ static int work(const void *verb_options)
 
 const struct verb convert_verb = {
     .name = "convert",
-    .summary = "makes a file of one format from a file of another, without loss",
+    .summary = "makes a file of one format from a file of another",
     .operand = "IN",
     .operand_offset = MEMBER(input),
     .second_operand = "OUT",
     .second_offset = MEMBER(output),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes = "OUT is .tif, .png, .npy or .h5; with --into FILE it is of FILE's format,\n"
+    .notes = "Without --db nothing is lost. OUT is .tif, .png, .npy or .h5; with --into FILE it is "
+             "of FILE's format,\n"
              "XTF, JSF and MATLAB too. Samples that a file cannot hold are refused, never cut;\n"
              "numbers beyond a JSF file's 16 bits alone are cut to its largest.",
     .options_size = sizeof(struct convert_options),

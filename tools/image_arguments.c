@@ -43,7 +43,8 @@ bool geometry_parse(const char *verb, const struct geometry_arguments *arguments
     return true;
 }
 
-const char *next_piece(const char *text, char *piece, size_t capacity)
+/* Copies the piece of text up to the colon and gives what follows it, NULL at the end. */
+static const char *next_piece(const char *text, char *piece, size_t capacity)
 {
     size_t length = strcspn(text, ":");
     snprintf(piece, capacity, "%.*s", (int)(length < capacity ? length : capacity - 1), text);
@@ -97,5 +98,16 @@ bool channel_check(const char *verb, const char *argument)
         return true;
     message(verb, ": --channel takes port, starboard or a channel's number, not \"", argument,
             "\"");
+    return false;
+}
+
+bool decibels_parse(const char *verb, const char *argument, double *minimum_db, double *maximum_db)
+{
+    char minimum[64];
+    const char *maximum = argument ? next_piece(argument, minimum, sizeof(minimum)) : NULL;
+    if (!argument || (maximum && number_parse(minimum, minimum_db) &&
+                      number_parse(maximum, maximum_db) && *minimum_db < *maximum_db))
+        return true;
+    message(verb, ": --db takes MIN:MAX in dB, MIN below MAX, not \"", argument, "\"");
     return false;
 }

@@ -57,7 +57,7 @@ bool transfer_parse(const char *verb, const char *argument, char text[IMAGE_TEXT
 /* --channel port, starboard or a number, NULL likewise. */
 bool channel_check(const char *verb, const char *argument);
 
-/* Copies the piece of text up to the colon and gives what follows it, NULL at the end. */
-const char *next_piece(const char *text, char *piece, size_t capacity);
+/* --db MIN:MAX, NULL likewise. */
+bool decibels_parse(const char *verb, const char *argument, double *minimum_db, double *maximum_db);
 
 #endif

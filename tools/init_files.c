@@ -13,8 +13,9 @@
 #include "console.h"
 
 #define USUAL_LEVEL_DB  15.0
-#define OVER_CEILING_DB 2.0 /* of a peak at a place that is darker than most */
-#define FAINTEST_DB     8.0 /* of a campaign's peaks; measured ones have 8 to 19 dB */
+#define OVER_CEILING_DB 2.0  /* of a peak at a place that is darker than most */
+#define FAINTEST_DB     8.0  /* of a campaign's peaks; measured ones have 8 to 19 dB */
+#define SHADOWS_DB      35.0 /* of the seabed over the darkest that is worth a grey level */
 #define CHIP_MOST       512.0
 
 const char *last_part(const char *path)
@@ -264,6 +265,19 @@ static void add_chip(FILE *file, const struct interview *interview, const char *
             (checked.last_m - checked.first_m) / (checked.columns - 1.0));
 }
 
+/* Detectors read 8 bits. Of a recording's 16 bits these are from well below shadows to the ceiling.
+ */
+static void add_grey(FILE *file, const struct interview *interview)
+{
+    const double white = 20.0 * log10(interview->full_scale / 65535.0);
+    const double black = white - interview->ceiling_over_seabed_db - SHADOWS_DB;
+    if (*interview->other_calibration && interview->full_scale > 255.0 && isfinite(black))
+        fprintf(file,
+                "grey: [%.0f dB, %.0f dB] # black and white of 8 bit images; without it they have "
+                "16 bits\n",
+                floor(black), ceil(white));
+}
+
 /* One swath, or both sides. */
 static void add_swaths(FILE *file, const struct interview *interview)
 {
@@ -327,6 +341,7 @@ bool write_campaign(const struct interview *interview, const char *checked)
     fputs("empty: 0.25 # this share of the images shows bare seabed\n"
           "visible: {highlight: 1.2 dB, shadow: -2.3 dB} # what nobody would see is drawn again\n",
           file);
+    add_grey(file, interview);
     add_swaths(file, interview);
     fprintf(
         file,

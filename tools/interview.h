@@ -37,7 +37,7 @@ struct interview {
     bool has_nadir;
     bool has_returns; /* first ones, so that they tell the altitude */
     double nadir_column, frequency_hz, column_spacing_m, altitude_m, recorded_altitude_m,
-        ceiling_over_seabed_db, plain_row, plain_column;
+        full_scale, ceiling_over_seabed_db, plain_row, plain_column;
     bool assumes_bandwidth; /* that of the columns */
 };
 

@@ -30,17 +30,6 @@ static const struct argument arguments[] = {
      MEMBER(array)},
 };
 
-static bool read_decibels(const char *text, sonject_quicklook_params *params)
-{
-    char minimum[64];
-    const char *maximum = next_piece(text, minimum, sizeof(minimum));
-    if (maximum && number_parse(minimum, &params->minimum_db) &&
-        number_parse(maximum, &params->maximum_db) && params->minimum_db < params->maximum_db)
-        return true;
-    message("quicklook: --db takes MIN:MAX in dB, MIN below MAX, not \"", text, "\"");
-    return false;
-}
-
 static int work(const void *verb_options)
 {
     const struct quicklook_options *options = verb_options;
@@ -50,7 +39,7 @@ static int work(const void *verb_options)
     params.picture = options->picture;
     params.channel = options->channel;
     params.array = options->array;
-    if ((options->decibels && !read_decibels(options->decibels, &params)) ||
+    if (!decibels_parse("quicklook", options->decibels, &params.minimum_db, &params.maximum_db) ||
         !transfer_parse("quicklook", options->transfer, transfer, &params.transfer) ||
         !channel_check("quicklook", options->channel) ||
         !geometry_parse("quicklook", &options->geometry, &params.range_axis, &params.altitude_m,

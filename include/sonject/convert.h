@@ -31,6 +31,8 @@ typedef struct sonject_convert_params {
     const char *geometry; /* of slant range; NULL: the input's own. Refused where that is of ground
                              range */
     double altitude_m;    /* 0: the input's own */
+    double black_db;      /* of 8 bit grey levels, over full scale: 255, 65535 or, of floats, 1 */
+    double white_db;      /* above it; both 0: the numbers stay as they are */
 } sonject_convert_params;
 
 /* Converts a file. Geometry that is known goes with the samples where the format keeps texts (all

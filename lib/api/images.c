@@ -52,6 +52,11 @@ static sonject_status check_conversion(struct report *report, const sonject_conv
         return null_argument(report, "input and output");
     if (params->range_axis > SONJECT_CONVERT_AXIS_GROUND)
         return report_failure(report, SONJECT_ERROR_ARGUMENT, "range_axis: no such choice");
+    if (!(params->black_db < params->white_db) &&
+        !(params->black_db == 0.0 && params->white_db == 0.0))
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "black_db must be below white_db, not %g and %g", params->black_db,
+                              params->white_db);
     return check_altitude(report, params->altitude_m);
 }
 

@@ -257,8 +257,9 @@ struct campaign {
     char *scene_path;          /* owned, as the two above */
     const char *scene_written; /* the tree's */
     uint64_t images, seed;
-    uint32_t design;                  /* enum design */
-    uint32_t format;                  /* enum image_format */
+    uint32_t design;   /* enum design */
+    uint32_t format;   /* enum image_format */
+    double grey_db[2]; /* black and white of 8 bit images; NaN: these are as stored */
     uint32_t chip_rows, chip_columns; /* 0: all of each swath */
     uint32_t edge, clearance;         /* pixels kept free at swaths' edges, around contacts */
     double spread;                    /* of the chip's sides, where objects may lie */
@@ -327,8 +328,8 @@ sonject_status campaign_split(struct report *report, struct campaign *campaign,
                               char (*hashes)[HASH_TEXT_CAPACITY]);
 
 /* Finds where images may lie in a swath whose layout is known. geometry: of the scene with that
- * swath. altitudes_m: the sonar's at each row; images begin beyond the highest at their rows, so that
- * no target lies in the water column, unless they may show it and are limited in range over
+ * swath. altitudes_m: the sonar's at each row; images begin beyond the highest at their rows, so
+ * that no target lies in the water column, unless they may show it and are limited in range over
  * altitude. Errors:
  * INPUT (no room), MEMORY. */
 sonject_status campaign_measure(struct report *report, struct campaign *campaign, size_t swath,

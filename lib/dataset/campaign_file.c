@@ -241,6 +241,20 @@ static sonject_status read_ratio(struct reader *reader, const struct tree_node *
     return campaign_read_ratio(reader, node, &((struct campaign *)structure)->ratio);
 }
 
+static sonject_status read_grey(struct reader *reader, const struct tree_node *node,
+                                void *structure)
+{
+    double *ends = ((struct campaign *)structure)->grey_db;
+    if (node->kind != TREE_LIST || node->count != 2)
+        return refuse_value(reader, node, "must be two levels, [black, white]");
+    for (int i = 0; i < 2; i++)
+        CHECK(read_quantity(reader, &node->entries[i].value, QUANTITY_DECIBEL, &ends[i]));
+    if (ends[0] < ends[1])
+        return SONJECT_OK;
+    return refuse_value(reader, node, "black must be below white, not at %g dB and that at %g dB",
+                        ends[0], ends[1]);
+}
+
 static sonject_status read_side(struct reader *reader, const struct tree_node *node, uint32_t *side)
 {
     uint64_t pixels = 0;
@@ -391,6 +405,8 @@ static sonject_status finish_campaign(struct reader *reader, const struct tree_n
     struct campaign *campaign = structure;
     const double without_target = campaign->empty + campaign->clutter_alone;
     check_items(reader, node, "targets", campaign->targets, campaign->target_count);
+    if (campaign->format == FORMAT_AS_INPUT && !isnan(campaign->grey_db[0]))
+        refuse_relation(reader, node, "grey", "format", "and format: as_input exclude each other");
     if (without_target > 1.0)
         refuse_relation(reader, node, "empty", "clutter", "and clutter.alone together are above 1");
     if (campaign->target_count == 0 && without_target < 1.0)
@@ -418,6 +434,10 @@ static const struct field campaign_fields[] = {
      SPECIAL(read_outputs, "list of words")},
     {"format", "of images; as_input: JPEG where the swath is one, coded as that is",
      WORD(format) = {[FORMAT_LOSSLESS] = "lossless", [FORMAT_AS_INPUT] = "as_input"}},
+    {"grey",
+     "[black, white] of images of 8 bit, for detectors; levels over full scale, as --db of "
+     "sonject convert; by default images have the swath's own numbers",
+     SPECIAL(read_grey, "list of two levels")},
     {"labels", "beside COCO: yolo, voc", SPECIAL(read_outputs, "list of words")},
     {"empty", "fraction of images without any object", QUANTITY(empty, NUMBER), WITHIN(0.0, 1.0)},
     {"visible", "how well targets must be seen", SAME(visible_section)},
@@ -461,6 +481,7 @@ sonject_status campaign_read(struct report *report, const char *path, const char
     section_defaults(&campaign_section, campaign, NULL);
     campaign->outputs = OUTPUT_ALWAYS | OUTPUT_BIT(OUTPUT_HIGHLIGHT) | OUTPUT_BIT(OUTPUT_SHADOW) |
                         OUTPUT_BIT(OUTPUT_MASKS);
+    campaign->grey_db[0] = campaign->grey_db[1] = NAN;
     campaign->splits[0].fraction = 1.0;
     strcpy(campaign->splits[0].name, "all");
     campaign->split_count = 1;

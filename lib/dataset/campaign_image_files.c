@@ -1,6 +1,7 @@
 /* The files of one image of a campaign, and whether they are as they were written: what a record
  * says is believed where its own hash holds. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,21 +67,40 @@ static void take_alone(struct campaign_image *image, struct scene *scene, struct
     swath->skipped.count = 0; /* they are the recording's */
 }
 
+static bool is_grey(const struct sonject_campaign *campaign)
+{
+    return !isnan(campaign->campaign.grey_db[0]);
+}
+
 static sonject_status write_pixels(struct sonject_campaign *campaign, const struct scene *scene,
                                    struct swath *swath, struct injection_result *result,
                                    int quality, const char *path)
 {
     static const char *const complex_names[] = {"real", "imag"};
+    struct raster_attribute attributes[GEOMETRY_NOTES_MAX + 1];
     struct geometry_notes notes;
+    char ends[80];
     void *stored = swath_stored_result(swath, result, &result->statistics.output_clipped);
     CHECK_MEMORY(campaign->report, stored, "an image");
     geometry_notes_init(&notes, &scene->sonar, &scene->geometry);
+    size_t count = notes.count;
+    memcpy(attributes, notes.attributes, count * sizeof *attributes);
+    struct raster_layout layout = swath->layout;
+    const char *const *names = swath->is_complex ? complex_names : NULL;
+    if (is_grey(campaign)) {
+        const double *ends_db = campaign->campaign.grey_db;
+        snprintf(ends, sizeof ends, "%g dB, %g dB", ends_db[0], ends_db[1]);
+        attributes[count++] = (struct raster_attribute){GREY_ATTRIBUTE, ends};
+        grey_levels(&layout, stored, ends_db, stored);
+        layout.channels = 1;
+        layout.type = PIXEL_UINT8;
+        names = NULL;
+    }
     const sonject_status status =
-        quality > 0 ? raster_file_write_jpeg(campaign->report, path, &swath->layout,
-                                             notes.attributes, notes.count, stored, quality)
-                    : raster_file_write(campaign->report, path, &swath->layout,
-                                        swath->is_complex ? complex_names : NULL, notes.attributes,
-                                        notes.count, stored);
+        quality > 0
+            ? raster_file_write_jpeg(campaign->report, path, &layout, attributes, count, stored,
+                                     quality)
+            : raster_file_write(campaign->report, path, &layout, names, attributes, count, stored);
     free(stored);
     return status;
 }
@@ -200,8 +220,9 @@ sonject_status campaign_image_write(struct sonject_campaign *campaign, struct ca
                   campaign->campaign.splits[image->plan.split].name));
     take_alone(image, &parts.scene, &parts.swath);
     const struct raster_layout *layout = &parts.swath.layout;
-    const bool is_grey = layout->type == PIXEL_UINT8 && !parts.swath.is_complex;
-    parts.extension = jpeg_quality_of(campaign, image) > 0 ? ".jpg" : is_grey ? ".png" : ".tif";
+    const bool has_bytes =
+        is_grey(campaign) || (layout->type == PIXEL_UINT8 && !parts.swath.is_complex);
+    parts.extension = jpeg_quality_of(campaign, image) > 0 ? ".jpg" : has_bytes ? ".png" : ".tif";
     char image_name[IMAGE_NAME_CAPACITY];
     const struct label_request request = {
         &parts.scene,

@@ -23,14 +23,6 @@ struct thumbnail {
     float *values;
 };
 
-static float value_at(const struct raster_layout *layout, const void *pixels, size_t i)
-{
-    const size_t k = i * layout->channels;
-    const float first = (float)pixel_number(layout->type, pixels, k);
-    return layout->channels == 2 ? hypotf(first, (float)pixel_number(layout->type, pixels, k + 1))
-                                 : first;
-}
-
 /* Means of the pixels that a drawn one stands for. */
 static void resample(const struct raster_layout *layout, const void *pixels,
                      struct thumbnail *small)
@@ -46,7 +38,7 @@ static void resample(const struct raster_layout *layout, const void *pixels,
             double sum = 0.0;
             for (size_t r = first_row; r < end_row; r++)
                 for (size_t c = first_column; c < end_column; c++)
-                    sum += value_at(layout, pixels, r * (size_t)layout->columns + c);
+                    sum += pixel_magnitude(layout, pixels, r * (size_t)layout->columns + c);
             small->values[(size_t)row * small->sides[1] + column] =
                 (float)(sum / (double)((end_row - first_row) * (end_column - first_column)));
         }

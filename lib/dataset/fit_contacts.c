@@ -161,10 +161,18 @@ static sonject_status describe_image(struct sonject_campaign *campaign, const ch
 {
     struct scene scene;
     struct swath_file *file = NULL;
+    char ends[80];
     CHECK(read_image_scene(campaign, image, swath_of_image(&campaign->campaign, image, side), side,
                            NULL, false, false, &scene));
     sonject_status status =
         swath_file_open_array(campaign->report, image, scene.channel, scene.array, &file);
+    if (status == SONJECT_OK && swath_file_attribute(file, GREY_ATTRIBUTE, ends, sizeof ends) &&
+        scene.transfer.kind != SONJECT_TRANSFER_DECIBEL)
+        status =
+            input_failure(campaign->report, image,
+                          "has grey levels of %s, not the swath's numbers: label the swath, or "
+                          "images made without grey",
+                          ends);
     if (status == SONJECT_OK) {
         struct noted_geometry noted;
         sonject_geometry_params told = scene.geometry;

@@ -1,6 +1,7 @@
 #include "swath/conversion.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -150,6 +151,19 @@ static sonject_status check_uses(struct report *report, const sonject_convert_pa
     return SONJECT_OK;
 }
 
+static sonject_status make_grey(struct report *report, const sonject_convert_params *params,
+                                struct conversion *conversion)
+{
+    const double ends_db[] = {params->black_db, params->white_db};
+    if (params->into)
+        return input_failure(report, params->into,
+                             "grey levels make a new file: take one of the two out");
+    grey_levels(&conversion->layout, conversion->pixels, ends_db, conversion->pixels);
+    conversion->layout.channels = 1;
+    conversion->layout.type = PIXEL_UINT8;
+    return SONJECT_OK;
+}
+
 static sonject_status read_input(struct report *report, const sonject_convert_params *params,
                                  const struct image_options *options, struct conversion *conversion)
 {
@@ -197,8 +211,9 @@ static sonject_status write_into(struct report *report, const sonject_convert_pa
 static sonject_status write_new(struct report *report, const sonject_convert_params *params,
                                 const struct conversion *conversion)
 {
-    struct raster_attribute attributes[GEOMETRY_NOTES_MAX + 1];
+    struct raster_attribute attributes[GEOMETRY_NOTES_MAX + 2];
     struct geometry_notes notes;
+    char ends[80];
     struct noted_geometry geometry = conversion->geometry;
     const bool is_kept = raster_format_keeps_attributes(params->output);
     if (geometry.altitude_varies && !(params->altitude_m > 0.0) && is_kept) {
@@ -213,6 +228,10 @@ static sonject_status write_new(struct report *report, const sonject_convert_par
     memcpy(attributes, notes.attributes, sizeof notes.attributes);
     if (conversion->is_resampled)
         attributes[count++] = (struct raster_attribute){"sonject:resampled", "nearest column"};
+    if (params->black_db < params->white_db) {
+        snprintf(ends, sizeof ends, "%g dB, %g dB", params->black_db, params->white_db);
+        attributes[count++] = (struct raster_attribute){GREY_ATTRIBUTE, ends};
+    }
     const sonject_status status = raster_format_write(report, params->output, &conversion->layout,
                                                       attributes, count, conversion->pixels);
     if (status == SONJECT_OK && count > 0 && !is_kept)
@@ -229,6 +248,8 @@ sonject_status convert_file(struct report *report, const sonject_convert_params 
     THEN(status, read_input(report, params, options, &conversion));
     if (params->range_axis != SONJECT_CONVERT_AXIS_KEPT)
         THEN(status, resample(report, &conversion, params));
+    if (params->black_db < params->white_db)
+        THEN(status, make_grey(report, params, &conversion));
     THEN(status, params->into ? write_into(report, params, options, &conversion)
                               : write_new(report, params, &conversion));
     free(conversion.pixels);

@@ -10,6 +10,10 @@
 
 /* A named text that is stored with an image, as a line "name=value" of its description. Neither
  * part may hold a newline. */
+/* The attribute of images of grey levels in dB: at which levels over full scale black and white
+ * are. */
+#define GREY_ATTRIBUTE "sonject:grey"
+
 struct raster_attribute {
     const char *name;
     const char *value;

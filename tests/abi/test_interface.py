@@ -72,7 +72,7 @@ SIZES = {
     "sonject_campaign_run_params": 48,
     "sonject_contact_measures": 360,
     "sonject_context_params": 56,
-    "sonject_convert_params": 64,
+    "sonject_convert_params": 80,
     "sonject_device_info": 400,
     "sonject_element_layout": 176,
     "sonject_elements_params": 128,

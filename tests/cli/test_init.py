@@ -152,6 +152,7 @@ def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
     text = (tmp_path / "line_campaign.yaml").read_text()
     assert "set: {input.channel: starboard, input.calibration: line_calibration.yaml}" in text
     assert "set: {input.channel: port, input.calibration: line_port_calibration.yaml}" in text
+    assert re.search(r"^grey: \[-\d+ dB, -?\d+ dB\] ", text, flags=re.M)
     assert 'mesh: {file: "rock.obj", unit: mm, nose: y}' in text and "splits: {train: 0.5, val: 0.5}" in text
     for name, side in ("line", "starboard"), ("line_port", "port"):
         assert f"side: {side}\n" in (tmp_path / f"{name}_calibration.yaml").read_text()

@@ -134,6 +134,31 @@ def records(folder):
     return [json.loads(path.read_text()) for path in sorted((folder / "all" / "records").iterdir())]
 
 
+def test_grey_images_are_the_line_as_it_is_converted(sonject, tmp_path, line):
+    """But for what a target changes; fit does not take them for the line's own numbers."""
+    (tmp_path / "pings.csv").write_text("row,altitude_m\n0,6\n59,6\n")
+    text = CAMPAIGN + "grey: [-50 dB, -20 dB]\noutputs: [influence]\n"
+    sonject.done("campaign", write_campaign(tmp_path, text), "-o", "data", "--quiet")
+    sonject.done("convert", "line.tif", "grey.png", "--db", "-50:-20")
+    grey = read_png(tmp_path / "grey.png")
+    share = (20 * numpy.log10(numpy.maximum(line, 1e-9) / 65535) + 50) / 30
+    assert numpy.array_equal(grey, numpy.floor(255 * share.clip(0, 1) + 0.5)) and 0 < numpy.median(grey) < 255
+    changed = 0
+    for record in records(tmp_path / "data"):
+        place = record["swath"]
+        of_line = grey[place["row"]:place["row"] + 16, place["column"]:place["column"] + 60]
+        image, influence = (read_png(tmp_path / "data" / "all" / kind / f"{record['id']:08}.png") for kind in ("images", "influence"))
+        assert numpy.array_equal(image[influence == 0], of_line[influence == 0])
+        changed += (image != of_line).sum()
+    assert changed > 12 * 20
+    (tmp_path / "contacts.csv").write_text("image,row,column,rows,columns\n" + "data/all/images/00000000.png,4,9,5,20\n" * 12)
+    assert_refused(sonject("fit", "campaign.yaml", "contacts.csv", "-o", "fitted.yaml"), 3, "00000000.png: has grey levels of -50 dB, -20 dB")
+    for more, words in ("grey: [-20 dB, -50 dB]", "black must be below white"), ("grey: -50 dB", "must be two levels"), (
+            "grey: [-50 dB, -20 dB]\nformat: as_input", "and format: as_input exclude each other"):
+        (tmp_path / "campaign.yaml").write_text(CAMPAIGN + more)
+        assert_refused(sonject("campaign", "campaign.yaml", "-o", "none"), 3, words)
+
+
 def test_campaigns_know_the_highest_ping(sonject, tmp_path, line):
     (tmp_path / "pings.csv").write_text("row,altitude_m\n0,5\n30,9\n59,7\n")
     sonject.done("campaign", write_campaign(tmp_path), "-o", "data")

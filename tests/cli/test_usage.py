@@ -129,6 +129,7 @@ def test_nothing_asked_is_a_usage_error(sonject):
         (["measure", "x.tif", "--transfer", "sqrt"], ["measure: --transfer", "sqrt"]),
         (["quicklook", "x.tif", "-o", "x.png", "--db", "0:-40"], ["--db", "MIN below MAX"]),
         (["quicklook", "x.tif", "-o", "x.png", "--db", "-40"], ["--db"]),
+        (["convert", "x.tif", "x.png", "--db", "-6:-50"], ["convert: --db", "MIN below MAX"]),
         (["quicklook", "x.tif", "-o", "x.png", "--range-axis", "time"], ["slant or ground"]),
         (["quicklook", "x.tif", "-o", "x.png", "--first-range", "9"], ["--row-spacing"]),
         (["quicklook", "x.tif", "-o", "x.png", "--transfer", "sqrt"], ["sqrt"]),

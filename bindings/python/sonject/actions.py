@@ -257,14 +257,17 @@ def convert(
     range_axis: ConvertAxis = ConvertAxis.KEPT,
     geometry: Optional[Mapping[str, Any]] = None,
     altitude_m: Optional[Quantity] = None,
+    grey: Optional[Tuple[Quantity, Quantity]] = None,
     context: Optional[Context] = None,
 ) -> None:
     """Makes a file of one format (.tif, .png, .npy, .h5) from a file of another.
 
     into: the output is a copy of this file with the source's samples; geometry, altitude_m: None for
-    what the source's metadata says.
+    what the source's metadata says. grey: black and white of 8 bit grey levels, dB over full scale;
+    None: the numbers stay as they are.
     """
     context = default_context() if context is None else context
+    black, white = (None, None) if grey is None else grey
     params = filled(
         s.sonject_convert_params,
         input=file_name("source", source),
@@ -272,7 +275,7 @@ def convert(
         into=optional_file_name("into", into),
         **_image_keys(channel=channel, array=array, geometry=geometry),
         range_axis=choice("range_axis", ConvertAxis, range_axis),
-        **given(altitude_m=altitude_m),
+        **given(altitude_m=altitude_m, black_db=black, white_db=white),
     )
     context.call("sonject_convert", context, ctypes.byref(params))
 

@@ -26,9 +26,17 @@ def test_what_does_not_fit_is_refused(tmp_path):
     numpy.save(tmp_path / "a.npy", numpy.full((3, 4), 0.5, numpy.float32))
     with pytest.raises(sonject.SonjectError, match="does not hold floating-point samples"):
         sonject.convert(tmp_path / "a.npy", tmp_path / "b.png")
+    with pytest.raises(sonject.SonjectError, match="black_db must be below white_db"):
+        sonject.convert(tmp_path / "a.npy", tmp_path / "b.npy", grey=(0, -60))
     with pytest.raises(ValueError, match="array contains a NUL"):
         sonject.convert(tmp_path / "a.npy", tmp_path / "b.npy", array="swath\0of another day")
     assert [path.name for path in tmp_path.iterdir()] == ["a.npy"]
+
+
+def test_grey_levels_are_in_decibels_over_full_scale(tmp_path):
+    numpy.save(tmp_path / "a.npy", numpy.array([[0, 0.001, 0.1, 1, 2j]], numpy.complex64))
+    sonject.convert(tmp_path / "a.npy", tmp_path / "b.npy", grey=(-60, 0))
+    assert numpy.load(tmp_path / "b.npy").tolist() == [[0, 0, 170, 255, 255]]
 
 
 def test_the_ends_of_a_picture_may_have_a_unit(tmp_path):
