@@ -14,7 +14,8 @@ SONJECT_BEGIN_DECLARATIONS
 
 /* What a pixel is. */
 typedef enum sonject_pixel_kind {
-    SONJECT_PIXELS_AMPLITUDE = 0, /* float, >= 0; any number with a transfer function */
+    SONJECT_PIXELS_AMPLITUDE = 0, /* float, 0 to 1e15, in the rms above 1e-15; any number with a
+                                     transfer function */
     SONJECT_PIXELS_COMPLEX = 1, /* pairs of float, real and imaginary part; a path of travel time t
                                    has phase +2 pi f t; without a transfer function */
     SONJECT_PIXELS_UINT8 = 2,   /* uint8_t, with a transfer function */
@@ -27,9 +28,9 @@ typedef struct sonject_pixels {
     uint32_t kind; /* sonject_pixel_kind */
     uint64_t rows;
     uint64_t columns;
-    uint64_t row_stride; /* bytes from a row to the next, a multiple of those of a number (4, 1, 2);
-                            0: rows are packed */
-    const void *data;
+    uint64_t row_stride;  /* bytes from a row to the next, a multiple of a number's; 0: rows are
+                             packed */
+    const void *data;     /* aligned as its numbers are */
     const char *transfer; /* how the numbers came from amplitudes, in the words of a scene's
                              input.transfer: "{kind: decibel, parameter: 0.5}"; NULL: the pixels are
                              linear */

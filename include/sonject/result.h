@@ -15,7 +15,8 @@ SONJECT_BEGIN_DECLARATIONS
 typedef struct sonject_result sonject_result;
 
 /* Puts the scene's objects into a patch in memory. pixels: the patch; its pixel (0, 0) is the
- * geometry's first track position and range; the scene's input and patch are not used. Pixels with
+ * geometry's first track position and range; of the scene's input its geometry counts, of its
+ * patch nothing. Pixels with
  * a transfer function are treated as those of a file: untouched ones keep their numbers, the bits
  * are those of a run on such a file, and a row of nothing but 0 is one where nothing was heard,
  * which stays empty. pixels may be NULL where the scene's input is uniform or synthetic. progress
@@ -98,7 +99,8 @@ typedef struct sonject_object_truth {
     double slant_range_m;      /* apparent, of the centre */
     double ground_range_m;     /* of the centre */
     double height_m;           /* of the centre over the mean seabed */
-    sonject_box highlight;     /* of masks, as the layers of these names */
+    sonject_box highlight;     /* of masks, as the layers of these names; what changes less, such as
+                                  side lobes do, may lie beyond: the layer influence shows all */
     sonject_box shadow;
     sonject_box both;
     uint64_t highlight_pixels;

@@ -38,11 +38,11 @@ typedef struct sonject_scene_read_params {
 } sonject_scene_read_params;
 
 /* Reads a scene file, or params->text. path: YAML file; of a text the name in messages, NULL for
- * "scene". Relative file names are resolved against path's folder, those of overrides against the
- * working directory. params may be NULL (all 0). A text may leave out where the image comes from,
- * for sonject_inject. Message on failure: file:line:column, the key, what is wrong. On success
- * *scene is the caller's, for sonject_scene_release; on failure NULL. Errors: ARGUMENT, INPUT,
- * STORAGE, UNSUPPORTED (a mesh's format), MEMORY. */
+ * "scene". Relative file names are resolved against path's folder, those of overrides and of a text
+ * without path against the working directory. params may be NULL (all 0). A text may leave out
+ * where the image comes from, for sonject_inject. Message on failure: file:line:column, the key,
+ * what is wrong. On success *scene is the caller's, for sonject_scene_release; on failure NULL.
+ * Errors: ARGUMENT, INPUT, STORAGE, UNSUPPORTED (a mesh's format), MEMORY. */
 SONJECT_API sonject_status sonject_scene_read(sonject_context *context, const char *path,
                                               const sonject_scene_read_params *params,
                                               sonject_scene **scene);

@@ -25,10 +25,11 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *han
                               const sonject_pixels *pixels, sonject_progress_function progress,
                               void *user, sonject_result **result)
 {
-    if (!context || !result)
-        return SONJECT_ERROR_ARGUMENT;
-    *result = NULL;
-    context_begin_call(context);
+    if (result)
+        *result = NULL;
+    CHECK(context_begin_call(context));
+    if (!result)
+        return null_argument(&context->report, "result");
     context_watch(context, &progress, &user);
     struct report *report = &context->report;
     const struct scene *scene;

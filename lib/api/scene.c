@@ -11,9 +11,11 @@
 
 sonject_status sonject_scene_create(sonject_context *context, sonject_scene **scene)
 {
-    if (!context || !scene)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
+    if (scene)
+        *scene = NULL;
+    CHECK(context_begin_call(context));
+    if (!scene)
+        return null_argument(&context->report, "scene");
     *scene = allocate_array(1, sizeof **scene);
     if (!*scene)
         return report_out_of_memory(&context->report, "a scene");
@@ -41,7 +43,7 @@ sonject_status check_overrides(struct report *report, const char *path,
                                const char *const *overrides, size_t count)
 {
     if (!path || (count > 0 && !overrides))
-        return null_argument(report, "path and overrides");
+        return null_argument(report, path ? "overrides" : "path, without a text,");
     for (size_t i = 0; i < count; i++)
         if (!overrides[i])
             return null_argument(report, "an override");
@@ -80,10 +82,11 @@ sonject_status sonject_scene_read(sonject_context *context, const char *path,
                                   const sonject_scene_read_params *params, sonject_scene **scene)
 {
     sonject_scene_read_params taken;
-    if (!context || !scene)
-        return SONJECT_ERROR_ARGUMENT;
-    *scene = NULL;
-    context_begin_call(context);
+    if (scene)
+        *scene = NULL;
+    CHECK(context_begin_call(context));
+    if (!scene)
+        return null_argument(&context->report, "scene");
     struct report *report = &context->report;
     CHECK(scene_read_params_take(report, path, params, &taken));
     sonject_scene *made = allocate_array(1, sizeof *made);
@@ -105,10 +108,11 @@ sonject_status sonject_scene_bands(sonject_context *context, const char *path,
 {
     struct scene_source source;
     sonject_scene_read_params taken;
-    if (!context || !names)
-        return SONJECT_ERROR_ARGUMENT;
-    *names = NULL;
-    context_begin_call(context);
+    if (names)
+        *names = NULL;
+    CHECK(context_begin_call(context));
+    if (!names)
+        return null_argument(&context->report, "names");
     CHECK(scene_read_params_take(&context->report, path, params, &taken));
     memset(&source, 0, sizeof source);
     sonject_status status = take_source(&context->report, path, &taken, &source);
@@ -132,12 +136,12 @@ sonject_status scene_use(struct report *report, const sonject_scene *handle,
     return SONJECT_OK;
 }
 
-/* Whether there is a text that can be read and changed. */
-static sonject_status begin_text(sonject_scene *scene, bool has_arguments)
+/* Whether there is a text that can be read and changed. arguments: what must not be NULL. */
+static sonject_status begin_text(sonject_scene *scene, bool has_arguments, const char *arguments)
 {
     scene->report->message[0] = '\0';
     if (!has_arguments)
-        return null_argument(scene->report, "key or value");
+        return null_argument(scene->report, arguments);
     if (!scene->source.text)
         return report_failure(
             scene->report, SONJECT_ERROR_ARGUMENT,
@@ -149,7 +153,7 @@ sonject_status sonject_scene_set(sonject_scene *scene, const char *key, const ch
 {
     if (!scene)
         return SONJECT_ERROR_ARGUMENT;
-    CHECK(begin_text(scene, key && value));
+    CHECK(begin_text(scene, key && value, "key and value"));
     CHECK(scene_source_set(&scene->source, scene->report, key, value));
     scene->is_read = false;
     return SONJECT_OK;
@@ -160,7 +164,7 @@ sonject_status sonject_scene_set_table(sonject_scene *scene, const char *key, co
 {
     if (!scene)
         return SONJECT_ERROR_ARGUMENT;
-    CHECK(begin_text(scene, key && values));
+    CHECK(begin_text(scene, key && values, "key and values"));
     const struct number_array array = {(char *)key, (char *)columns, (double *)values, row_count,
                                        column_count};
     CHECK(scene_source_set_array(&scene->source, scene->report, &array));
@@ -170,28 +174,31 @@ sonject_status sonject_scene_set_table(sonject_scene *scene, const char *key, co
 
 sonject_status sonject_scene_get(const sonject_scene *scene, const char *key, char **json)
 {
-    if (!scene || !json)
+    if (json)
+        *json = NULL;
+    if (!scene)
         return SONJECT_ERROR_ARGUMENT;
-    *json = NULL;
-    CHECK(begin_text((sonject_scene *)scene, key != NULL));
+    CHECK(begin_text((sonject_scene *)scene, key && json, "key and json"));
     return scene_source_get(&((sonject_scene *)scene)->source, scene->report, key, json);
 }
 
 sonject_status sonject_scene_text(const sonject_scene *scene, char **text)
 {
-    if (!scene || !text)
+    if (text)
+        *text = NULL;
+    if (!scene)
         return SONJECT_ERROR_ARGUMENT;
-    *text = NULL;
-    CHECK(begin_text((sonject_scene *)scene, true));
+    CHECK(begin_text((sonject_scene *)scene, text != NULL, "text"));
     return scene_source_text(&((sonject_scene *)scene)->source, scene->report, text);
 }
 
 sonject_status sonject_keys(sonject_context *context, uint32_t of, char **json)
 {
-    if (!context || !json)
-        return SONJECT_ERROR_ARGUMENT;
-    *json = NULL;
-    context_begin_call(context);
+    if (json)
+        *json = NULL;
+    CHECK(context_begin_call(context));
+    if (!json)
+        return null_argument(&context->report, "json");
     if (of > SONJECT_KEYS_OF_CAMPAIGNS)
         return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
                               "keys are those of scenes (%d) or campaigns (%d), not %u",

@@ -66,7 +66,8 @@ static sonject_status check_pixels(struct report *report, const struct patch_vie
     *mean = sum / (double)(view->rows * view->columns);
     if (!(*mean > 1e-30))
         return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the patch has no pixel above 0: choose another patch");
+                              *mean > 0.0 ? "the patch's amplitudes are below 1e-15: scale them"
+                                          : "the patch has no pixel above 0: choose another patch");
     return SONJECT_OK;
 }
 

@@ -173,8 +173,10 @@ void decoder_state_release(struct decoder_state **state)
 {
     struct report unheard = {{0}, NULL, NULL};
     struct hdf5_session session;
+    if (!*state)
+        return;
     hdf5_enter(&session);
-    for (size_t i = 0; *state && i < DECODER_FILES_MAX; i++)
+    for (size_t i = 0; i < DECODER_FILES_MAX; i++)
         (void)close_file(&unheard, &(*state)->files[i]);
     hdf5_leave(&session);
     free(*state);

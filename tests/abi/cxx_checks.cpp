@@ -47,6 +47,11 @@ static void check_errors(const sonject::context &context)
     expect(std::stod(scene.get("sonar.altitude")) == 0.1, "what was set is read back");
     expect(scene.get("objects[0].material") == "\"steel\"", "texts as JSON");
     expect(scene.get("objects[1]") == "null", "what is not there is null");
+    scene.set("injection.seed", UINT64_C(9007199254740993)); /* which no double holds */
+    expect(scene.get("injection.seed") == "9007199254740993", "whole numbers keep digits");
+    scene.set("objects[0].material.roughness", 1);
+    scene.set("injection.order_energies", true);
+    expect(scene.get("injection.order_energies") == "true", "truths are words");
     scene.set("sonar.altitude", -1.0);
     try {
         scene.object_count();

@@ -108,6 +108,30 @@ TEST(keys_that_are_none_are_refused)
     sonject_scene_release(&scene);
 }
 
+/* In every call that makes something: nothing of a call before is left. */
+TEST(failed_calls_set_what_they_make_to_null_and_tell_why)
+{
+    const sonject_scene_read_params reading = {.struct_size = sizeof reading, .text = HEAD};
+    sonject_scene *scene = (void *)&reading;
+    sonject_result *result = (void *)&reading;
+    char *json = (void *)&reading;
+    assert_int_equal(sonject_scene_create(NULL, &scene), SONJECT_ERROR_ARGUMENT);
+    assert_null(scene);
+    scene = (void *)&reading;
+    assert_int_equal(sonject_scene_read(NULL, NULL, &reading, &scene), SONJECT_ERROR_ARGUMENT);
+    assert_null(scene);
+    assert_int_equal(sonject_inject(NULL, NULL, NULL, NULL, NULL, &result), SONJECT_ERROR_ARGUMENT);
+    assert_null(result);
+    assert_int_equal(sonject_scene_get(NULL, "sonar", &json), SONJECT_ERROR_ARGUMENT);
+    assert_null(json);
+    assert_int_equal(sonject_inject(context, NULL, NULL, NULL, NULL, NULL), SONJECT_ERROR_ARGUMENT);
+    assert_string_equal(sonject_context_message(context), "result must not be NULL");
+    assert_int_equal(sonject_scene_read(context, NULL, &reading, NULL), SONJECT_ERROR_ARGUMENT);
+    assert_string_equal(sonject_context_message(context), "scene must not be NULL");
+    assert_int_equal(sonject_scene_read(context, NULL, NULL, &scene), SONJECT_ERROR_ARGUMENT);
+    assert_string_equal(sonject_context_message(context), "path, without a text, must not be NULL");
+}
+
 /* Names of the text are meant from its folder, names that are set from the working folder. */
 TEST(names_of_files_are_absolute)
 {

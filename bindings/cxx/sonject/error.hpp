@@ -11,7 +11,7 @@
 namespace sonject
 {
 
-/* A failed call: status() and the one-line message. */
+/* A failed call: status() and the message, as of sonject_context_message. */
 class error : public std::runtime_error
 {
   public:

@@ -8,6 +8,7 @@
 #include <locale>
 #include <sstream>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -91,6 +92,13 @@ class scene
         text.precision(17);
         text << value;
         set(key, text.str());
+    }
+    /* The same of a whole number, such as a seed, or of true and false. */
+    template <typename T, typename = typename std::enable_if<std::is_integral<T>::value>::type>
+    void set(const std::string &key, T value)
+    {
+        set(key, std::is_same<T, bool>::value ? std::string(value ? "true" : "false")
+                                              : std::to_string(value));
     }
     /* Numbers in place of a table's file: rows of as many columns as are named, separated by
      * commas; of heights, without names, column_count. See sonject_scene_set_table. */
