@@ -208,6 +208,8 @@ static sonject_status learn(struct interview *interview, char **text)
     const char *nadir = strstr(*text, "nadir_column:"), *end = strstr(*text, "\nmeasured:");
     interview->has_returns = strstr(*text, "\n  first_return:") != NULL;
     interview->has_nadir = nadir && end && nadir < end; /* behind it are reasons and errors */
+    const char *columns = strstr(*text, "\n  columns: ");
+    interview->columns = columns ? strtod(columns + strlen("\n  columns: "), NULL) : NAN;
     interview->nadir_column = measured(*text, "nadir_column");
     interview->column_spacing_m = measured(*text, "column_spacing");
     interview->altitude_m = measured(*text, "altitude");
@@ -261,8 +263,11 @@ static sonject_status draw(const struct interview *interview, const char *channe
             snprintf(rest, left, ", nadir_column: %.17g, side: starboard}",
                      interview->nadir_column);
         else
-            snprintf(rest, left, ", first_slant_range: %s}",
-                     answer_about(interview, "input.geometry.first_slant_range"));
+            snprintf(rest, left, ", first_slant_range: %s%s%s}",
+                     answer_about(interview, "input.geometry.first_slant_range"),
+                     interview->is_reversed ? ", side: port, nadir_column: " : "",
+                     interview->is_reversed ? answer_about(interview, "input.geometry.nadir_column")
+                                            : "");
     }
     return sonject_quicklook(interview->context, &params);
 }

@@ -156,9 +156,13 @@ static void add_input(FILE *file, const struct interview *interview)
     add_key(file, "    ", "column_spacing",
             answer_about(interview, "input.geometry.column_spacing"), "of samples, in slant range");
     add_key(file, "    ", "first_slant_range",
-            answer_about(interview, "input.geometry.first_slant_range"), "of column 0");
+            answer_about(interview, "input.geometry.first_slant_range"),
+            interview->is_reversed ? "of the nadir column" : "of column 0");
+    add_key(file, "    ", "nadir_column", answer_about(interview, "input.geometry.nadir_column"),
+            "the last one: range grows to the left");
     add_key(file, "    ", "side", answer_about(interview, "input.geometry.side"),
-            "of the nadir column, which the calibration has");
+            interview->is_reversed ? "left of that"
+                                   : "of the nadir column, which the calibration has");
 }
 
 static void add_sonar(FILE *file, const struct interview *interview)
@@ -283,7 +287,8 @@ static void add_swaths(FILE *file, const struct interview *interview)
 {
     const struct init_options *options = interview->options;
     static const char *const sides[] = {"port", "starboard"};
-    const char *answered = answer_about(interview, "input.geometry.side");
+    const char *answered =
+        interview->has_nadir ? answer_about(interview, "input.geometry.side") : NULL;
     const char *first = answered ? answered : options->channel;
     const bool has_both = *interview->other_calibration || answered;
     if (has_both)

@@ -25,7 +25,10 @@ static const struct question column_spacing = {
     "input.geometry.column_spacing",
     "column spacing, from sample to sample in slant range (such as 2.5 cm)", NULL};
 static const struct question first_range = {"input.geometry.first_slant_range",
-                                            "slant range of the first column (such as 30 m)", NULL};
+                                            "slant range of the first column (such as 30 m), or, "
+                                            "where range grows to the left, of the last one "
+                                            "(such as 30 m left)",
+                                            NULL};
 static const struct question side = {
     "input.geometry.side", "side of the track to put targets into, port or starboard", "port"};
 static const struct question altitude = {
@@ -130,6 +133,25 @@ static const char *length_of_beam(const struct interview *interview, const char 
     return length;
 }
 
+/* The answer without the word left at its end, which *is_left tells. */
+static const char *length_of_range(const char *answer, char length[ANSWER], bool *is_left)
+{
+    const char *end = strstr(answer, "left");
+    *is_left = end && end > answer && end[4] == '\0';
+    while (*is_left && end[-1] == ' ' && end - 1 > answer)
+        end--;
+    snprintf(length, ANSWER, "%.*s", *is_left ? (int)(end - answer) : ANSWER - 1, answer);
+    return length;
+}
+
+/* Range that grows to the left is 0 beyond the last column, whose slant range was answered. */
+static void add_reversed(struct interview *interview)
+{
+    snprintf(interview->answers[interview->count++], ANSWER, "input.geometry.nadir_column=%.0f",
+             interview->columns - 1.0);
+    snprintf(interview->answers[interview->count++], ANSWER, "input.geometry.side=port");
+}
+
 /* Asks until there is an answer that is possible. False after a message: there is none. */
 static bool ask(struct interview *interview, const struct question *question)
 {
@@ -153,10 +175,15 @@ static bool ask(struct interview *interview, const struct question *question)
         }
         if (question == &array_length)
             value = length_of_beam(interview, value, converted);
+        if (question == &first_range)
+            value = length_of_range(value, converted, &interview->is_reversed);
         const int length =
             snprintf(interview->answers[interview->count++], ANSWER, "%s=%s", question->key, value);
-        if (*value && length < ANSWER && is_possible(interview))
+        if (*value && length < ANSWER && is_possible(interview)) {
+            if (question == &first_range && interview->is_reversed)
+                add_reversed(interview);
             return true;
+        }
         interview->count--;
         if (*value)
             (void)fail_with(interview->context, SONJECT_ERROR_INPUT);

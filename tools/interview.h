@@ -9,7 +9,7 @@
 
 enum {
     ANSWER = 100,
-    ANSWERS = 10,
+    ANSWERS = 12,
     NAME = 1024
 };
 
@@ -35,8 +35,9 @@ struct interview {
     bool has_geometry, has_altitude; /* the image's file */
     /* The image, as its calibration found; NAN: it did not. */
     bool has_nadir;
+    bool is_reversed; /* range grows to the left; an answer */
     bool has_returns; /* first ones, so that they tell the altitude */
-    double nadir_column, frequency_hz, column_spacing_m, altitude_m, recorded_altitude_m,
+    double columns, nadir_column, frequency_hz, column_spacing_m, altitude_m, recorded_altitude_m,
         full_scale, ceiling_over_seabed_db, plain_row, plain_column;
     bool assumes_bandwidth; /* that of the columns */
 };

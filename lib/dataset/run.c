@@ -33,19 +33,19 @@ static void tell_noise_floor(struct report *report, const struct scene *scene,
     if (statistics->noise_floor_source == SONJECT_SOURCE_PATCH)
         report_log(report, "noise floor estimated from the patch: %.1f dB over the mean seabed",
                    statistics->noise_floor_db);
-    else if (scene->injection.estimate_noise)
-        report_log(report,
-                   "noise floor: no shadow of the patch tells it, %.1f dB over the mean seabed is "
-                   "taken",
-                   statistics->noise_floor_db);
+    else if (scene->injection.estimate_noise && scene->input_kind == SONJECT_INPUT_FILE)
+        report_note(report,
+                    "no shadow of the patch tells the noise floor, and %.1f dB under the mean "
+                    "seabed is taken: compare its shadows, and set injection.noise_floor",
+                    -statistics->noise_floor_db);
 }
 
 static void tell_clipped(struct report *report, const sonject_statistics *statistics)
 {
     if (statistics->input_clipped > 0)
         report_log(report,
-                   "%llu pixels of the patch are at the image's full scale, so their true "
-                   "amplitude may be larger",
+                   "of the patch's pixels %llu are at the image's full scale: their true amplitude "
+                   "may be larger",
                    (unsigned long long)statistics->input_clipped);
     if (statistics->output_clipped > 0)
         report_log(report, "%llu changed pixels are cut at the image's full scale",

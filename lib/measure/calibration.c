@@ -392,9 +392,10 @@ static void find_room(struct calibration *found, const struct stored_swath *swat
 {
     const double *levels = found->fits[found->family].levels;
     double count = 0.0, sum = 0.0, squares = 0.0, least = INFINITY;
-    found->room_db.how = "the ceiling over plain tiles in the middle third of the columns; row and "
-                         "column are the place of one that is darker than most";
-    found->room_db.unseen = found->full_scale.unseen;
+    found->room_db.how = "the ceiling, or the largest number that pixels hold, over plain tiles in "
+                         "the middle third of the columns; row and column are the place of one "
+                         "that is darker than most";
+    found->room_db.unseen = swath->unit > 0.0 ? NULL : found->full_scale.unseen;
     if (found->room_db.unseen)
         return;
     for (size_t i = 0; i < found->tiles.count; i++) {
@@ -412,7 +413,7 @@ static void find_room(struct calibration *found, const struct stored_swath *swat
     }
     const double mean = sum / count, deviation = sqrt(fmax(0.0, squares / count - mean * mean));
     found->room_db.value =
-        DECIBELS * pixel_log_intensity(found, swath, found->full_scale.value) - mean;
+        DECIBELS * pixel_log_intensity(found, swath, curve_full_scale(found, swath)) - mean;
     found->room_db.error = deviation / sqrt(count);
     for (size_t i = 0; i < found->tiles.count; i++) {
         const size_t middle = found->tiles.columns[i] + found->tiles.side / 2;

@@ -153,18 +153,27 @@ static sonject_status write_results(struct report *report, const sonject_calibra
     return status;
 }
 
-static void tell_misfit(struct report *report, const char *image, const struct calibration *found)
+static void tell_curve(struct report *report, const char *image, const struct stored_swath *swath,
+                       const struct calibration *found)
 {
+    const char *name = image ? path_name(image) : "the pixels";
     const struct curve_fit *fit = &found->fits[found->family];
-    if (!found->transfer_kind.unseen && !curve_fits(fit))
-        report_note(
-            report,
-            "%s: the measured grey-level curve does not explain the seabed's speckle (%.2g %% of "
-            "its "
-            "pixels are off): targets may have another grain or contrast than the seabed. Compare "
-            "them in quicklook.png of sonject run; if they differ, give the sonar maker's curve as "
-            "input.transfer",
-            image ? path_name(image) : "the pixels", 100.0 * fit->misfit);
+    const bool is_seen =
+        !found->transfer_kind.unseen &&
+        (found->transfer.kind < SONJECT_TRANSFER_DECIBEL || !found->parameter.unseen);
+    if (!is_seen && swath->unit > 0.0)
+        report_note(report,
+                    "%s: its tiles do not tell the grey-level curve, and numbers are taken for "
+                    "amplitudes: if they are none, give the curve as input.transfer",
+                    name);
+    else if (is_seen && !curve_fits(fit))
+        report_note(report,
+                    "%s: the measured grey-level curve does not explain the seabed's speckle "
+                    "(%.2g %% of its pixels are off): targets may have another grain or contrast "
+                    "than the seabed. Compare them in quicklook.png of sonject run; if they "
+                    "differ, give the sonar maker's curve as input.transfer, or other "
+                    "injection.match.looks",
+                    name, 100.0 * fit->misfit);
 }
 
 sonject_status calibrate_image(struct report *report, const sonject_calibrate_params *params,
@@ -193,7 +202,7 @@ sonject_status calibrate_image(struct report *report, const sonject_calibrate_pa
         find_geometry(file ? &noted : NULL, options, &geometry);
     THEN(status, calibrate_swath(report, &swath, &geometry, &found));
     if (status == SONJECT_OK) {
-        tell_misfit(report, params->image, &found);
+        tell_curve(report, params->image, &swath, &found);
         found.side = noted.knows_side ? noted.side : SIDE_UNKNOWN;
         found.recorded_altitude_m = noted.altitude_m;
         if (file)

@@ -300,7 +300,7 @@ static void draw_law(struct chart *chart, const struct calibration *found,
     draw_legend(chart, 1, false, text, blue);
     if (fit->texture > 0.0) {
         snprintf(text, sizeof text, "K shape %.3g", 1.0 / fit->texture);
-        draw_legend(chart, 1, false, text, blue);
+        draw_legend(chart, 2, false, text, blue);
     }
 }
 
@@ -422,7 +422,8 @@ static void draw_head(struct canvas *canvas, const struct calibration *found, co
     snprintf(text, sizeof text, "%zu x %zu pixels, %zu plain tiles: %s", found->rows,
              found->columns, found->tiles.count, curve);
     if (found->transfer.kind >= SONJECT_TRANSFER_DECIBEL) {
-        snprintf(curve, sizeof curve, " +- %.2g", found->parameter.error);
+        snprintf(curve, sizeof curve, " +- %.2g%s", found->parameter.error,
+                 found->parameter.unseen ? ", not told: amplitude is taken" : "");
         strncat(text, curve, sizeof text - strlen(text) - 1);
     }
     for (int family = 0; family < CURVE_FAMILIES; family++)

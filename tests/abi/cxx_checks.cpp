@@ -49,7 +49,7 @@ static void check_errors(const sonject::context &context)
     expect(scene.get("objects[1]") == "null", "what is not there is null");
     scene.set("injection.seed", UINT64_C(9007199254740993)); /* which no double holds */
     expect(scene.get("injection.seed") == "9007199254740993", "whole numbers keep digits");
-    scene.set("objects[0].material.roughness", 1);
+    scene.set("injection.interactions", 2);
     scene.set("injection.order_energies", true);
     expect(scene.get("injection.order_energies") == "true", "truths are words");
     scene.set("sonar.altitude", -1.0);

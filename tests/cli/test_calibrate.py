@@ -96,7 +96,7 @@ def test_a_misfit_tells_what_no_law_of_speckle_explains(sonject, tmp_path):
         "first_slant_range: 30 m}}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\nobjects: []\n")
     for command in ["calibrate", "made.npy"], ["run", "scene.yaml", "-o", "out"]:
         (note,) = re.findall("note: (made.npy: the measured grey-level curve does not explain .*)", sonject.done(*command).stderr)
-        assert f"{100 * told[1]['value']:.2g} % of its pixels are off" in note and note.endswith("as input.transfer")
+        assert f"{100 * told[1]['value']:.2g} % of its pixels are off" in note and "as input.transfer" in note
 
 
 def test_complex_pixels_have_no_curve(sonject, tmp_path):
@@ -294,7 +294,7 @@ def test_the_other_sides_calibration_is_told(sonject, tmp_path):
 
 def test_bad_input_is_refused(sonject, tmp_path):
     numpy.save(tmp_path / "nan.npy", numpy.full((64, 64), numpy.nan, numpy.float32))
-    numpy.save(tmp_path / "made.npy", numpy.zeros((64, 64), numpy.uint8))
+    numpy.save(tmp_path / "made.npy", numpy.zeros((64, 64), numpy.float32))
     assert_refused(sonject("calibrate", "nan.npy"), 3, "row 0, column 0", "not a finite number")
     assert_refused(sonject("calibrate", "none.npy"), 3, "none.npy")
     assert_refused(sonject("calibrate", "made.npy", "--row-spacing", "1"), 2, "belong together")

@@ -115,7 +115,7 @@ def test_a_floor_that_no_shadow_tells_is_named_a_fallback(sonject, tmp_path):
     numbers, answer = run_document(sonject, tmp_path)
     assert numbers["noise_floor_db"] == {"value": pytest.approx(-22.5), "from": "fallback"}
     assert numbers["transfer"] == {"kind": "amplitude", "from": "default"}
-    assert "no shadow of the patch tells it, -22.5 dB" in answer.stderr
+    assert "no shadow of the patch tells the noise floor, and 22.5 dB under the mean seabed is taken" in answer.stderr
 
 
 def test_shadows_of_a_patch_tell_its_floor_and_the_water_column_does_not(sonject, tmp_path):

@@ -46,6 +46,20 @@ def test_a_wrong_answer_is_asked_for_again(sonject, image):
     assert "row_spacing: 5 cm" in image.with_suffix(".yaml").read_text()
 
 
+def test_range_may_grow_to_the_left(sonject, image):
+    """Then shadows fall to the left, and the last column is the nearest."""
+    answer = init(sonject, "swath.npy", "--campaign", answers=["5 cm", "2.5 cm", "44 m left", *ANSWERS[3:]])
+    assert answer.returncode == 0, answer.stderr
+    scene = image.with_suffix(".yaml").read_text()
+    for line in ("first_slant_range: 44 m", f"nadir_column: {COLUMNS - 1}", "side: port"):
+        assert f"    {line} # " in scene
+    assert "geometry.side" not in (image.parent / "swath_campaign.yaml").read_text()
+    sonject.done("run", "swath.yaml", "-o", "out")
+    (thing,) = json.loads((image.parent / "out" / "truth.json").read_text())["objects"]
+    assert thing["shadow"]["column"] + thing["shadow"]["columns"] / 2 < thing["column"]
+    assert thing["slant_range_m"] == pytest.approx(44 + 0.025 * (COLUMNS - 1 - thing["column"]), abs=0.05)
+
+
 def test_no_answer_leaves_no_file(sonject, image):
     answer = init(sonject, "swath.npy", answers=ANSWERS[:2])
     assert answer.returncode == 2 and "no answer was given for input.geometry.first_slant_range" in answer.stderr

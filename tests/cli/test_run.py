@@ -211,7 +211,8 @@ def test_verbose_tells_what_happens_to_an_8_bit_swath(sonject, scene, tmp_path):
     (tmp_path / "swath.png").write_bytes(images.png_bytes(swath))
     chosen = ["--set", "input.path=swath.png"]
     usual = sonject.done("run", scene, "-o", "usual", *chosen)
-    cut, note, result = usual.stderr.splitlines()
+    floor, cut, note, result = usual.stderr.splitlines()
+    assert floor.startswith("sonject: note: no shadow of the patch tells the noise floor, and 22.5 dB under")
     assert "the highlight of 'ball' is cut at the image's ceiling" in cut
     assert note.startswith("sonject: note: image.png is written anew")
     assert result == "sonject: the result is in usual"
@@ -222,8 +223,8 @@ def test_verbose_tells_what_happens_to_an_8_bit_swath(sonject, scene, tmp_path):
     *news, last = answer.stderr.splitlines()
     assert last == "sonject: the result is in result"
     assert all(line.startswith("sonject: ") for line in news)
-    for words in ("device '", "trace_rough.cl built in", "noise floor: no shadow",
-                  "3 pixels of the patch are at the image's full scale"):
+    for words in ("device '", "trace_rough.cl built in", "tells the noise floor",
+                  "of the patch's pixels 3 are at the image's full scale"):
         assert len([line for line in news if words in line]) == 1, (words, news)
     quiet = sonject.done("run", scene, "-o", "quiet", *chosen, "--verbose", "--quiet")
     assert (quiet.stdout, quiet.stderr) == ("", "")
