@@ -283,8 +283,11 @@ static void add_grey(FILE *file, const struct interview *interview)
 }
 
 /* One swath, or both sides. */
-static void add_swaths(FILE *file, const struct interview *interview)
+static void add_swaths(FILE *file, const struct interview *interview, const char *text)
 {
+    struct checked checked;
+    read_checked(&checked, text);
+    const double along_m = checked.along_m, wide_m = checked.last_m - checked.first_m;
     const struct init_options *options = interview->options;
     static const char *const sides[] = {"port", "starboard"};
     const char *answered =
@@ -306,9 +309,11 @@ static void add_swaths(FILE *file, const struct interview *interview)
         else if (has_both)
             fprintf(file, "    set: {input.channel: %s, input.calibration: %s}\n", side,
                     last_part(i == 0 ? interview->calibration : interview->other_calibration));
-        fputs("    # avoid: [{along_track: [20 m, 25 m], slant_range: [5 m, 9 m]}, "
-              "{along_track: [30 m, 31 m], slant_range: [5 m, 30 m]}] # for example\n",
-              file);
+        fprintf(file,
+                "    # avoid: [{along_track: [%.3g m, %.3g m], slant_range: [%.3g m, %.3g m]}] # "
+                "for example; a list\n",
+                0.4 * along_m, 0.45 * along_m, checked.first_m + 0.3 * wide_m,
+                checked.first_m + 0.5 * wide_m);
     }
 }
 
@@ -347,7 +352,7 @@ bool write_campaign(const struct interview *interview, const char *checked)
           "visible: {highlight: 1.2 dB, shadow: -2.3 dB} # what nobody would see is drawn again\n",
           file);
     add_grey(file, interview);
-    add_swaths(file, interview);
+    add_swaths(file, interview, checked);
     fprintf(
         file,
         "draw: # any key of a scene\n"

@@ -191,7 +191,7 @@ def test_names_that_steer_terminals_are_refused_and_never_shown(sonject, scene):
     name = "a" + "".join(STEERING)
     assert_refused(sonject("run", scene, "-o", f"scene.yaml/{name}"), 5, "scene.yaml/a")
     answer = sonject.done("run", scene, "-o", name)
-    assert len(answer.stderr.splitlines()) == 1 and "result is in a" in answer.stderr
+    assert len(answer.stderr.splitlines()) == 2 and "result is in a" in answer.stderr
     assert not any(steering in answer.stderr for steering in STEERING)
 
 

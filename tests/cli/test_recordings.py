@@ -316,8 +316,8 @@ targets: [{class: ball, object: {shape: sphere, diameter: 0.4 m}}]
 """)
     sonject.done("campaign", "campaign.yaml", "-o", "data")
     for path in (tmp_path / "data" / "all" / "records").iterdir():
-        first = json.loads(path.read_text())["swath"]["column"]
-        assert 0.15 * (first + 0.5) > 9.0
+        place = json.loads(path.read_text())["swath"]
+        assert 0.15 * (place["column"] + 0.5) > altitudes[place["row"] + 15]
 
 
 @pytest.mark.parametrize("kind", ["xtf", "jsf"])
