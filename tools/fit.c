@@ -19,8 +19,9 @@ static const struct argument arguments[] = {
     {"--output", "-o", "FITTED.yaml", "the campaign to write, beside the one that is fitted",
      ARGUMENT_TEXT, true, offsetof(struct fit_options, stage.output)},
     {"--boxes", NULL, "both|highlight|shadow",
-     "what labels are around where no class says it (both)", ARGUMENT_TEXT, false,
-     offsetof(struct fit_options, boxes)},
+     "what boxes are drawn around: the highlight, the shadow, or both (both); a class with "
+     "shadow or highlight in its name tells it itself",
+     ARGUMENT_TEXT, false, offsetof(struct fit_options, boxes)},
     {"--class", NULL, "NAME", "takes contacts of this class alone; may be repeated", ARGUMENT_TEXTS,
      false, offsetof(struct fit_options, classes)},
     {"--set", NULL, "KEY=VALUE", "changes the campaign that is fitted; may be repeated",

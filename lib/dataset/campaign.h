@@ -266,6 +266,7 @@ struct campaign {
     double slant_range_m[2];          /* of images' middles */
     struct ratio_limits ratio;        /* of swaths that have none */
     double empty, clutter_alone;
+    bool clutter_labelled;
     bool has_one_target; /* in each image, and nothing else, whatever the file says */
     double visible_highlight_db, visible_shadow_db; /* of targets: at least, at most; NaN: any */
     uint32_t faint;                                 /* enum faint */

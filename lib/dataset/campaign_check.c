@@ -291,7 +291,8 @@ static sonject_status take_classes(struct sonject_campaign *campaign)
 {
     const struct campaign *plan = &campaign->campaign;
     uint32_t number;
-    for (size_t i = 0; i < plan->target_count + plan->clutter_count; i++) {
+    const size_t clutter = plan->clutter_labelled ? plan->clutter_count : 0;
+    for (size_t i = 0; i < plan->target_count + clutter; i++) {
         const struct item *item =
             i < plan->target_count ? &plan->targets[i] : &plan->clutter[i - plan->target_count];
         CHECK(class_names_take(&campaign->classes, campaign->report, item->class_name, &number));

@@ -396,6 +396,8 @@ static const struct field clutter_fields[] = {
      .range = "0..." TEXT_OF(CAMPAIGN_CLUTTER_MAX)},
     {"alone", "fraction of images with clutter and no target", QUANTITY(clutter_alone, NUMBER),
      WITHIN(0.0, 1.0)},
+    {"labelled", "in COCO, YOLO and VOC; else detectors learn clutter as background",
+     FLAG(clutter_labelled), .preset = 1},
 };
 static const struct section clutter_section = {ROWS(clutter_fields), .finish = finish_clutter};
 

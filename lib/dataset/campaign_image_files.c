@@ -231,7 +231,9 @@ sonject_status campaign_image_write(struct sonject_campaign *campaign, struct ca
         layout->rows,
         layout->columns,
         parts.swath.patch,
-        &parts.swath.track};
+        &parts.swath.track,
+        campaign->campaign.clutter_labelled ? image->result.object_count
+                                            : image->plan.target_count};
     CHECK(image_labels_find(&parts.labels, report, &request, &campaign->classes));
     for (uint32_t i = 0; i < image->plan.target_count; i++)
         parts.labels.contacts[i].is_difficult = image->is_faint[i];

@@ -33,10 +33,10 @@ struct statistics_page {
     const struct data_set *set;
     struct series series[SERIES_MAX];
     size_t series_count;
-    uint64_t *counts; /* of objects: splits x classes */
+    uint64_t (*counts)[CLASSES_MAX]; /* of objects: splits x classes; owned */
     uint64_t empty[CAMPAIGN_SPLITS_MAX], clutter_alone[CAMPAIGN_SPLITS_MAX];
-    const json_t *classes;
-    uint64_t every; /* image that is taken */
+    json_t *classes; /* those of labels first; owned */
+    uint64_t every;  /* image that is taken */
     uint64_t drawn_anew, difficult, clipped, unseen, cut;
     uint64_t sources[COUNT(number_names)][COUNT(sources)]; /* images */
     json_t *rows;                                          /* of the images that are taken; owned */
@@ -119,13 +119,15 @@ static sonject_status add_object(struct statistics_page *page, size_t split, con
                   {"clipped share of highlights", "", "highlight_clipped"},
                   {"pixels of highlights", "", "highlight_pixels"},
                   {"pixels of shadows", "", "shadow_pixels"}};
-    size_t i;
-    const json_t *name;
-    json_array_foreach(page->classes, i, name)
-    {
-        if (strcmp(json_string_value(name), member_text(object, "class")) == 0)
-            page->counts[split * json_array_size(page->classes) + i]++;
-    }
+    const char *name = member_text(object, "class");
+    size_t i = 0;
+    while (i < json_array_size(page->classes) &&
+           strcmp(json_string_value(json_array_get(page->classes, i)), name) != 0)
+        i++;
+    if (i == json_array_size(page->classes) && i < CLASSES_MAX) /* of no label */
+        json_append(&page->classes, json_text(name));
+    if (i < CLASSES_MAX)
+        page->counts[split][i]++;
     page->unseen += json_is_false(json_object_get(object, "visible"));
     page->clipped += json_number_value(json_object_get(object, "highlight_clipped")) > CLIPPED_MUCH;
     for (i = 0; is_taken && i < COUNT(values); i++) {
@@ -253,12 +255,11 @@ static json_t *splits_document(const struct statistics_page *page)
     const size_t classes = json_array_size(page->classes);
     json_t *splits = json_array();
     for (size_t i = 0; i < set->split_count; i++)
-        json_append(&splits,
-                    JSON_OBJECT({"name", json_string(set->split_names[i])},
-                                {"images", json_count(set->split_images[i])},
-                                {"empty", json_count(page->empty[i])},
-                                {"clutter_alone", json_count(page->clutter_alone[i])},
-                                {"objects", json_counts(page->counts + i * classes, classes)}));
+        json_append(&splits, JSON_OBJECT({"name", json_string(set->split_names[i])},
+                                         {"images", json_count(set->split_images[i])},
+                                         {"empty", json_count(page->empty[i])},
+                                         {"clutter_alone", json_count(page->clutter_alone[i])},
+                                         {"objects", json_counts(page->counts[i], classes)}));
     return splits;
 }
 
@@ -278,21 +279,20 @@ static json_t *numbers_document(const struct statistics_page *page)
 /* Takes the rows and the sheet. */
 static json_t *page_document(struct statistics_page *page)
 {
-    static const char *const kept[] = {"sonject", "hash",  "classes",
-                                       "swaths",  "empty", "clutter_alone"};
+    static const char *const kept[] = {"sonject", "hash", "swaths", "empty", "clutter_alone"};
     json_t *columns = json_array();
     json_t *histograms = json_array();
     for (size_t i = 0; i < COUNT(row_members); i++)
         json_append(&columns, json_string(row_members[i].key));
     for (size_t i = 0; i < page->series_count; i++)
         json_append(&histograms, histogram_document(&page->series[i]));
-    json_t *document =
-        JSON_OBJECT({"images", json_count(page->set->images)}, JSON_COUNT(page, every),
-                    {"splits", splits_document(page)}, {"numbers", numbers_document(page)},
-                    JSON_COUNT(page, drawn_anew), JSON_COUNT(page, difficult),
-                    JSON_COUNT(page, unseen), JSON_COUNT(page, clipped), JSON_COUNT(page, cut),
-                    {"sheet", page->sheet}, {"histograms", histograms}, {"columns", columns},
-                    {"rows", page->rows}, {"chips", json_count(page->chip_count)});
+    json_t *document = JSON_OBJECT(
+        {"images", json_count(page->set->images)}, JSON_COUNT(page, every),
+        {"splits", splits_document(page)}, {"numbers", numbers_document(page)},
+        JSON_COUNT(page, drawn_anew), JSON_COUNT(page, difficult), JSON_COUNT(page, unseen),
+        JSON_COUNT(page, clipped), JSON_COUNT(page, cut), {"sheet", page->sheet},
+        {"histograms", histograms}, {"columns", columns}, {"classes", json_incref(page->classes)},
+        {"rows", page->rows}, {"chips", json_count(page->chip_count)});
     page->rows = page->sheet = NULL;
     for (size_t i = 0; i < COUNT(kept); i++)
         json_add(&document, kept[i], json_incref(json_object_get(page->set->head, kept[i])));
@@ -323,10 +323,9 @@ sonject_status write_report_page(const struct data_set *set)
     CHECK_MEMORY(set->report, page, "the report");
     page->set = set;
     page->every = (set->images + IMAGES_MAX - 1) / IMAGES_MAX;
-    page->classes = json_object_get(set->head, "classes");
+    page->classes = json_copy(json_object_get(set->head, "classes"));
     page->rows = json_array();
-    page->counts =
-        allocate_array(set->split_count, json_array_size(page->classes) * sizeof *page->counts);
+    page->counts = allocate_array(set->split_count, sizeof *page->counts);
     sonject_status status =
         page->counts ? SONJECT_OK : report_out_of_memory(set->report, "the report");
     for (size_t i = 0; status == SONJECT_OK && i < set->split_count; i++)
@@ -345,6 +344,7 @@ sonject_status write_report_page(const struct data_set *set)
         free(page->series[i].values);
     json_decref(page->rows);
     json_decref(page->sheet);
+    json_decref(page->classes);
     free(page->counts);
     free(page);
     return status;

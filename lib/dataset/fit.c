@@ -17,8 +17,9 @@
 #define CONTACTS_LEAST 10
 #define CLEAR_LEAST    24 /* contacts of a round */
 #define PAD_MOST       16.0
-#define PAD_CLEAR      0.75 /* pixels */
-#define RATIOS_LEAST   1.05 /* farthest over nearest, for the chips to be limited to them */
+#define PAD_CLEAR      0.75   /* pixels */
+#define SHADOW_SEEN_DB (-2.3) /* of visibility: as those who label see shadows */
+#define RATIOS_LEAST   1.05   /* farthest over nearest, for the chips to be limited to them */
 
 /* The value below which a share of those that are numbers lies, which are sorted; NaN: there are
  * none. */
@@ -59,6 +60,33 @@ static sonject_status measure_real(struct fit *fit)
         fit->real_count++;
     }
     return SONJECT_OK;
+}
+
+/* Nothing is taken from shadows where fewer real contacts show one than an extent needs, or fewer
+ * than a third: beside bright points without any, up to a fifth show what is but dark speckle. */
+static void leave_out_shadows(struct fit *fit)
+{
+    static const enum extent of_shadows[] = {EXTENT_SHADOW_ALONG, EXTENT_SHADOW_HEIGHT,
+                                             EXTENT_SHADOW_ROWS, EXTENT_SHADOW_SLANT,
+                                             EXTENT_SHADOW_LEVEL};
+    size_t seen = 0;
+    char note[160];
+    for (size_t i = 0; i < fit->real_count; i++)
+        seen += isfinite(fit->real[i].of[EXTENT_SHADOW_LEVEL]) &&
+                !(fit->real[i].shadow_visibility_db > SHADOW_SEEN_DB);
+    if (seen >= SEEN_LEAST && 3 * seen >= fit->real_count)
+        return;
+    snprintf(note, sizeof note,
+             "shadows are seen in %zu of %zu contacts, so heights and the noise floor stay", seen,
+             fit->real_count);
+    report_note(fit->report, "%s", note);
+    growing_text_add(&fit->notes, "%s\n", note);
+    fit->draws.lacks_shadows = true;
+    for (size_t i = 0; i < fit->real_count; i++) {
+        fit->real[i].shadow_visibility_db = NAN;
+        for (size_t k = 0; k < COUNT(of_shadows); k++)
+            fit->real[i].of[of_shadows[k]] = NAN;
+    }
 }
 
 /* A member of what contacts show. extents: count of them, stride bytes apart. values: room. */
@@ -102,6 +130,7 @@ static struct ratio_limits ratios_of_contacts(const struct fit *fit, size_t swat
 static sonject_status take_contacts(struct fit *fit)
 {
     CHECK(measure_real(fit));
+    leave_out_shadows(fit);
     const size_t count = fit->real_count;
     const double share = (floor((double)count / 50.0) + 2.0 / 3.0) / ((double)count + 1.0 / 3.0);
     double *values = allocate_array(count, sizeof *values);
@@ -197,18 +226,22 @@ static sonject_status open_first(struct fit *fit, struct sonject_campaign **open
     fit->selection.chip = (struct ratio_limits){0.0, 0.0};
     free(fit->selection.swaths);
     fit->selection.swaths = NULL;
-    fit->has_no_such_ranges = true;
+    growing_text_add(&fit->notes, "the campaign's swaths do not reach the ranges over altitude of "
+                                  "the contacts; its chips lie where they lay\n");
     return open_round(fit, 0, opened);
 }
 
-static void note_drawn(const struct campaign_image *image, struct drawn_contact *contact)
+/* A height that is not observed stands still: a sphere's would take part of what its highlight's
+ * size tells of its diameter. */
+static void note_drawn(const struct fit *fit, const struct campaign_image *image,
+                       struct drawn_contact *contact)
 {
     const sonject_object_truth *truth = image->result.objects;
     const double proud = truth->overall_height_m - fmax(truth->burial_m, 0.0);
     double *drawn = contact->drawn;
     drawn[FITTED_LENGTH] = log(truth->overall_length_m);
     drawn[FITTED_WIDTH] = log(truth->overall_width_m);
-    drawn[FITTED_HEIGHT] = log(fmax(proud, 1e-3));
+    drawn[FITTED_HEIGHT] = fit->draws.lacks_shadows ? 0.0 : log(fmax(proud, 1e-3));
     drawn[FITTED_LEVEL] = truth->over_seabed_db;
     drawn[FITTED_FLOOR] = image->result.statistics.noise_floor_db;
     contact->heading_rad = image->scene.objects[0].heading_rad;
@@ -241,12 +274,13 @@ static sonject_status make_contact(void *user, const struct image_maker *maker, 
     memset(&image, 0, sizeof image);
     sonject_status status = campaign_image_make(maker->device, maker->campaign, id, maker->progress,
                                                 maker->user, &image);
-    THEN(status, contact_chip_of_image(report, &image, fit->part, fit->pad, &made->chip, &is_seen));
+    THEN(status,
+         contact_chip_of_image(report, &image, fit->choice.part, fit->pad, &made->chip, &is_seen));
     if (status == SONJECT_OK && is_seen && isfinite(image.result.objects->over_seabed_db)) {
         made->contact.round = round->number;
         made->contact.is_faint = image.is_faint[0];
-        note_drawn(&image, &made->contact);
-        status = contact_chip_measure(report, &made->chip, fit->part, &made->contact.shown);
+        note_drawn(fit, &image, &made->contact);
+        status = contact_chip_measure(report, &made->chip, fit->choice.part, &made->contact.shown);
         made->is_there = status == SONJECT_OK;
     }
     if (round->number + 1 < FIT_ROUNDS)
@@ -456,27 +490,29 @@ static sonject_status read_all(struct fit *fit, const sonject_campaign_fit_param
     CHECK(check_fitted(fit, params->fitted));
     CHECK(fit_page_name(fit->report, params->fitted, "_fit", fit->folder));
     fit->campaign->folder = fit->folder;
-    CHECK(fit_draws_find(&fit->draws, fit->report, &fit->campaign->campaign));
-    const struct contact_choice choice = {params->part, params->classes, params->class_count};
-    CHECK(contact_set_read(fit->report, params->contacts, &choice, &fit->set));
-    if (fit->set.quantiles.count > 0) {
+    CHECK(contact_set_read(fit->report, params->contacts, &fit->choice, &fit->set));
+    if (fit->set.quantiles.count > 0)
         take_quantiles(fit);
-        return SONJECT_OK;
-    }
-    if (fit->set.count < CONTACTS_LEAST)
+    else if (fit->set.count < CONTACTS_LEAST)
         return input_failure(fit->report, params->contacts,
-                             "has %zu contacts; a fit needs %d or more", fit->set.count,
+                             "has %zu contacts%s; a fit needs %d or more", fit->set.count,
+                             fit->choice.class_count > 0 ? " of the chosen classes" : "",
                              CONTACTS_LEAST);
-    return take_contacts(fit);
+    else
+        CHECK(take_contacts(fit));
+    CHECK(fit_draws_find(&fit->draws, fit->report, &fit->campaign->campaign));
+    if (fit->draws.fixed.characters)
+        growing_text_add(&fit->notes, "%s\n", fit->draws.fixed.characters);
+    return SONJECT_OK;
 }
 
 static sonject_status write_all(const struct fit *fit, const char *fitted, const char *contacts)
 {
     char comment[512], name[200];
     char *text;
-    snprintf(comment, sizeof comment,
-             "# Fitted by sonject %s to %s: draws of sizes, levels and the noise floor.\n",
-             sonject_version(), text_excerpt(name, sizeof name, path_name(contacts)));
+    snprintf(comment, sizeof comment, "# Fitted by sonject %s to %s: draws of sizes%s.\n",
+             sonject_version(), text_excerpt(name, sizeof name, path_name(contacts)),
+             fit->draws.lacks_shadows ? " and levels" : ", levels and the noise floor");
     CHECK(fit_draws_text(&fit->draws, fit->report, &fit->selection, comment, &text));
     sonject_status status = fit_page_write(fit, fitted);
     THEN(status, file_write_whole(fit->report, fitted, text, strlen(text)));
@@ -493,7 +529,7 @@ sonject_status campaign_fit(struct report *report, struct device_slot *slot,
     CHECK_MEMORY(report, fit, "the fit");
     fit->report = report;
     fit->source = *source;
-    fit->part = params->part;
+    fit->choice = (struct contact_choice){params->part, params->classes, params->class_count};
     fit->selection = (struct fitted_selection){.highlight_db = NAN, .shadow_db = NAN};
     sonject_status status = read_all(fit, params);
     THEN(status, run_rounds(fit, slot, progress, user));
@@ -503,6 +539,7 @@ sonject_status campaign_fit(struct report *report, struct device_slot *slot,
         contact_chip_clear(&fit->made_chips[i]);
     }
     fit_draws_clear(&fit->draws);
+    free(growing_text_end(&fit->notes));
     campaign_close(&fit->campaign);
     contact_set_clear(&fit->set);
     free(fit->selection.swaths);

@@ -63,6 +63,7 @@ struct fitted_selection {
 
 /* The campaign must outlive it. Starts as all zeros; for fit_draws_clear. */
 struct fit_draws {
+    bool lacks_shadows;              /* contacts do: what nothing else shows stays */
     const struct campaign *campaign; /* borrowed */
     char *text;                      /* of its file; owned */
     struct fitted_number *numbers;   /* owned */
@@ -72,6 +73,7 @@ struct fit_draws {
     bool has_added;                /* what they lack, so far: */
     double level_db[2], floor_db;  /* between these, and this */
     struct growing_text unchanged; /* what is drawn of targets and stays, one a line; owned */
+    struct growing_text fixed;     /* whose sizes have no such numbers, a clause; owned */
 };
 
 /* Lists the numbers of a campaign that fit can move. Errors: INPUT (levels by target strength, a
@@ -101,7 +103,7 @@ struct fit {
     struct report *report;
     struct campaign_source source; /* of the campaign that is fitted */
     char folder[PATH_CAPACITY];    /* where calibrations go that its scene asks for */
-    uint32_t part;
+    struct contact_choice choice;
     struct sonject_campaign *campaign; /* as its file is */
     struct contact_set set;
     struct contact_extents *real; /* owned */
@@ -115,7 +117,7 @@ struct fit {
     size_t real_chip_count, made_chip_count;
     struct fit_draws draws;
     struct fitted_selection selection;
-    bool has_no_such_ranges; /* the campaign's swaths do not reach the contacts' ranges */
+    struct growing_text notes; /* on the page, one a line; owned */
 };
 
 /* sonject_campaign_fit. Errors: as it says. */

@@ -111,11 +111,18 @@ static sonject_status add_distribution(struct fit_draws *draws, struct report *r
     return SONJECT_OK;
 }
 
+/* Without shadows, heights and the noise in them stay. */
+static uint32_t observed_kinds(const struct fit_draws *draws)
+{
+    return draws->lacks_shadows ? ~(BIT(FITTED_HEIGHT) | BIT(FITTED_FLOOR)) : UINT32_MAX;
+}
+
 /* The draws of a section of the file: an item's, or the campaign's. */
 static sonject_status find_in_section(struct fit_draws *draws, struct report *report,
                                       const struct tree_node *section, const char *path,
                                       const struct draws *list, const struct item *item)
 {
+    const uint32_t observed = observed_kinds(draws);
     for (size_t i = 0; i < section->count; i++) {
         const struct tree_entry *entry = &section->entries[i];
         const bool is_floor = !item && strcmp(entry->key, FLOOR_KEY) == 0;
@@ -135,8 +142,9 @@ static sonject_status find_in_section(struct fit_draws *draws, struct report *re
         like.kinds = is_floor                ? BIT(FITTED_FLOOR)
                      : item || is_of_objects ? kinds_of_key(key, list, item)
                                              : 0;
+        like.kinds &= observed;
         if (distribution && distribution->of && like.kinds)
-            like.of_kinds = kinds_of_key(distribution->of, list, item);
+            like.of_kinds = kinds_of_key(distribution->of, list, item) & observed;
         if (!distribution || !like.kinds || (distribution->of && !like.of_kinds)) {
             growing_text_add(&draws->unchanged, "%s\n", like.key);
             continue;
@@ -152,6 +160,30 @@ static sonject_status find_in_section(struct fit_draws *draws, struct report *re
         }
     }
     return SONJECT_OK;
+}
+
+/* Sizes of a target that no number moves, those from the first-th on or of all objects. */
+static void note_fixed(struct fit_draws *draws, const struct item *item, size_t of_all,
+                       size_t first)
+{
+    static const char *const names[] = {"length", "width", "height"};
+    const char *before = " (";
+    uint32_t moved = 0;
+    for (size_t i = 0; i < draws->count; i++)
+        moved |= i < of_all || i >= first ? draws->numbers[i].kinds : 0;
+    const uint32_t fixed = ALL_SIZES & observed_kinds(draws) & ~moved;
+    if (!fixed)
+        return;
+    growing_text_add(
+        &draws->fixed, "%s%s",
+        draws->fixed.characters ? ", " : "sizes that are fixed, or of a table, are not fitted: ",
+        item->class_name);
+    for (uint32_t k = 0; k < COUNT(names); k++)
+        if (fixed & BIT(k)) {
+            growing_text_add(&draws->fixed, "%s%s", before, names[k]);
+            before = ", ";
+        }
+    growing_text_add(&draws->fixed, ")");
 }
 
 static const struct tree_node *section_of(const struct tree_node *node, const char *key)
@@ -170,12 +202,14 @@ sonject_status fit_draws_find(struct fit_draws *draws, struct report *report,
     draws->campaign = campaign;
     draws->floor_db = NAN;
     CHECK(file_read_whole(report, campaign->path, TREE_BYTES_MAX, &draws->text, &bytes));
-    draws->lacks_floor = !draws_have_key(&campaign->draws, FLOOR_KEY);
+    draws->lacks_floor = !draws->lacks_shadows && !draws_have_key(&campaign->draws, FLOOR_KEY);
     if (drawn)
         CHECK(find_in_section(draws, report, drawn, "draw", &campaign->object_draws, NULL));
+    const size_t of_all = draws->count;
     for (uint32_t i = 0; i < campaign->target_count; i++) {
         const struct item *item = &campaign->targets[i];
         const struct tree_node *node = section_of(&targets->value.entries[i].value, "draw");
+        const size_t first = draws->count;
         char path[48];
         snprintf(path, sizeof path, "targets[%u].draw", (unsigned)i);
         draws->lacks_level[i] = !draws_have_key(&item->draws, LEVEL_KEY) &&
@@ -185,6 +219,7 @@ sonject_status fit_draws_find(struct fit_draws *draws, struct report *report,
                                 "fit moves levels over the seabed; remove the target_strength");
         if (node)
             CHECK(find_in_section(draws, report, node, path, &item->draws, item));
+        note_fixed(draws, item, of_all, first);
     }
     return SONJECT_OK;
 }
@@ -192,6 +227,7 @@ sonject_status fit_draws_find(struct fit_draws *draws, struct report *report,
 void fit_draws_clear(struct fit_draws *draws)
 {
     free(growing_text_end(&draws->unchanged));
+    free(growing_text_end(&draws->fixed));
     free(draws->numbers);
     free(draws->text);
     memset(draws, 0, sizeof *draws);

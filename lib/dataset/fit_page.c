@@ -224,21 +224,26 @@ static sonject_status write_page(const struct fit *fit, const char *picture, con
 {
     const size_t most = fit->real_count > fit->made_count ? fit->real_count : fit->made_count;
     const char *unchanged = fit->draws.unchanged.characters;
+    const char *fixed = fit->draws.fixed.characters;
+    const char *notes = fit->notes.characters;
     double *values = allocate_array(most + 1, sizeof *values);
     CHECK_MEMORY(fit->report, values, "the page");
+    json_t *classes = json_array();
+    for (size_t i = 0; i < fit->choice.class_count; i++)
+        json_append(&classes, json_text(fit->choice.classes[i]));
     json_t *unmatched = unmatched_document(fit, values);
     if (json_object_size(unmatched) > 0)
         report_note(fit->report,
                     "%zu of the contacts' measures are not matched by injected ones: see %s, Not "
-                    "matched",
-                    json_object_size(unmatched), path);
+                    "matched%s%s",
+                    json_object_size(unmatched), path, fixed ? "; " : "", fixed ? fixed : "");
     json_t *page = JSON_OBJECT(
         {"sonject", json_string(sonject_version())},
         {"contacts",
          json_count(fit->real_count > 0 ? fit->set.count : (uint64_t)fit->set.quantiles.contacts)},
-        {"fit", histograms_document(fit, values)}, {"unmatched", unmatched},
+        {"classes", classes}, {"fit", histograms_document(fit, values)}, {"unmatched", unmatched},
         {"draws", draws_document(fit)}, {"unchanged", json_string(unchanged ? unchanged : "")},
-        {"lacks_ranges", json_boolean(fit->has_no_such_ranges)}, {"picture", json_text(picture)});
+        {"notes", json_string(notes ? notes : "")}, {"picture", json_text(picture)});
     free(values);
     return report_page_write(fit->report, page, DIGITS, path);
 }

@@ -134,13 +134,13 @@ sonject_status image_labels_find(struct image_labels *labels, struct report *rep
     const struct injection_result *result = request->result;
     sonject_status status = SONJECT_OK;
     memset(labels, 0, sizeof *labels);
-    labels->contacts = allocate_array(result->object_count, sizeof *labels->contacts);
+    labels->contacts = allocate_array(request->count, sizeof *labels->contacts);
     CHECK_MEMORY(report, labels->contacts, "labels");
     labels->file_name = request->file_name;
     labels->rows = request->rows;
     labels->columns = request->columns;
     labels->is_geographic = request->track && request->track->is_geographic;
-    labels->count = result->object_count;
+    labels->count = request->count;
     find_boxes(labels, result);
     for (uint32_t i = 0; status == SONJECT_OK && i < labels->count; i++) {
         struct contact *contact = &labels->contacts[i];

@@ -57,6 +57,7 @@ struct label_request {
     uint64_t rows, columns; /* of the image, which track and geometry describe */
     struct region patch;    /* where the result lies in the image */
     const struct track *track;
+    uint32_t count; /* of the scene's objects, the first, that are labelled */
 };
 
 /* Finds the labels and takes their classes; scene, result and names must outlive them. Errors:

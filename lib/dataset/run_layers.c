@@ -274,7 +274,7 @@ sonject_status write_labels(struct report *report, struct run_facts *facts, cons
     const struct swath *swath = facts->swath;
     const struct label_request request = {
         facts->scene,          facts->result, facts->image_name, swath->layout.rows,
-        swath->layout.columns, swath->patch,  &swath->track};
+        swath->layout.columns, swath->patch,  &swath->track,     facts->result->object_count};
     struct image_labels labels;
     struct class_names classes = {NULL, 0};
     char path[PATH_CAPACITY];

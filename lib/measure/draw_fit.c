@@ -11,7 +11,6 @@
 #define RESIDUALS  (EXTENT_KINDS * QUANTILES_MAX + MOVES + RELATIONS)
 #define TERMS      (FITTED_KINDS + 1) /* of a response: a constant comes first */
 #define STEPS_MAX  60
-#define SEEN_LEAST 8    /* contacts that show an extent, for it to be compared */
 #define RIDGE      1e-5 /* of the weights' sum, so that what was not varied has no response */
 #define NEAR_LEAST 0.5  /* mean nearness of a round whose contacts are compared */
 #define OWN_ERROR  1.0  /* variance of a quantile that shares nothing with others, of its own */

@@ -60,6 +60,7 @@ struct drawn_contact {
 };
 
 #define QUANTILES_MAX 32
+#define SEEN_LEAST    8 /* contacts that show an extent, for it to be compared */
 
 /* What real contacts show. */
 struct quantile_goal {

@@ -256,6 +256,27 @@ def test_trainers_of_yolo_find_images_and_labels(whole):
     assert names == dict(enumerate([*TARGETS, "stone"]))
 
 
+def test_clutter_need_not_be_labelled(ground, command, whole):
+    """Labels are then those of targets alone; truth, masks and the report's counts stay."""
+    done = command("campaign", "campaign.yaml", "-o", "unlabelled", "--set", "clutter.labelled=false")
+    assert done.returncode == 0, done.stderr
+    bare = ground / "unlabelled"
+    coco, every = (json.loads((folder / "train" / "coco.json").read_text()) for folder in (bare, whole))
+    assert [each["name"] for each in coco["categories"]] == TARGETS
+    told = [[(each["image_id"], each["object_id"], each["bbox"]) for each in document["annotations"]
+             if each["category_id"] <= len(TARGETS)] for document in (coco, every)]
+    assert told[0] == told[1] and len(coco["annotations"]) == len(told[0]) < len(every["annotations"])
+    assert (bare / "classes.txt").read_text().splitlines() == TARGETS and "stone" not in (bare / "data.yaml").read_text()
+    for path in files_below(bare / "train"):
+        of_whole = whole / path.relative_to(bare)
+        if path.parent.name in ("truth", "masks", "images"):
+            assert path.read_bytes() == of_whole.read_bytes()
+        elif path.suffix == ".txt":
+            assert path.read_text() == "".join(line + "\n" for line in of_whole.read_text().splitlines() if line[0] != "2")
+        assert path.suffix != ".xml" or b"stone" not in path.read_bytes()
+    assert [page_data(bare)[key] for key in ("classes", "splits")] == [page_data(whole)[key] for key in ("classes", "splits")]
+
+
 @pytest.mark.parametrize("splits, train, val, test", [
     ("test: 0.2, learn: 0.8", "learn", "test", "test"), ("validation: 0.2, a: 0.6, test: 0.2", "a", "validation", "test"),
     ("val: 0.5, test: 0.5", "val", "val", "test"), ("a: 0.5, test: 0.2, b: 0.3", "a", "b", "test")])

@@ -84,10 +84,34 @@ def test_what_cannot_be_fitted_is_told(sonject, folder, contacts, output, messag
 def test_contacts_of_a_class_are_fitted(sonject, folder):
     boulders = "".join(f"seabed_1.tif,{9 * i},5,9,20,boulder\n" for i in range(30))
     (folder / "contacts.csv").write_text("image,row,column,rows,columns,class\nseabed_1.tif,5,5,9,20,mine\n" + boulders)
-    for name, message in [("mine", "has 1 contacts"),
+    for name, message in [("mine", "has 1 contacts of the chosen classes; a fit needs 10 or more"),
                           ("mime", "holds no contacts of the chosen classes, but of mine (1), boulder (30)")]:
         done = sonject("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml", "--class", name)
         assert done.returncode == 3 and message in done.stderr
+
+
+def test_bright_points_tell_no_heights(sonject, folder):
+    """They have no shadows. Nor do they tell sizes that nothing draws."""
+    points = images.read_tiff(folder / "seabed_1.tif").copy()
+    contacts = "image,row,column,rows,columns,class\n"
+    for row in range(20, 280, 20):
+        points[row:row + 4, 200:203] = 5 * abs(points).mean()
+        contacts += f"points.tif,{row - 2},198,12,14,point\n"
+    (folder / "points.tif").write_bytes(images.tiff_bytes(points))
+    (folder / "contacts.csv").write_text(contacts + "points.tif,5,5,9,20,other\n")
+    start = fitting.campaign(fitting.START, 40, 3, 64, 96, ("box",), ROUGH)
+    start += f"  - {{class: rock, object: {{shape: box, length: 1 m, width: 1 m, height: 1 m{ROUGH}}}}}\n"
+    (folder / "start.yaml").write_text(start)
+    done = sonject.done("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml", "--class", "point")
+    text = (folder / "fitted.yaml").read_text()
+    assert "height: {log_uniform: [0.4 m, 0.9 m]}" in text and "length: {log_uniform: [1.4 m" not in text
+    assert "noise_floor" not in text and "shadow" not in text
+    page = page_data(folder, "fitted.html")
+    assert page["classes"] == ["point"]
+    notes = page["notes"].splitlines()
+    assert notes == ["shadows are seen in 0 of 13 contacts, so heights and the noise floor stay",
+                     "sizes that are fixed, or of a table, are not fitted: rock (length, width)"]
+    assert page["unmatched"] and all(note in done.stderr for note in notes)
 
 
 SIDES = """\

@@ -268,6 +268,7 @@ TEST(a_fitted_file_is_the_users_own_with_other_numbers)
     EXPECT_OK(report, campaign_read(report, file_in("campaign.yaml"), NULL, NULL, 0, &campaign));
     EXPECT_OK(report, fit_draws_find(&draws, report, &campaign));
     assert_string_equal(draws.unchanged.characters, "targets[0].draw.heading\n");
+    assert_non_null(strstr(draws.fixed.characters, "are not fitted: m\xc3\xbcll (width, height)"));
     draws.level_db[0] = 18.0;
     draws.level_db[1] = 24.0;
     draws.floor_db = -22.0;
