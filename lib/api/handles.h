@@ -28,6 +28,7 @@ struct sonject_scene {
     struct scene_source source;
     struct scene scene; /* what the source says, while is_read */
     bool is_read;
+    struct mesh_store meshes; /* of the scene before, while the source is read again */
 };
 
 struct sonject_result {

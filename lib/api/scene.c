@@ -34,6 +34,7 @@ void sonject_scene_release(sonject_scene **scene)
     if (!scene || !*scene)
         return;
     scene_clear(&(*scene)->scene);
+    mesh_store_clear(&(*scene)->meshes);
     scene_source_clear(&(*scene)->source);
     free(*scene);
     *scene = NULL;
@@ -128,8 +129,11 @@ sonject_status scene_use(struct report *report, const sonject_scene *handle,
     if (!used)
         return null_argument(report, "scene");
     if (!used->is_read) {
+        used->scene.mesh_store = &used->meshes;
         scene_clear(&used->scene);
+        used->scene.mesh_store = &used->meshes;
         CHECK(scene_source_read(&used->source, report, &used->scene));
+        mesh_store_clear(&used->meshes);
     }
     used->is_read = true;
     *scene = &used->scene;

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
 #include "image/statistics.h"
@@ -62,10 +61,6 @@ struct shadow_search {
     double row_deviation, column_deviation, level_deviation;
 };
 
-struct shadow {
-    double log_ratio, variance;
-};
-
 static bool holds(const struct shadow_search *search, size_t i, int kind)
 {
     return (search->states[i] & KINDS) == kind;
@@ -77,7 +72,12 @@ static sonject_status weighted_mean(struct report *report, size_t rows, size_t c
                                     float *weights, float *values, double row_deviation,
                                     double column_deviation)
 {
+    bool is_even = true; /* all weights are 1, and so are their means */
+    for (size_t i = 0; i < rows * columns; i++)
+        is_even &= weights[i] == 1.0f;
     CHECK(local_mean(report, values, rows, columns, row_deviation, column_deviation, values));
+    if (is_even)
+        return SONJECT_OK;
     CHECK(local_mean(report, weights, rows, columns, row_deviation, column_deviation, weights));
     for (size_t i = 0; i < rows * columns; i++)
         values[i] = weights[i] > (float)SHARE_LEAST ? values[i] / weights[i] : NAN;
@@ -116,25 +116,26 @@ static double look_length(const struct shadow_search *search, bool is_along, dou
     const size_t rows = search->rows, columns = search->columns;
     const size_t step = is_along ? columns : 1, length = is_along ? rows : columns;
     const size_t lines_apart = 1 + rows * columns / PIXELS_ENOUGH;
+    const size_t rows_apart = is_along ? 1 : lines_apart;
+    const size_t columns_apart = is_along ? lines_apart : 1;
     double sums[LAGS + 1] = {0.0}, counts[LAGS + 1] = {0.0}, sum = 0.0;
-    for (size_t i = 0; i < rows * columns; i++) {
-        const size_t row = i / columns, place = is_along ? row : i - row * columns;
-        if ((is_along ? i - row * columns : row) % lines_apart != 0)
-            continue;
-        const double own = (double)search->intensity[i] / (double)search->level[i];
-        if (!holds(search, i, SEABED) || !(own < BRIGHTEST))
-            continue;
-        sum += own;
-        counts[0] += 1.0;
-        for (size_t lag = 1; lag <= LAGS && place + lag < length; lag++) {
-            const size_t at = i + lag * step;
-            const double other = (double)search->intensity[at] / (double)search->level[at];
-            if (!holds(search, at, SEABED) || !(other < BRIGHTEST))
+    for (size_t row = 0; row < rows; row += rows_apart)
+        for (size_t column = 0; column < columns; column += columns_apart) {
+            const size_t i = row * columns + column, place = is_along ? row : column;
+            const double own = (double)search->intensity[i] / (double)search->level[i];
+            if (!holds(search, i, SEABED) || !(own < BRIGHTEST))
                 continue;
-            sums[lag] += (own - other) * (own - other);
-            counts[lag] += 1.0;
+            sum += own;
+            counts[0] += 1.0;
+            for (size_t lag = 1; lag <= LAGS && place + lag < length; lag++) {
+                const size_t at = i + lag * step;
+                const double other = (double)search->intensity[at] / (double)search->level[at];
+                if (!holds(search, at, SEABED) || !(other < BRIGHTEST))
+                    continue;
+                sums[lag] += (own - other) * (own - other);
+                counts[lag] += 1.0;
+            }
         }
-    }
     const double far = sums[LAGS] / fmax(1.0, counts[LAGS]);
     const double mean = sum / fmax(1.0, counts[0]);
     double pixels = 1.0;
@@ -149,9 +150,7 @@ static double look_length(const struct shadow_search *search, bool is_along, dou
 static sonject_status find_dark(struct report *report, struct shadow_search *search)
 {
     const size_t count = search->rows * search->columns;
-    const size_t side = search->rows < search->columns ? search->rows : search->columns;
     double variance;
-    search->level_deviation = fmax(LEVEL_DEVIATION, LEVEL_SHARE * (double)side);
     for (size_t i = 0; i < count; i++) {
         search->weights[i] = holds(search, i, SEABED) ? 1.0f : 0.0f;
         search->smooth[i] = sqrtf(sqrtf(search->intensity[i])); /* so that no highlight counts */
@@ -249,9 +248,9 @@ static size_t list_shadow(const struct shadow_search *search, size_t start, size
     return count;
 }
 
-/* Whether a dark part's middle tells a shadow's level. */
-static bool judge_shadow(const struct shadow_search *search, const size_t *list, size_t count,
-                         struct shadow *shadow)
+/* Adds a dark part if its middle tells a shadow's level. */
+static sonject_status add_shadow(struct report *report, const struct shadow_search *search,
+                                 const size_t *list, size_t count, struct shadow_floor *found)
 {
     const int middle = 3 * MIDDLE;
     double sum = 0.0, pixels = 0.0;
@@ -262,20 +261,26 @@ static bool judge_shadow(const struct shadow_search *search, const size_t *list,
         }
     const double looks = pixels / (search->row_length * search->column_length);
     if (!(looks >= LOOKS_LEAST) || !(sum < HIGHEST * pixels) || !(sum > 0.0))
-        return false;
+        return SONJECT_OK;
+    struct shadow *shadows = grow_doubling(found->list, found->listed, sizeof *shadows);
+    CHECK_MEMORY(report, shadows, "an image's shadows");
+    found->list = shadows;
+    struct shadow *shadow = &shadows[found->listed++];
     for (size_t k = 0; k < count; k++)
         if ((search->states[list[k]] & middle) == middle)
             search->states[list[k]] |= SHADOW_CORE;
     shadow->variance = (search->variance + EDGES) / looks;
     /* the logarithm of a mean of few looks lies low */
     shadow->log_ratio = log(sum / pixels) + 0.5 * search->variance / looks;
-    return true;
+    return SONJECT_OK;
 }
 
 /* The mean over shadows, each by its independent pixels. How much they differ beyond their own
  * variances is in its standard error. */
-static void average(const struct shadow *shadows, size_t count, struct shadow_floor *found)
+static void average(struct shadow_floor *found)
 {
+    const struct shadow *shadows = found->list;
+    const size_t count = found->listed;
     double weights = 0.0, sum = 0.0, plain = 0.0, squares = 0.0, own = 0.0, error = 0.0;
     for (size_t i = 0; i < count; i++) {
         weights += 1.0 / shadows[i].variance;
@@ -307,25 +312,20 @@ static sonject_status find_shadows(struct report *report, struct shadow_search *
                                (size_t)(LEAST_BY_COLUMN * search->column_deviation),
                                false,
                                2 * MIDDLE};
-    size_t dark = 0, shadows = 0;
+    size_t dark = 0;
     mark_middles(search, &along);
     mark_middles(search, &range);
     for (size_t i = 0; i < count; i++)
         dark += holds(search, i, SHADOW);
     size_t *list = allocate_array(dark, sizeof *list);
-    struct shadow *all = allocate_array(dark / (size_t)LOOKS_LEAST + 1, sizeof *all);
-    const bool is_complete = list && all;
-    for (size_t i = 0; is_complete && i < count; i++)
-        if ((search->states[i] & (3 * MIDDLE)) == 3 * MIDDLE && !(search->states[i] & SEEN)) {
-            const size_t pixels = list_shadow(search, i, list);
-            shadows += judge_shadow(search, list, pixels, &all[shadows]);
-        }
-    if (shadows > 1 || (shadows == 1 && all[0].log_ratio < LONE_HIGHEST))
-        average(all, shadows, found);
+    sonject_status status = list ? SONJECT_OK : report_out_of_memory(report, "an image's shadows");
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+        if ((search->states[i] & (3 * MIDDLE)) == 3 * MIDDLE && !(search->states[i] & SEEN))
+            status = add_shadow(report, search, list, list_shadow(search, i, list), found);
     free(list);
-    free(all);
-    CHECK_MEMORY(report, is_complete, "an image's shadows");
-    return SONJECT_OK;
+    if (found->listed > 1 || (found->listed == 1 && found->list[0].log_ratio < LONE_HIGHEST))
+        average(found);
+    return status;
 }
 
 sonject_status shadow_floor_find(struct report *report, const float *intensity, uint8_t *states,
@@ -340,8 +340,9 @@ sonject_status shadow_floor_find(struct report *report, const float *intensity, 
                                    .weights = planes,
                                    .smooth = planes + count,
                                    .level = planes + 2 * count};
-    memset(found, 0, sizeof *found);
     CHECK_MEMORY(report, planes, "an image's shadows");
+    const size_t side = found->side > 0 ? found->side : rows < columns ? rows : columns;
+    search.level_deviation = fmax(LEVEL_DEVIATION, LEVEL_SHARE * (double)side);
     sonject_status status = find_dark(report, &search);
     THEN(status, find_shadows(report, &search, found));
     free(planes);

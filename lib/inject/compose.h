@@ -33,10 +33,14 @@ struct patch_facts {
 };
 
 /* pixels: amplitudes or pairs, in the view's row order. Errors: INPUT (nothing but zeros; not a
- * finite number: says where), MEMORY. */
+ * finite number: says where), MEMORY, CANCELLED. */
 sonject_status patch_facts_init(struct patch_facts *facts, struct report *report,
                                 const struct scene *scene, const struct patch_view *view,
                                 const float *pixels, bool is_complex);
+
+/* Intensities of a window of the patch, for free(); NULL where memory is out. */
+float *window_intensities(const struct window *at, const struct patch_view *view,
+                          const float *pixels, bool is_complex);
 
 /* Of the tracer's window of the patch: what all of the patch would tell there. view, pixels: the
  * patch's. Errors: MEMORY. On failure nothing is held. */

@@ -5,13 +5,11 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "image/shadow_floor.h"
+#include "image/statistics.h"
 #include "scene/point_response.h"
 
-#define LEVEL_FLOOR   1e-6 /* of the mean intensity: blank corners of a swath have no level */
-#define NOISE_LOWEST  1e-3 /* -30 dB */
-#define NOISE_UNKNOWN 5.6234133e-3 /* -22.5 dB, amid what shadows are measured at */
-#define WATER_SHARE   0.05f        /* of seabed around a pixel that tells its level */
+#define LEVEL_FLOOR 1e-6  /* of the mean intensity: blank corners of a swath have no level */
+#define WATER_SHARE 0.05f /* of seabed around a pixel that tells its level */
 
 double seabed_cell_energy(const struct patch_view *view, const struct point_response *response,
                           double mu, double processor_range_m)
@@ -36,39 +34,18 @@ void fill_cell_energies(const struct patch_view *view, const struct point_respon
                                                 view_processor_range(view, (double)j));
 }
 
-static float intensity_of(const float *pixels, bool is_complex, size_t i)
+float *window_intensities(const struct window *at, const struct patch_view *view,
+                          const float *pixels, bool is_complex)
 {
-    const double a = is_complex ? pixels[2 * i] : pixels[i];
-    const double b = is_complex ? pixels[2 * i + 1] : 0.0;
-    return (float)(a * a + b * b);
-}
-
-static sonject_status check_pixels(struct report *report, const struct patch_view *view,
-                                   const float *pixels, bool is_complex, double *mean)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < view->rows * view->columns; i++) {
-        const double a = is_complex ? pixels[2 * i] : pixels[i];
-        const double b = is_complex ? pixels[2 * i + 1] : 0.0;
-        const double intensity = a * a + b * b;
-        const size_t row = i / view->columns;
-        if (!(intensity <= 1e30) || (!is_complex && a < 0.0))
-            return report_failure(
-                report, SONJECT_ERROR_INPUT,
-                "the patch's pixel at row %zu, column %zu is %s: mend the image",
-                view->is_mirrored ? view->rows - 1 - row : row,
-                (size_t)view_patch_column(view, (double)(i % view->columns)),
-                isnan(a) || isnan(b)
-                    ? "not a number (NaN)"
-                    : (intensity > 1e30 ? "too large or infinite" : "a negative amplitude"));
-        sum += intensity;
+    float *intensity = allocate_array(at->rows, at->columns * sizeof *intensity);
+    for (size_t i = 0; intensity && i < at->rows * at->columns; i++) {
+        const size_t pixel =
+            (at->first_row + i / at->columns) * view->columns + at->first_column + i % at->columns;
+        const double a = is_complex ? pixels[2 * pixel] : pixels[pixel];
+        const double b = is_complex ? pixels[2 * pixel + 1] : 0.0;
+        intensity[i] = (float)(a * a + b * b);
     }
-    *mean = sum / (double)(view->rows * view->columns);
-    if (!(*mean > 1e-30))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              *mean > 0.0 ? "the patch's amplitudes are below 1e-15: scale them"
-                                          : "the patch has no pixel above 0: choose another patch");
-    return SONJECT_OK;
+    return intensity;
 }
 
 /* A region of the patch whose level is sought, the first of its columns in the water column. */
@@ -175,59 +152,6 @@ static struct level_region region_about(const struct scene *scene, const struct 
     return region;
 }
 
-static float *intensities_in(const struct level_region *region, const float *pixels,
-                             bool is_complex)
-{
-    const size_t columns = region->at.columns;
-    float *intensity = allocate_array(region->at.rows, columns * sizeof *intensity);
-    for (size_t i = 0; intensity && i < region->at.rows * columns; i++)
-        intensity[i] = intensity_of(pixels, is_complex,
-                                    (region->at.first_row + i / columns) * region->view->columns +
-                                        region->at.first_column + i % columns);
-    return intensity;
-}
-
-/* The noise floor, from shadows of the patch: ambient and receiver noise, and the side lobes and
- * echoes by other ways that fill real shadows. What a picture was clipped at says less than is
- * there. */
-static sonject_status estimate_noise(struct patch_facts *facts, struct report *report,
-                                     const struct patch_view *view, const float *pixels,
-                                     bool is_complex)
-{
-    const size_t count = view->rows * view->columns, water = view_water_columns(view);
-    float *intensity = allocate_array(count, sizeof *intensity);
-    uint8_t *states = allocate_array(count, 1);
-    struct shadow_floor shadows;
-    sonject_status status =
-        intensity && states ? SONJECT_OK : report_out_of_memory(report, "the patch");
-    for (size_t i = 0; status == SONJECT_OK && i < count; i++) {
-        intensity[i] = intensity_of(pixels, is_complex, i);
-        states[i] = i % view->columns < water;
-    }
-    THEN(status, shadow_floor_find(report, intensity, states, view->rows, view->columns, &shadows));
-    if (status == SONJECT_OK && shadows.shadows > 0) {
-        facts->measures_noise = true;
-        facts->noise_ratio = fmax(NOISE_LOWEST, exp(shadows.log_ratio));
-    }
-    free(intensity);
-    free(states);
-    return status;
-}
-
-sonject_status patch_facts_init(struct patch_facts *facts, struct report *report,
-                                const struct scene *scene, const struct patch_view *view,
-                                const float *pixels, bool is_complex)
-{
-    memset(facts, 0, sizeof *facts);
-    CHECK(check_pixels(report, view, pixels, is_complex, &facts->mean_intensity));
-    if (!scene->injection.estimate_noise) {
-        facts->noise_ratio = pow(10.0, scene->injection.noise_floor_db / 10.0);
-        return SONJECT_OK;
-    }
-    facts->noise_ratio = NOISE_UNKNOWN;
-    return estimate_noise(facts, report, view, pixels, is_complex);
-}
-
 double noise_over_level(const struct patch_level *level, size_t i)
 {
     return level->noise_over > 0.0
@@ -264,7 +188,7 @@ sonject_status patch_level_init(struct patch_level *level, const struct tracer *
     const size_t wide = region.at.rows * region.at.columns;
     const size_t count = window.rows * window.columns;
     memset(level, 0, sizeof *level);
-    float *intensity = intensities_in(&region, pixels, is_complex);
+    float *intensity = window_intensities(&region.at, view, pixels, is_complex);
     float *planes = allocate_array(wide, 2 * sizeof *planes);
     level->intensity = allocate_array(3 * count + window.columns, sizeof(float));
     sonject_status status = intensity && planes && level->intensity

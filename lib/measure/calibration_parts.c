@@ -272,7 +272,7 @@ static sonject_status find_floor(struct report *report, struct calibration *foun
 {
     const size_t count = swath->rows * swath->columns;
     uint8_t *states = allocate_array(count, 1);
-    struct shadow_floor shadows;
+    struct shadow_floor shadows = {0};
     CHECK_MEMORY(report, states, "a calibration");
     for (size_t i = 0; i < count; i++) {
         const struct water_place place = {i / swath->columns, i % swath->columns, 1, 1};
@@ -282,6 +282,7 @@ static sonject_status find_floor(struct report *report, struct calibration *foun
         shadow_floor_find(report, intensity, states, swath->rows, swath->columns, &shadows);
     if (status == SONJECT_OK)
         judge_floor(found, swath, &shadows, intensity, states, level);
+    free(shadows.list);
     free(states);
     return status;
 }

@@ -364,6 +364,7 @@ ROCK = f"objects=[{{shape: mesh, mesh: {{file: {SOURCE}/tools/targets/rock.obj, 
 FRAGMENTS = {
     "{speed: 2 m/s, ping_rate: 20 Hz}": ("input.geometry.row_spacing", [], []),
     "{kind: amplitude}": ("input.transfer", [], []),
+    "injection.match.looks: 2": ("", [], []),
     "{kind: intensity}": ("input.transfer", [], []),
     "{kind: decibel, parameter: 0.5, offset: -90 dB}": ("input.transfer", [], []),
     "{kind: gamma, parameter: 2}": ("input.transfer", [], []),

@@ -142,6 +142,24 @@ TEST(a_target_is_that_of_a_file)
                                      "0.25}}\n"));
 }
 
+TEST(a_mesh_is_kept_while_its_own_keys_stay)
+{
+    sonject_scene *scene = read_text(NULL, HEAD);
+    uint32_t count;
+    set(scene, "objects[0]",
+        "{shape: mesh, mesh: {file: " SOURCE_ROOT "/tests/unit/tetrahedron.obj, unit: m}}");
+    use(scene)->meshes[0].welded = 12345; /* as no reading of the file says */
+    set(scene, "injection.seed", "5");
+    assert_true(use(scene)->meshes[0].welded == 12345);
+    set(scene, "injection.seed", "-5");
+    assert_int_equal(sonject_scene_object_count(scene, &count), SONJECT_ERROR_INPUT);
+    set(scene, "injection.seed", "6");
+    assert_true(use(scene)->meshes[0].welded == 12345);
+    set(scene, "objects[0].mesh.unit", "0.5 m");
+    assert_true(use(scene)->meshes[0].welded != 12345);
+    sonject_scene_release(&scene);
+}
+
 TEST(the_text_of_a_scene_is_the_scene)
 {
     char *text = NULL;

@@ -169,7 +169,7 @@ static struct shadow_floor floor_of(const struct made_shadows *made)
     const size_t rows = 320, columns = 360;
     float *intensity = make_map(rows, columns, 0.0f);
     uint8_t *states = calloc(rows * columns, 1);
-    struct shadow_floor found;
+    struct shadow_floor found = {0};
     uint64_t random = 11;
     assert_non_null(states);
     for (size_t row = 0; row < rows; row++)
@@ -183,6 +183,7 @@ static struct shadow_floor floor_of(const struct made_shadows *made)
             intensity[row * columns + i] = (float)(seabed * share) * speckle(&random);
         }
     EXPECT_OK(&report, shadow_floor_find(&report, intensity, states, rows, columns, &found));
+    free(found.list);
     free(intensity);
     free(states);
     return found;

@@ -199,6 +199,19 @@ def test_progress_can_cancel(amplitude_patch, make_scene):
     assert sonject.inject(amplitude_patch, scene).image.shape == (ROWS, COLUMNS)
 
 
+def test_a_large_patch_tells_its_noise_floor_by_16_parts_and_can_be_cancelled_there(make_scene):
+    shadows = numpy.ones((20000, 256), numpy.float32)
+    for row in range(50, 20000, 100):
+        shadows[row : row + 12, 100:140] = 0.1  # -20 dB
+    patch = shadows * numpy.random.default_rng(2).rayleigh(size=shadows.shape).astype(numpy.float32)
+    told = []
+    result = sonject.inject(patch, make_scene(), progress=lambda fraction, stage: told.append(stage))
+    assert told.count("looking for shadows") == 16
+    assert result.statistics.noise_floor_db == pytest.approx(-20, abs=0.5)
+    with pytest.raises(sonject.Cancelled, match="cancelled while looking for shadows"):
+        sonject.inject(patch, make_scene(), progress=lambda fraction, stage: "shadows" in stage)
+
+
 @pytest.mark.parametrize("kind", [ZeroDivisionError, KeyboardInterrupt])
 def test_what_progress_raises_is_raised(amplitude_patch, make_scene, kind):
     def progress(fraction, stage):

@@ -1,0 +1,108 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "image/shadow_floor.h"
+#include "inject/compose.h"
+
+#define NOISE_LOWEST  1e-3         /* -30 dB */
+#define NOISE_UNKNOWN 5.6234133e-3 /* -22.5 dB, amid what shadows are measured at */
+#define PART_SIDE     1024         /* pixels, about, of the parts that shadows are looked for in */
+#define PARTS_MOST    16           /* which tell as much as a larger patch would */
+
+static sonject_status check_pixels(struct report *report, const struct patch_view *view,
+                                   const float *pixels, bool is_complex, double *mean)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < view->rows * view->columns; i++) {
+        const double a = is_complex ? pixels[2 * i] : pixels[i];
+        const double b = is_complex ? pixels[2 * i + 1] : 0.0;
+        const double intensity = a * a + b * b;
+        const size_t row = i / view->columns;
+        if (!(intensity <= 1e30) || (!is_complex && a < 0.0))
+            return report_failure(
+                report, SONJECT_ERROR_INPUT,
+                "the patch's pixel at row %zu, column %zu is %s: mend the image",
+                view->is_mirrored ? view->rows - 1 - row : row,
+                (size_t)view_patch_column(view, (double)(i % view->columns)),
+                isnan(a) || isnan(b)
+                    ? "not a number (NaN)"
+                    : (intensity > 1e30 ? "too large or infinite" : "a negative amplitude"));
+        sum += intensity;
+    }
+    *mean = sum / (double)(view->rows * view->columns);
+    if (!(*mean > 1e-30))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              *mean > 0.0 ? "the patch's amplitudes are below 1e-15: scale them"
+                                          : "the patch has no pixel above 0: choose another patch");
+    return SONJECT_OK;
+}
+
+/* Adds the shadows of a part of the patch. */
+static sonject_status add_shadows(struct report *report, const struct patch_view *view,
+                                  const float *pixels, bool is_complex, const struct window *at,
+                                  struct shadow_floor *shadows)
+{
+    const size_t count = at->rows * at->columns, water = view_water_columns(view);
+    float *intensity = window_intensities(at, view, pixels, is_complex);
+    uint8_t *states = allocate_array(count, 1);
+    sonject_status status =
+        intensity && states ? SONJECT_OK : report_out_of_memory(report, "the patch");
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+        states[i] = at->first_column + i % at->columns < water;
+    THEN(status, shadow_floor_find(report, intensity, states, at->rows, at->columns, shadows));
+    free(intensity);
+    free(states);
+    return status;
+}
+
+static size_t parts_of(size_t pixels)
+{
+    return pixels < PART_SIDE ? 1 : (pixels + PART_SIDE / 2) / PART_SIDE;
+}
+
+/* The noise floor, from shadows of the patch: ambient and receiver noise, and the side lobes and
+ * echoes by other ways that fill real shadows. What a picture was clipped at says less than is
+ * there. A large patch tells it by parts spread over its rows and columns. */
+static sonject_status estimate_noise(struct patch_facts *facts, struct report *report,
+                                     const struct patch_view *view, const float *pixels,
+                                     bool is_complex)
+{
+    static const char stage[] = "looking for shadows";
+    const size_t rows = parts_of(view->rows), columns = parts_of(view->columns);
+    const size_t count = rows * columns < PARTS_MOST ? rows * columns : PARTS_MOST;
+    struct shadow_floor shadows = {.side = view->rows < view->columns ? view->rows : view->columns};
+    sonject_status status = SONJECT_OK;
+    for (size_t k = 0; status == SONJECT_OK && k < count; k++) {
+        const size_t part = k * (rows * columns) / count, row = part / columns;
+        const size_t column = (part + row) % columns;
+        struct window at = {.first_row = row * view->rows / rows,
+                            .first_column = column * view->columns / columns};
+        at.rows = (row + 1) * view->rows / rows - at.first_row;
+        at.columns = (column + 1) * view->columns / columns - at.first_column;
+        if (report_is_cancelled(report, stage))
+            status = report_failure(report, SONJECT_CANCELLED, "cancelled while %s", stage);
+        THEN(status, add_shadows(report, view, pixels, is_complex, &at, &shadows));
+    }
+    if (status == SONJECT_OK && shadows.shadows > 0) {
+        facts->measures_noise = true;
+        facts->noise_ratio = fmax(NOISE_LOWEST, exp(shadows.log_ratio));
+    }
+    free(shadows.list);
+    return status;
+}
+
+sonject_status patch_facts_init(struct patch_facts *facts, struct report *report,
+                                const struct scene *scene, const struct patch_view *view,
+                                const float *pixels, bool is_complex)
+{
+    memset(facts, 0, sizeof *facts);
+    CHECK(check_pixels(report, view, pixels, is_complex, &facts->mean_intensity));
+    if (!scene->injection.estimate_noise) {
+        facts->noise_ratio = pow(10.0, scene->injection.noise_floor_db / 10.0);
+        return SONJECT_OK;
+    }
+    facts->noise_ratio = NOISE_UNKNOWN;
+    return estimate_noise(facts, report, view, pixels, is_complex);
+}
