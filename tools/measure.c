@@ -14,9 +14,6 @@
 
 struct measure_options {
     const char *image;
-    bool wants_seam;
-    const char *before;
-    const char *influence;
     const char *labels;
     const char *transfer;
     const char *channel;
@@ -35,13 +32,7 @@ struct measure_options {
 #define MEMBER(name) offsetof(struct measure_options, name)
 
 static const struct argument arguments[] = {
-    {"--seam", NULL, NULL, "how well injected background can be told from untouched", ARGUMENT_FLAG,
-     false, MEMBER(wants_seam)},
-    {"--before", NULL, "IMAGE", "the image before the injection", ARGUMENT_TEXT, false,
-     MEMBER(before)},
-    {"--influence", NULL, "MASK", "what the injection changed, such as a run's influence.png",
-     ARGUMENT_TEXT, false, MEMBER(influence)},
-    {"--targets", NULL, "MASK", "highlights and shadows, such as a run's labels.png", ARGUMENT_TEXT,
+    {"--targets", NULL, "MASK", "what is no seabed, such as a run's labels.png", ARGUMENT_TEXT,
      false, MEMBER(labels)},
     {"--transfer", NULL, "KIND[:P[:OFFSET]]", "how stored numbers came from amplitudes, see below",
      ARGUMENT_TEXT, false, MEMBER(transfer)},
@@ -77,7 +68,7 @@ static void print_number(const char *name, double value, const char *end)
         printf("    \"%s\": null%s\n", name, end);
 }
 
-static int print_measurement(const sonject_measurement *measurement, bool wants_seam)
+static int print_measurement(const sonject_measurement *measurement)
 {
     printf("{\n  \"seabed\": {\n");
     print_number("amplitude_contrast", measurement->amplitude_contrast, ",");
@@ -88,14 +79,6 @@ static int print_measurement(const sonject_measurement *measurement, bool wants_
     print_number("column_correlation", measurement->column_correlation, ",");
     print_number("row_length_pixels", measurement->row_length_pixels, ",");
     print_number("column_length_pixels", measurement->column_length_pixels, "");
-    if (wants_seam) {
-        printf("  },\n  \"seam\": {\n");
-        print_number("auc", measurement->seam, ",");
-        print_number("standard_error", measurement->seam_error, ",");
-        print_number("auc_before", measurement->seam_before, ",");
-        printf("    \"patches\": %" PRIu64 ",\n", measurement->seam_patches);
-        printf("    \"background_patches\": %" PRIu64 "\n", measurement->background_patches);
-    }
     printf("  }\n}\n");
     return finish_output();
 }
@@ -104,20 +87,12 @@ static int print_measurement(const sonject_measurement *measurement, bool wants_
 static bool fill(const struct measure_options *options, sonject_measure_params *params,
                  char text[IMAGE_TEXT])
 {
-    const bool has_band = options->before || options->influence;
     memset(params, 0, sizeof(*params));
     params->struct_size = sizeof(*params);
     params->image = options->image;
-    params->before = options->before;
-    params->influence = options->influence;
     params->labels = options->labels;
     params->channel = options->channel;
     params->array = options->array;
-    if (options->wants_seam != has_band) {
-        message(has_band ? "measure: --before and --influence are for --seam; give it too"
-                         : "measure: --seam needs --before or --influence");
-        return false;
-    }
     return channel_check("measure", options->channel) &&
            transfer_parse("measure", options->transfer, text, &params->transfer);
 }
@@ -202,9 +177,8 @@ static const char *conflict(const struct measure_options *options)
         return "measure: --row-spacing and --column-spacing are for --box, --truth and --find";
     if (options->range_to_left && !wants_contacts(options))
         return "measure: --range-to-left is for --box, --truth and --find";
-    if (wants_contacts(options) &&
-        (options->wants_seam || options->before || options->influence || options->labels))
-        return "measure: contacts and the seam are measured one at a time";
+    if (options->labels && wants_contacts(options))
+        return "measure: --targets is for the seabed's statistics, not for contacts";
     if (options->finds && (options->truth || options->boxes.count > 0))
         return "measure: --find looks for contacts that --box and --truth do not tell";
     if ((options->find_contrast.is_given || options->find_most.is_given) && !options->finds)
@@ -240,23 +214,19 @@ static int work(const void *verb_options)
     sonject_status status = sonject_context_create(NULL, &context);
     if (status == SONJECT_OK)
         status = sonject_measure(context, &params, &measurement);
-    int code = status == SONJECT_OK ? print_measurement(&measurement, options->wants_seam)
-                                    : fail_with(context, status);
+    int code = status == SONJECT_OK ? print_measurement(&measurement) : fail_with(context, status);
     sonject_context_release(&context);
     return code;
 }
 
 const struct verb measure_verb = {
     .name = "measure",
-    .summary =
-        "prints an image's statistics, its contacts' lengths and levels, or the seam, as JSON",
+    .summary = "prints an image's statistics, or its contacts' lengths and levels, as JSON",
     .operand = "IMAGE",
     .operand_offset = MEMBER(image),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes =
-        "The seabed is what neither mask holds. The seam is the area under the curve of a\n"
-        "classifier: 0.5 is chance, 1 a seam that is always seen.\n"
         "A contact that --find finds has a mean of 3 x 3 pixels that is so far over the seabed\n"
         "around it, and touches no brighter one's box; \"left_off\" counts what more is as\n"
         "bright. Lengths have standard errors by speckle. \"gap\" is what is lit between "

@@ -28,8 +28,7 @@ CLASSES = {
     "sonject_contact_measures": ("ContactMeasures", "Answer"),
     "sonject_campaign_image": ("CampaignImage", "Answer"),
 }
-# Members that are no fields: a call without files leaves seam_before unset.
-NO_FIELDS = {"struct_size", "reserved", "seam_before"}
+NO_FIELDS = {"struct_size", "reserved"}
 COMMENT = r"/\*(?:(?!\*/).)*\*/"
 
 

@@ -1,4 +1,4 @@
-/* What an image says about itself: its seabed's speckle, and the seam around what was put in. */
+/* What an image says about itself: its seabed's speckle, and its contacts. */
 #ifndef SONJECT_MEASURE_H
 #define SONJECT_MEASURE_H
 
@@ -11,8 +11,7 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
-/* An image, and what is told of it: a file, or pixels in memory. Masks have the image's size; any
- * pixel that is not 0 counts. */
+/* An image, and what is told of it: a file, or pixels in memory. */
 typedef struct sonject_measure_params {
     uint32_t struct_size;
     uint32_t box_count;
@@ -21,13 +20,10 @@ typedef struct sonject_measure_params {
     const char *channel; /* of the file, as of sonject_quicklook_params, like the next two */
     const char *array;
     const char *transfer;
-    /* For sonject_measure; each may be NULL. */
-    const char *before;    /* file of the image before the injection */
-    const char *influence; /* file, mask of what the injection changed; NULL: the pixels in which
-                              image and before differ, and those within 2 of them */
-    const char *labels;    /* file, mask of highlights and shadows */
-    const uint8_t *influence_mask; /* the same of pixels: rows x columns bytes */
-    const uint8_t *labels_mask;
+    /* For sonject_measure; each may be NULL: mask of the image's size, not 0 where no seabed is,
+     * such as highlights and shadows. */
+    const char *labels;         /* file */
+    const uint8_t *labels_mask; /* the same of pixels: rows x columns bytes */
     /* For sonject_measure_contacts. */
     const char *truth;        /* a run's truth.json: its boxes, and the spacing that they tell; or
                                  NULL */
@@ -42,7 +38,7 @@ typedef struct sonject_measure_params {
                                  sides; 0: to the right, or as truth tells */
 } sonject_measure_params;
 
-/* What an image says of its seabed, and the seam of an injection. */
+/* What an image says of its seabed. */
 typedef struct sonject_measurement {
     uint32_t struct_size;
     uint32_t reserved;
@@ -55,16 +51,6 @@ typedef struct sonject_measurement {
     double column_correlation; /* from a column to the next */
     double row_length_pixels;  /* where the intensity's correlation falls to 1/e, at most 7 */
     double column_length_pixels;
-    /* The seam: how well a linear classifier on local statistics tells patches of 12 x 12 pixels
-     * that the injection changed, but that are not beside highlights and shadows, from
-     * untouched ones on both sides: 0.5 chance, 1 always. Cross-validated; NaN: no influence was
-     * told, or fewer than 10 patches. */
-    double seam;
-    double seam_error;  /* standard error */
-    double seam_before; /* the same patches of the image before: what the seabed's own unevenness
-                           tells; NaN without that image */
-    uint64_t seam_patches;
-    uint64_t background_patches;
 } sonject_measurement;
 
 /* Measures an image. measurement->struct_size must be set. Errors: ARGUMENT, INPUT, STORAGE,

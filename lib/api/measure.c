@@ -68,7 +68,6 @@ static sonject_status measure_pixels(struct report *report, const sonject_measur
     memset(&measured, 0, sizeof measured);
     sonject_status status = take_amplitudes(report, params->pixels, &measured);
     const size_t count = measured.rows * measured.columns;
-    THEN(status, copy_mask(report, params->influence_mask, count, &measured.influence));
     THEN(status, copy_mask(report, params->labels_mask, count, &measured.labels));
     THEN(status, measure_amplitudes(report, &measured, made));
     measured_clear(&measured);

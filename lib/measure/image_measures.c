@@ -10,13 +10,9 @@
 #include "swath/geometry_notes.h"
 #include "swath/swath_file.h"
 
-#define NEAR 2 /* pixels around changed ones: rounding hides small changes */
-
 void measured_clear(struct measured *measured)
 {
     free(measured->amplitudes);
-    free(measured->before);
-    free(measured->influence);
     free(measured->labels);
 }
 
@@ -50,42 +46,16 @@ sonject_status measure_amplitudes(struct report *report, struct measured *measur
                                   sonject_measurement *measurement)
 {
     struct speckle_statistics seabed;
-    struct seam seam = {NAN, NAN, 0, 0};
-    struct seam before = {NAN, NAN, 0, 0};
     memset(measurement, 0, sizeof *measurement);
     measurement->struct_size = sizeof *measurement;
-    sonject_status status = SONJECT_OK;
-    if (measured->influence)
-        status = measure_seam(report, measured->amplitudes, measured->influence, measured->labels,
-                              measured->rows, measured->columns, &seam);
-    if (status == SONJECT_OK && measured->influence && measured->before)
-        status = measure_seam(report, measured->before, measured->influence, measured->labels,
-                              measured->rows, measured->columns, &before);
-    for (size_t i = 0; i < measured->rows * measured->columns; i++)
-        if (measured->influence && measured->labels && measured->labels[i])
-            measured->influence[i] = 255;
-    THEN(status, measured_square(report, measured));
-    THEN(status, measure_speckle(report, measured->amplitudes,
-                                 measured->influence ? measured->influence : measured->labels,
-                                 measured->rows, measured->columns, measured->columns, &seabed));
+    sonject_status status = measured_square(report, measured);
+    THEN(status, measure_speckle(report, measured->amplitudes, measured->labels, measured->rows,
+                                 measured->columns, measured->columns, &seabed));
     if (status != SONJECT_OK)
         return status;
     fill_seabed(&seabed, measurement);
-    measurement->seam = seam.auc;
-    measurement->seam_error = seam.error;
-    measurement->seam_before = before.auc;
-    measurement->seam_patches = seam.patches;
-    measurement->background_patches = seam.background;
     return SONJECT_OK;
 }
-
-/* What of a file is measured, as of swath_file_open_beside. */
-struct measured_image {
-    const char *path;
-    const char *other; /* NULL: none */
-    int32_t channel;
-    const char *array;
-};
 
 /* The spacings that a file tells. */
 static void take_spacings(const struct swath_file *file, struct measured *measured)
@@ -100,50 +70,17 @@ static void take_spacings(const struct swath_file *file, struct measured *measur
 }
 
 /* All of an image; *stored is for free(). measured: gets the spacings; NULL: nobody asks. */
-static sonject_status read_stored(struct report *report, const struct measured_image *image,
-                                  struct raster_layout *layout, void **stored,
+static sonject_status read_stored(struct report *report, const char *path, int32_t channel,
+                                  const char *array, struct raster_layout *layout, void **stored,
                                   struct measured *measured)
 {
     struct swath_file *file = NULL;
     *stored = NULL;
-    CHECK(swath_file_open_beside(report, image->path, image->other, image->channel, image->array,
-                                 &file));
+    CHECK(swath_file_open_array(report, path, channel, array, &file));
     if (measured)
         take_spacings(file, measured);
     const sonject_status status = swath_file_read_all(report, file, layout, stored);
     swath_file_close(&file);
-    return status;
-}
-
-static sonject_status read_image(struct report *report, const struct measured_image *image,
-                                 const sonject_transfer_params *transfer, struct measured *measured)
-{
-    struct raster_layout layout;
-    void *stored = NULL;
-    size_t bad = 0;
-    uint64_t clipped = 0;
-    sonject_status status = read_stored(report, image, &layout, &stored, measured);
-    if (status != SONJECT_OK) {
-        free(stored);
-        return status;
-    }
-    measured->rows = (size_t)layout.rows;
-    measured->columns = (size_t)layout.columns;
-    const size_t count = measured->rows * measured->columns;
-    float *linear = allocate_array(count, layout.channels * sizeof *linear);
-    if (!linear)
-        status = report_out_of_memory(report, image->path);
-    else if (transfer_to_amplitude(transfer, layout.type, stored, count * layout.channels, linear,
-                                   &bad, &clipped) != SONJECT_OK)
-        status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "%s: the pixel at row %zu, column %zu is not a finite number",
-                                image->path, bad / layout.channels / measured->columns,
-                                bad / layout.channels % measured->columns);
-    free(stored);
-    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
-        linear[i] =
-            layout.channels == 2 ? hypotf(linear[2 * i], linear[2 * i + 1]) : fabsf(linear[i]);
-    measured->amplitudes = linear;
     return status;
 }
 
@@ -166,8 +103,8 @@ static sonject_status read_mask(struct report *report, const char *path,
     void *stored = NULL;
     if (!path)
         return SONJECT_OK;
-    const struct measured_image image = {path, NULL, SONJECT_CHANNEL_ONLY, NULL};
-    sonject_status status = read_stored(report, &image, &layout, &stored, NULL);
+    sonject_status status =
+        read_stored(report, path, SONJECT_CHANNEL_ONLY, NULL, &layout, &stored, NULL);
     THEN(status, check_size(report, path, layout.rows, layout.columns, measured));
     if (status == SONJECT_OK) {
         const size_t bytes = layout.channels * pixel_bytes(layout.type);
@@ -183,37 +120,37 @@ static sonject_status read_mask(struct report *report, const char *path,
     return status;
 }
 
-/* The image before, and where no mask tells it, what changed since. */
-static sonject_status read_before(struct report *report, const sonject_measure_params *params,
-                                  const struct image_options *options, struct measured *measured)
-{
-    const char *path = params->before;
-    struct measured before;
-    if (!path)
-        return SONJECT_OK;
-    const struct measured_image image = {path, params->image, options->channel, options->array};
-    memset(&before, 0, sizeof before);
-    sonject_status status = read_image(report, &image, &options->transfer, &before);
-    measured->before = before.amplitudes;
-    THEN(status, check_size(report, path, before.rows, before.columns, measured));
-    if (status != SONJECT_OK || measured->influence)
-        return status;
-    const size_t count = measured->rows * measured->columns;
-    measured->influence = allocate_array(count, 1);
-    CHECK_MEMORY(report, measured->influence, path);
-    for (size_t i = 0; i < count; i++)
-        if (measured->before[i] < measured->amplitudes[i] ||
-            measured->before[i] > measured->amplitudes[i])
-            fill_square(measured->influence, measured->rows, measured->columns, i, NEAR, 255);
-    return SONJECT_OK;
-}
-
 sonject_status read_amplitudes(struct report *report, const sonject_measure_params *params,
                                const struct image_options *options, struct measured *measured)
 {
-    const struct measured_image image = {params->image, params->before, options->channel,
-                                         options->array};
-    return read_image(report, &image, &options->transfer, measured);
+    struct raster_layout layout;
+    void *stored = NULL;
+    size_t bad = 0;
+    uint64_t clipped = 0;
+    sonject_status status = read_stored(report, params->image, options->channel, options->array,
+                                        &layout, &stored, measured);
+    if (status != SONJECT_OK) {
+        free(stored);
+        return status;
+    }
+    measured->rows = (size_t)layout.rows;
+    measured->columns = (size_t)layout.columns;
+    const size_t count = measured->rows * measured->columns;
+    float *linear = allocate_array(count, layout.channels * sizeof *linear);
+    if (!linear)
+        status = report_out_of_memory(report, params->image);
+    else if (transfer_to_amplitude(&options->transfer, layout.type, stored, count * layout.channels,
+                                   linear, &bad, &clipped) != SONJECT_OK)
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "%s: the pixel at row %zu, column %zu is not a finite number",
+                                params->image, bad / layout.channels / measured->columns,
+                                bad / layout.channels % measured->columns);
+    free(stored);
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+        linear[i] =
+            layout.channels == 2 ? hypotf(linear[2 * i], linear[2 * i + 1]) : fabsf(linear[i]);
+    measured->amplitudes = linear;
+    return status;
 }
 
 sonject_status measure_file(struct report *report, const sonject_measure_params *params,
@@ -223,8 +160,6 @@ sonject_status measure_file(struct report *report, const sonject_measure_params 
     memset(&measured, 0, sizeof measured);
     sonject_status status = read_amplitudes(report, params, options, &measured);
     THEN(status, read_mask(report, params->labels, &measured, &measured.labels));
-    THEN(status, read_mask(report, params->influence, &measured, &measured.influence));
-    THEN(status, read_before(report, params, options, &measured));
     THEN(status, measure_amplitudes(report, &measured, measurement));
     measured_clear(&measured);
     return status;

@@ -32,13 +32,15 @@ def told(answer):
 def test_arrays_are_measured_as_images_are(sonject, tmp_path):
     mask = numpy.zeros((ROWS, COLUMNS), numpy.uint8)
     mask[90:170, 100:220] = 255
-    numpy.save(tmp_path / "bed.npy", speckle())
+    bed = speckle()
+    numpy.save(tmp_path / "bed.npy", bed)
     numpy.save(tmp_path / "mask.npy", mask)
     (tmp_path / "mask.png").write_bytes(png_bytes(mask))
-    of_image = sonject("measure", "--seam", write(tmp_path / "bed.tif", speckle()), "--influence",
-                       "mask.png")
-    of_array = sonject("measure", "--seam", "bed.npy", "--influence", "mask.npy")
-    assert told(of_array) == told(of_image)
+    of_image = told(sonject("measure", write(tmp_path / "bed.tif", bed), "--targets", "mask.png"))
+    assert told(sonject("measure", "bed.npy", "--targets", "mask.npy")) == of_image
+    bed[mask > 0] = 1  # what is hidden does not count
+    assert told(sonject("measure", write(tmp_path / "other.tif", bed), "--targets", "mask.png")) == of_image
+    assert told(sonject("measure", "other.tif")) != of_image
 
 
 def test_speckle_is_measured_and_transfer_undone(sonject, tmp_path):
@@ -56,57 +58,24 @@ def test_speckle_is_measured_and_transfer_undone(sonject, tmp_path):
 
 
 def test_channels_are_measured_as_images_are(sonject, tmp_path):
-    before = [numpy.round(2e4 * speckle(looks, seed=looks)).astype(numpy.uint16) for looks in (1, 2)]
-    after = [side.copy() for side in before]
-    for side in after:
-        side[90:170, 100:220] = numpy.round(2e4 * speckle(3, seed=7))[90:170, 100:220]
-        side[40:44, 60:80] = 60000
-    for name, sides in (("before", before), ("after", after)):
-        (tmp_path / f"{name}.xtf").write_bytes(recordings.xtf_bytes(*sides))
-        for side, pixels in zip(("port", "starboard"), sides):
-            write(tmp_path / f"{name}-{side}.tif", pixels)
-    seam = ["--seam", "--before"]
-    for side, options, files in (
-            ("port", [], ["after"]), ("starboard", ["--find"], ["after"]),
-            ("port", ["--box", "30,40,40,80"], ["after"]), ("starboard", seam, ["before", "after"])):
-        channel = told(sonject("measure", *options, *(f"{name}.xtf" for name in files), "--channel", side))
-        image = told(sonject("measure", *options, *(f"{name}-{side}.tif" for name in files)))
+    sides = [numpy.round(2e4 * speckle(looks, seed=looks)).astype(numpy.uint16) for looks in (1, 2)]
+    for side, pixels in zip(("port", "starboard"), sides):
+        pixels[40:44, 60:80] = 60000
+        write(tmp_path / f"{side}.tif", pixels)
+    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides))
+    for side, options in (("port", []), ("starboard", ["--find"]), ("port", ["--box", "30,40,40,80"])):
+        channel = told(sonject("measure", *options, "line.xtf", "--channel", side))
+        image = told(sonject("measure", *options, f"{side}.tif"))
         for contact in channel.get("contacts", []) + image.get("contacts", []):
             for key in [key for key in contact if key == "image" or key.endswith("_m") or key.startswith("axis_")]:
                 del contact[key]  # metres are told by the recording alone
         assert channel == image
-    assert image["seam"]["auc"] > 0.6
-    for later, earlier in (("after.xtf", "before-starboard.tif"), ("after-starboard.tif", "before.xtf")):
-        assert image == told(sonject("measure", *seam, earlier, later, "--channel", "starboard"))
     for code, words, arguments in (
-            (3, ["after.xtf", "1 (port), 2 (starboard)"], ["after.xtf"]),
-            (3, ["neither XTF nor JSF"], ["after-port.tif", "--channel", "port"]),
-            (3, ["neither XTF nor JSF"], [*seam, "before-port.tif", "after-port.tif", "--channel", "port"]),
+            (3, ["line.xtf", "1 (port), 2 (starboard)"], ["line.xtf"]),
+            (3, ["neither XTF nor JSF"], ["port.tif", "--channel", "port"]),
             (3, ["absent.xtf: "], ["absent.xtf", "--channel", "port"]),
-            (2, ["--channel"], ["after.xtf", "--channel", "left"])):
+            (2, ["--channel"], ["line.xtf", "--channel", "left"])):
         assert_refused(sonject("measure", *arguments), code, *words)
-
-
-def test_seam(sonject, tmp_path):
-    before = speckle()
-    after = before.copy()
-    mask = numpy.zeros((ROWS, COLUMNS), numpy.uint8)
-    mask[90:170, 100:220] = 255
-    after[mask > 0] = speckle(2, seed=5)[mask > 0]
-    write(tmp_path / "before.tif", before)
-    write(tmp_path / "after.tif", after)
-    (tmp_path / "mask.png").write_bytes(png_bytes(mask))
-    by_mask = told(sonject("measure", "--seam", "after.tif", "--influence", "mask.png"))["seam"]
-    assert by_mask["auc"] > 0.7 and 0 < by_mask["standard_error"] < 0.2
-    assert by_mask["auc_before"] is None
-    by_image = told(sonject("measure", "--seam", "after.tif", "--before", "before.tif"))["seam"]
-    assert by_image["auc"] > 0.7
-    assert abs(by_image["auc_before"] - 0.5) < 4 * by_image["standard_error"]
-    none = told(sonject("measure", "--seam", "before.tif", "--influence", "mask.png"))["seam"]
-    assert abs(none["auc"] - 0.5) < 4 * none["standard_error"]
-    hidden = told(sonject("measure", "--seam", "after.tif", "--influence", "mask.png", "--targets",
-                          "mask.png"))["seam"]
-    assert hidden["auc"] is None and hidden["patches"] == 0
 
 
 def test_images_that_do_not_fit(sonject, tmp_path):
@@ -117,10 +86,7 @@ def test_images_that_do_not_fit(sonject, tmp_path):
     write(tmp_path / "bad.tif", bad)
     assert_refused(sonject("measure", "absent.tif"), 3, "absent.tif")
     assert_refused(sonject("measure", "bad.tif"), 3, "row 3, column 4")
-    assert_refused(sonject("measure", "--seam", "image.tif", "--before", "small.tif"), 3,
-                   "small.tif", "255 x 320")
-    assert_refused(sonject("measure", "--seam", "image.tif", "--influence", "small.tif"), 3,
-                   "small.tif", "255 x 320")
+    assert_refused(sonject("measure", "image.tif", "--targets", "small.tif"), 3, "small.tif", "255 x 320")
     assert_refused(sonject("measure", "image.tif", "--transfer", "schlick:0.5"), 3, "parameter")
 
 

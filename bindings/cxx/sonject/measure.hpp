@@ -17,7 +17,7 @@
 namespace sonject
 {
 
-/* What an image file says of its seabed and of the seam; see sonject_measure. */
+/* What an image file says of its seabed; see sonject_measure. */
 inline sonject_measurement measure(const context &context, const sonject_measure_params &params)
 {
     sonject_measurement measurement = defaults<sonject_measurement>();
@@ -25,17 +25,14 @@ inline sonject_measurement measure(const context &context, const sonject_measure
     return measurement;
 }
 
-/* The same of pixels in memory; masks: rows x columns bytes, or none. */
+/* The same of pixels in memory; labels: rows x columns bytes, or none. */
 inline sonject_measurement measure(const context &context, const pixels &image,
-                                   span<const std::uint8_t> influence = span<const std::uint8_t>(),
                                    span<const std::uint8_t> labels = span<const std::uint8_t>())
 {
-    const std::uint64_t size = image.value.rows * image.value.columns;
     sonject_measure_params params = defaults<sonject_measure_params>();
-    if ((influence.size() && influence.size() != size) || (labels.size() && labels.size() != size))
+    if (labels.size() && labels.size() != image.value.rows * image.value.columns)
         throw error(SONJECT_ERROR_ARGUMENT, "a mask needs rows x columns bytes");
     params.pixels = &image.value;
-    params.influence_mask = influence.size() ? influence.data() : nullptr;
     params.labels_mask = labels.size() ? labels.data() : nullptr;
     return measure(context, params);
 }

@@ -285,42 +285,32 @@ def _image_keys(**values: Any) -> dict[str, Optional[bytes]]:
     return {name: keys_text(name, value) for name, value in values.items()}
 
 
-def _mask(name: str, mask: Any, shape: tuple[int, ...]) -> Any:
-    array = numpy.ascontiguousarray(numpy.asarray(mask) != 0, dtype=numpy.uint8)
-    if array.shape != shape:
-        raise ValueError(f"{name} must have the image's shape {shape}, not {array.shape}")
-    return array
-
-
 def measure(
     image: Any,
-    influence: Optional[Any] = None,
     labels: Optional[Any] = None,
     context: Optional[Context] = None,
     *,
     transfer: Optional[AnyTransfer] = None,
 ) -> Measurement:
-    """What an image and its transfer, as inject takes them, say about its seabed, and the seam of an
-    injection.
+    """What an image and its transfer, as inject takes them, say about its seabed.
 
-    influence: where the image was changed; labels: where highlights and shadows are (Result.influence
-    and Result.labels); both of the image's shape, None: not told.
+    labels: where no seabed is, such as Result.labels, of the image's shape; None: not told.
     """
     context = default_context() if context is None else context
     pixels, array = library_pixels(image, _curve(transfer))
-    masks = [
-        None if mask is None else _mask(name, mask, array.shape)
-        for name, mask in (("influence", influence), ("labels", labels))
-    ]
-    pointers = [
-        None if mask is None else mask.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8))
-        for mask in masks
-    ]
-    params = filled(s.sonject_measure_params, pixels=ctypes.pointer(pixels),
-                    influence_mask=pointers[0], labels_mask=pointers[1])
+    mask = None
+    if labels is not None:
+        mask = numpy.ascontiguousarray(numpy.asarray(labels) != 0, dtype=numpy.uint8)
+        if mask.shape != array.shape:
+            raise ValueError(f"labels must have the image's shape {array.shape}, not {mask.shape}")
+    params = filled(
+        s.sonject_measure_params,
+        pixels=ctypes.pointer(pixels),
+        labels_mask=None if mask is None else mask.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8)),
+    )
     measurement = initialised(s.sonject_measurement)
     context.call("sonject_measure", context, ctypes.byref(params), ctypes.byref(measurement))
-    del array, masks
+    del array, mask
     return Measurement.from_structure(measurement)
 
 
