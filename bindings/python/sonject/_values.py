@@ -218,8 +218,8 @@ def _single_precision(array: Any) -> Any:
         raise TypeError(
             f"a patch of {array.dtype} is refused without its transfer function: say how grey levels "
             'came from amplitudes, for instance transfer="{kind: decibel, parameter: 0.5}"; a scene\'s '
-            'input.transfer is that of its file alone: pass transfer=scene["input.transfer"], or that of '
-            'the calibration that it names'
+            'input.transfer, like that of a calibration, is that of its file alone: pass '
+            'transfer=scene["input.transfer"]'
         )
     target = numpy.float32 if array.dtype.kind == "f" else numpy.complex64
     with numpy.errstate(over="ignore"):
