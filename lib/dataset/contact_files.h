@@ -51,14 +51,14 @@ struct contact_choice {
  * row, column, rows, columns (and part, class or side), a folder of YOLO's texts (classes' names
  * from classes.txt or data.yaml beside or above them, if there is one) or of VOC's XML, which is
  * read where both are there, or a .yaml file of quantiles. Classes with "shadow", "highlight" or
- * "echo" in their names tell the part; any other class's boxes are around the choice's. A class that
- * YOLO does not name is its number. Where several others are read together, a note tells. A shadow's box
- * and the highlight's box nearest to it are one contact where both are of the same rows of an image
- * and the highlight does not begin behind the shadow, columns counting slant range; what finds no
- * other part stays as it is. Contacts are in the order of image, row and column; images without
- * contacts are not listed. They are looked for beside the labels, in "images" below or beside them,
- * and as data sets lie. set: for contact_set_clear, also on failure. Errors: INPUT (file, line or
- * member, what is wrong), UNSUPPORTED, STORAGE, MEMORY. */
+ * "echo" in their names tell the part; any other class's boxes are around the choice's. A class
+ * that YOLO does not name is its number. Where several others are read together, a note tells. A
+ * shadow's box and the highlight's box nearest to it are one contact where both are of the same
+ * rows of an image and the highlight does not begin behind the shadow, columns counting slant
+ * range; what finds no other part stays as it is. Contacts are in the order of image, row and
+ * column; images without contacts are not listed. They are looked for beside the labels, in
+ * "images" below or beside them, and as data sets lie. set: for contact_set_clear, also on failure.
+ * Errors: INPUT (file, line or member, what is wrong), UNSUPPORTED, STORAGE, MEMORY. */
 sonject_status contact_set_read(struct report *report, const char *path,
                                 const struct contact_choice *choice, struct contact_set *set);
 void contact_set_clear(struct contact_set *set);
