@@ -1,7 +1,7 @@
-/* Tracing the samples of second_order.h. Of a cell far from the targets few samples are followed, and
- * most of those begin where a target turns away from their seabed. So samples are gathered until
- * every lane has one: first those that are followed, then those that face their seabed, of which
- * alone it is asked what hides them. */
+/* Tracing the samples of second_order.h. Of a cell far from the targets few samples are followed,
+ * and most of those begin where a target turns away from their seabed. So samples are gathered
+ * until every lane has one: first those that are followed, then those that face their seabed, of
+ * which alone it is asked what hides them. */
 #ifndef SONJECT_KERNELS_SECOND_ORDER_SAMPLES_H
 #define SONJECT_KERNELS_SECOND_ORDER_SAMPLES_H
 
