@@ -33,11 +33,13 @@ static void tell_noise_floor(struct report *report, const struct scene *scene,
     if (statistics->noise_floor_source == SONJECT_SOURCE_PATCH)
         report_log(report, "noise floor estimated from the patch: %.1f dB over the mean seabed",
                    statistics->noise_floor_db);
-    else if (scene->injection.estimate_noise && scene->input_kind == SONJECT_INPUT_FILE)
-        report_note(report,
-                    "no shadow of the patch tells the noise floor, and %.1f dB under the mean "
-                    "seabed is taken: compare its shadows, and set injection.noise_floor",
-                    -statistics->noise_floor_db);
+    else if (scene->injection
+                 .estimate_noise) /* of calls in memory, which may be many, it is news */
+        (scene->input_path ? report_note : report_log)(
+            report,
+            "no shadow of the patch tells the noise floor, and %.1f dB under the mean seabed is "
+            "taken: compare its shadows, and set injection.noise_floor",
+            -statistics->noise_floor_db);
 }
 
 static void tell_clipped(struct report *report, const sonject_statistics *statistics)

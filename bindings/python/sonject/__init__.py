@@ -13,7 +13,7 @@ A scene has the keys of scene files. Images are arrays of rows (track positions)
 ranges). Results are in m, radians, Hz, as the names of their members say.
 """
 
-from . import keys
+from . import keys, plotting
 from ._interface import VERSION as _VERSION
 from ._library import load as _load
 from ._classes import (

@@ -95,7 +95,7 @@ def test_the_log_tells_device_programs_and_noise_floor_and_progress_the_compilin
     lines = answer.stdout.splitlines()
     assert [line for line in lines if line.startswith("device '")] == lines[:1]
     assert any("trace_rough.cl built in" in line for line in lines)
-    assert lines[-1].startswith("noise floor: no shadow")
+    assert lines[-1].startswith("no shadow of the patch tells the noise floor")
 
 
 @pytest.mark.parametrize("log, is_printed", [
@@ -108,6 +108,7 @@ def test_notes_are_printed_unless_a_log_takes_them(log, is_printed, tmp_path):
         f"with sonject.Context(log={log}) as context:\n"
         f"    scene = sonject.Scene(**{KEYS}, context=context)\n"
         "    scene['objects[0].level.over_seabed'] = '33 dB'\n"
+        "    scene['injection.noise_floor'] = '-25 dB'\n"
         "    patch = numpy.random.default_rng(1).rayleigh(50, size=(96, 128)).astype(numpy.uint8)\n"
         "    sonject.inject(patch, scene, transfer='{kind: amplitude}')\n"
         f"    numpy.save('{tmp_path}/swath.npy', patch)\n"
