@@ -30,11 +30,7 @@ sonject_status sonject_campaign_read(sonject_context *context, const char *path,
                                      sonject_campaign **campaign)
 {
     struct campaign_source source;
-    if (campaign)
-        *campaign = NULL;
-    CHECK(context_begin_call(context));
-    if (!campaign)
-        return null_argument(&context->report, "campaign");
+    BEGIN_MAKING(context, campaign);
     CHECK(take_source(&context->report, path, params, &source));
     return campaign_open(&context->report, &source, campaign);
 }
@@ -98,11 +94,7 @@ sonject_status sonject_campaign_scene(sonject_context *context, sonject_campaign
     struct image_plan plan;
     struct attempts attempts = {0};
     char reason[REASON_CAPACITY] = "";
-    if (scene)
-        *scene = NULL;
-    CHECK(context_begin_call(context));
-    if (!scene)
-        return null_argument(&context->report, "scene");
+    BEGIN_MAKING(context, scene);
     if (!campaign)
         return null_argument(&context->report, "campaign");
     sonject_status status = campaign_check_id(campaign, id);
@@ -127,11 +119,7 @@ sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaig
                                        sonject_result **result)
 {
     struct campaign_image image;
-    if (result)
-        *result = NULL;
-    CHECK(context_begin_call(context));
-    if (!result)
-        return null_argument(&context->report, "result");
+    BEGIN_MAKING(context, result);
     context_watch(context, &progress, &user);
     if (!campaign)
         return null_argument(&context->report, "campaign");

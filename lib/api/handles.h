@@ -101,4 +101,14 @@ sonject_status take_stored(struct report *report, const sonject_pixels *pixels,
 /* report_failure(ARGUMENT, "... must not be NULL") */
 sonject_status null_argument(struct report *report, const char *name);
 
+/* Begins a call that makes *made, which is NULL where the call fails, also without a context. */
+#define BEGIN_MAKING(context, made)                                                                \
+    do {                                                                                           \
+        if (made)                                                                                  \
+            *(made) = NULL;                                                                        \
+        CHECK(context_begin_call(context));                                                        \
+        if (!(made))                                                                               \
+            return null_argument(&(context)->report, #made);                                       \
+    } while (0)
+
 #endif

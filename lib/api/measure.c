@@ -145,11 +145,7 @@ sonject_status sonject_measure_contacts(sonject_context *context,
     sonject_measure_params taken;
     struct image_options options;
     struct measured measured;
-    if (text)
-        *text = NULL;
-    CHECK(context_begin_call(context));
-    if (!text)
-        return null_argument(&context->report, "text");
+    BEGIN_MAKING(context, text);
     struct report *report = &context->report;
     memset(&measured, 0, sizeof measured);
     CHECK(take_image(report, params, &taken, &options));

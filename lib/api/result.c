@@ -25,11 +25,7 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *han
                               const sonject_pixels *pixels, sonject_progress_function progress,
                               void *user, sonject_result **result)
 {
-    if (result)
-        *result = NULL;
-    CHECK(context_begin_call(context));
-    if (!result)
-        return null_argument(&context->report, "result");
+    BEGIN_MAKING(context, result);
     context_watch(context, &progress, &user);
     struct report *report = &context->report;
     const struct scene *scene;

@@ -178,11 +178,7 @@ sonject_status sonject_elements_run(sonject_context *context, const sonject_scen
 sonject_status sonject_check(sonject_context *context, const sonject_scene *scene, char **text)
 {
     const struct scene *used;
-    if (text)
-        *text = NULL;
-    CHECK(context_begin_call(context));
-    if (!text)
-        return null_argument(&context->report, "text");
+    BEGIN_MAKING(context, text);
     CHECK(scene_use(&context->report, scene, &used));
     return describe_scene(&context->report, used, text);
 }

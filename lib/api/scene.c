@@ -11,11 +11,7 @@
 
 sonject_status sonject_scene_create(sonject_context *context, sonject_scene **scene)
 {
-    if (scene)
-        *scene = NULL;
-    CHECK(context_begin_call(context));
-    if (!scene)
-        return null_argument(&context->report, "scene");
+    BEGIN_MAKING(context, scene);
     *scene = allocate_array(1, sizeof **scene);
     if (!*scene)
         return report_out_of_memory(&context->report, "a scene");
@@ -83,11 +79,7 @@ sonject_status sonject_scene_read(sonject_context *context, const char *path,
                                   const sonject_scene_read_params *params, sonject_scene **scene)
 {
     sonject_scene_read_params taken;
-    if (scene)
-        *scene = NULL;
-    CHECK(context_begin_call(context));
-    if (!scene)
-        return null_argument(&context->report, "scene");
+    BEGIN_MAKING(context, scene);
     struct report *report = &context->report;
     CHECK(scene_read_params_take(report, path, params, &taken));
     sonject_scene *made = allocate_array(1, sizeof *made);
@@ -109,11 +101,7 @@ sonject_status sonject_scene_bands(sonject_context *context, const char *path,
 {
     struct scene_source source;
     sonject_scene_read_params taken;
-    if (names)
-        *names = NULL;
-    CHECK(context_begin_call(context));
-    if (!names)
-        return null_argument(&context->report, "names");
+    BEGIN_MAKING(context, names);
     CHECK(scene_read_params_take(&context->report, path, params, &taken));
     memset(&source, 0, sizeof source);
     sonject_status status = take_source(&context->report, path, &taken, &source);
@@ -129,9 +117,9 @@ sonject_status scene_use(struct report *report, const sonject_scene *handle,
     if (!used)
         return null_argument(report, "scene");
     if (!used->is_read) {
-        used->scene.mesh_store = &used->meshes;
+        used->scene.mesh_store = &used->meshes; /* its meshes go there... */
         scene_clear(&used->scene);
-        used->scene.mesh_store = &used->meshes;
+        used->scene.mesh_store = &used->meshes; /* ...and what names them again has them back */
         CHECK(scene_source_read(&used->source, report, &used->scene));
         mesh_store_clear(&used->meshes);
     }
@@ -198,11 +186,7 @@ sonject_status sonject_scene_text(const sonject_scene *scene, char **text)
 
 sonject_status sonject_keys(sonject_context *context, uint32_t of, char **json)
 {
-    if (json)
-        *json = NULL;
-    CHECK(context_begin_call(context));
-    if (!json)
-        return null_argument(&context->report, "json");
+    BEGIN_MAKING(context, json);
     if (of > SONJECT_KEYS_OF_CAMPAIGNS)
         return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
                               "keys are those of scenes (%d) or campaigns (%d), not %u",

@@ -79,7 +79,7 @@ static sonject_status write_pixels(struct sonject_campaign *campaign, const stru
     static const char *const complex_names[] = {"real", "imag"};
     struct raster_attribute attributes[GEOMETRY_NOTES_MAX + 1];
     struct geometry_notes notes;
-    char ends[80];
+    char ends[GREY_TEXT];
     void *stored = swath_stored_result(swath, result, &result->statistics.output_clipped);
     CHECK_MEMORY(campaign->report, stored, "an image");
     geometry_notes_init(&notes, &scene->sonar, &scene->geometry);
@@ -88,12 +88,7 @@ static sonject_status write_pixels(struct sonject_campaign *campaign, const stru
     struct raster_layout layout = swath->layout;
     const char *const *names = swath->is_complex ? complex_names : NULL;
     if (is_grey(campaign)) {
-        const double *ends_db = campaign->campaign.grey_db;
-        snprintf(ends, sizeof ends, "%g dB, %g dB", ends_db[0], ends_db[1]);
-        attributes[count++] = (struct raster_attribute){GREY_ATTRIBUTE, ends};
-        grey_levels(&layout, stored, ends_db, stored);
-        layout.channels = 1;
-        layout.type = PIXEL_UINT8;
+        attributes[count++] = raster_make_grey(&layout, stored, campaign->campaign.grey_db, ends);
         names = NULL;
     }
     const sonject_status status =

@@ -157,8 +157,7 @@ static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, s
     return low <= high;
 }
 
-#define ALTITUDE_BLOCKS                                                                            \
-    64 /* of rows, over which the altitude is taken from its least to its most */
+#define ALTITUDE_BLOCKS 64 /* of rows, over each of which altitudes are from least to most */
 
 /* Blocks of first rows of chips are whole blocks of a JPEG. */
 static uint64_t jpeg_blocks(const struct crop_places *room)

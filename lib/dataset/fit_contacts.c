@@ -161,7 +161,7 @@ static sonject_status describe_image(struct sonject_campaign *campaign, const ch
 {
     struct scene scene;
     struct swath_file *file = NULL;
-    char ends[80];
+    char ends[GREY_TEXT];
     CHECK(read_image_scene(campaign, image, swath_of_image(&campaign->campaign, image, side), side,
                            NULL, false, false, &scene));
     sonject_status status =

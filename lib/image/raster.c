@@ -35,18 +35,6 @@ double pixel_magnitude(const struct raster_layout *layout, const void *pixels, s
     return layout->channels == 2 ? hypot(first, pixel_number(layout->type, pixels, k + 1)) : first;
 }
 
-void grey_levels(const struct raster_layout *layout, const void *pixels, const double ends_db[2],
-                 unsigned char *grey)
-{
-    const double full_scale = pixel_full_scale(layout->type);
-    for (size_t i = 0; i < (size_t)layout->rows * (size_t)layout->columns; i++) {
-        const double amplitude = pixel_magnitude(layout, pixels, i) / full_scale;
-        const double level = 20.0 * log10(fmax(amplitude, 1e-300));
-        const double share = (level - ends_db[0]) / (ends_db[1] - ends_db[0]);
-        grey[i] = (unsigned char)(255.0 * fmin(fmax(share, 0.0), 1.0) + 0.5);
-    }
-}
-
 bool pixel_store(enum pixel_type type, void *pixels, size_t i, double number)
 {
     const double whole = floor(number + 0.5);

@@ -46,11 +46,6 @@ struct region {
 /* The number of a pixel of one channel, or its magnitude where two make it complex. */
 double pixel_magnitude(const struct raster_layout *layout, const void *pixels, size_t i);
 
-/* 8 bit grey levels of all pixels: black and white, and what lies beyond them, at these levels over
- * the type's full scale. grey may be the pixels' own memory. */
-void grey_levels(const struct raster_layout *layout, const void *pixels, const double ends_db[2],
-                 unsigned char *grey);
-
 /* Bytes of a region's pixels; false if that overflows size_t. */
 bool region_bytes(const struct raster_layout *layout, const struct region *region, size_t *bytes);
 

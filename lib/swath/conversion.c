@@ -1,7 +1,6 @@
 #include "swath/conversion.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -148,19 +147,9 @@ static sonject_status check_uses(struct report *report, const sonject_convert_pa
         params->range_axis == SONJECT_CONVERT_AXIS_KEPT)
         return input_failure(report, params->output,
                              "keeps no geometry or altitude: take them out, or write .tif");
-    return SONJECT_OK;
-}
-
-static sonject_status make_grey(struct report *report, const sonject_convert_params *params,
-                                struct conversion *conversion)
-{
-    const double ends_db[] = {params->black_db, params->white_db};
-    if (params->into)
+    if (params->into && params->black_db < params->white_db)
         return input_failure(report, params->into,
                              "grey levels make a new file: take one of the two out");
-    grey_levels(&conversion->layout, conversion->pixels, ends_db, conversion->pixels);
-    conversion->layout.channels = 1;
-    conversion->layout.type = PIXEL_UINT8;
     return SONJECT_OK;
 }
 
@@ -209,11 +198,11 @@ static sonject_status write_into(struct report *report, const sonject_convert_pa
 }
 
 static sonject_status write_new(struct report *report, const sonject_convert_params *params,
-                                const struct conversion *conversion)
+                                struct conversion *conversion)
 {
     struct raster_attribute attributes[GEOMETRY_NOTES_MAX + 2];
     struct geometry_notes notes;
-    char ends[80];
+    char ends[GREY_TEXT];
     struct noted_geometry geometry = conversion->geometry;
     const bool is_kept = raster_format_keeps_attributes(params->output);
     if (geometry.altitude_varies && !(params->altitude_m > 0.0) && is_kept) {
@@ -228,10 +217,10 @@ static sonject_status write_new(struct report *report, const sonject_convert_par
     memcpy(attributes, notes.attributes, sizeof notes.attributes);
     if (conversion->is_resampled)
         attributes[count++] = (struct raster_attribute){"sonject:resampled", "nearest column"};
-    if (params->black_db < params->white_db) {
-        snprintf(ends, sizeof ends, "%g dB, %g dB", params->black_db, params->white_db);
-        attributes[count++] = (struct raster_attribute){GREY_ATTRIBUTE, ends};
-    }
+    if (params->black_db < params->white_db)
+        attributes[count++] =
+            raster_make_grey(&conversion->layout, conversion->pixels,
+                             (const double[]){params->black_db, params->white_db}, ends);
     const sonject_status status = raster_format_write(report, params->output, &conversion->layout,
                                                       attributes, count, conversion->pixels);
     if (status == SONJECT_OK && count > 0 && !is_kept)
@@ -248,8 +237,6 @@ sonject_status convert_file(struct report *report, const sonject_convert_params 
     THEN(status, read_input(report, params, options, &conversion));
     if (params->range_axis != SONJECT_CONVERT_AXIS_KEPT)
         THEN(status, resample(report, &conversion, params));
-    if (params->black_db < params->white_db)
-        THEN(status, make_grey(report, params, &conversion));
     THEN(status, params->into ? write_into(report, params, options, &conversion)
                               : write_new(report, params, &conversion));
     free(conversion.pixels);

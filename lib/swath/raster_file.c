@@ -2,6 +2,8 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,6 +28,23 @@ struct patched_rows {
     void *user;
     int quality; /* of a JPEG; 0: the finest */
 };
+
+struct raster_attribute raster_make_grey(struct raster_layout *layout, void *pixels,
+                                         const double ends_db[2], char text[GREY_TEXT])
+{
+    const double full_scale = pixel_full_scale(layout->type);
+    unsigned char *grey = pixels;
+    for (size_t i = 0; i < (size_t)layout->rows * (size_t)layout->columns; i++) {
+        const double amplitude = pixel_magnitude(layout, pixels, i) / full_scale;
+        const double level = 20.0 * log10(fmax(amplitude, 1e-300));
+        const double share = (level - ends_db[0]) / (ends_db[1] - ends_db[0]);
+        grey[i] = (unsigned char)(255.0 * fmin(fmax(share, 0.0), 1.0) + 0.5);
+    }
+    layout->channels = 1;
+    layout->type = PIXEL_UINT8;
+    snprintf(text, GREY_TEXT, "%g dB, %g dB", ends_db[0], ends_db[1]);
+    return (struct raster_attribute){GREY_ATTRIBUTE, text};
+}
 
 static sonject_status give_rows(void *user, uint64_t first, uint64_t end, void *pixels)
 {

@@ -10,14 +10,18 @@
 
 /* A named text that is stored with an image, as a line "name=value" of its description. Neither
  * part may hold a newline. */
-/* The attribute of images of grey levels in dB: at which levels over full scale black and white
- * are. */
-#define GREY_ATTRIBUTE "sonject:grey"
-
 struct raster_attribute {
     const char *name;
     const char *value;
 };
+
+#define GREY_ATTRIBUTE "sonject:grey"
+#define GREY_TEXT      64 /* bytes of its value */
+
+/* Makes pixels, in their place, 8 bit grey levels in dB, black and white at these over full scale.
+ * Returns the attribute that tells it, whose value is `text`. */
+struct raster_attribute raster_make_grey(struct raster_layout *layout, void *pixels,
+                                         const double ends_db[2], char text[GREY_TEXT]);
 
 struct swath_copy;
 

@@ -182,10 +182,11 @@ def fit_campaign(
     texts = override_texts(overrides)
     params = filled(s.sonject_scene_read_params, override_count=len(texts),
                     overrides=ctypes.cast(texts, ctypes.POINTER(ctypes.c_char_p)))
-    names = [file_name("class", each) for each in ([classes] if isinstance(classes, str) else classes)]
+    wanted = [file_name("class", each) for each in ([classes] if isinstance(classes, str) else classes)]
+    names = (ctypes.c_char_p * len(wanted))(*wanted)
     fit_params = filled(s.sonject_campaign_fit_params, part=choice("boxes", LabelPart, boxes),
                         contacts=file_name("contacts", contacts),
-                        classes=ctypes.cast((ctypes.c_char_p * len(names))(*names), ctypes.POINTER(ctypes.c_char_p)),
+                        classes=ctypes.cast(names, ctypes.POINTER(ctypes.c_char_p)),
                         class_count=len(names),
                         fitted=file_name("fitted", fitted))
     context.work("sonject_campaign_fit", context, file_name("path", path), ctypes.byref(params),
