@@ -117,9 +117,8 @@ sonject_status scene_use(struct report *report, const sonject_scene *handle,
     if (!used)
         return null_argument(report, "scene");
     if (!used->is_read) {
-        used->scene.mesh_store = &used->meshes; /* its meshes go there... */
-        scene_clear(&used->scene);
-        used->scene.mesh_store = &used->meshes; /* ...and what names them again has them back */
+        scene_clear(&used->scene); /* of the scene before, whose meshes go to its store */
+        used->scene.mesh_store = &used->meshes;
         CHECK(scene_source_read(&used->source, report, &used->scene));
         mesh_store_clear(&used->meshes);
     }

@@ -99,6 +99,15 @@ def test_a_misfit_tells_what_no_law_of_speckle_explains(sonject, tmp_path):
         assert f"{100 * told[1]['value']:.2g} % of its pixels are off" in note and "as input.transfer" in note
 
 
+def test_where_nothing_clips_the_largest_number_is_the_ceiling(sonject, tmp_path):
+    numbers = numpy.minimum(speckle(3), 60000)
+    numpy.save(tmp_path / "made.npy", numbers.astype(numpy.uint16))
+    measured = calibrated(sonject, "made.npy")["measured"]
+    assert "not_seen" in measured["full_scale"]
+    room = 20 * numpy.log10(65535 / numpy.sqrt(numpy.mean(numbers.astype(float) ** 2)))
+    assert measured["ceiling_over_seabed"]["value"] == pytest.approx(room, abs=0.3)
+
+
 def test_complex_pixels_have_no_curve(sonject, tmp_path):
     random = numpy.random.default_rng(2)
     field = random.standard_normal((256, 256, 2)).view(numpy.complex128)[..., 0]
