@@ -10,13 +10,13 @@
 #include "trace/object_buffer.h"
 
 #define PI              3.14159265358979323846
-#define SEABED_SHARE    8.0f /* then all within about four widths of a target are followed */
+#define SEABED_SHARE    8.0f /* follows all rays within about two radii of a sphere of targets */
 #define TALLY_BYTES_MAX ((size_t)1 << 30)
 
 typedef char orders_have_room[CHAIN_ORDERS_MAX == SCENE_INTERACTIONS_MAX ? 1 : -1];
 
-/* A boundary alone lengthens chains of two interactions to three; what it adds to a single one is
- * the pairs of sources'. */
+/* A specular surface alone only lengthens chains of two interactions to three. Its echoes of single
+ * interactions belong to the pairs of sources (image_sources.h). */
 static bool adds_to_chains(const struct scene *scene)
 {
     const sonject_material_params material = surface_material(&scene->surface);
@@ -52,14 +52,14 @@ bool sea_surface_is_in_chains(const struct tracer *tracer, const struct line_gri
     return (earliest_half_path(tracer) - side) * view->range_ratio < line_grid_far_end(grid, view);
 }
 
-/* In sizes of the part, or in its heights if that is more. */
+/* The reach around a part, in its radii, or in its mean heights if those are more. */
 #define REACH_AROUND 16.0
 
-/* In ways from below the part to the seabed's specular point, which lies nearer to the sonar the
- * flatter sound comes: what goes by there comes first. */
+/* The reach towards the sonar, in distances from below the part to the seabed's specular point. The
+ * flatter sound comes, the nearer to the sonar that point is. Sound by way of it comes first. */
 #define REACH_TO_SPECULAR_POINT 6.5
 
-/* Half the sum of the heights of the top and of the lowest point that is not buried. */
+/* Returns half the sum of the heights, m, of the top and of the lowest point that is not buried. */
 static double mean_height(const struct tracer *tracer, const struct placement *placement)
 {
     static const double upward[3] = {0.0, 0.0, 1.0};
@@ -68,8 +68,8 @@ static double mean_height(const struct tracer *tracer, const struct placement *p
     return 0.5 * (fmax(height + half_extent, 0.0) + fmax(height - half_extent, 0.0));
 }
 
-/* What is further from the part is heard after the patch's last range, r_B + d + r over 2, even
- * straight below the sonar; a little more, for the point response. */
+/* Returns the distance d, m, from which on seabed is heard after the patch's last range. The half
+ * path is (r_B + d + r)/2, and r is at least the altitude. The margin is for the point response. */
 static double heard_reach(const struct tracer *tracer, const struct placement *placement)
 {
     const struct patch_view *view = &tracer->view;
@@ -94,12 +94,12 @@ struct chain_reach chain_reach_of(const struct tracer *tracer, const struct plac
 
 #define PATCH_RAYS_PER_BIN  1.0 /* brute force */
 #define SEABED_RAYS_PER_BIN 4.0 /* near the objects; fewer with distance, by Russian roulette */
-/* An object is small, and what it reflects specularly, or sends to the sea surface, spreads far;
- * else its rough part matters between objects. */
+/* Rays of an object's fan in a bin. Objects are small, and their specular sound and their sound to
+ * the sea surface spread far. Other rough parts matter only between objects. */
 #define OBJECT_RAYS_PER_BIN 32.0
-#define ROUGH_RAYS_PER_BIN  2.0 /* where others stand for what it sends to the seabed */
+#define ROUGH_RAYS_PER_BIN  2.0 /* samples stand for the paths to the seabed */
 
-/* Where seabed can be that exchanges sound with some object. */
+/* The seabed that may exchange sound with some object. */
 struct surroundings {
     double first_x, last_x;         /* along-track, m */
     double near_ground, far_ground; /* range, m */
@@ -127,8 +127,7 @@ static sonject_status init_seabed_fan(struct chain_fan *fan, struct tracer *trac
 {
     const struct patch_view *view = &tracer->view;
     const struct surroundings around = surroundings_of_objects(tracer);
-    /* an echo never comes before that of its first hit, so seabed beyond the patch has none in it
-     */
+    /* no echo comes before that of its first hit: seabed beyond the patch begins none in it */
     const double patch_end = view_ground_range(view, line_grid_far_end(grid, view));
     const double far = ray_path_grazing(&view->water, fmin(around.far_ground, patch_end), 0.0);
     const double near = around.near_ground > 0.0
@@ -176,7 +175,7 @@ uint32_t chain_fan_count(const struct tracer *tracer)
                : 1 + tracer->part_count + tracer->scene->object_count;
 }
 
-/* A fan of rays, or of samples, of the connecting estimator. */
+/* Aims a fan of rays or of samples for the connecting estimator. */
 static sonject_status aim_fan(struct chain_fan *fan, struct tracer *tracer,
                               const struct line_grid *grid, double central, uint32_t i)
 {
@@ -245,7 +244,7 @@ static void chain_record_init(struct chain_record *record, const struct chain_tr
     record->tally_first_strip = trace->grid.strips.first;
     record->tally_strips = trace->grid.strips.count;
     surface_record_init(&record->seabed, &seabed, tracer->view.wavelength_m);
-    record->seabed.rough_is_apart = true; /* as for sound that goes straight back */
+    record->seabed.rough_is_apart = true; /* the rule for sound that goes straight back */
     if (second_order_is_sampled(tracer, &trace->grid))
         second_order_init(record, spheres, tracer, &trace->grid, origin);
     if (!trace->has_sea_surface)
@@ -255,13 +254,14 @@ static void chain_record_init(struct chain_record *record, const struct chain_tr
     surface_record_init(&record->sea_surface, &sea_surface, tracer->view.wavelength_m);
 }
 
-/* The most of the sound that meets a surface: what goes on, and what scatters to the source. */
+/* The most of the sound meeting a surface that goes on, and that scatters to the source. */
 struct most_sent {
     double onward, returned;
 };
 
-/* is_led: the way on is sought among the targets, so that what goes there counts for itself and not
- * for a share of the albedo. rough: what the rough part is times, 0 if there is none. */
+/* Raises the maxima to those of one more surface. is_led: directions are sampled among the targets,
+ * so that each counts by its scattering and not by a share of the albedo. rough: the factor of the
+ * rough part, 0 if there is none. */
 static void join_surface(struct most_sent *most, const sonject_material_params *material,
                          bool is_led, double rough)
 {
@@ -279,7 +279,7 @@ static struct most_sent most_sent_by_surfaces(const struct chain_trace *trace,
     const struct scene *scene = tracer->scene;
     const sonject_material_params seabed = seabed_material(tracer);
     const sonject_material_params sea_surface = surface_material(&scene->surface);
-    struct most_sent most = {1e-12, 1e-12}; /* that an exponent exists */
+    struct most_sent most = {1e-12, 1e-12}; /* above 0, so that an exponent exists */
     double brightest = 1.0;
     if (map && scene->seabed.forward_rule == SONJECT_FORWARD_MAP)
         for (size_t i = 0; i < tracer->view.rows * tracer->view.columns; i++)
@@ -295,11 +295,10 @@ static struct most_sent most_sent_by_surfaces(const struct chain_trace *trace,
     return most;
 }
 
-/* The most that one ray can bring is about its wavefront times what surfaces send on and back.
- * Quanta leave four powers of ten over that, since sampled directions rarely count for many, and
- * below it eleven. Each order has a plane and quanta of its own: mirrors and lobes that send much
- * on make the bound of a higher one so large that lower ones' echoes would be mostly rounded away.
- */
+/* Chooses the quanta of each order. One ray brings at most about its wavefront times what surfaces
+ * send on and back. Quanta leave four powers of ten above that, since sampled directions rarely
+ * weigh much, and eleven below. Each order has a plane and quanta of its own: mirrors and lobes
+ * raise the bound of higher orders so far that most echoes of lower ones would be rounded away. */
 static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tracer,
                                     const float *map)
 {

@@ -6,9 +6,9 @@
 #include "base/file.h"
 #include "base/memory.h"
 
-/* Strips are traced some at a time, so that a signal does not wait for long. */
+/* The rays of a slice. Strips are traced slice by slice, so that a signal need not wait long. */
 #define SLICE_RAYS   ((uint64_t)1 << 23)
-#define SLICE_STRIPS 64 /* or at least so many: for all cores */
+#define SLICE_STRIPS 64 /* the fewest strips of a slice: enough for all cores */
 
 static sonject_status begin(struct checkpoint *checkpoint, struct report *report)
 {

@@ -8,16 +8,16 @@
 #include "trace/chains.h"
 
 #define PI             3.14159265358979323846
-#define OBJECT_RAYS    16.0 /* at least, on a rough object: its energy is then known to 1 dB */
-#define SURROUNDINGS   18.0 /* in bounding radii of an object */
+#define OBJECT_RAYS    16.0 /* fewest rays on a rough object: its energy is then known to 1 dB */
+#define SURROUNDINGS   18.0 /* bounding radii of an object */
 #define MARGIN         1.02
-#define LARGEST_SINE   0.70710678118654752 /* of 45 degrees */
+#define LARGEST_SINE   0.70710678118654752 /* sine of 45 degrees */
 #define NULLS          2.0  /* main lobe and first side lobes: all but 3e-4 of the energy */
-#define STEEPEST_SINE  0.95 /* of kernels/aspects.h */
+#define STEEPEST_SINE  0.95 /* equals that of kernels/aspects.h */
 #define PIECES_FEWEST  64
 #define PIECES_MOST    16384
-#define OFFSET_ERROR_M 1.0e-6 /* of a cubic in the middle of its piece; a phase wants no more */
-#define NEAREST_M      1.0e-3 /* ground range of a point that is straight under the sonar, or behind */
+#define OFFSET_ERROR_M 1.0e-6 /* error of a cubic in mid-piece; phases need no less */
+#define NEAREST_M      1.0e-3 /* least ground range: the point is under the sonar, or behind */
 
 void ray_table_clear(struct ray_table *table)
 {
@@ -25,7 +25,7 @@ void ray_table_clear(struct ray_table *table)
     memset(table, 0, sizeof *table);
 }
 
-/* The height where the last stretch of straight water begins, or the highest slice. */
+/* Returns the height, m, where the last stretch of straight water begins, or the highest slice. */
 static double edge_height(const struct ray_path *path)
 {
     const struct water *water = path->water;
@@ -36,9 +36,9 @@ static double edge_height(const struct ray_path *path)
                : path->sonar_height_m;
 }
 
-/* The elevations of rays to points (ground range, height), over that to the origin. Points beyond
- * the straight water or its slices count as their edge; those that no ray comes to are infinitely
- * high. */
+/* Returns the lowest and highest elevation of the rays to points (ground range, height), rad above
+ * the ray to the origin. Points beyond the straight water or its slices count as their edge; points
+ * that no ray comes to are infinitely high. */
 static struct elevations elevations_of_points(const struct ray_path *path,
                                               double origin_grazing_rad, const double (*points)[2],
                                               size_t count)
@@ -60,11 +60,11 @@ static struct elevations elevations_of_points(const struct ray_path *path,
 struct aim {
     const struct ray_path *path;
     double ground_range, height, grazing, range;
-    double edge; /* a height in the slice where rays are lines, down to which sound is followed */
-    double speed_ratio; /* of the slice over the straight water */
+    double edge;        /* height in a slice of straight rays, to which sound is followed, m */
+    double speed_ratio; /* sound speed of the slice over that of the straight water */
 };
 
-/* The line of an elevation where it passes closest to the origin; growths are per rad of it. */
+/* A ray as a line where it passes closest to the origin. Growths are per rad of elevation. */
 struct passing_ray {
     double offset, offset_growth, range, range_growth, spreading;
 };
@@ -88,7 +88,7 @@ static struct passing_ray pass(const struct aim *aim, double elevation)
     return passing;
 }
 
-/* The cubic over `step` rad between two values that grow by so much per rad. */
+/* Sets the cubic over `step` rad between two values, each with its growth per rad. */
 static void cubic_between(float cubic[4], double lower, double lower_growth, double upper,
                           double upper_growth, double step)
 {
@@ -101,7 +101,7 @@ static void cubic_between(float cubic[4], double lower, double lower_growth, dou
     cubic[3] = (float)(first + last - 2.0 * rise);
 }
 
-/* The cubic between two rays `step` rad apart. */
+/* Returns the cubic between two rays `step` rad apart. */
 static struct ray_piece_record piece_between(const struct passing_ray *lower,
                                              const struct passing_ray *upper, double step)
 {
@@ -114,7 +114,7 @@ static struct ray_piece_record piece_between(const struct passing_ray *lower,
     return piece;
 }
 
-/* How far the cubic's middle is off the ray there. */
+/* Returns the distance, m, between cubic and ray in the middle of the piece. */
 static double error_between(const struct aim *aim, const struct passing_ray *lower,
                             const struct passing_ray *upper, double middle, double step)
 {
@@ -123,7 +123,7 @@ static double error_between(const struct aim *aim, const struct passing_ray *low
     return fabs(cubic - pass(aim, middle).offset);
 }
 
-/* ranges: NULL, or pieces of the ranges alone. */
+/* Fills in pieces of one slice; returns the worst error, m. ranges: pieces of ranges, or NULL. */
 static double fill_pieces(const struct aim *aim, const struct ray_table_record *record,
                           struct ray_piece_record *pieces, struct ray_piece_record *ranges)
 {
@@ -146,8 +146,8 @@ static double fill_pieces(const struct aim *aim, const struct ray_table_record *
     return worst;
 }
 
-/* The pieces of the straight water and its slices, as struct ray_table_record has them. Returns the
- * worst error. */
+/* Fills in the pieces of the straight water and its slices in the layout of struct
+ * ray_table_record, and returns the worst error, m. */
 static double fill_slices(struct aim *aim, const struct ray_table_record *record,
                           struct ray_piece_record *pieces)
 {
@@ -172,8 +172,8 @@ static double fill_slices(struct aim *aim, const struct ray_table_record *record
     return worst;
 }
 
-/* Appends the rays of a path in a frame whose origin has the ground range and height given, over
- * the elevations that a launch needs, and describes them in the record. A straight path needs no
+/* Appends the rays of a path, over the elevations that a launch needs, and describes them in the
+ * record. The frame's origin has the ground range and the height given. A straight path needs no
  * pieces. Errors: INPUT (rays so near to total reflection that no cubic follows them), MEMORY. */
 static sonject_status ray_table_add(struct ray_table *table, struct report *report,
                                     const struct ray_path *path, double ground_range_m,
@@ -226,13 +226,13 @@ void patch_fan_origin(double origin[3], const struct patch_view *view)
     origin[2] = 0.0;
 }
 
-/* Seabed and heights that rays of the patch's frame come to. */
+/* The seabed and the heights that rays of the patch's frame come to. */
 struct region {
     double near, far;   /* ground range, m */
     double bottom, top; /* heights, m */
 };
 
-/* A little further than chains reach, if there are any. */
+/* Returns a little more than the reach of chains, if there are any. */
 static struct chain_reach surroundings_of(const struct tracer *tracer,
                                           const struct placement *placement)
 {
@@ -271,7 +271,7 @@ sonject_status patch_rays_init(struct ray_table *rays, struct ray_table_record *
 {
     const struct ray_path *path = &tracer->view.water;
     const struct region region = region_of_patch(tracer, grid);
-    /* a little farther: what is sought beside the region; much farther there may be no ray */
+    /* a little farther, for what is sought beside the region; much farther there may be no ray */
     const double points[4][2] = {{region.near, region.bottom},
                                  {region.near, region.top},
                                  {region.far, region.bottom},
@@ -444,7 +444,7 @@ double aspects_slide(const struct tracer *tracer, double length_m)
     return length_m * sine / sqrt(1.0 - sine * sine);
 }
 
-/* True range of the grid's end. */
+/* Returns the true range of the grid's end, m. */
 static double range_of_end(const struct tracer *tracer, const struct line_grid *grid)
 {
     return line_grid_far_end(grid, &tracer->view) / tracer->view.range_ratio;
@@ -473,13 +473,13 @@ int32_t aspects_relief_halo(const struct tracer *tracer, const struct line_grid 
     const double height = fmax(fabs(tracer_lowest_seabed(tracer)), tracer_highest_seabed(tracer));
     if (height == 0.0 || !(aspects_sine(tracer) > 0.0))
         return 0;
-    /* from the mean plane to the relief along the ray that is closest to level */
+    /* the slide is from the mean plane to the relief along the ray that is closest to level */
     const double range = range_of_end(tracer, grid) * tracer->view.range_ratio;
     const double slide = aspects_slide(tracer, height / sin(view_grazing(&tracer->view, range)));
     return (int32_t)ceil(slide * grid->strips_per_row / tracer->view.row_spacing_m) + 1;
 }
 
-/* Direction cosines off the middle that rays go out to, along the long side. */
+/* Returns the largest direction cosine of rays off the beam's middle, along the long side. */
 static double reach_of_beam(const struct tracer *tracer)
 {
     return fmin(NULLS * tracer->view.wavelength_m / tracer->scene->sonar.array_length_m, 1.0);

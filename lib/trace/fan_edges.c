@@ -1,5 +1,5 @@
-/* A patch's rays by the bins in which they meet level seabed: as many in each, wherever the patch
- * or a window of it begins and ends. */
+/* A patch's rays by the bins in which they meet level seabed. A bin has the same rays wherever the
+ * patch, or a window of it, begins and ends. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,17 +9,17 @@
 #define LANES_MOST 16
 #define ROUNDING   1e-6
 
-/* What lays the rays. */
+/* The state while rays are laid. */
 struct laying {
     struct fan_edges *edges;
     const struct tracer *tracer;
-    double central; /* grazing angle of the central direction */
-    double grazing; /* of the last edge */
-    double per_bin; /* rays, scaled; below 1 bins share one */
+    double central; /* grazing angle of the centre, rad */
+    double grazing; /* grazing angle of the last edge */
+    double per_bin; /* rays of a bin, scaled; below 1 bins share one */
     double finest;  /* step that objects need, rad */
 };
 
-/* Appends rays of equal steps from the last edge to one of a flatter angle. */
+/* Appends rays of equal steps from the last edge to a flatter grazing angle, rad. */
 static sonject_status add_rays(struct laying *laying, double grazing, double rays)
 {
     struct fan_edges *edges = laying->edges;
@@ -45,7 +45,7 @@ static sonject_status add_rays(struct laying *laying, double grazing, double ray
     return SONJECT_OK;
 }
 
-/* The same, as many as steps of a size need; none where the angle is no flatter. */
+/* Appends rays of at most `step` rad up to a grazing angle; none where the angle is no flatter. */
 static sonject_status add_steps(struct laying *laying, double grazing, double step)
 {
     return grazing < laying->grazing
@@ -53,7 +53,7 @@ static sonject_status add_steps(struct laying *laying, double grazing, double st
                : SONJECT_OK;
 }
 
-/* Rays of the bins up to a processor range. Bins in the water column have none. */
+/* Appends the rays of the bins up to a processor range, m. Bins in the water column have none. */
 static sonject_status add_bins(struct laying *laying, double bin_m, double range_m)
 {
     const struct patch_view *view = &laying->tracer->view;
@@ -71,8 +71,8 @@ sonject_status fan_edges_init(struct fan_edges *edges, struct fan_record *fan,
 {
     const struct patch_view *view = &tracer->view;
     const double per_pixel = grid->bins_per_pixel;
-    const double offset = (double)view->first_column * per_pixel; /* bins count from the patch's */
-    const double end = grid->bins.first + grid->bins.count + 1.0; /* one shares with the last */
+    const double offset = (double)view->first_column * per_pixel; /* bin numbers are the patch's */
+    const double end = grid->bins.first + grid->bins.count + 1.0; /* echoes spill over by one */
     const double nearest = fmax(nearest_m, view_bottom_range(view));
     struct laying laying = {.edges = edges, .tracer = tracer};
     double origin[3];

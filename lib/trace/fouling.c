@@ -19,15 +19,15 @@ bool object_is_fouled(const struct tracer *tracer, uint32_t object)
     return fouling->albedo_db > 0.0 || fouling->relief_m > 0.0;
 }
 
-/* Nepers of energy that one wave adds at its crest: the squares of all add up to twice the field's
- * variance. */
+/* Returns the nepers of energy that one wave adds at its crest. The squares of all waves' gains add
+ * up to twice the field's variance. */
 static double gain_of(const sonject_fouling_params *fouling)
 {
     return sqrt(2.0 / WAVES) * fouling->albedo_db * log(10.0) / 10.0;
 }
 
-/* Where all crests meet. I0(x), the mean of exp(x cos) over a cycle, is a wave's share of the mean.
- */
+/* Returns the albedo where all crests meet. I0(x), the mean of exp(x cos) over a cycle, is a wave's
+ * factor of the mean. */
 static double peak_of(const sonject_fouling_params *fouling)
 {
     const double gain = gain_of(fouling);
@@ -38,12 +38,12 @@ static double peak_of(const sonject_fouling_params *fouling)
     return pow(exp(gain) / mean, WAVES);
 }
 
-/* A wave of Gaussian spectrum: wavenumbers are three normal deviates (G. Box and M. Muller). axes:
- * the object's; to_part: from its origin to the part's centre. */
+/* Draws a wave of Gaussian spectrum. Its wavenumbers are three normal deviates (G. Box and M.
+ * Muller). axes: the object's axes. to_part: the way from its origin to the part's centre, m. */
 static void draw_wave(struct fouling_wave *wave, struct random_key key, uint32_t number,
                       double length_m, double axes[3][3], const double to_part[3])
 {
-    double along[3] = {0.0, 0.0, 0.0}; /* cycles a m, in the axes of the view */
+    double along[3] = {0.0, 0.0, 0.0}; /* cycles per m, in the axes of the view */
     float u, v;
     for (uint32_t k = 0; k < 3; k++) {
         two_uniforms(key, number, k, &u, &v);
