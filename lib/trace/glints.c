@@ -9,22 +9,23 @@
 #include "trace/fan.h"
 #include "trace/object_buffer.h"
 
-#define STRIP_WAVELENGTHS      0.25 /* widest sub-strip: wider ones alias glints */
-#define SMALL_WAVELENGTHS      2.0  /* parts of smaller radius have few rays, and may have more */
+#define STRIP_WAVELENGTHS      0.25 /* widest sub-strip; wider ones alias glints */
+#define SMALL_WAVELENGTHS      2.0  /* parts of a smaller radius have few rays, and may have more */
 #define SMALL_CELL_WAVELENGTHS (0.25 * GLINT_CELL_WAVELENGTHS)
-/* Cells of a round part, of the square root of wavelength times radius of curvature: an eleventh of
- * its first Fresnel zone across the ray, and half of that along the track. */
+/* The cell of a round part, in square roots of wavelength times radius of curvature: an eleventh of
+ * its first Fresnel zone across the ray. Along the track it is half of that. */
 #define CELL_OF_CURVATURE (1.0 / 16.0)
-/* Columns of so many wavelengths hold so much of the seabed that the noise of edges hides in it. */
+/* Columns so wide, in wavelengths, hold so much seabed that the noise of edges hides in it. */
 #define EDGE_COLUMN_WAVELENGTHS (5.0 / 3.0)
-/* How much the whole path may change across a cell of a flat face, but for faces that are seen so
- * flat that it would take more than so many times the usual rays: they return little. And by how
- * much half the path may change where what edges lose is made up; beyond, that would be noise. */
+/* EDGE_WAVELENGTHS limits the change of the whole path across a cell of a flat face. Faces so flat
+ * to see that this takes more than EDGE_FINER_MOST times the usual rays return little, and keep
+ * coarser cells. The loss at edges is made up where half the path changes by at most EDGE_MADE_UP
+ * wavelengths across a cell; beyond, that would be noise. */
 #define EDGE_WAVELENGTHS   0.3
 #define EDGE_MADE_UP       0.4f
 #define EDGE_FINER_MOST    8.0
 #define BINS_PER_DEVIATION 16.0 /* linear sharing between bins then errs by 5e-4 */
-#define IMAGE_STRIPS       64   /* of a launch: there may be dozens of pairs at a time */
+#define IMAGE_STRIPS       64   /* strips of a launch: there may be dozens of pairs at a time */
 
 double glint_shortest_deviation(const struct line_grid *grid, double column_spacing_m)
 {
@@ -52,11 +53,12 @@ struct glint_cell glint_cell_of(const struct tracer *tracer, double wavelengths)
     return (struct glint_cell){side, side};
 }
 
-/* Over a cell the phase is that of the tangent plane, and at an edge it counts all or nothing. The
- * energy of the noise that this leaves in a pixel is as the cube of the cell's side over the square
- * of the wavelength and over the seabed's as that over the column too, so that cells may widen
- * where columns are many wavelengths. What the tangent plane neglects grows with the square of the
- * cell over wavelength and radius of curvature: where nothing is flat, that alone counts. */
+/* Returns the cells of a part. The phase over a cell is that of the tangent plane, and a cell at an
+ * edge counts all or nothing. This leaves noise in a pixel. Its energy grows as the cube of the
+ * cell's side over the square of the wavelength. Over the seabed's energy it falls with the column
+ * spacing, so cells may widen where columns are many wavelengths. The tangent plane's error grows
+ * with the square of the cell over wavelength and radius of curvature. It alone counts where
+ * nothing is flat. */
 static struct glint_cell cell_of_part(const struct tracer *tracer, uint32_t part)
 {
     const struct placement *placement = &tracer->placements[part];
@@ -83,7 +85,7 @@ void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_
         steepest > 0.0 ? EDGE_WAVELENGTHS * tracer->view.wavelength_m / steepest : INFINITY;
     const double finest = glint_cell_of(tracer, GLINT_CELL_WAVELENGTHS / EDGE_FINER_MOST).across;
     fan_aim_at_part(fan, tracer, part, path, fmax(fmin(cell.across, for_edges), finest));
-    /* what is round and needs no finer cells has none made up, either */
+    /* nothing is made up for what is round and needs no finer cells */
     const bool has_corners = tracer->placements[part].size.flat & (uint32_t)FLAT_WITH_CORNERS;
     fan->edge_across =
         for_edges < cell.across || (steepest > 0.0 && has_corners) ? EDGE_MADE_UP : 0.0f;
@@ -91,7 +93,7 @@ void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_
     fan->only_object = (int32_t)part;
 }
 
-/* How the axes of a part are seen: along the track, along the ray and across it. */
+/* The axes of a part as seen along the track, along the ray and across it. */
 struct sight {
     double track[3], ray[3], across[3];
     double aspects; /* sine of the widest aspect that the image is made of */
@@ -116,8 +118,8 @@ static struct sight sight_of_part(const struct tracer *tracer, uint32_t part,
     return sight;
 }
 
-/* Whether an edge along an axis is as far from the sonar all along at one of the aspects, up to the
- * second zero of its directivity: others do not echo. half_m: half its length. */
+/* Returns whether an edge along an axis is heard: equally far from the sonar all along at one of
+ * the aspects, up to the second zero of its directivity. half_m: half its length. */
 static bool is_edge_heard(const struct sight *sight, uint32_t axis, double half_m,
                           double wavelength_m)
 {
@@ -125,14 +127,14 @@ static bool is_edge_heard(const struct sight *sight, uint32_t axis, double half_
            sight->aspects * fabs(sight->track[axis]) + 0.5 * wavelength_m / half_m;
 }
 
-/* The gradient across the ray, of the whole path, on a face that stands across an axis. */
+/* Returns the gradient of the whole path across the ray, on a face that stands across an axis. */
 static double face_gradient(const struct sight *sight, uint32_t axis)
 {
     const double across = sight->across[axis];
     return across == 0.0 ? 0.0 : 2.0 * fabs(across / sight->ray[axis]);
 }
 
-/* The steepest gradient of a part's flat faces that have edges which are heard; 0: it has none. */
+/* Returns the steepest gradient of a part's flat faces with edges that are heard, or 0. */
 static double steepest_face(const struct tracer *tracer, uint32_t part, const struct ray_path *path)
 {
     const struct placement *placement = &tracer->placements[part];
@@ -163,8 +165,8 @@ static void choose_quanta(struct smooth_trace *trace, const struct tracer *trace
     trace->amplitude_of_quantum = ratio * ratio / fan->quanta;
 }
 
-/* Of the parts, those in the way go to the device; the frame is centred on the one aimed at.
- * sources: NULL for the straight pair. */
+/* Begins a launch of the parts in the way, in a frame centred on the one aimed at. sources: NULL
+ * for the straight pair. */
 static sonject_status begin_launch(struct smooth_trace *trace, struct tracer *tracer, uint32_t part,
                                    const struct image_pair_record *sources)
 {
@@ -215,7 +217,7 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
     const struct ray_path *path = pair ? &pair->outgoing->path : &sonar.path;
     glint_fan_init(fan, tracer, part, path, cell_of_part(tracer, part),
                    steepest_face(tracer, part, path));
-    /* cells begin up to half of one off (cell_shift_of) */
+    /* cells begin up to half a cell off (cell_shift_of) */
     fan->first_elevation -= 0.5f * fan->elevation_step;
     fan->rays++;
     choose_quanta(trace, tracer);
@@ -296,7 +298,7 @@ void glints_end(struct glints *glints)
     memset(glints, 0, sizeof *glints);
 }
 
-/* Adds one trace's bins to those of the common grid, from a line of the planes on. */
+/* Adds the bins of one trace to those of the common grid, from a line of the planes on. */
 static void add_bins(const struct glints *glints, const struct smooth_trace *trace, int32_t strips,
                      size_t first_line, float *real_part, float *imaginary_part)
 {

@@ -7,7 +7,7 @@
 
 #define MORE_BOUNCES_MAX   ((SOURCES_MAX - 1) / 2)
 #define PI                 3.14159265358979323846
-#define BINS_MAX           1.0e9 /* beyond any patch, within a 32-bit number */
+#define BINS_MAX           1.0e9 /* exceeds any patch, and fits a 32-bit number */
 #define GLINT_EXPONENT_MAX 12.0
 #define LOSS_EXPONENT_MAX  30.0 /* boundaries that keep less than exp(-30) return nothing */
 
@@ -29,7 +29,7 @@ static enum boundary opposite(enum boundary kind)
     return kind == BOUNDARY_SEABED ? BOUNDARY_SURFACE : BOUNDARY_SEABED;
 }
 
-/* The image of a source in the next boundary; false if the scene has no such boundary. */
+/* Finds the image of a source in the next boundary; returns false if there is no such boundary. */
 static bool image_of(const struct scene *scene, const struct water *water,
                      const struct sound_source *source, enum boundary kind,
                      struct sound_source *image)
@@ -64,27 +64,27 @@ size_t sources_list(const struct scene *scene, const struct water *water, uint32
     return count;
 }
 
-/* Range from a source's track to the object's centre. */
+/* Returns the range from a source's track to the object's centre, m. */
 static double source_range(const struct sound_source *source, const struct placement *placement)
 {
     return ray_path_range(&source->path, placement->centre[1], placement->centre[2]);
 }
 
-/* Grazing angle of the sound that comes from a source to the object's centre. */
+/* Returns the grazing angle, rad, of the sound that comes from a source to the object's centre. */
 static double source_grazing(const struct sound_source *source, const struct placement *placement)
 {
     return ray_path_grazing(&source->path, placement->centre[1], placement->centre[2]);
 }
 
-/* Half the path by way of the object's centre. */
+/* Returns half the path by way of the object's centre, m. */
 static double half_path(const struct image_pair *pair, const struct placement *placement)
 {
     return 0.5 *
            (source_range(pair->outgoing, placement) + source_range(pair->returning, placement));
 }
 
-/* How far the object's points lie before or behind its centre, seen from a source: its extent along
- * the line of sight, and what a wavefront's curvature adds at the bounding sphere's edge. */
+/* Returns how far the object's points lie before or behind its centre, seen from a source, m: its
+ * extent along the line of sight, and the wavefront's curvature at the bounding sphere's edge. */
 static double reach_from(const struct sound_source *source, const struct placement *placement)
 {
     const double grazing = source_grazing(source, placement);
@@ -139,15 +139,15 @@ struct span bins_in_patch(const struct tracer *tracer, const struct line_grid *g
     return bins;
 }
 
-/* Sound speed at a boundary over that around the object. */
+/* Returns the sound speed at a boundary over that around the object. */
 static double boundary_speed_ratio(const struct tracer *tracer, double height)
 {
     const struct water *water = tracer->view.water.water;
     return water_layer_at(water, height)->speed_mps / water->straight_speed_mps;
 }
 
-/* Exponent of what the boundaries' roughness takes off the amplitude on the way from a source:
- * P^2/2 at every bounce. */
+/* Returns the exponent by which the boundaries' roughness lowers the amplitude on the way from a
+ * source: P^2/2 at every bounce. */
 static double roughness_exponent(const struct tracer *tracer, const struct sound_source *source,
                                  const struct placement *placement)
 {
@@ -207,7 +207,7 @@ bool part_has_glints(const struct tracer *tracer, uint32_t part)
     const struct placement *placement = &tracer->placements[part];
     struct image_pairs pairs;
     struct image_pair pair;
-    double widest = 0.0; /* of these half angles */
+    double widest = 0.0; /* widest of the half angles */
     if (!material_is_smooth(&placement->material))
         return false;
     image_pairs_begin(&pairs, tracer, part, false, 1);

@@ -9,7 +9,7 @@
 #include "trace/object_buffer.h"
 
 #define FINER_MAX          2.0 /* 4 times the rays */
-#define WIDEST_WAVELENGTHS 0.5 /* of a cell where it meets the next face */
+#define WIDEST_WAVELENGTHS 0.5 /* widest cell where it meets the next face */
 #define PAIRS_MAX          (SOURCES_MAX * (SOURCES_MAX + 1) / 2)
 #define ECHOES_A_LAUNCH    ((size_t)1 << 20)
 
@@ -20,7 +20,7 @@ static bool is_smooth(const struct tracer *tracer, uint32_t part)
     return material_is_smooth(&tracer->placements[part].material);
 }
 
-/* Whether paths of a first part's that keep to an object may meet this part last. */
+/* Returns whether a path may meet this part last. object: the object that the path keeps to. */
 static bool is_met(const struct tracer *tracer, uint32_t part, uint32_t object)
 {
     return is_smooth(tracer, part) &&
@@ -37,9 +37,9 @@ bool multibounce_may_echo(const struct tracer *tracer, uint32_t part)
            (smooth_parts > 1 || !shape_is_convex(&placement->size, placement->shape));
 }
 
-/* No less than what each further interaction may add to a path between the first and last hit: the
- * diagonal of a box around the smooth parts, or half that of one around them and their images in
- * the seabed, which take two interactions. */
+/* Returns at least what each further interaction may add to a path between the first and last hit,
+ * m: the diagonal of a box around the smooth parts. Paths by way of the seabed take two
+ * interactions, so half the diagonal of a box around the parts and their images counts too. */
 static double longest_step(const struct tracer *tracer, uint32_t object)
 {
     double height;
@@ -72,7 +72,7 @@ static struct ranges ranges_of(const struct sound_source *source, const struct p
     return ranges;
 }
 
-/* Half of the shortest and of the longest path. */
+/* Returns half of the shortest and of the longest path, m. */
 static struct ranges half_paths(const struct tracer *tracer, uint32_t part,
                                 const struct image_pair *pair, uint32_t object)
 {
@@ -92,7 +92,7 @@ static struct ranges half_paths(const struct tracer *tracer, uint32_t part,
         aside = fmax(aside, fabs(first->centre[0] - last->centre[0]) + first->bounding_radius_m +
                                 last->bounding_radius_m);
     }
-    /* the source stands beside both hits: each leg is longer by no more than aside^2 / 2 range */
+    /* the source is beside both hits: each leg is longer by no more than aside^2 / 2 range */
     const double lengthened = aside * aside / fmax(fmin(out.nearest, returned.nearest), 1e-3);
     struct ranges half;
     half.nearest = 0.5 * (out.nearest + returned.nearest);
@@ -101,8 +101,8 @@ static struct ranges half_paths(const struct tracer *tracer, uint32_t part,
     return half;
 }
 
-/* Bins of the patch where a pair's echoes may lie; count 0 if there are none. Of the grid only the
- * size of its bins is used. */
+/* Returns the bins of the patch where a pair's echoes may lie; count 0 if there are none. Only the
+ * size of the grid's bins is used. */
 static struct span multibounce_pair_bins(const struct tracer *tracer, uint32_t part,
                                          const struct image_pair *pair,
                                          const struct line_grid *grid, uint32_t object)
@@ -126,7 +126,7 @@ struct span multibounce_bins(const struct tracer *tracer, uint32_t part,
     return bins;
 }
 
-/* The way from the middle of a part to that of the farthest that it may light. */
+/* Returns the distance, m, between the middles of a part and of the farthest that it may light. */
 static double farthest_middle(const struct tracer *tracer, uint32_t part)
 {
     const struct placement *one = &tracer->placements[part];
@@ -141,8 +141,9 @@ static double farthest_middle(const struct tracer *tracer, uint32_t part)
     return longest;
 }
 
-/* A face of radius a spreads a cell of the wavefront by 1 + 2 D/a until it meets the next, D away.
- * Cells there are all or nothing at edges, so they must not be wide. */
+/* Returns the factor by which rays are finer than for glints. A face of radius a spreads a cell of
+ * the wavefront by 1 + 2 D/a until the next face, D away. Cells there are all or nothing at edges,
+ * so they must not be wide. */
 static double multibounce_rays_finer(const struct tracer *tracer, uint32_t part)
 {
     const double radius = tracer->placements[part].size.least_radius_of_curvature_m;
@@ -150,7 +151,7 @@ static double multibounce_rays_finer(const struct tracer *tracer, uint32_t part)
     return fmin(fmax(spread * GLINT_CELL_WAVELENGTHS / WIDEST_WAVELENGTHS, 1.0), FINER_MAX);
 }
 
-/* In the sub-strips of first and last hits. */
+/* Returns the sub-strips halfway between first and last hits. */
 static struct span mean_strips(struct span one, struct span other)
 {
     struct span mean;
@@ -177,8 +178,8 @@ void multibounce_strips_init(struct multibounce_strips *strips, const struct tra
         strips->grid.strips = mean_strips(strips->first_hits, last_hits);
 }
 
-/* Paths may gather much of a wide tube in one cell, so quanta leave seven powers of ten over what a
- * plane face's cell brings. */
+/* Chooses the quanta. Paths may gather much of a wide tube in one cell, so quanta leave seven
+ * powers of ten over what a plane face's cell brings. */
 static void choose_quanta(struct fan_record *fan)
 {
     const double cell =
@@ -216,7 +217,7 @@ static sonject_status begin_launch(struct multibounce_launch *of_pair, struct tr
     return status;
 }
 
-/* So many sub-strips that all their rays may echo at every hit. */
+/* Chooses the number of sub-strips of a launch so that all their rays may echo at every hit. */
 static void choose_chunk(struct multibounce_launch *of_pair,
                          const struct multibounce_strips *of_part)
 {

@@ -24,7 +24,7 @@ void multibounce_sums_clear(struct multibounce_sums *sums)
     memset(sums, 0, sizeof *sums);
 }
 
-/* Both parts of a cell, whose tile is made if need be; NULL where memory lacks. */
+/* Returns both parts of a cell, making its tile if need be; NULL if memory lacks. */
 static int64_t *cell_at(struct multibounce_sums *sums, size_t strip, size_t bin)
 {
     int64_t **tile = &sums->tiles[strip / TILE_STRIPS * sums->columns + bin / TILE_BINS];
@@ -86,7 +86,7 @@ sonject_status multibounce_sums_share(struct multibounce_sums *sums, struct chec
     return status == SONJECT_OK ? sums_writer_end_sums(&checkpoint->writer) : status;
 }
 
-/* Strips or bins of one tile. */
+/* Returns the strips or bins of one tile. */
 static struct span span_of_tile(size_t number, int32_t size, struct span all)
 {
     const int32_t first = (int32_t)number * size;
@@ -94,7 +94,7 @@ static struct span span_of_tile(size_t number, int32_t size, struct span all)
     return span_overlap(tile, all);
 }
 
-/* What it costs to form a region by itself, in cells that are formed. */
+/* The cost of forming a region by itself, in cells formed. */
 #define REGION_COSTS 262144.0
 
 static double cells_of(const struct multibounce_region *region)
@@ -107,7 +107,7 @@ static bool overlap(struct span one, struct span other)
     return span_overlap(one, other).count > 0;
 }
 
-/* Joins two regions into the first where that costs less, and where they share cells. */
+/* Joins two regions into the first where that costs less, or where they share cells. */
 static bool join(struct multibounce_region *one, const struct multibounce_region *other)
 {
     const struct multibounce_region both = {span_join(one->strips, other->strips),
@@ -119,7 +119,7 @@ static bool join(struct multibounce_region *one, const struct multibounce_region
     return true;
 }
 
-/* Joins a region into those before it, until it belongs to none of the others. */
+/* Adds a region, joined with earlier regions until none of them belongs to it. */
 static void settle(struct multibounce *multibounce, struct multibounce_region region)
 {
     struct multibounce_region *regions = multibounce->regions;
@@ -159,7 +159,7 @@ sonject_status multibounce_find_regions(struct multibounce *multibounce, struct 
     return SONJECT_OK;
 }
 
-/* Adds what a tile and some strips of a region share. */
+/* Adds the echoes that a tile has in some strips and bins of a region. */
 static void read_tile(const struct multibounce_sums *sums, size_t number, struct span strips,
                       struct span bins, float *real_part, float *imaginary_part)
 {

@@ -10,9 +10,9 @@
 #include "trace/fouling.h"
 #include "trace/rough.h"
 
-#define MARGIN_M    1.0e-3 /* beyond the heights, so that rays cross them all between the bounds */
+#define MARGIN_M    1.0e-3 /* m beyond the heights, so that rays cross them all between the bounds */
 #define WORD        4
-#define ALIGNED(n)  (((n) + 15) & ~(size_t)15) /* words: as wide as vectors are */
+#define ALIGNED(n)  (((n) + 15) & ~(size_t)15) /* in words, as wide as vectors are */
 #define WORDS_MOST  ((size_t)UINT32_MAX)
 #define WORDS_OF(x) (sizeof(x) / WORD)
 
@@ -29,7 +29,7 @@ size_t relief_word_count(const struct relief *relief)
            2 * blocks_of(relief->rows) * blocks_of(relief->columns);
 }
 
-/* Highest and lowest point of the cells of a block, edges included. */
+/* Finds the highest and the lowest point of a block's cells, edges included. */
 static void block_bounds(const struct relief *relief, size_t block_row, size_t block_column,
                          float bounds[2])
 {
@@ -72,14 +72,14 @@ void relief_words_init(uint32_t *words, const struct relief *relief)
         }
 }
 
-/* Far more than rounding: of a radius, and in m. */
+/* Margins far above rounding: as a share of a radius, and in m. */
 #define MARGIN       0.01
 #define MARGIN_LEAST 0.001
 
-/* Where rays run that are aimed at a part. */
+/* The space where rays aimed at a part run. */
 struct corridor {
     double first_x, last_x;         /* m, along-track */
-    bool is_straight;               /* and by what follows */
+    bool is_straight;               /* the members below count, too */
     double least_angle, most_angle; /* rad below the horizontal, from the sonar */
     double farthest;                /* m from the sonar's track */
 };
@@ -225,8 +225,8 @@ static void write_mesh(uint32_t *words, const struct mesh *mesh)
         write_words(words, &at, mesh->normals, normal_words(mesh));
 }
 
-/* Writes the records of fouling, which changes what rough parts alone return; words: NULL, to find
- * where they end alone. Returns that. */
+/* Writes the records of fouling, which changes only what rough parts return. Returns the word where
+ * they end. words: NULL to find only that. */
 static size_t write_fouling(const struct tracer *tracer, const struct part_list *parts,
                             struct object_record *records, uint32_t *words, size_t at)
 {
@@ -252,13 +252,13 @@ static size_t record_words(uint32_t part_count)
 
 uint32_t object_buffer_relief_words(const struct tracer *tracer, uint32_t part_count)
 {
-    /* no part, no record: 0 must go on to mean that there is no relief */
+    /* without parts there is no record, but 0 must still mean that there is no relief */
     const size_t words = record_words(part_count);
     return !tracer->relief ? 0 : words > 0 ? (uint32_t)words : (uint32_t)ALIGNED(1);
 }
 
-/* Where each mesh that some part shows begins, in words; 0: nobody shows it. Returns the words of
- * records and meshes. */
+/* Finds the word where each mesh that some part shows begins; 0: no part shows it. Returns the
+ * words of records and meshes. */
 static size_t lay_out(const struct tracer *tracer, const struct part_list *parts,
                       size_t begin[SCENE_MESHES_MAX])
 {

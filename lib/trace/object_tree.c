@@ -11,17 +11,16 @@
 typedef char branch_is_packed[sizeof(struct object_branch) == 112 * 4 ? 1 : -1];
 typedef char tree_is_packed[sizeof(struct object_tree_record) == 8 * 4 ? 1 : -1];
 
-/* Rays start within so many radii of the tree, else they test every object; at least FAR_LEAST_M.
- */
+/* Rays start within so many radii of the tree, at least FAR_LEAST_M; others test every object. */
 #define FAR_RADII   16.0
 #define FAR_LEAST_M 100.0
 
-/* What hits may lie outside an object's box, of its radius: far more than rounding. */
+/* The share of an object's radius that hits may lie outside its box: far more than rounding. */
 #define REACH_SLACK 0.01
 
-#define GRAIN 0.5 /* of the objects' mean size: rays that lie so close meet the same ones */
+#define GRAIN 0.5 /* times the objects' mean size: rays as close meet the same objects */
 
-/* A box about an object, m from its centre, in axes of the frame: it reaches so far each way. */
+/* A box about an object's centre, by its reach each way in axes of the frame, m. */
 struct reach {
     double lower[3], upper[3]; /* lower <= 0 <= upper */
 };
@@ -33,7 +32,7 @@ struct pending {
 };
 
 struct builder {
-    struct split_triangle *objects; /* an object's box and number */
+    struct split_triangle *objects; /* boxes and numbers of the objects */
     struct object_branch *branches;
     struct pending *pending;
     uint32_t branch_count, pending_count;
@@ -45,7 +44,7 @@ static size_t objects_in(const struct split_range *range)
     return range->last - range->first;
 }
 
-/* Most objects below a child of a branch at `level`. */
+/* Returns how many objects a child of a branch at `level` may hold. */
 static size_t most_below(uint32_t level)
 {
     size_t most = 1;
@@ -54,7 +53,7 @@ static size_t most_below(uint32_t level)
     return most;
 }
 
-/* The part to be cut next: the fullest of those above the limit, else the widest; -1: none. */
+/* Returns the part to cut next: the fullest of those above the limit, else the widest; -1: none. */
 static int next_cut(const struct split_range *parts, int count, size_t limit)
 {
     int chosen = -1;
@@ -74,8 +73,8 @@ static int next_cut(const struct split_range *parts, int count, size_t limit)
     return chosen;
 }
 
-/* Cuts a range into up to OBJECT_TREE_SLOTS parts of no more than `limit` objects (the range: at
- * most so many times that). */
+/* Cuts a range into up to OBJECT_TREE_SLOTS parts of no more than `limit` objects. The range has at
+ * most OBJECT_TREE_SLOTS times as many. */
 static int cut_into_slots(struct builder *builder, const struct split_range *range, size_t limit,
                           struct split_range *parts)
 {
@@ -132,7 +131,7 @@ static void fill_tree(struct builder *builder, uint32_t count)
     }
 }
 
-/* A mesh within the box that its own axes give, anything else by its extents. */
+/* Returns the reach of a mesh by the box along its own axes, of other shapes by their extents. */
 static struct reach reach_of(const struct placement *placement)
 {
     const struct shape_size *size = &placement->size;
@@ -175,7 +174,7 @@ static void set_middle(const struct object_record *records, const struct reach *
     *radius = hypot(half[0], hypot(half[1], half[2]));
 }
 
-/* Boxes about the middle; the mean of their longest sides. */
+/* Sets the boxes about the middle. Returns the mean of their longest sides, m. */
 static double set_boxes(struct split_triangle *objects, const struct object_record *records,
                         const struct reach *reaches, uint32_t count, const double middle[3])
 {
@@ -249,7 +248,7 @@ sonject_status object_tree_build(const struct tracer *tracer, const struct objec
 
 typedef char every_part_has_room[TARGET_SPHERES_MAX >= SCENE_SHAPES_MAX ? 1 : -1];
 
-/* Size of the object along its nose, and of the circle around its section across it. */
+/* Tells half the length along the nose, and the radius of the circle around the cross-section. */
 static void overall_size(const struct placement *placement, double *half_length, double *radius)
 {
     static const double nose[3] = {1.0, 0.0, 0.0};
@@ -261,8 +260,8 @@ static void overall_size(const struct placement *placement, double *half_length,
         *half_length = 0.0;
 }
 
-/* Few spheres are all gone through at each hit, so more of them cost more than they save; where
- * there are more parts than that anyway, they are chosen from by groups. */
+/* Returns the number of spheres for a part. Each hit goes through few spheres one by one, so that
+ * more would cost more than they save. Groups hold them where there are more parts anyway. */
 static uint32_t spheres_for(double half_length, double radius, uint32_t parts)
 {
     const double all = parts <= FEW_SPHERES_MAX ? FEW_SPHERES_WANTED : MANY_SPHERES_WANTED;
@@ -311,11 +310,11 @@ static void sort_into_groups(struct split_triangle *spheres, const struct split_
     struct split_range lower, upper;
     if (groups < 2)
         return;
-    /* halves of whole groups of groups, so that those lie together too */
+    /* halves are whole groups of groups, so that these lie together too */
     const size_t super = (groups + SPHERES_OF_GROUP - 1) / SPHERES_OF_GROUP;
     const size_t lower_groups = super < 2 ? (groups + 1) / 2 : (super + 1) / 2 * SPHERES_OF_GROUP;
     split_cut_at(spheres, range, SPHERES_OF_GROUP * lower_groups, &lower, &upper);
-    sort_into_groups(spheres, &lower); /* at most seven times */
+    sort_into_groups(spheres, &lower); /* at most seven deep */
     sort_into_groups(spheres, &upper);
 }
 
@@ -327,7 +326,7 @@ static void set_sphere(struct sphere_group *group, size_t slot, const struct sph
     group->radius[slot] = sphere->radius;
 }
 
-/* A sphere around spheres [first, last). */
+/* Returns a sphere around the spheres [first, last). */
 static struct sphere_record sphere_around(const struct sphere_record *spheres,
                                           const struct split_triangle *sorted, size_t first,
                                           size_t last)

@@ -13,7 +13,7 @@
 #define PI           3.14159265358979323846
 #define RAYS_PER_BIN 1.0
 
-/* A pixel is one ping's alone, and a beam's rays weigh unequally. */
+/* A pixel belongs to one ping alone, and a beam's rays weigh unequally. */
 #define RAYS_PER_BIN_OF_BEAM 3.0
 
 static bool has_beam(const struct rough_trace *trace)
@@ -21,7 +21,7 @@ static bool has_beam(const struct rough_trace *trace)
     return trace->launch.fan.beam.reach > 0.0f;
 }
 
-/* Ranges, m, from a part's nearest point to where the ray over its top meets the seabed. */
+/* Ranges, m, from a part's nearest point to the seabed met by the ray over its top. */
 struct part_ranges {
     double first, last;
 };
@@ -48,7 +48,7 @@ struct span rough_bins_of_part(const struct tracer *tracer, uint32_t number,
     const struct part_ranges ranges = ranges_of_part(tracer, &tracer->placements[number]);
     const double ratio = tracer->view.range_ratio;
     const struct span images = image_source_bins(tracer, number, grid);
-    /* a beam sees what is off broadside farther away */
+    /* a beam sees farther away what is off broadside */
     const double sine = by_beam ? beam_largest_sine(tracer) : 0.0;
     const double farthest = ranges.last / sqrt(1.0 - sine * sine);
     const double first_column = view_column_of_range(&tracer->view, ranges.first * ratio);
@@ -63,8 +63,8 @@ struct span rough_bins_of_part(const struct tracer *tracer, uint32_t number,
     return span_overlap(span_join(bins, multibounce_bins(tracer, number, grid, true)), grid->bins);
 }
 
-/* How far, m along the track, a part's shadow and the strips of rays that meet it reach beyond it:
- * rays belong where they meet the seabed, or the patch's end. */
+/* Returns how far, m along the track, a part's shadow and the strips of rays that meet it reach
+ * beyond it. Rays belong where they meet the seabed, or the patch's end. */
 static double part_slide(const struct tracer *tracer, const struct placement *placement,
                          const struct line_grid *grid, bool by_beam)
 {
@@ -88,7 +88,7 @@ struct span rough_strips_of_part(const struct tracer *tracer, uint32_t number,
                           placement->centre[0] + extent);
 }
 
-/* Strips beyond the patch's ends from which rays come to parts in it. */
+/* Returns the strips beyond the patch's ends from which rays come to parts in it. */
 static int32_t object_halo(const struct rough_trace *trace, const struct tracer *tracer)
 {
     const struct span patch = trace->grid.strips;
@@ -146,9 +146,9 @@ static sonject_status init_tiles(struct rough_trace *trace, struct tracer *trace
     return SONJECT_OK;
 }
 
-/* Quanta so fine that the weakest seabed still counts in millions, and so coarse that the
- * brightest surface (an object's, at least Lambert's 1/pi, or the map's brightest seabed) stays
- * below the limit. */
+/* Chooses quanta so fine that the weakest seabed counts in millions. They are so coarse that the
+ * brightest surface stays below the limit: an object's, at least Lambert's 1/pi, or the map's
+ * brightest seabed. */
 static void choose_quanta(struct rough_trace *trace, const struct tracer *tracer, const float *map)
 {
     struct fan_record *fan = &trace->launch.fan;
@@ -187,7 +187,7 @@ static sonject_status begin_launch(struct rough_trace *trace, struct tracer *tra
     return status;
 }
 
-/* Strips of a fan, or a beam's rays on a grid of one strip a ping. */
+/* Lays the rays of a fan, or of a beam on a grid of one strip a ping. */
 static sonject_status init_fan(struct rough_trace *trace, struct tracer *tracer, bool has_map,
                                bool is_beam)
 {
@@ -198,7 +198,7 @@ static sonject_status init_fan(struct rough_trace *trace, struct tracer *tracer,
     patch_fan_aim(fan, tracer, &trace->grid, has_map);
     if (is_beam)
         beam_record_init(fan, tracer);
-    /* which tells whether there are rays over all objects */
+    /* the table tells whether there are rays over all objects */
     sonject_status status = patch_rays_init(&trace->launch.rays, &fan->table, tracer, &trace->grid);
     THEN(status, fan_edges_init(&trace->edges, fan, tracer, &trace->grid, nearest, rays_per_bin));
     trace->launch.fan.stream = STREAM_ROUGH_RAYS;
@@ -300,7 +300,7 @@ sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *trace
     return SONJECT_OK;
 }
 
-/* The launch's buffers; the tiles are the trace's. */
+/* The launch's buffers. The tiles belong to the trace. */
 enum images_buffer {
     IMAGES_OBJECTS,
     IMAGES_TILES,
@@ -319,7 +319,7 @@ static sonject_status trace_pair(struct rough_trace *trace, struct tracer *trace
     struct image_pair_record record;
     sonject_status status =
         image_pair_aim(fan, &record, &launch->rays, tracer, part, pair, &trace->grid);
-    /* as dense as the fan that goes straight to the objects */
+    /* the fan is as dense as the one that goes straight to the objects */
     fan_aim_at_part(fan, tracer, part, &pair->outgoing->path,
                     bin / (RAYS_PER_BIN * tracer->scene->injection.ray_scale));
     fan_set_parts(fan, tracer, parts);

@@ -8,10 +8,10 @@
 
 #define PI              3.14159265358979323846
 #define SAMPLES_A_PIXEL 16.0
-/* Of what the seabed returns in a cell: where a target brings less, it has fewer samples. */
+/* The share of the seabed's echo in a cell below which a target has fewer samples. */
 #define FULL_SHARE 0.001
 #define MARGIN     1.001
-#define NEAREST_M  0.01 /* ground range */
+#define NEAREST_M  0.01 /* least ground range */
 
 bool second_order_is_sampled(const struct tracer *tracer, const struct line_grid *grid)
 {
@@ -28,8 +28,8 @@ static double samples_a_cell(const struct tracer *tracer, const struct line_grid
     return fmax(1.0, floor(wanted + 0.5));
 }
 
-/* The most that a part scatters: of a smooth surface, what its roughness takes out of the specular
- * direction, both coming and going. */
+/* Returns the most that a part scatters. A smooth surface scatters what roughness takes out of the
+ * specular direction, both coming and going. */
 static double brightness_of_part(const struct tracer *tracer, uint32_t part)
 {
     const sonject_material_params *material = &tracer->placements[part].material;
@@ -68,14 +68,14 @@ static double top_of_part(const struct tracer *tracer, uint32_t part)
     return fmax(height + placement_half_extent(placement, upward), 0.01);
 }
 
-/* Both ways, whose amplitudes add, and two places on the seabed. */
+/* Returns the weight of a part, m^2. Both ways add in amplitude, over two places on the seabed. */
 static double weight_of_part(const struct tracer *tracer, uint32_t part)
 {
     return 8.0 * window_of_part(tracer, part).area_m2 * brightness_of_part(tracer, part) /
            FULL_SHARE;
 }
 
-/* Distance, m, from which on a part has no samples: its weight falls with the cube of that. */
+/* Returns the distance, m, from which on a part has no samples. The weight falls with its cube. */
 static double reach_of_part(const struct tracer *tracer, uint32_t part)
 {
     return cbrt(MARGIN * weight_of_part(tracer, part) * top_of_part(tracer, part) / LEAST_WEIGHT);
@@ -86,7 +86,7 @@ static bool is_rough(const struct tracer *tracer, uint32_t part)
     return material_is_rough(&tracer->placements[part].material);
 }
 
-/* Where an object's samples may end: cells and strips. */
+/* The cells and strips where an object's samples may end. */
 struct sampled_region {
     struct span cells, strips;
 };
@@ -118,7 +118,7 @@ static struct sampled_region region_of_object(const struct tracer *tracer,
                             ceil(view_column_of_range(view, farthest * view->range_ratio)) + 2.0);
     region.cells.first = (int32_t)fmin(first, end);
     region.cells.count = (int32_t)fmax(0.0, end - first);
-    /* what lies close to a strip's edge may count as the next one's */
+    /* echoes close to a strip's edge may count as the next strip's */
     const struct span strips = {grid->strips.first - 1, grid->strips.count + 2};
     if (region.cells.count > 0)
         region.strips = span_overlap(strips_between(tracer, grid, first_x, last_x), strips);

@@ -8,8 +8,8 @@
 #include "base/file.h"
 #include "base/memory.h"
 
-#define MEMORY_MOST ((size_t)32 << 20) /* short runs touch no file */
-#define ZEROS_MOST  4                  /* within a run: a new one takes two numbers */
+#define MEMORY_MOST ((size_t)32 << 20) /* short runs need no file */
+#define ZEROS_MOST  4                  /* zeros within a run: a new run takes two numbers */
 
 typedef char block_head_is_packed[sizeof(struct block_head) == 56 ? 1 : -1];
 typedef char sums_head_is_packed[sizeof(struct sums_head) == 272 ? 1 : -1];
@@ -57,7 +57,7 @@ static sonject_status open_part(struct sums_writer *writer, const char *path)
     return file_failure(writer->report, writer->folder ? writer->folder : path, "write to", error);
 }
 
-/* Moves what is in memory to the file. */
+/* Moves the bytes in memory to the file. */
 static sonject_status spill(struct sums_writer *writer)
 {
     if (!writer->file) {
@@ -175,7 +175,7 @@ static sonject_status add_source(struct sums_writer *writer, const struct scene_
     return status;
 }
 
-/* Closes the part, and renames it. */
+/* Closes the unfinished file and renames it. */
 static sonject_status publish_part(struct sums_writer *writer, const char *path)
 {
     FILE *file = writer->file;
@@ -214,7 +214,7 @@ static sonject_status refuse(struct report *report, const char *path)
     return input_failure(report, path, "damaged, or cut short: delete it and trace again");
 }
 
-/* So many bytes. A file that cannot be read is not damaged: STORAGE. */
+/* Reads `count` bytes. A file that cannot be read is not damaged, but gives STORAGE. */
 static sonject_status read_bytes(struct report *report, const char *path, FILE *file, void *bytes,
                                  size_t count)
 {
@@ -224,7 +224,7 @@ static sonject_status read_bytes(struct report *report, const char *path, FILE *
     return ferror(file) ? file_failure(report, path, "read", errno) : refuse(report, path);
 }
 
-/* Reads a block of at most `left` bytes with its head; content is for free(). */
+/* Reads a block of at most `left` bytes with its head. *content is for free(), also on failure. */
 static sonject_status read_block(struct report *report, const char *path, FILE *file, uint64_t left,
                                  struct block_head *head, unsigned char **content)
 {
@@ -248,7 +248,7 @@ static bool is_terminated(const char *text, size_t capacity)
     return memchr(text, 0, capacity) != NULL;
 }
 
-/* Finds the texts of the scene's source. False where memory lacks, or a text. */
+/* Finds the texts of the scene's source. Returns false if memory or a text lacks. */
 static bool read_source(struct sums_file *file, const char *at, const char *end)
 {
     struct kept_scene *scene = &file->scene;
@@ -265,7 +265,7 @@ static bool read_source(struct sums_file *file, const char *at, const char *end)
     return true;
 }
 
-/* Whether a block is the head of a file of so many records. */
+/* Reads the head of a file of so many records. Returns false if the block is no such head. */
 static bool read_head(struct sums_file *file, char *content, size_t bytes, uint64_t records)
 {
     struct sums_head *head = &file->head;
@@ -282,7 +282,7 @@ static bool read_head(struct sums_file *file, char *content, size_t bytes, uint6
            head->records == records && read_source(file, content + sizeof *head, content + bytes);
 }
 
-/* False where memory lacks. */
+/* Notes a block of sums. Returns false if memory lacks. */
 static bool note_sums(struct sums_file *file, uint64_t records, uint64_t at, uint64_t bytes)
 {
     struct sums_block *more = grow_doubling(file->sums, (size_t)records, sizeof *more);
@@ -293,7 +293,7 @@ static bool note_sums(struct sums_file *file, uint64_t records, uint64_t at, uin
     return true;
 }
 
-/* The whole file, of so many bytes: blocks up to the head. */
+/* Reads the whole file, of so many bytes: blocks up to the head. */
 static sonject_status read_all(struct sums_file *file, struct report *report, FILE *opened,
                                uint64_t bytes)
 {
@@ -355,7 +355,7 @@ void sums_file_close(struct sums_file *file)
     memset(file, 0, sizeof *file);
 }
 
-/* Hands out what a block holds; false where that is not runs of `count` sums. */
+/* Hands out what a block holds. Returns false where that is not runs of `count` sums. */
 static bool emit(const unsigned char *content, uint64_t bytes, uint64_t count,
                  sums_run_function *take, void *user)
 {
@@ -368,7 +368,7 @@ static bool emit(const unsigned char *content, uint64_t bytes, uint64_t count,
             return false;
         memcpy(numbers, content + at, sizeof numbers);
         at += sizeof numbers;
-        /* all that comes before is whole numbers of 8 bytes, so that values are aligned */
+        /* all before is whole numbers of 8 bytes, so that values are aligned */
         if (numbers[1] > (bytes - at) / sizeof(int64_t) || numbers[0] > count ||
             numbers[1] > count - numbers[0] ||
             !take(user, numbers[0], (const int64_t *)(const void *)(content + at),

@@ -7,8 +7,8 @@
 #include "base/memory.h"
 #include "trace/sums_file.h"
 
-/* What a checkpoint's name says; false: it is none's. Files of an earlier format have such names,
- * too, so that they are refused, not overlooked. */
+/* Reads a checkpoint's name, and returns false for other names. An earlier format had such names,
+ * too; its files are refused, not overlooked. */
 static bool parse_name(const char *text, uint64_t *shard, uint64_t *shards)
 {
     uint64_t first, last;
@@ -18,7 +18,7 @@ static bool parse_name(const char *text, uint64_t *shard, uint64_t *shards)
            end > 0 && (strcmp(text + end, ".sums") == 0 || strcmp(text + end, ".stint") == 0);
 }
 
-/* Names that begin as those of checkpoints, in their order. */
+/* Lists the names that begin like those of checkpoints, in their order. */
 static sonject_status list_names(struct folder_names *list, struct report *report, const char *path)
 {
     return folder_names_read(list, report, path, "shard-");
@@ -91,7 +91,7 @@ void sums_folder_remove(const char *path)
     struct report ignored = {{0}, NULL, NULL};
     struct folder_names list;
     uint64_t shard, shards;
-    (void)list_names(&list, &ignored, path); /* on failure it is empty */
+    (void)list_names(&list, &ignored, path); /* the list is empty on failure */
     for (size_t i = 0; i < list.count; i++) {
         char *file =
             parse_name(list.names[i], &shard, &shards) ? path_join(path, list.names[i]) : NULL;
@@ -104,7 +104,7 @@ void sums_folder_remove(const char *path)
     folder_discard(path);
 }
 
-/* By where they begin; what ends there too comes before what goes on from there. */
+/* Orders checkpoints by their first strip, then by their last. */
 static int compare_spans(const void *a, const void *b)
 {
     const struct sums_head *first = &(*(const struct sums_file *const *)a)->head;
@@ -114,7 +114,7 @@ static int compare_spans(const void *a, const void *b)
     return first->last < second->last ? -1 : first->last > second->last;
 }
 
-/* Whether a file's end is farther than another's. */
+/* Returns whether a file ends farther than another. */
 static bool is_farther(const struct sums_head *head, const struct sums_head *than)
 {
     return head->is_last != than->is_last ? head->is_last > than->is_last : head->last > than->last;
@@ -135,9 +135,9 @@ sonject_status sums_chain_find(struct sums_chain *chain, struct report *report,
             files[count++] = &folder->files[i];
     if (is_complete)
         qsort(files, count, sizeof *files, compare_spans);
-    size_t last = count; /* of the chain that goes farthest; count: there is none */
+    size_t last = count; /* last file of the chain that goes farthest; count: none */
     for (size_t i = 0; i < count; i++) {
-        /* its own number where it begins the shard; count: it is not reached */
+        /* the file's own number where it begins the shard; count: it is not reached */
         from[i] = files[i]->head.first == 0 ? i : count;
         for (size_t k = i; from[i] == count && k-- > 0;)
             if (from[k] < count && files[k]->head.last == files[i]->head.first)

@@ -12,7 +12,8 @@
 #include "trace/object_buffer.h"
 
 #define PI 3.14159265358979323846
-/* Tallies of a launch: more are mapped and cleared anew by each, fewer leave a GPU idle. */
+/* The largest tallies of a launch, which maps and clears them, and the groups that keep a GPU busy.
+ */
 #define TALLY_BYTES   ((size_t)16 << 20)
 #define GROUPS_WANTED 4096
 
@@ -150,7 +151,8 @@ static sonject_status add_outcomes(struct tracer *tracer, const struct outcome_r
                           faults & FAULT_OUTSIDE_TILE ? " shadow outside its bounds;" : "");
 }
 
-/* A CPU's work-item does a whole strip; a GPU wants thousands of groups. */
+/* Returns the groups a strip. A CPU's work-item does a whole strip; GPUs want thousands of groups.
+ */
 static int32_t segments_for(const struct tracer *tracer, const struct fan_record *fan)
 {
     if (tracer->device->group_items == 1)
@@ -160,7 +162,7 @@ static int32_t segments_for(const struct tracer *tracer, const struct fan_record
     return wanted < 1 ? 1 : wanted > limit ? limit : wanted;
 }
 
-/* The golden section of the strips, or the next number that has no factor in common with theirs. */
+/* Returns the golden section of the strips, or the next number that is coprime to them. */
 static int32_t stride_of(int32_t strips)
 {
     int32_t stride = (int32_t)(0.618 * strips) + 1;
@@ -176,7 +178,7 @@ static int32_t stride_of(int32_t strips)
     }
 }
 
-/* Some strips of a launch, in the order of their turns. */
+/* Runs some strips of a launch, in the order of their turns. */
 static sonject_status run_turns(struct launch *launch, struct tracer *tracer, struct span turns)
 {
     struct report *report = tracer->report;

@@ -1,5 +1,4 @@
-/* What all traces share: the patch, the placed objects and the counts; and launches of a kernel
- * over a fan of rays. */
+/* The state that all traces share, and launches of a kernel over a fan of rays. */
 #ifndef SONJECT_TRACE_TRACER_H
 #define SONJECT_TRACE_TRACER_H
 
@@ -20,51 +19,51 @@ struct trace_counts {
     uint64_t pings, rays, queries, impulses;
 };
 
-/* Borrowed by traces; must outlive them. */
+/* A scene's patch, placed objects and counts. Traces borrow the tracer, which must outlive them. */
 struct tracer {
     struct report *report;
     struct device *device;
     const struct scene *scene;
     struct patch_view view;
     struct point_response response;
-    const struct placement *placements; /* of all parts of objects: what rays meet */
+    const struct placement *placements; /* all parts of objects, which rays meet */
     uint32_t part_count;
-    const struct placed_object *objects; /* of scene->objects: where their parts are */
+    const struct placed_object *objects; /* scene->objects: tell where their parts are */
     const struct relief *relief;         /* NULL: the seabed is the plane */
-    const bool *follows; /* of scene->objects: whose echoes the view is to show; the others are
-                            only in the way. NULL: all */
+    const bool *follows; /* for each of scene->objects, whether the view shows its echoes; others
+                            are only in the way. NULL: all are shown */
     struct trace_counts counts;
-    struct checkpoint *checkpoint; /* NULL: everything is traced, and nothing kept */
+    struct checkpoint *checkpoint; /* NULL: everything is traced, and nothing is kept */
 };
 
-/* Whether echoes of that object are followed. */
+/* Returns whether echoes of that object are followed. */
 static inline bool tracer_follows(const struct tracer *tracer, uint32_t object)
 {
     return !tracer->follows || tracer->follows[object];
 }
 
-/* Heights that the seabed keeps to, m; both 0 where it is a plane. */
+/* Return the least and the largest height of the seabed, m; both 0 where it is a plane. */
 double tracer_lowest_seabed(const struct tracer *tracer);
 double tracer_highest_seabed(const struct tracer *tracer);
 
-/* A fan record for a frame centred on a point of the view (x, horizontal range, height). Fills what
- * depends on frame, grid, sonar and seed; rays, quanta and stream are left 0. */
+/* Fills in a fan record for a frame centred on a point of the view (x, horizontal range, height).
+ * It sets what depends on frame, grid, sonar and seed. Rays, quanta and stream are left 0. */
 void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const double origin[3],
                      const struct line_grid *grid);
 
-/* The record of a material whose lambert is a number. */
+/* Fills in the record of a material whose lambert is a number. */
 void surface_record_init(struct surface_record *record, const sonject_material_params *material,
                          double wavelength_m);
 
-/* Whether the material has a specular part, and one that scatters: of what reflects, that is what
- * roughness takes from it. */
+/* Return whether the material has a specular part, and whether it has a scattering one. Where a
+ * material reflects, the scattering part is what roughness takes from reflection. */
 bool material_is_smooth(const sonject_material_params *material);
 bool material_is_rough(const sonject_material_params *material);
 
-/* The most that a rough part scatters: f at normal incidence and specular direction. */
+/* Returns the most that a rough part scatters: f at normal incidence in the specular direction. */
 double material_brightness(const sonject_material_params *material);
 
-/* The largest power of two not above value; value > 0. */
+/* Returns the largest power of two not above value; value > 0. */
 float power_of_two_below(double value);
 
 /* The pieces of all bent rays that a launch looks up; none where all are straight. */
@@ -75,10 +74,10 @@ struct ray_table {
 
 #define LAUNCH_BUFFERS_MAX 5
 
-/* A kernel and its arguments: the fan and its rays first, then the buffers, then what the groups
- * of work-items report. All that it holds is its own. */
+/* A kernel and its arguments: the fan and its rays first, then the buffers, then the reports of the
+ * groups of work-items. All that it holds is its own. */
 struct launch {
-    struct device *device; /* the tracer's */
+    struct device *device; /* the tracer's; borrowed */
     device_kernel kernel;  /* NULL where checkpoints are added up and nothing is traced */
     struct fan_record fan;
     struct ray_table rays;
@@ -86,28 +85,27 @@ struct launch {
     size_t buffer_count;
 };
 
-/* Creates the kernel, in the variant that the scene needs. `launch`, zeros, its fan or its rays so
- * far, is to be given to launch_end also after a failure. Errors: as kernel_create. */
+/* Creates the kernel in the variant that the scene needs. `launch` is zeros except for its fan and
+ * rays so far, and goes to launch_end also after a failure. Errors: as kernel_create. */
 sonject_status launch_begin(struct launch *launch, struct tracer *tracer,
                             enum device_program program, const char *kernel_name);
 void launch_end(struct launch *launch);
 
-/* Adds a buffer: as buffer_create. */
+/* Adds a buffer. Errors: as buffer_create. */
 sonject_status launch_add(struct launch *launch, struct tracer *tracer, size_t bytes,
                           const void *contents);
 
-/* Adds tallies for as many of `strips` strips, of `elements` 64-bit integers each, as fit 16 MB (at
- * least one); *chunk tells how many. */
+/* Adds tallies for as many of `strips` strips as fit 16 MB (at least one), each of `elements`
+ * 64-bit integers. Sets *chunk to the number of strips. */
 sonject_status launch_add_tallies(struct launch *launch, struct tracer *tracer, int32_t strips,
                                   size_t elements, int32_t *chunk);
 
-/* Runs the kernel over the fan's strips, or those of them that are the checkpoint's, and adds up
- * what the groups report. Sets the fan's segments and turns. Errors: DEVICE (also faults that
- * the kernel reports), MEMORY. */
+/* Runs the kernel over the fan's strips, or the checkpoint's part of them, and adds up what groups
+ * report. Sets the fan's segments and turns. Errors: DEVICE (also faults in the kernel), MEMORY. */
 sonject_status launch_run(struct launch *launch, struct tracer *tracer);
 
-/* Reads tallies that begin with element `first`, in the checkpoint's turn: element i of plane p is
- * tally i * plane_count + p, times `unit`. */
+/* Reads tallies that begin with element `first`, and passes them through the checkpoint. Element i
+ * of plane p is tally i * plane_count + p, times `unit`. */
 sonject_status tallies_read(struct tracer *tracer, device_buffer tallies, size_t first,
                             size_t count, double unit, size_t plane_count, float *const *planes);
 
