@@ -1,6 +1,6 @@
-/* Time series of the hydrophones (kernels/MATH.md, "Element level"): impulses that are heard, which
- * are traced lines without their empty cells, kept until all are there; and what leads from ratios
- * of pressures to pressures, a source level and what the water absorbs. */
+/* Time series of the hydrophones (kernels/MATH.md, "Element level"). An impulse is a cell of a
+ * traced line that is not empty. A list keeps impulses until all are there. A source level and the
+ * water's absorption turn ratios of pressures into pressures. */
 #ifndef SONJECT_ELEMENTS_ELEMENTS_H
 #define SONJECT_ELEMENTS_ELEMENTS_H
 
@@ -11,11 +11,11 @@
 #include "scene/element_plan.h"
 #include "scene/patch_view.h"
 
-/* Some strips of a grid. All owned. */
+/* The impulses of some strips of a grid. All members are owned. */
 struct impulse_piece {
-    struct line_grid grid;             /* strips: only these */
-    int32_t *starts;                   /* of each strip's impulses, strips.count + 1 */
-    int32_t *bins;                     /* on the grid's numbering, rising within a strip */
+    struct line_grid grid; /* has only the piece's strips */
+    int32_t *starts;       /* first impulse of each strip, strips.count + 1 numbers */
+    int32_t *bins;         /* bin of each impulse on the grid's numbering, rising within a strip */
     float *real_part, *imaginary_part; /* m */
     size_t count;
     int32_t last_bin;
@@ -31,20 +31,20 @@ struct impulse_list {
 void impulse_list_init(struct impulse_list *list, struct report *report, struct device *device);
 void impulse_list_clear(struct impulse_list *list);
 
-/* Adds strips of a grid: complex amplitudes in m, strips.count x grid->bins.count, in two planes.
- * Errors: MEMORY, INPUT (more than 2^31 - 1 impulses at a time). */
+/* Adds the impulses of some strips of a grid. The two planes of strips.count x grid->bins.count
+ * hold complex amplitudes, m. Errors: MEMORY, INPUT (more than 2^31 - 1 impulses at a time). */
 sonject_status impulse_list_add(struct impulse_list *list, const struct line_grid *grid,
                                 struct span strips, const float *real_part,
                                 const float *imaginary_part);
 
-/* The same with amplitudes sqrt(energy) times the complex normal deviates of image formation.
- * Errors: also DEVICE. */
+/* Adds impulses of amplitudes sqrt(energy) times the complex normal deviates of image formation.
+ * Errors: those of impulse_list_add, DEVICE. */
 sonject_status impulse_list_add_speckle(struct impulse_list *list, const struct line_grid *grid,
                                         struct span strips, const float *energy, uint64_t seed,
                                         uint32_t stream);
 
-/* Scales impulses to the pressure, in Pa m, that a source of this level makes of them: sqrt(2)
- * times its rms pressure at 1 m, 10^(level / 20) uPa, less absorption on the way there and back at
+/* Scales impulses to pressures in Pa m for a source of this level. The pressure is sqrt(2) times
+ * the rms one at 1 m, 10^(level / 20) uPa. Absorption is subtracted for the way there and back at
  * the impulse's own range. */
 void impulse_list_set_source_level(struct impulse_list *list, const struct patch_view *view,
                                    double source_level_db, double absorption_db_per_m);
@@ -54,13 +54,14 @@ struct series_request {
     const struct patch_view *view;
     const struct point_response *response;
     const struct impulse_list *impulses;
-    sonject_progress_function progress; /* may be NULL; is told from first_fraction to 1 */
+    sonject_progress_function progress; /* may be NULL; told from first_fraction to 1 */
     void *user;
     double first_fraction;
 };
 
-/* Fills series: pings x hydrophones x samples, pairs of real and imaginary part in base band.
- * Errors: INPUT (windows of more than 2^22 fine samples), DEVICE, MEMORY, CANCELLED. */
+/* Computes series: pings x hydrophones x samples, pairs of real and imaginary part in base band,
+ * single reals in pass band. Errors: INPUT (windows of more than 2^22 fine samples), DEVICE,
+ * MEMORY, CANCELLED. */
 sonject_status series_compute(const struct series_request *request, struct report *report,
                               struct device *device, float *series);
 

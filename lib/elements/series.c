@@ -7,21 +7,21 @@
 #include "kernels/element_series_records.h"
 
 #define PI                    3.14159265358979323846
-#define SAMPLES_PER_DEVIATION 16.0      /* sharing between two fine samples then errs by 5e-4 */
+#define SAMPLES_PER_DEVIATION 16.0      /* echoes shared by two fine samples then err by 5e-4 */
 #define FINE_SAMPLES_MAX      4194304.0 /* 2^22: delays are single precision */
 #define STRIPS_AWAY_MAX       1e9
 #define ANY_SLOPE_SQUARE      1e16
 #define WIDTH_MAX             16
-#define LINES_BYTES           67108864.0 /* that pairs are worked on at a time in */
+#define LINES_BYTES           67108864.0 /* memory of the pairs worked on at a time */
 #define PAIRS_MAX             65536.0
-#define WORK_ITEMS            65536 /* that a GPU wants */
-#define SHARE_SAMPLES         64    /* of a line, for a work-item at least */
+#define WORK_ITEMS            65536 /* enough for a GPU */
+#define SHARE_SAMPLES         64    /* least samples of a line for a work-item */
 
-/* The pulse of a series, on samples so fine that echoes may be shared between two of them. */
+/* The pulse of a series, on samples so fine that two of them may share an echo. */
 struct fine_pulse {
-    uint32_t fine; /* samples for each of the series */
+    uint32_t fine; /* fine samples for each of the series */
     uint32_t taps;
-    double first_time_s;               /* of fine sample 0 */
+    double first_time_s;               /* time of fine sample 0 */
     float *real_part, *imaginary_part; /* owned, taps each: sample n of the series is the sum over
                                           taps of fine sample n * fine + tap times tap */
 };
@@ -33,7 +33,7 @@ static void fine_pulse_clear(struct fine_pulse *pulse)
     memset(pulse, 0, sizeof *pulse);
 }
 
-/* The image's pulse. */
+/* Fills in the image's pulse. */
 static void fill_compressed(struct fine_pulse *pulse, uint32_t lead, double metres_per_sample,
                             const struct point_response *response)
 {
@@ -45,8 +45,8 @@ static void fill_compressed(struct fine_pulse *pulse, uint32_t lead, double metr
     }
 }
 
-/* Upwards through the band in true frequency, which falls in an envelope of exp(-i 2 pi f0 t). The
- * ends count half, as in an integral. */
+/* Fills in a chirp. It rises through the band in true frequency, which falls in an envelope of
+ * exp(-i 2 pi f0 t). Both ends count half, as in an integral. */
 static void fill_chirp(struct fine_pulse *pulse, const sonject_element_layout *layout,
                        double fine_rate)
 {
@@ -56,7 +56,7 @@ static void fill_chirp(struct fine_pulse *pulse, const sonject_element_layout *l
         const double time = (pulse->taps - 1 - tap) / fine_rate;
         const double from_middle = time - 0.5 * duration;
         const double phase = -PI * rate * from_middle * from_middle;
-        /* the share of the sample's interval that lies within the chirp */
+        /* share of the sample's interval within the chirp */
         const double early = fmin(time * fine_rate + 0.5, 1.0);
         const double late = fmin(fmax((duration - time) * fine_rate + 0.5, 0.0), 1.0);
         const double share = fmin(early, late);
@@ -65,7 +65,7 @@ static void fill_chirp(struct fine_pulse *pulse, const sonject_element_layout *l
     }
 }
 
-/* On success to be given to fine_pulse_clear. Errors: MEMORY, INPUT (too many fine samples). */
+/* Makes a pulse for fine_pulse_clear. Errors: MEMORY, INPUT (too many fine samples). */
 static sonject_status fine_pulse_init(struct fine_pulse *pulse, struct report *report,
                                       const sonject_element_layout *layout,
                                       const struct point_response *response)
@@ -104,7 +104,7 @@ static sonject_status fine_pulse_init(struct fine_pulse *pulse, struct report *r
     return SONJECT_OK;
 }
 
-/* Fine samples that the series is made of. */
+/* Returns the number of fine samples that make the series. */
 static uint32_t fine_pulse_samples(const struct fine_pulse *pulse,
                                    const sonject_element_layout *layout)
 {
@@ -114,7 +114,7 @@ static uint32_t fine_pulse_samples(const struct fine_pulse *pulse,
 typedef char impulse_grid_record_is_packed[sizeof(struct impulse_grid_record) == 14 * 4 ? 1 : -1];
 typedef char element_pair_record_is_packed[sizeof(struct element_pair_record) == 4 * 4 ? 1 : -1];
 
-/* Square of the tangent of the aspect limit; more than any where there is none. */
+/* Returns the square of the tangent of the aspect limit; without a limit, a larger one than any. */
 static double largest_slope_squared(const sonject_elements_params *elements)
 {
     const double slope = tan(elements->aspect_limit_rad);
@@ -122,8 +122,8 @@ static double largest_slope_squared(const sonject_elements_params *elements)
                                             : ANY_SLOPE_SQUARE;
 }
 
-/* A piece's strips and bins, and how its echoes become fine samples; segments: work-items that
- * share a line. */
+/* Returns the record of a piece's strips and bins, and of the rules that turn its echoes into fine
+ * samples. segments: work-items that share a line. */
 static struct impulse_grid_record impulse_grid_record_of(const sonject_element_layout *layout,
                                                          const struct patch_view *view,
                                                          const struct impulse_piece *piece,
@@ -155,7 +155,7 @@ static struct impulse_grid_record impulse_grid_record_of(const sonject_element_l
     return record;
 }
 
-/* Position on the numbering of a piece's strips: whole strips, and the rest. */
+/* Finds a position on the numbering of a piece's strips: whole strips, and a fraction 0...1. */
 static void find_strip(const struct patch_view *view, const struct impulse_piece *piece,
                        double along_track_m, int32_t *strip, float *fraction)
 {
@@ -167,8 +167,8 @@ static void find_strip(const struct patch_view *view, const struct impulse_piece
     *fraction = (float)(limited - floor(limited));
 }
 
-/* Pairs first...first + count - 1 of transmitter and hydrophone, hydrophones of a ping one after
- * the other, on the numbering of a piece's strips. */
+/* Fills in pairs first...first + count - 1 of transmitter and hydrophone on the numbering of a
+ * piece's strips. Hydrophones of a ping come one after the other. */
 static void element_pair_records_fill(struct element_pair_record *records,
                                       const sonject_elements_params *elements,
                                       const struct patch_view *view,
@@ -185,18 +185,18 @@ static void element_pair_records_fill(struct element_pair_record *records,
     }
 }
 
-/* Device memory for some pairs of transmitter and hydrophone at a time. */
+/* The device memory of the pairs of transmitter and hydrophone that are worked on at a time. */
 struct series_work {
     const struct series_request *request;
     struct report *report;
     struct device *device;
     struct fine_pulse pulse;
-    size_t pairs;          /* of all, pings x hydrophones */
+    size_t pairs;          /* pings x hydrophones */
     size_t chunk;          /* pairs at a time */
-    uint32_t fine_samples; /* of a line */
+    uint32_t fine_samples; /* fine samples of a line */
     int32_t line_stride, series_stride;
-    struct element_pair_record *records; /* chunk */
-    float *parts[2];                     /* chunk x series_stride */
+    struct element_pair_record *records; /* chunk of them; owned */
+    float *parts[2];                     /* chunk x series_stride; owned */
     device_buffer lines[2], series[2], pulses[2];
     device_kernel hear, pulse_kernel;
 };
@@ -256,7 +256,7 @@ static sonject_status work_init(struct series_work *work, const struct series_re
                          &work->pulse_kernel);
 }
 
-/* A buffer of a piece's numbers with room for a group of lanes behind them. */
+/* Makes a buffer of a piece's numbers with room for a group of lanes behind them. */
 static sonject_status padded_buffer(struct series_work *work, const void *numbers, size_t count,
                                     device_buffer *buffer)
 {
@@ -265,7 +265,7 @@ static sonject_status padded_buffer(struct series_work *work, const void *number
     return buffer_write(work->report, work->device, *buffer, 0, count * sizeof(float), numbers);
 }
 
-/* Work-items that share a line: a CPU's do a whole one each. */
+/* Returns the work-items that share a line. A CPU's work-item does a whole line. */
 static int32_t series_segments(const struct series_work *work)
 {
     if (work->device->is_cpu)
@@ -336,7 +336,7 @@ static sonject_status pulse_chunk(struct series_work *work, size_t count)
     return buffer_read(work->report, work->device, work->series[1], 0, bytes, work->parts[1]);
 }
 
-/* Puts a chunk's series into the caller's, on the carrier where that is wanted. */
+/* Writes a chunk's series to the caller's, on the carrier in pass band. */
 static void hand_over(const struct series_work *work, size_t first, size_t count, float *series)
 {
     const sonject_element_layout *layout = work->request->layout;

@@ -1,4 +1,4 @@
-/* Lines of columns to rows: the cross-range response. */
+/* The cross-range response: combines lines of columns into rows. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,11 +6,11 @@
 #include "form/form.h"
 #include "scene/motion_response.h"
 
-#define ROWS_PER_ITEM 8 /* FORM_ROWS of kernels/image_formation.h */
+#define ROWS_PER_ITEM 8 /* equals FORM_ROWS of kernels/image_formation.h */
 #define TAPS_OF_A_RUN ((size_t)1 << 22)
 
-/* W (or |W|^2) at the offsets n * strips_per_row - q of pixel row n from strip q, among the zeros
- * that let a work-item take one strip into all of its rows. */
+/* Returns W (or |W|^2) at the offsets n * strips_per_row - q of pixel row n from strip q. Zeros
+ * around it let a work-item take one strip into all of its rows. */
 static float *response_taps(const struct form_lines *lines, size_t *count)
 {
     const double per_row = lines->grid.strips_per_row;
@@ -26,7 +26,7 @@ static float *response_taps(const struct form_lines *lines, size_t *count)
     return taps;
 }
 
-/* One real response for all rows and columns. */
+/* Combines lines by one real response for all rows and columns. */
 static sonject_status combine_plain(struct form_lines *lines, const device_buffer out[2])
 {
     size_t count;
@@ -59,12 +59,11 @@ static sonject_status combine_plain(struct form_lines *lines, const device_buffe
     return status;
 }
 
-/* The taps of a run of rows, where the cross-range response is not one real function: complex (a
- * measured one), another at each range (a real aperture), or another for each row (residual
- * motion). */
+/* The taps of a run of rows where the cross-range response is not one real function. It is complex
+ * where it was measured, differs with range in a real aperture, and by row with residual motion. */
 struct taps {
     size_t each;         /* taps of one response */
-    size_t rows, blocks; /* responses: 1 where all rows, all columns share one */
+    size_t rows, blocks; /* numbers of responses: 1 where all rows, or all columns, share one */
     float *parts[2];
     double *response[2]; /* one response */
 };
@@ -98,14 +97,14 @@ static void taps_clear(struct taps *taps)
     }
 }
 
-/* Distance of a pixel from the middle of the strip of the tap in the middle: rows' middles are
- * those of their strips. */
+/* Returns the distance, m, of a pixel from the middle of the strip of the middle tap: the middle of
+ * a row is that of its strips. */
 static double offset_of(const struct form_lines *lines)
 {
     return (0.5 - 0.5 / lines->grid.strips_per_row) * lines->row_spacing_m;
 }
 
-/* Keeps the response as one of many: W, or |W|^2. */
+/* Stores the response as one of many: W, or |W|^2. */
 static void store(struct taps *taps, const struct form_lines *lines, size_t number)
 {
     const size_t first = number * taps->each;
@@ -117,7 +116,7 @@ static void store(struct taps *taps, const struct form_lines *lines, size_t numb
     }
 }
 
-/* One response for each block of columns. */
+/* Fills in one response for each block of columns. */
 static void fill_blocks(struct taps *taps, const struct form_lines *lines)
 {
     const double strip = lines->row_spacing_m / lines->grid.strips_per_row;
@@ -175,7 +174,7 @@ static sonject_status run_rows(struct form_lines *lines, device_kernel kernel,
     return status;
 }
 
-/* Rows of their own responses, some at a time. */
+/* Combines rows that have their own responses, some at a time. */
 static sonject_status run_moved(struct form_lines *lines, device_kernel kernel, struct taps *taps,
                                 const device_buffer out[2])
 {

@@ -7,10 +7,10 @@
 #include "base/memory.h"
 #include "scene/point_response.h"
 
-#define SEARCH_STEP          64        /* bins that are looked at together */
-#define SHORT_GAP            8         /* strips: their copy takes as long as another launch */
-#define SPECKLE_ENERGY_SHARE 0.001     /* of |W|^2 that is cut off from speckle and energies */
-#define SORTED_FLOATS        (1 << 22) /* of a plane at a time */
+#define SEARCH_STEP          64        /* bins looked at together */
+#define SHORT_GAP            8         /* strips; copying them takes as long as another launch */
+#define SPECKLE_ENERGY_SHARE 0.001     /* share of |W|^2 cut off from speckle and energies */
+#define SORTED_FLOATS        (1 << 22) /* floats of a plane at a time */
 #define COLUMN_STEP          16        /* lines are padded to whole groups of any width */
 
 typedef char filled_span_is_packed[sizeof(struct filled_span) == 2 * 4 ? 1 : -1];
@@ -63,8 +63,8 @@ struct span next_filled_strips(const struct filled_span *filled, int32_t count, 
     return run;
 }
 
-/* The columns that the grid's bins reach through the pulse; of a real aperture from the first of a
- * block of the view's on, so that all lines of the view share their blocks' responses. */
+/* Chooses the columns that the grid's bins reach through the pulse. A real aperture's begin with a
+ * block of the view's, so that all lines of the view share their blocks' responses. */
 static void choose_window(struct form_lines *lines, const struct patch_view *view,
                           int32_t taps_each_side)
 {
@@ -80,7 +80,7 @@ static void choose_window(struct form_lines *lines, const struct patch_view *vie
     lines->stride = (lines->columns + COLUMN_STEP - 1) / COLUMN_STEP * COLUMN_STEP;
 }
 
-/* G, or |G|^2; both parts where it is complex. */
+/* Makes the taps of G, or of |G|^2; both parts where G is complex. */
 static sonject_status make_pulse(struct form_lines *lines, const struct patch_view *view,
                                  int32_t taps_each_side)
 {
@@ -92,7 +92,7 @@ static sonject_status make_pulse(struct form_lines *lines, const struct patch_vi
     float *taps = allocate_array(2 * count, sizeof *taps);
     CHECK_MEMORY(lines->report, taps, "the pulse");
     for (int32_t tap = 0; tap < lines->pulse_taps; tap++) {
-        /* at the pixel's range less the bin's */
+        /* G is taken at the pixel's range less the bin's */
         const struct complex_number g =
             range_response_complex(&lines->response, (taps_each_side - tap) * bin);
         const double energy = g.real_part * g.real_part + g.imaginary_part * g.imaginary_part;
@@ -170,13 +170,13 @@ void form_lines_end(struct form_lines *lines)
     lines->filled_columns = NULL;
 }
 
-/* Column j takes the bins from j * bins_per_pixel + this on. */
+/* Returns the offset to j * bins_per_pixel from which column j takes bins. */
 static int32_t first_bin_of_columns(const struct form_lines *lines)
 {
     return lines->pulse_first + (int32_t)(lines->first_column * lines->grid.bins_per_pixel);
 }
 
-/* Sorts some lines of each plane, 0 where it is NULL, by the pixels that take their bins. */
+/* Sorts some lines of each plane by the pixels that take their bins. NULL planes give zeros. */
 static sonject_status sort_bins(struct form_lines *lines, struct span some,
                                 const device_buffer bins[2], int32_t stride,
                                 device_buffer sorted[2])
@@ -201,7 +201,7 @@ static sonject_status sort_bins(struct form_lines *lines, struct span some,
     return SONJECT_OK;
 }
 
-/* Compresses those; strip: the first one's. */
+/* Compresses sorted lines. strip: number of the strip of line 0. */
 static sonject_status compress_sorted(struct form_lines *lines, int32_t strip, struct span some,
                                       const device_buffer sorted[2], int32_t sorted_stride,
                                       device_buffer filled)
@@ -211,7 +211,7 @@ static sonject_status compress_sorted(struct form_lines *lines, int32_t strip, s
     const int32_t taps = lines->pulse_taps;
     const int32_t stride = (int32_t)lines->stride;
     const int32_t out_strip = strip + some.first - lines->grid.strips.first;
-    const bool is_complex = lines->imaginary_pulse != NULL; /* else its place is the next one's */
+    const bool is_complex = lines->imaginary_pulse != NULL; /* else the next one takes its place */
     struct kernel_argument arguments[14] = {
         ARGUMENT(sorted[0]),  ARGUMENT(sorted[1]), ARGUMENT(sorted_stride), ARGUMENT(filled),
         ARGUMENT(some.first), ARGUMENT(first),     ARGUMENT(per_pixel),     ARGUMENT(lines->pulse)};
@@ -229,7 +229,7 @@ static sonject_status compress_sorted(struct form_lines *lines, int32_t strip, s
                       is_complex ? 2 : 3, global);
 }
 
-/* A long pulse makes sorted lines far longer than the bins: they are made some at a time. */
+/* Compresses lines some at a time: a long pulse makes sorted lines far longer than the bins. */
 static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t count,
                                const device_buffer bins[2], device_buffer filled)
 {
@@ -256,13 +256,13 @@ static void note_filled(struct form_lines *lines, int32_t strip, struct filled_s
 {
     const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
     const int32_t first = first_bin_of_columns(lines);
-    const int32_t before = bins.first - first - lines->pulse_taps; /* the last bin too early */
+    const int32_t before = bins.first - first - lines->pulse_taps; /* the last too early */
     struct filled_span *columns = &lines->filled_columns[strip - lines->grid.strips.first];
     columns->first = before < 0 ? 0 : before / per_pixel + 1;
     columns->end = bins.end - 1 < first ? 0 : (bins.end - 1 - first) / per_pixel + 1;
 }
 
-/* Compresses strips of which the device has the bins. */
+/* Compresses strips whose bins are on the device. */
 static sonject_status compress_filled(struct form_lines *lines, int32_t strip, int32_t count,
                                       const device_buffer bins[2], const struct filled_span *filled)
 {
@@ -341,7 +341,7 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
                                       const float *energy, uint64_t seed, uint32_t stream)
 {
     const struct patch_view *view = lines->view;
-    /* numbered as the whole patch's, so that a window's cells draw what they would there */
+    /* numbers are the whole patch's, so that a window's cells draw what they would there */
     const struct span strips = {strip + (int32_t)(view->first_row * lines->grid.strips_per_row),
                                 count};
     const struct span numbers = {lines->grid.bins.first +
@@ -352,7 +352,7 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
         return SONJECT_OK;
     struct filled_span *filled = allocate_array((size_t)count, sizeof *filled);
     CHECK_MEMORY(lines->report, filled, "image formation");
-    for (int32_t i = 0; i < count; i++) /* all are taken for filled */
+    for (int32_t i = 0; i < count; i++) /* takes all bins for filled */
         filled[i].end = lines->grid.bins.count;
     sonject_status status =
         speckle_draw(lines->report, lines->device, numbers, strips, energy, seed, stream, bins);

@@ -1,5 +1,5 @@
-/* Image formation: lines of bins to pixels. A line goes through the pulse first (range compression
- * into columns), then all lines of a patch through the cross-range response into rows. */
+/* Image formation: lines of bins become pixels. The pulse (G) compresses a line, the bins of one
+ * strip, into columns. Then the cross-range response (W) combines all lines into rows. */
 #ifndef SONJECT_FORM_FORM_H
 #define SONJECT_FORM_FORM_H
 
@@ -16,25 +16,26 @@
 /* Columns that share one cross-range response of a beam; holds whole groups of any width. */
 #define FORM_BLOCK_COLUMNS 16
 
-/* What of lines is worth forming: glints of clutter lie in few places of large grids, and zeros add
- * nothing. */
+/* Filled spans are worth forming: glints of clutter lie in few places of large grids, and the zeros
+ * around add nothing. */
 bool filled_span_is_empty(struct filled_span span);
 
-/* The bins of a line with anything but zeros in one of its parts. imaginary_part may be NULL. */
+/* Returns the bins of a line with anything but zeros in one of its parts. imaginary_part or NULL.
+ */
 struct filled_span filled_span_of(const float *real_part, const float *imaginary_part, size_t bins);
 
-/* The next run of strips after another, which at first is {0, 0}: it begins and ends with filled
- * strips, and holds gaps that cost less to form than to leave out. count 0 after the last. */
+/* Returns the next run of strips after another, which at first is {0, 0}. A run begins and ends
+ * with filled strips, and holds gaps that cost less to form than to leave out. count 0: no more. */
 struct span next_filled_strips(const struct filled_span *filled, int32_t count, struct span before);
 
-/* What is formed: complex amplitudes, by G and W; or energies, by |G|^2 and |W|^2: one plane of
- * them, or two side by side. Glints are kept to side lobes of -60 dB, which may stand out of the
- * seabed; a field (speckle, the measured
- * seabed, a glint's peak) and energies where 99.9 % of |W|^2 lies. */
+/* The kinds of formation. Complex amplitudes are formed by G and W, energies by |G|^2 and |W|^2,
+ * one plane of them or two side by side. Glints are kept to side lobes of -60 dB, which may stand
+ * out of the seabed. Fields (speckle, the measured seabed, a glint's peak) and energies are kept
+ * where 99.9 % of |W|^2 lies. */
 enum form_kind {
     FORM_GLINT,
     FORM_FIELD,
-    FORM_ENERGY, /* the real plane; the imaginary plane is 0 */
+    FORM_ENERGY, /* in the real plane; the imaginary plane is 0 */
     FORM_TWO_ENERGIES
 };
 
@@ -44,12 +45,12 @@ struct form_lines {
     const struct patch_view *view; /* borrowed */
     struct line_grid grid;
     enum form_kind kind;
-    size_t planes;                /* of lines and pixels: 1 or 2 */
-    size_t rows, columns, stride; /* pixels; stride: floats from a line to the next */
-    size_t first_column;          /* of the patch; the window is `columns` wide */
-    int32_t reach;                /* of the cross-range response, strips */
+    size_t planes;                /* planes of lines and pixels: 1 or 2 */
+    size_t rows, columns, stride; /* pixels; stride: floats from one line to the next */
+    size_t first_column; /* first of the patch's columns in the window, which is `columns` wide */
+    int32_t reach;       /* reach of the cross-range response, strips */
     int32_t pulse_first, pulse_taps;
-    struct filled_span *filled_columns; /* owned; of each strip's line */
+    struct filled_span *filled_columns; /* columns that each strip's line fills; owned */
     double row_spacing_m;
     struct point_response response;
     device_buffer lines[2], pulse;
@@ -58,16 +59,16 @@ struct form_lines {
     device_kernel sort, compress;
 };
 
-/* Prepares lines for the patch's rows and, of its columns, those that bins of the grid reach. On
- * success to be given to form_lines_end; on failure nothing is held. Errors: DEVICE, MEMORY.
- * If no column is reached, lines->columns is 0 and the other calls do nothing. */
+/* Prepares lines for the patch's rows, and those of its columns that bins of the grid reach.
+ * Without such columns lines->columns is 0 and the other calls do nothing. After success the caller
+ * calls form_lines_end; on failure nothing is held. Errors: DEVICE, MEMORY. */
 sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
                                 struct device *device, const struct patch_view *view,
                                 const struct point_response *response, enum form_kind kind,
                                 const struct line_grid *grid);
 void form_lines_end(struct form_lines *lines);
 
-/* Strips on each side of a row that this kind of formation takes aspects from. */
+/* Returns the strips on each side of a row from which this kind of formation takes aspects. */
 int32_t form_reach(const struct patch_view *view, const struct point_response *response,
                    enum form_kind kind, uint32_t strips_per_row);
 
@@ -76,14 +77,14 @@ int32_t form_reach(const struct patch_view *view, const struct point_response *r
 sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t count,
                               const float *real_part, const float *imaginary_part);
 
-/* sqrt(energy) times complex normal deviates that depend on seed, stream, strip and bin alone, for
- * strips.count x bins.count cells of one grid, in two buffers that are the caller's for
+/* Draws sqrt(energy) times complex normal deviates that depend on seed, stream, strip and bin
+ * alone, for strips.count x bins.count cells of one grid. Both buffers are the caller's for
  * buffer_release, also on failure. Errors: DEVICE, MEMORY. */
 sonject_status speckle_draw(struct report *report, struct device *device, struct span bins,
                             struct span strips, const float *energy, uint64_t seed, uint32_t stream,
                             device_buffer parts[2]);
 
-/* As form_lines_add, of amplitudes that speckle_draw draws. */
+/* Range-compresses strips like form_lines_add, with amplitudes of speckle_draw. */
 sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, int32_t count,
                                       const float *energy, uint64_t seed, uint32_t stream);
 
@@ -91,7 +92,7 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
  * for FORM_ENERGY. Errors: DEVICE, MEMORY. */
 sonject_status form_lines_finish(struct form_lines *lines, float *real_part, float *imaginary_part);
 
-/* The second half of it, into padded planes on the device, of rows x lines->stride. */
+/* Combines all lines into padded planes of rows x lines->stride on the device. */
 sonject_status form_combine(struct form_lines *lines, const device_buffer out[2]);
 
 static inline bool form_is_of_energies(const struct form_lines *lines)

@@ -1,15 +1,15 @@
-/* Snell's law through level layers (kernels/MATH.md, "Layers"). A ray is known by its ray parameter
- * p = cos(grazing angle) / c. Where sound is fastest, at c_max, that angle's cotangent x runs from
- * 0 to infinity; in x nothing cancels near total reflection and ranges grow about linearly:
- *     p c = rho x / sqrt(1 + x^2),  sin = sqrt((1 + x^2 (1 - rho^2)) / (1 + x^2)),  rho = c / c_max
- */
+/* Snell's law through level layers (kernels/MATH.md, "Layers"). A ray has the ray parameter p =
+ * cos(grazing angle) / c. x is the cotangent of that angle where sound is fastest, at c_max, and
+ * runs from 0 to infinity. In x nothing cancels near total reflection and ranges grow about
+ * linearly: p c = rho x / sqrt(1 + x^2), sin = sqrt((1 + x^2 (1 - rho^2)) / (1 + x^2)), rho = c /
+ * c_max */
 #include "medium/water.h"
 
 #include <math.h>
 
 #define PI           3.14159265358979323846
 #define NEWTON_STEPS 200
-#define TOLERANCE    1e-15 /* relative, on ranges */
+#define TOLERANCE    1e-15 /* relative error of ranges */
 
 struct ray_path ray_path_direct(const struct water *water, double sonar_height_m)
 {
@@ -28,22 +28,21 @@ struct ray_path ray_path_image(const struct water *water, double sonar_height_m,
     const bool meets_surface = bounces > 1 || !comes_from_seabed;
     path.is_straight =
         meets_surface ? water->count < 2 || water->layers[1].bottom_m >= depth_m : path.is_straight;
-    /* each image is that of the one before it: from the far boundary to the one next to the target
-     */
+    /* each image is that of the one before, from the far boundary to the one next to the target */
     bool by_seabed = (bounces % 2 == 1) == comes_from_seabed;
     for (uint32_t i = 0; i < bounces; i++, by_seabed = !by_seabed)
         path.image_height_m = (by_seabed ? 0.0 : 2.0 * depth_m) - path.image_height_m;
     return path;
 }
 
-/* The boundary that the sound meets first. */
+/* Returns whether the sound meets the seabed first, or no boundary. */
 static bool goes_down_first(const struct ray_path *path)
 {
     return path->bounces == 0 || (path->bounces % 2 == 1) == path->comes_from_seabed;
 }
 
-/* Heights between the sonar and the first boundary, and after the last boundary; in between the
- * whole depth is crossed bounces - 1 times. */
+/* Heights between the sonar and the first boundary, and after the last boundary. In between, the
+ * path crosses the whole depth bounces - 1 times. */
 struct legs {
     double first_low, first_high, last_low, last_high;
     uint32_t whole;
@@ -69,11 +68,11 @@ static double between(double low, double high, double bottom, double top)
     return fmax(0.0, fmin(high, top) - fmax(low, bottom));
 }
 
-/* The sound's last stretch: in the straight water, from its upper edge or the seabed to a height;
- * or in a slice down to it. */
+/* The last stretch of a path. In the straight water it leads from the upper edge or the seabed to a
+ * height; in a slice it leads down to a height. */
 struct stretch {
     size_t layer;
-    double height_m; /* that it crosses */
+    double height_m; /* height that it crosses */
     double speed_mps;
 };
 
@@ -93,7 +92,7 @@ static struct stretch last_stretch(const struct ray_path *path, double height)
     return last;
 }
 
-/* Height of layer i that the path crosses before the last stretch. */
+/* Returns the height of layer i that the path crosses before the last stretch. */
 static double crossed_height(const struct ray_path *path, const struct legs *legs,
                              const struct stretch *last, size_t i)
 {
@@ -111,14 +110,14 @@ static double crossed_height(const struct ray_path *path, const struct legs *leg
     return height;
 }
 
-/* How often the path crosses the plane at a height. */
+/* Returns how often the path crosses the plane at a height. */
 static uint32_t crossings(const struct legs *legs, double height)
 {
     return legs->whole + (height > legs->first_low && height < legs->first_high) +
            (height > legs->last_low && height < legs->last_high);
 }
 
-/* The fastest water on the path. */
+/* Returns the sound speed of the fastest water on the path. */
 static double fastest(const struct ray_path *path, const struct legs *legs,
                       const struct stretch *last)
 {
@@ -129,7 +128,7 @@ static double fastest(const struct ray_path *path, const struct legs *legs,
     return speed;
 }
 
-/* What a ray sums up on its path. */
+/* The sums over a ray's path. */
 struct sums {
     double range;  /* horizontal, m */
     double time;   /* s */
@@ -163,7 +162,7 @@ static struct sums sum_path(const struct ray_path *path, const struct legs *legs
     return sums;
 }
 
-/* Share of the energy that a plane between two layers passes on: 1 - R^2, R Rayleigh's. */
+/* Returns the energy that a plane between two layers transmits: 1 - R^2 with Rayleigh's R. */
 static double plane_transmission(const struct water_layer *one, const struct water_layer *other,
                                  double ray_parameter)
 {
@@ -175,7 +174,8 @@ static double plane_transmission(const struct water_layer *one, const struct wat
     return 1.0 - reflection * reflection;
 }
 
-/* Planes between equal densities are those of a profile, which changes gently: they pass all. */
+/* Returns the energy that all planes transmit. Planes between equal densities are those of a
+ * profile, which changes gently, and transmit all. */
 static double transmission(const struct ray_path *path, const struct legs *legs,
                            const struct stretch *last, double ray_parameter)
 {
@@ -238,8 +238,8 @@ struct arrival ray_path_arrival(const struct ray_path *path, double grazing_rad,
     return ray;
 }
 
-/* x of the ray whose range (or, for a time, whose travel time) is the wanted one. Both grow with x:
- * dr/dx = dr/dp dp/dx and dt/dp = p dr/dp. */
+/* Returns the x of the ray with the wanted range, or travel time. Both grow with x: dr/dx = dr/dp
+ * dp/dx and dt/dp = p dr/dp. */
 static double find_ray(const struct ray_path *path, const struct legs *legs,
                        const struct stretch *last, double fastest_speed, double wanted,
                        bool is_time)
@@ -266,7 +266,7 @@ static double find_ray(const struct ray_path *path, const struct legs *legs,
     return x;
 }
 
-/* The ray to a height of which the range, or the travel time, is known. */
+/* The ray to a height at a known range, or travel time. */
 struct found_ray {
     struct legs legs;
     struct stretch last;

@@ -1,6 +1,6 @@
-/* Francois and Garrison's formula (J. Acoust. Soc. Am. 72, 1982: part I, page 896, pure water and
- * magnesium sulphate; part II, page 1879, boric acid and the total). Frequencies in kHz and
- * absorption in dB/km, as the papers have them. */
+/* Layers of water, and absorption by Francois and Garrison's formula (J. Acoust. Soc. Am. 72, 1982:
+ * part I, page 896, pure water and magnesium sulphate; part II, page 1879, boric acid and the
+ * total). Frequencies are in kHz and absorption in dB/km, as in the papers. */
 #include "medium/water.h"
 
 #include <math.h>
@@ -15,16 +15,16 @@
 
 #define STEPS_PER_SPEED     20000.0
 #define KELVIN_AT_0_CELSIUS 273.0 /* the papers' own, without the 0.15 */
-#define JOINED_DIFFERENCE   0.002 /* of layers that become the straight water, relative */
-/* Of a slice's sound speed, relative, on which levels depend, by its half over the square of the
- * tangent of the grazing angle; and of the way straight up within it. */
+#define JOINED_DIFFERENCE   0.002 /* relative; of layers that become straight water */
+/* The largest relative difference of sound speeds in a slice, and error of the way straight up.
+ * Levels depend on half the former over the square of the tangent of the grazing angle. */
 #define SLICE_DIFFERENCE 3.0e-5
 #define SLICE_ERROR_M    5.0e-6
 
 struct stack {
     struct water_layer *layers; /* room for WATER_LAYERS_MAX */
     size_t count;
-    bool is_full; /* and another was wanted */
+    bool is_full; /* room was wanted for another layer */
 };
 
 static void add_layer(struct stack *stack, double bottom_m, double speed_mps)
@@ -39,7 +39,7 @@ static void add_layer(struct stack *stack, double bottom_m, double speed_mps)
     stack->layers[stack->count++] = layer;
 }
 
-/* A linear piece, low >= 0. */
+/* Adds the layers of a linear piece; low >= 0. */
 static void add_piece(struct stack *stack, double low, double low_speed, double high,
                       double high_speed)
 {
@@ -88,7 +88,7 @@ sonject_status layers_of_profile(const double *heights_m, const double *speeds_m
     return SONJECT_OK;
 }
 
-/* Of a substance that needs time to follow the pressure, for unit strength. */
+/* Returns the absorption of a substance that follows the pressure late, for unit strength. */
 static double relaxation(double frequency, double relaxation_frequency)
 {
     const double square = frequency * frequency;
@@ -164,7 +164,7 @@ static void join_equals(struct water *water)
     water->count = kept + 1;
 }
 
-/* Height in which layer i overlaps with [low, high]. */
+/* Returns the height, m, over which layer i overlaps with [low, high]. */
 static double overlap(const struct water *water, size_t i, double low, double high)
 {
     const double bottom = fmax(water->layers[i].bottom_m, low);
@@ -172,7 +172,7 @@ static double overlap(const struct water *water, size_t i, double low, double hi
     return fmax(0.0, top - bottom);
 }
 
-/* Makes one layer of all below `highest`. */
+/* Joins all layers below `highest`. */
 static sonject_status join_below(struct water *water, struct report *report, double highest)
 {
     double slowness = 0.0, density = 0.0;
@@ -197,7 +197,7 @@ static sonject_status join_below(struct water *water, struct report *report, dou
                 "of the objects: take that away, or let the layers begin higher",
                 layer->speed_mps, layer->bottom_m, 1.0 / slowness, highest);
     }
-    /* what is left of the highest one stays a layer */
+    /* the rest of the highest one stays a layer */
     water->layers[within].bottom_m = highest;
     water->layers[0].bottom_m = 0.0;
     water->layers[0].speed_mps = 1.0 / slowness;
@@ -208,7 +208,7 @@ static sonject_status join_below(struct water *water, struct report *report, dou
     return SONJECT_OK;
 }
 
-/* The mean over so many layers. */
+/* Returns the mean slowness of the first layers. */
 static double mean_slowness(const struct water_layer *layers, size_t count)
 {
     double time = 0.0;
@@ -217,11 +217,11 @@ static double mean_slowness(const struct water_layer *layers, size_t count)
     return time / (layers[count].bottom_m - layers[0].bottom_m);
 }
 
-/* Whether so many layers may be one slice. */
+/* Returns whether the first layers may be one slice. */
 static bool are_near(const struct water_layer *layers, size_t count)
 {
     const double slowness = mean_slowness(layers, count);
-    double lead = 0.0; /* of the way straight up to the top of a layer, m */
+    double lead = 0.0; /* lead of the way straight up to a layer's top, m */
     for (size_t i = 0; i < count; i++) {
         const double excess = 1.0 / (layers[i].speed_mps * slowness) - 1.0;
         lead += (layers[i + 1].bottom_m - layers[i].bottom_m) * excess;
@@ -232,7 +232,7 @@ static bool are_near(const struct water_layer *layers, size_t count)
     return true;
 }
 
-/* Joins what begins below a height into slices, from the seabed upwards. */
+/* Joins layers that begin below a height into slices, from the seabed upwards. */
 static void slice_below(struct water *water, double highest)
 {
     struct water_layer *layers = water->layers;

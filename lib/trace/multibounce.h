@@ -70,7 +70,7 @@ sonject_status multibounce_begin(struct multibounce *multibounce, struct tracer 
                                  uint32_t object);
 void multibounce_end(struct multibounce *multibounce);
 
-/* The sub-strips of a part's first hits, and of the echoes. Each pair of sources has own bins. */
+/* The sub-strips of a part's first hits, and of the echoes. Bins are each pair of sources' own. */
 struct multibounce_strips {
     struct line_grid grid;
     struct span first_hits;

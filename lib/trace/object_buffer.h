@@ -78,10 +78,9 @@ sonject_status object_tree_build(const struct tracer *tracer, const struct objec
 /* Spheres around the targets. The groups of many spheres come behind them, then room for as many
  * target records as there are parts. */
 struct target_spheres {
-    struct sphere_record
-        *records; /* owned; count spheres, then the groups, then the spheres around groups */
-    uint32_t count, groups; /* groups 0: few spheres */
-    size_t bytes;           /* size of spheres and groups */
+    struct sphere_record *records; /* owned; spheres, groups, spheres around groups */
+    uint32_t count, groups;        /* groups 0: few spheres */
+    size_t bytes;                  /* size of spheres and groups */
 };
 
 /* Covers every part with a row of spheres along its length. A row has about as many spheres as the

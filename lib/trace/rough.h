@@ -33,7 +33,7 @@ struct rough_trace {
     struct launch launch;
 };
 
-/* Return the bins of the grid, or the strips of it and beyond, where echoes and shadow of a part
+/* Returns the bins of the grid, or the strips of it and beyond, where echoes and shadow of a part
  * can lie. Echoes by image sources and several faces count too. by_beam: as pings of a real
  * aperture hear them. */
 struct span rough_bins_of_part(const struct tracer *tracer, uint32_t number,

@@ -12,8 +12,7 @@
 #include "trace/object_buffer.h"
 
 #define PI 3.14159265358979323846
-/* The largest tallies of a launch, which maps and clears them, and the groups that keep a GPU busy.
- */
+/* Limits of a launch: larger tallies cost more to map and clear, fewer groups leave a GPU idle. */
 #define TALLY_BYTES   ((size_t)16 << 20)
 #define GROUPS_WANTED 4096
 
@@ -151,7 +150,7 @@ static sonject_status add_outcomes(struct tracer *tracer, const struct outcome_r
                           faults & FAULT_OUTSIDE_TILE ? " shadow outside its bounds;" : "");
 }
 
-/* Returns the groups a strip. A CPU's work-item does a whole strip; GPUs want thousands of groups.
+/* Returns the groups a strip. A CPU's work-item does a whole strip; a GPU needs thousands of them.
  */
 static int32_t segments_for(const struct tracer *tracer, const struct fan_record *fan)
 {

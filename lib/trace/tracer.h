@@ -31,7 +31,7 @@ struct tracer {
     const struct placed_object *objects; /* scene->objects: tell where their parts are */
     const struct relief *relief;         /* NULL: the seabed is the plane */
     const bool *follows; /* for each of scene->objects, whether the view shows its echoes; others
-                            are only in the way. NULL: all are shown */
+                            are only in the way. NULL: all shown */
     struct trace_counts counts;
     struct checkpoint *checkpoint; /* NULL: everything is traced, and nothing is kept */
 };
@@ -42,7 +42,7 @@ static inline bool tracer_follows(const struct tracer *tracer, uint32_t object)
     return !tracer->follows || tracer->follows[object];
 }
 
-/* Return the least and the largest height of the seabed, m; both 0 where it is a plane. */
+/* Returns the least, or the largest, height of the seabed, m; both are 0 where it is a plane. */
 double tracer_lowest_seabed(const struct tracer *tracer);
 double tracer_highest_seabed(const struct tracer *tracer);
 
@@ -55,8 +55,8 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
 void surface_record_init(struct surface_record *record, const sonject_material_params *material,
                          double wavelength_m);
 
-/* Return whether the material has a specular part, and whether it has a scattering one. Where a
- * material reflects, the scattering part is what roughness takes from reflection. */
+/* Returns whether the material has a specular part, or a scattering one. Where a material reflects,
+ * the scattering part is what roughness takes from reflection. */
 bool material_is_smooth(const sonject_material_params *material);
 bool material_is_rough(const sonject_material_params *material);
 
