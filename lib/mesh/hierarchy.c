@@ -9,7 +9,7 @@
 
 #define BINS_MOST 16
 
-/* The records that devices read, as C lays them out. */
+/* Devices read these records as C lays them out. */
 typedef char branch_is_packed[sizeof(struct mesh_branch) == 144 * 4 ? 1 : -1];
 typedef char leaf_is_packed[sizeof(struct mesh_leaf) == 176 * 4 ? 1 : -1];
 typedef char normals_are_packed[sizeof(struct mesh_corner_normals) == 9 * 4 ? 1 : -1];
@@ -51,13 +51,13 @@ struct split_box split_box_of(const struct split_triangle *triangles, size_t fir
     return box;
 }
 
-/* Twice the middle of a triangle's box. */
+/* Returns twice the middle of a triangle's box. */
 static float middle(const struct split_triangle *triangle, int axis)
 {
     return triangle->box.edges[axis] - triangle->box.edges[4 + axis];
 }
 
-/* The range's middles, sorted into equal bins along each axis. */
+/* The middles of a range's triangles, sorted into equal bins along each axis. */
 struct bins {
     int count;
     float lower[3], scale[3]; /* scale 0: all middles are the same along the axis */
@@ -106,7 +106,7 @@ struct cut {
     size_t lower_count;
 };
 
-/* The best cut along one axis, if better than *best. */
+/* Replaces *best by the best cut along one axis, if that is better. */
 static void try_axis(const struct bins *bins, int axis, struct cut *best)
 {
     float upper_cost[BINS_MOST];
@@ -140,7 +140,7 @@ static void swap(struct split_triangle *a, struct split_triangle *b)
     *b = kept;
 }
 
-/* Rearranges the range so that the lower half comes first; returns where the upper begins. */
+/* Rearranges the range so that the lower half comes first. Returns where the upper half begins. */
 static size_t part_at(struct split_triangle *triangles, const struct split_range *range,
                       const struct bins *bins, const struct cut *cut)
 {
@@ -157,7 +157,7 @@ static size_t part_at(struct split_triangle *triangles, const struct split_range
     }
 }
 
-/* Of equal middles the lower number comes first. */
+/* Returns whether a lies before b. The lower number comes first of equal middles. */
 static bool lies_before(const struct split_triangle *a, const struct split_triangle *b, int axis)
 {
     const float at_a = middle(a, axis);
@@ -233,7 +233,7 @@ void split_cut(struct split_triangle *triangles, const struct split_range *range
 struct pending {
     struct split_range range;
     uint32_t branch;
-    uint32_t level; /* the root's is 1 */
+    uint32_t level; /* 1 at the root */
 };
 
 struct builder {
@@ -266,7 +266,7 @@ bool mesh_reserve(void **array, size_t count, size_t *capacity, size_t size)
     return true;
 }
 
-/* Most triangles below a child of a branch at `level`, so that halving ends in leaves in time. */
+/* Returns the most triangles below a child of a branch at `level`: halving must end in leaves. */
 static size_t most_below(uint32_t level)
 {
     size_t most = MESH_SLOTS;
@@ -275,9 +275,9 @@ static size_t most_below(uint32_t level)
     return most;
 }
 
-/* Cuts a range into up to four parts, each time the one that most rays meet, leaving those that fit
- * into a leaf. None is left with more than `limit` triangles (the range: at most four times that).
- * Returns how many. */
+/* Cuts a range into up to four parts and returns their number. Each time it cuts the part that most
+ * rays meet, but none that fits into a leaf. No part keeps more than `limit` triangles; the range
+ * has at most four times as many. */
 static int cut_in_four(struct builder *builder, const struct split_range *range, size_t limit,
                        struct split_range *parts)
 {
@@ -287,7 +287,7 @@ static int cut_in_four(struct builder *builder, const struct split_range *range,
         int widest = -1;
         float most = -1.0f;
         for (int i = 0; i < count; i++) {
-            /* one that is too large goes first */
+            /* a part that is too large goes first */
             const float area =
                 triangles_in(&parts[i]) > limit ? INFINITY : split_box_area(&parts[i].box);
             if (triangles_in(&parts[i]) > MESH_SLOTS && area > most) {
@@ -361,11 +361,11 @@ static void group_leaf(struct split_triangle *triangles, const struct split_rang
     if (groups < 2)
         return;
     split_cut_at(triangles, range, MESH_GROUP * ((groups + 1) / 2), &lower, &upper);
-    group_leaf(triangles, &lower); /* at most twice */
+    group_leaf(triangles, &lower); /* at most two deep */
     group_leaf(triangles, &upper);
 }
 
-/* Adds a leaf; its code for mesh_branch.child. False when memory is out. */
+/* Adds a leaf and sets its code for mesh_branch.child. Returns false if memory lacks. */
 static bool add_leaf(struct builder *builder, const struct split_range *range, int32_t *child)
 {
     struct mesh_hierarchy *hierarchy = builder->hierarchy;
@@ -397,7 +397,7 @@ static bool add_leaf(struct builder *builder, const struct split_range *range, i
     return true;
 }
 
-/* Adds a branch that is to be filled later. False when memory is out. */
+/* Adds a branch that is to be filled later. Returns false if memory lacks. */
 static bool add_branch(struct builder *builder, const struct split_range *range, uint32_t level,
                        int32_t *child)
 {
@@ -417,7 +417,7 @@ static bool add_branch(struct builder *builder, const struct split_range *range,
     return true;
 }
 
-/* Fills a group's slots with its children. */
+/* Fills a group's slots with its children. Returns false if memory lacks. */
 static bool fill_group(struct builder *builder, const struct pending *pending,
                        struct mesh_branch *branch, int group, const struct split_range *range)
 {

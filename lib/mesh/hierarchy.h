@@ -1,5 +1,5 @@
-/* The bounding-volume hierarchy of a mesh: which triangles a ray may meet, found by boxes; and how
- * a set of boxes is cut in two, so that rays have least to test. */
+/* The bounding-volume hierarchy (BVH) of a mesh: boxes tell which triangles a ray may meet. Sets of
+ * boxes are cut in two so that rays have least to test. */
 #ifndef SONJECT_MESH_HIERARCHY_H
 #define SONJECT_MESH_HIERARCHY_H
 
@@ -10,37 +10,36 @@
 #include "base/report.h"
 #include "mesh_records.h"
 
-/* Most triangles of one mesh: the numbers of the slots that they fill stay below 2^31. */
+/* The most triangles of one mesh. The numbers of the slots that they fill stay below 2^31. */
 #define MESH_TRIANGLES_MAX ((size_t)1 << 26)
 
-/* A slot of a leaf that holds no triangle. */
+/* The mark of a leaf's slot that holds no triangle. */
 #define MESH_NO_TRIANGLE UINT32_MAX
 
 struct mesh_hierarchy {
     struct mesh_branch *branches; /* branch_count, the root first; owned */
     struct mesh_leaf *leaves;     /* leaf_count; owned */
     size_t branch_count, leaf_count;
-    uint32_t *triangles; /* leaf_count x MESH_SLOTS: which of the mesh's triangles is in a slot, or
+    uint32_t *triangles; /* leaf_count x MESH_SLOTS: number of the triangle in each slot, or
                             MESH_NO_TRIANGLE; owned */
     uint32_t levels;     /* branches on the longest way from the root to a leaf, 1...MESH_LEVELS */
 };
 
 /* Builds the hierarchy of count triangles (1...MESH_TRIANGLES_MAX) by the surface-area heuristic
- * over bins of the triangles' middles (Wald 2007). The same triangles give the same hierarchy
- * everywhere. vertices: triples of finite coordinates, m; corners: three numbers of vertices a
- * triangle; radius: m, about the origin, holds all vertices. Errors: MEMORY. On failure *hierarchy
- * is empty. */
+ * over bins of the triangles' middles (Wald 2007). Equal triangles give equal hierarchies
+ * everywhere. vertices: triples of finite coordinates, m. corners: three numbers of vertices a
+ * triangle. radius: m, about the origin, holds all vertices. Errors: MEMORY; then *hierarchy is
+ * empty. */
 sonject_status mesh_hierarchy_build(struct report *report, const float *vertices,
                                     const uint32_t *corners, size_t count, float radius,
                                     struct mesh_hierarchy *hierarchy);
 void mesh_hierarchy_clear(struct mesh_hierarchy *hierarchy);
 
-/* Makes room in an array that grows for one element of size bytes more; false when memory is out.
- */
+/* Makes room for one more element of `size` bytes in an array; returns false if memory lacks. */
 bool mesh_reserve(void **array, size_t count, size_t *capacity, size_t size);
 
-/* A box as its lower corner and the negative of its upper one (0...2 and 4...6), so that one
- * minimum of all eight numbers unites two boxes. 3 and 7 are unused and 0. */
+/* A box as its lower corner (0...2) and the negative of its upper one (4...6): one minimum of all
+ * eight numbers unites two boxes. Numbers 3 and 7 are unused and 0. */
 struct split_box {
     float edges[8];
 };
@@ -51,10 +50,10 @@ struct split_triangle {
     uint32_t number;
 };
 
-/* Triangles [first, last) of an array. */
+/* The triangles [first, last) of an array. */
 struct split_range {
     size_t first, last;
-    struct split_box box; /* of the triangles */
+    struct split_box box; /* holds the triangles */
 };
 
 void split_box_unite(struct split_box *box, const struct split_box *other);
@@ -71,15 +70,15 @@ struct split_box split_box_empty(void);
         (record)->upper_z[slot] = -(box)->edges[6] + (padding);                                    \
     } while (0)
 
-/* Half the surface; 0 for an empty box. */
+/* Returns half the surface; 0 for an empty box. */
 float split_box_area(const struct split_box *box);
 
-/* The box of all triangles of the range. */
+/* Returns the box of all triangles of the range. */
 struct split_box split_box_of(const struct split_triangle *triangles, size_t first, size_t last);
 
-/* Cuts the range (2 triangles or more) in two where the surface-area heuristic says, rearranging
- * its triangles; where that gives a half of more than half_limit, or all middles are the same, at
- * the median. */
+/* Cuts the range (2 triangles or more) in two where the surface-area heuristic says, and rearranges
+ * its triangles. Cuts at the median where the heuristic gives a half of more than half_limit, or
+ * all middles are the same. */
 void split_cut(struct split_triangle *triangles, const struct split_range *range, size_t half_limit,
                struct split_range *lower, struct split_range *upper);
 

@@ -8,14 +8,14 @@
 #include "base/memory.h"
 #include "mesh/mesh_reader.h"
 
-/* Sizes that single precision holds with room for squares and products. */
+/* Radii for which single precision has room for squares and products. */
 #define RADIUS_LEAST_M 1e-6
 #define RADIUS_MOST_M  1e6
 
 #define STORE_BYTES_MOST ((uint64_t)512 << 20)
 
-/* How far apart the sides of a seam may be, of the bounding box's diagonal: what single precision
- * makes of one point is within a tenth of it. */
+/* The largest gap of a seam, as a share of the bounding box's diagonal. Rounding to single
+ * precision moves a point by less than a tenth of this. */
 #define SEAM_SHARE 1e-6
 
 void mesh_options_init(struct mesh_options *options)
@@ -46,7 +46,7 @@ void mesh_clear(struct mesh *mesh)
     memset(mesh, 0, sizeof *mesh);
 }
 
-/* A coordinate of the file as the object's, m. */
+/* Returns a coordinate of the file as the object's, m. */
 static double coordinate(const struct mesh_soup *soup, size_t vertex, int axis,
                          const struct mesh_options *options)
 {
@@ -55,7 +55,7 @@ static double coordinate(const struct mesh_soup *soup, size_t vertex, int axis,
     return (source < 0 ? -value : value) * options->unit_m;
 }
 
-/* The middle of the bounding box of all vertices that triangles use. */
+/* Finds the middle of the bounding box of all vertices that triangles use. Errors: INPUT (size). */
 static sonject_status find_centre(const struct mesh_soup *soup, struct mesh *mesh)
 {
     double square = 0.0;
@@ -77,10 +77,10 @@ static sonject_status find_centre(const struct mesh_soup *soup, struct mesh *mes
                          2.0 * sqrt(square));
 }
 
-/* Brings the soup's vertices into the mesh's frame, welds those that are equal, or closer than the
- * tolerance, and keeps the triangles that have three corners left. */
+/* Brings the soup's vertices into the mesh's frame and welds those that are equal, or closer than
+ * the tolerance. Keeps the triangles that have three corners left. */
 static sonject_status weld_all(const struct mesh_soup *soup, struct mesh *mesh, struct weld *weld,
-                               uint32_t *numbers) /* + 1; 0: not yet met */
+                               uint32_t *numbers) /* number + 1; 0: not yet met */
 {
     for (size_t i = 0; i < soup->triangles; i++) {
         uint32_t corners[3];
@@ -110,7 +110,7 @@ static sonject_status weld_all(const struct mesh_soup *soup, struct mesh *mesh, 
     return SONJECT_OK;
 }
 
-/* Takes over what was welded. */
+/* Takes over the welded vertices and triangles. */
 static sonject_status copy_welded(struct mesh_soup *welded, struct mesh *mesh)
 {
     double square = 0.0;
@@ -139,7 +139,7 @@ static sonject_status copy_welded(struct mesh_soup *welded, struct mesh *mesh)
     return SONJECT_OK;
 }
 
-/* Vertices and triangles, and how they hang together. */
+/* Makes the mesh's vertices and triangles, and finds its topology. */
 static sonject_status weld_and_orient(const struct mesh_soup *soup, struct mesh *mesh,
                                       double tolerance)
 {
@@ -162,7 +162,7 @@ static sonject_status weld_and_orient(const struct mesh_soup *soup, struct mesh 
     return status;
 }
 
-/* Smooth normals in the order of the leaves' slots. */
+/* Sets smooth normals in the order of the leaves' slots. */
 static sonject_status set_normals(struct report *report, double angle, struct mesh *mesh)
 {
     float *normals;
@@ -189,8 +189,7 @@ sonject_status mesh_of_soup(const struct mesh_soup *soup, struct mesh *mesh)
         return input_failure(report, soup->path, "the mesh has no triangles");
     CHECK(find_centre(soup, mesh));
     CHECK(weld_and_orient(soup, mesh, 0.0));
-    /* only a mesh that is open is looked at for a seam, so that no thin wall of another is touched
-     */
+    /* only an open mesh may have a seam; in others thin walls must stay apart */
     if (!mesh->topology.is_closed) {
         const size_t vertices = mesh->vertex_count;
         double square = 0.0;
@@ -263,7 +262,7 @@ static uint64_t bytes_of(const struct mesh *mesh)
            (mesh->normals ? slots * sizeof *mesh->normals : 0);
 }
 
-/* Moves one out of the store. */
+/* Moves a mesh out of the store. */
 static void remove_mesh(struct mesh_store *store, size_t number, struct mesh *mesh)
 {
     *mesh = store->meshes[number];

@@ -1,4 +1,4 @@
-/* Which reader reads a mesh file, the words of text files, and OBJ. */
+/* The choice of a mesh file's reader, the words of text files, and OBJ. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,7 +55,7 @@ bool words_left(struct words *words, char comment)
     return true;
 }
 
-/* How much of a text is the word, in any case of letters; 0: it begins otherwise. */
+/* Returns the length of the word if the text begins with it, in any case of letters; else 0. */
 static size_t match(const char *text, const char *word)
 {
     size_t i = 0;
@@ -96,8 +96,8 @@ sonject_status words_failure(const struct words *words, const char *what)
                           length > 0 ? word : "end of line");
 }
 
-/* A number of few digits, exactly and several times faster than any number: one rounding of a whole
- * number times or over a power of ten that is exact itself. False if it takes more than that. */
+/* Reads a number of few digits exactly, several times faster than text_to_number. It rounds once: a
+ * whole number times or over a power of ten, both exact. Returns false for longer numbers. */
 static bool read_short_number(const char *at, const char **rest, double *number)
 {
     static const double powers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
@@ -182,8 +182,8 @@ double single_from_bytes(const char *bytes, bool is_big_endian)
     return (double)value;
 }
 
-/* "7", "7/1", "7//3" or "7/1/3", of which the vertex counts; negative numbers count back from the
- * last vertex so far. */
+/* Reads "7", "7/1", "7//3" or "7/1/3", of which only the vertex counts. Negative numbers count back
+ * from the last vertex so far. */
 static sonject_status read_corner(struct words *words, uint32_t *corner)
 {
     const struct mesh_soup *soup = words->soup;

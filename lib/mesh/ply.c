@@ -1,4 +1,4 @@
-/* PLY files: a header that says which elements follow, of which vertices and faces are read. */
+/* PLY files: a header that says which elements follow. Only vertices and faces are kept. */
 #include <math.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #define ELEMENTS_MAX   16
 #define PROPERTIES_MAX 64
 
-enum type { /* signed ones are even */
+enum type { /* signed types are even */
     INT8,
     UINT8,
     INT16,
@@ -38,7 +38,7 @@ enum role {
 
 struct property {
     enum role role;
-    enum type type; /* of a list: of its elements */
+    enum type type; /* type of a list's elements, if it is a list */
     enum type length_type;
     bool is_list;
 };
@@ -83,7 +83,7 @@ static enum role accept_role(struct words *words, const struct element *element,
     return is_corners ? CORNERS : OTHER;
 }
 
-/* What follows "property". */
+/* Reads the words that follow "property". */
 static sonject_status read_property(struct words *words, struct header *header)
 {
     if (header->element_count == 0)
@@ -105,7 +105,7 @@ static sonject_status read_property(struct words *words, struct header *header)
     return SONJECT_OK;
 }
 
-/* What follows "element". */
+/* Reads the words that follow "element". */
 static sonject_status read_element(struct words *words, struct header *header)
 {
     if (header->element_count == ELEMENTS_MAX)
@@ -117,7 +117,7 @@ static sonject_status read_element(struct words *words, struct header *header)
     element->is_vertex = words_accept(words, "vertex");
     element->is_face = !element->is_vertex && words_accept(words, "face");
     while (words->at < words->end && !strchr(" \t\r\n", *words->at))
-        words->at++; /* any other name */
+        words->at++; /* another name */
     CHECK(words_whole(words, "the number of elements", &count));
     if (count < 0)
         return words_failure(words, "a number of elements that is not negative");
@@ -138,7 +138,7 @@ static sonject_status read_format(struct words *words, struct header *header)
     return words_accept(words, "1.0") ? SONJECT_OK : words_failure(words, "version 1.0");
 }
 
-/* Reads the lines of the header; words then stands at the first byte behind it. */
+/* Reads the lines of the header, and leaves words at the first byte behind it. */
 static sonject_status read_header(struct words *words, struct header *header)
 {
     memset(header, 0, sizeof *header);
@@ -171,8 +171,8 @@ static bool has_roles(const struct element *element, unsigned wanted)
     return (found & wanted) == wanted;
 }
 
-/* Whether there are vertices with x, y, z and faces with corners, and the file is long enough for
- * the header's counts. */
+/* Checks that there are vertices with x, y, z and faces with corners, and that the file is long
+ * enough for the header's counts. */
 static sonject_status check_header(const struct words *words, const struct header *header)
 {
     const struct mesh_soup *soup = words->soup;
@@ -181,7 +181,7 @@ static sonject_status check_header(const struct words *words, const struct heade
     int faces = 0;
     for (int i = 0; i < header->element_count; i++) {
         const struct element *element = &header->elements[i];
-        size_t least = 0; /* bytes that one takes in the file */
+        size_t least = 0; /* bytes that one element takes in the file */
         for (int k = 0; k < element->property_count; k++) {
             const struct property *property = &element->properties[k];
             const enum type type = property->is_list ? property->length_type : property->type;
@@ -219,7 +219,7 @@ static double number_of_bytes(const char *at, enum type type, bool is_big_endian
     return value;
 }
 
-/* The next number of the body; not finite ones only from binary files. */
+/* Reads the next number of the body. Only binary files may give one that is not finite. */
 static sonject_status next_number(struct words *words, const struct header *header, enum type type,
                                   double *number)
 {
@@ -237,7 +237,7 @@ static sonject_status next_number(struct words *words, const struct header *head
     return SONJECT_OK;
 }
 
-/* A list's elements; those of faces make triangles. */
+/* Reads a list's elements. Those of faces make triangles. */
 static sonject_status read_list(struct words *words, const struct header *header,
                                 const struct property *property)
 {
@@ -293,7 +293,7 @@ sonject_status ply_read(struct mesh_soup *soup, const char *bytes, size_t count)
     for (int i = 0; i < header.element_count; i++) {
         const struct element *element = &header.elements[i];
         if (element->property_count == 0)
-            continue; /* takes no bytes */
+            continue; /* it takes no bytes */
         for (uint64_t k = 0; k < element->count; k++)
             CHECK(read_one(&words, &header, element));
     }

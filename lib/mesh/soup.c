@@ -1,4 +1,4 @@
-/* Triangles as they come from a file, and the vertices among them that are one. */
+/* Triangles as a file lists them, and the search for vertices among them that are one. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,10 +8,10 @@
 #include "mesh/hierarchy.h"
 #include "mesh/mesh_reader.h"
 
-/* Most of them: what a mesh may have, and as many vertices as files without shared ones need. */
+/* The most vertices: as many as files without shared ones need for the most triangles. */
 #define VERTICES_MAX ((size_t)1 << 28)
 
-#define CELL_TOLERANCES 64.0 /* a cell of space, in which vertices are looked for */
+#define CELL_TOLERANCES 64.0 /* side of a cell of space, in tolerances */
 
 void mesh_soup_clear(struct mesh_soup *soup)
 {
@@ -70,8 +70,8 @@ static uint64_t mix(uint64_t value)
     return value ^ value >> 32;
 }
 
-/* What positions that may be one have in common: their bits, or a cell of space. A position near a
- * cell's wall is looked for beyond it, too: `aside` steps of the tolerance. */
+/* Returns the slot of a position by its bits, or by the cell of space that it is in. aside: steps
+ * of the tolerance, by which a position near a cell's wall is sought beyond it, too. */
 static size_t slot_of(const struct weld *weld, const double position[3], const int aside[3])
 {
     uint64_t key[3];
@@ -118,7 +118,7 @@ static bool widen(struct weld *weld)
     return true;
 }
 
-/* The vertex that is one with the position, counted from 1; 0: none is. */
+/* Returns the vertex that is one with the position, counted from 1; 0 if there is none. */
 static uint32_t find_vertex(const struct weld *weld, const double position[3])
 {
     const int most = weld->tolerance > 0.0 ? 1 : 0;
@@ -130,7 +130,7 @@ static uint32_t find_vertex(const struct weld *weld, const double position[3])
         size_t k = 0;
         while (k < count && before[k] != slot)
             k++;
-        if (k < count) /* most of them are one cell */
+        if (k < count) /* most steps stay in one cell */
             continue;
         before[count++] = slot;
         for (; weld->slots[slot] != 0; slot = (slot + 1) & (weld->capacity - 1)) {

@@ -6,8 +6,8 @@
 #include "base/file.h"
 #include "mesh/mesh_reader.h"
 
-#define HEADER_BYTES   84 /* 80 of any kind, then the number of triangles */
-#define TRIANGLE_BYTES 50 /* normal, three vertices, two bytes more */
+#define HEADER_BYTES   84 /* 80 bytes of any kind, then the number of triangles */
+#define TRIANGLE_BYTES 50 /* a normal, three vertices and two bytes */
 
 static uint64_t promised_triangles(const char *bytes)
 {
@@ -59,7 +59,7 @@ static sonject_status expect(struct words *words, const char *word)
                                                                 : words_failure(words, word);
 }
 
-/* What follows "facet". The normal is not used: many programs write 0 0 0, some write nan. */
+/* Reads what follows "facet". The normal is ignored: many programs write 0 0 0, some write nan. */
 static sonject_status read_facet(struct words *words, struct weld *weld)
 {
     uint32_t corners[3];
@@ -82,7 +82,7 @@ static sonject_status read_text(struct words *words, struct weld *weld)
     while (words_left(words, '\0')) {
         if (!words_accept(words, "solid"))
             return words_failure(words, "'solid'");
-        words_skip_line(words); /* its name */
+        words_skip_line(words); /* the solid's name */
         while (!words_left(words, '\0') || !words_accept(words, "endsolid")) {
             if (!words_accept(words, "facet"))
                 return words_failure(words, "'facet' or 'endsolid'");
@@ -93,7 +93,7 @@ static sonject_status read_text(struct words *words, struct weld *weld)
     return SONJECT_OK;
 }
 
-/* Binary files may begin with "solid" too; their size tells. */
+/* Returns whether a file is text. Binary files may begin with "solid" too; their size tells. */
 static bool is_text(const char *bytes, size_t count)
 {
     if (count < 6 || memcmp(bytes, "solid", 5) != 0)

@@ -1,5 +1,5 @@
-/* Whether triangles close, which side of them is outside, and the normals of the smooth surface
- * that they stand for. */
+/* The topology of a mesh: whether triangles close and which side is outside; and the normals of the
+ * smooth surface that triangles stand for. */
 
 #include <math.h>
 #include <stdlib.h>
@@ -53,7 +53,7 @@ static void measure_facet(const float *a, const float *b, const float *c, struct
     facet->angles[2] = (float)atan2(twice_area, dot(ac, bc));
 }
 
-/* The mean of the facets at corners list[0...count - 1] that are near facet number own. */
+/* Finds the mean normal of the facets at corners list[0...count - 1] that are near facet `own`. */
 static void mean_normal(const struct facet *facets, const uint32_t *list, size_t count, size_t own,
                         float least_cosine, float *normal)
 {
@@ -73,8 +73,8 @@ static void mean_normal(const struct facet *facets, const uint32_t *list, size_t
         normal[axis] = length > 0.0 ? (float)(sum[axis] / length) : facing[axis];
 }
 
-/* Corners (3 * triangle + 0...2) sorted by the vertex that they are at: those of vertex v are
- * list[starts[v]] to list[starts[v + 1] - 1], in ascending order. */
+/* Corners (3 * triangle + 0...2) sorted by vertex. Vertex v has the corners list[starts[v]] to
+ * list[starts[v + 1] - 1], in ascending order. */
 struct corner_lists {
     uint32_t *starts, *list; /* owned */
 };
@@ -85,7 +85,7 @@ static void clear_lists(struct corner_lists *lists)
     free(lists->list);
 }
 
-/* For clear_lists, whatever is returned. */
+/* Sorts corners into lists for clear_lists, also on failure. Returns false if memory lacks. */
 static bool sort_corners(struct corner_lists *lists, const uint32_t *vertex_of_corner,
                          size_t corner_count, size_t vertex_count)
 {
@@ -93,7 +93,7 @@ static bool sort_corners(struct corner_lists *lists, const uint32_t *vertex_of_c
     lists->list = allocate_array(corner_count, sizeof *lists->list);
     if (!lists->starts || !lists->list)
         return false;
-    /* counted two places on, so that filling leaves the starts where they belong */
+    /* counts lie two places on, so that filling leaves the starts where they belong */
     uint32_t *next = lists->starts + 1;
     for (size_t i = 0; i < corner_count; i++)
         next[vertex_of_corner[i] + 1]++;
@@ -135,13 +135,13 @@ sonject_status mesh_smooth_normals(struct report *report, const float *vertices,
     return SONJECT_OK;
 }
 
-/* The edge that starts at corner k of a triangle is number 3 * triangle + k. */
+/* Returns the vertex where an edge ends. Edge 3 * triangle + k starts at corner k of a triangle. */
 static uint32_t edge_end(const uint32_t *corners, size_t edge)
 {
     return corners[edge % 3 == 2 ? edge - 2 : edge + 1];
 }
 
-/* An edge by its higher vertex; those of one lower vertex are compared. */
+/* An edge by its higher vertex. Only edges of one lower vertex are compared. */
 struct edge {
     uint32_t higher, number;
 };
@@ -155,7 +155,7 @@ static int compare_edges(const void *first, const void *second)
     return a->number < b->number ? -1 : a->number > b->number;
 }
 
-/* Most vertices have few. */
+/* Sorts the edges of one lower vertex. Most vertices have few, so insertion is fast. */
 static void sort_edges(struct edge *edges, size_t count)
 {
     if (count > 24)
@@ -169,7 +169,7 @@ static void sort_edges(struct edge *edges, size_t count)
     }
 }
 
-/* Pairs the edges of one lower vertex. */
+/* Pairs the edges of one lower vertex, and counts those that are not two. */
 static void pair_edges(struct mesh_topology *topology, uint32_t lower, const struct edge *edges,
                        size_t count, uint32_t *partners)
 {
@@ -190,8 +190,8 @@ static void pair_edges(struct mesh_topology *topology, uint32_t lower, const str
     }
 }
 
-/* partners[edge]: the other triangle's, NO_PARTNER unless there is exactly one. False when memory
- * is out. */
+/* Sets partners[edge] to the same edge of the other triangle, or to NO_PARTNER unless there is
+ * exactly one. Returns false if memory lacks. */
 static bool find_partners(size_t vertex_count, const uint32_t *corners, size_t edge_count,
                           struct mesh_topology *topology, uint32_t *partners)
 {
@@ -227,7 +227,7 @@ enum visit {
     REVERSED = 2
 };
 
-/* Six times the volume between a triangle and the origin. */
+/* Returns six times the volume between a triangle and the origin. */
 static double six_volumes(const float *vertices, const uint32_t *corners, size_t triangle)
 {
     double p[3][3];
@@ -247,8 +247,8 @@ struct walk {
     uint32_t *list; /* triangles of the piece, in the order in which they were met */
 };
 
-/* Follows a piece from its first triangle over all edges of two; returns how many triangles it has.
- * *turned: how many run against the first. */
+/* Follows a piece from its first triangle over all edges of two. Returns the number of its
+ * triangles. *turned: number of those that run against the first. */
 static size_t follow_piece(struct walk *walk, uint32_t first, size_t *turned,
                            struct mesh_topology *topology)
 {
@@ -287,7 +287,7 @@ static void reverse(uint32_t *corners, size_t triangle)
     corners[3 * triangle + 2] = second;
 }
 
-/* Orients one piece; returns six times the volume that it encloses. */
+/* Orients one piece and returns six times the volume that it encloses. */
 static double orient_piece(struct walk *walk, size_t count, size_t turned,
                            struct mesh_topology *topology)
 {
@@ -296,8 +296,7 @@ static double orient_piece(struct walk *walk, size_t count, size_t turned,
         const double share = six_volumes(walk->vertices, walk->corners, walk->list[i]);
         volume += walk->visits[walk->list[i]] == REVERSED ? -share : share;
     }
-    /* where some had to be turned, turn those that leave the outside outside; in a piece that does
-     * not close, the fewer */
+    /* turns the triangles that leave the outside outside if some must turn; if open, the fewer */
     const bool turn_others =
         turned > 0 &&
         (topology->open_edges + topology->crowded_edges == 0 ? volume < 0.0 : 2 * turned > count);
