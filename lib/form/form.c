@@ -256,7 +256,7 @@ static void note_filled(struct form_lines *lines, int32_t strip, struct filled_s
 {
     const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
     const int32_t first = first_bin_of_columns(lines);
-    const int32_t before = bins.first - first - lines->pulse_taps; /* the last too early */
+    const int32_t before = bins.first - first - lines->pulse_taps; /* the last bin too early */
     struct filled_span *columns = &lines->filled_columns[strip - lines->grid.strips.first];
     columns->first = before < 0 ? 0 : before / per_pixel + 1;
     columns->end = bins.end - 1 < first ? 0 : (bins.end - 1 - first) / per_pixel + 1;

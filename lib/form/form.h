@@ -20,8 +20,7 @@
  * around add nothing. */
 bool filled_span_is_empty(struct filled_span span);
 
-/* Returns the bins of a line with anything but zeros in one of its parts. imaginary_part or NULL.
- */
+/* Returns the span of a line's bins outside which all are 0. imaginary_part may be NULL. */
 struct filled_span filled_span_of(const float *real_part, const float *imaginary_part, size_t bins);
 
 /* Returns the next run of strips after another, which at first is {0, 0}. A run begins and ends

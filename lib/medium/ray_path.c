@@ -1,8 +1,8 @@
-/* Snell's law through level layers (kernels/MATH.md, "Layers"). A ray has the ray parameter p =
- * cos(grazing angle) / c. x is the cotangent of that angle where sound is fastest, at c_max, and
- * runs from 0 to infinity. In x nothing cancels near total reflection and ranges grow about
- * linearly: p c = rho x / sqrt(1 + x^2), sin = sqrt((1 + x^2 (1 - rho^2)) / (1 + x^2)), rho = c /
- * c_max */
+/* Snell's law through level layers (kernels/MATH.md, "Layers"). A ray has the ray parameter
+ * p = cos(grazing angle) / c. x is the cotangent of that angle where sound is fastest, at c_max.
+ * In x, from 0 to infinity, nothing cancels near total reflection and ranges grow about linearly:
+ *     p c = rho x / sqrt(1 + x^2),  sin = sqrt((1 + x^2 (1 - rho^2)) / (1 + x^2)),  rho = c / c_max
+ */
 #include "medium/water.h"
 
 #include <math.h>
@@ -162,7 +162,7 @@ static struct sums sum_path(const struct ray_path *path, const struct legs *legs
     return sums;
 }
 
-/* Returns the energy that a plane between two layers transmits: 1 - R^2 with Rayleigh's R. */
+/* Returns the share of energy that a plane between layers transmits: 1 - R^2, with Rayleigh's R. */
 static double plane_transmission(const struct water_layer *one, const struct water_layer *other,
                                  double ray_parameter)
 {
@@ -174,8 +174,8 @@ static double plane_transmission(const struct water_layer *one, const struct wat
     return 1.0 - reflection * reflection;
 }
 
-/* Returns the energy that all planes transmit. Planes between equal densities are those of a
- * profile, which changes gently, and transmit all. */
+/* Returns the share of energy that all planes transmit. Planes between equal densities are those of
+ * a profile, which changes gently, and transmit all. */
 static double transmission(const struct ray_path *path, const struct legs *legs,
                            const struct stretch *last, double ray_parameter)
 {

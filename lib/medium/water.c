@@ -15,7 +15,7 @@
 
 #define STEPS_PER_SPEED     20000.0
 #define KELVIN_AT_0_CELSIUS 273.0 /* the papers' own, without the 0.15 */
-#define JOINED_DIFFERENCE   0.002 /* relative; of layers that become straight water */
+#define JOINED_DIFFERENCE   0.002 /* relative, of layers that become the straight water */
 /* The largest relative difference of sound speeds in a slice, and error of the way straight up.
  * Levels depend on half the former over the square of the tangent of the grazing angle. */
 #define SLICE_DIFFERENCE 3.0e-5
@@ -172,7 +172,7 @@ static double overlap(const struct water *water, size_t i, double low, double hi
     return fmax(0.0, top - bottom);
 }
 
-/* Joins all layers below `highest`. */
+/* Joins all layers below `highest` into one. */
 static sonject_status join_below(struct water *water, struct report *report, double highest)
 {
     double slowness = 0.0, density = 0.0;

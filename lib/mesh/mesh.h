@@ -72,8 +72,7 @@ sonject_status mesh_load(struct report *report, const char *path,
 
 void mesh_clear(struct mesh *mesh);
 
-/* Returns SONJECT_OK if the mesh is closed. Errors: INPUT (the message tells what is open, where).
- */
+/* Returns SONJECT_OK if the mesh is closed. Errors: INPUT (the message tells what is open). */
 sonject_status mesh_require_closed(struct report *report, const char *name,
                                    const struct mesh *mesh);
 

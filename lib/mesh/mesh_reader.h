@@ -26,9 +26,8 @@ struct mesh_soup {
 sonject_status mesh_soup_add_vertex(struct mesh_soup *soup, const double position[3]);
 sonject_status mesh_soup_add_triangle(struct mesh_soup *soup, uint32_t a, uint32_t b, uint32_t c);
 
-/* Adds corner number `place` (0, 1, ...) of a polygon. From the third corner on, it closes a
- * triangle of a fan from the first corner, right for convex polygons. fan: the polygon's scratch.
- */
+/* Adds corner number `place` (0, 1, ...) of a polygon. From the third on, it closes a triangle of a
+ * fan from the first corner, right for convex polygons. fan: scratch of the polygon. */
 sonject_status mesh_soup_add_polygon_corner(struct mesh_soup *soup, size_t place, uint32_t corner,
                                             uint32_t fan[2]);
 void mesh_soup_clear(struct mesh_soup *soup);

@@ -237,7 +237,7 @@ static sonject_status next_number(struct words *words, const struct header *head
     return SONJECT_OK;
 }
 
-/* Reads a list's elements. Those of faces make triangles. */
+/* Reads a list's elements. Corners of a face make triangles. */
 static sonject_status read_list(struct words *words, const struct header *header,
                                 const struct property *property)
 {

@@ -10,7 +10,7 @@
 #include "trace/object_buffer.h"
 
 #define PI              3.14159265358979323846
-#define SEABED_SHARE    8.0f /* follows all rays within about two radii of a sphere of targets */
+#define SEABED_SHARE    8.0f /* large enough to follow all rays within about two radii of a sphere */
 #define TALLY_BYTES_MAX ((size_t)1 << 30)
 
 typedef char orders_have_room[CHAIN_ORDERS_MAX == SCENE_INTERACTIONS_MAX ? 1 : -1];
@@ -127,7 +127,7 @@ static sonject_status init_seabed_fan(struct chain_fan *fan, struct tracer *trac
 {
     const struct patch_view *view = &tracer->view;
     const struct surroundings around = surroundings_of_objects(tracer);
-    /* no echo comes before that of its first hit: seabed beyond the patch begins none in it */
+    /* no echo comes before that of its first hit, so seabed beyond the patch adds none */
     const double patch_end = view_ground_range(view, line_grid_far_end(grid, view));
     const double far = ray_path_grazing(&view->water, fmin(around.far_ground, patch_end), 0.0);
     const double near = around.near_ground > 0.0

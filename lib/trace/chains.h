@@ -7,11 +7,11 @@
 #include "trace/object_buffer.h"
 #include "trace/tracer.h"
 
-/* Returns whether chains meet the sea surface. Chains must count how it returns sound, no layer may
- * bend the sound below it, and the patch must hold some echoes. The earliest echo has half a path
- * of (|OC| + |O'C|)/2 less the radius around a target's centre C. O' is the sonar's image in the
- * surface. No path by way of target and surface is shorter. grid: the grid on which echoes are
- * tallied. */
+/* Returns whether chains meet the sea surface. The surface must be rough, or smooth with three
+ * interactions or more. No layer may bend sound below it, and the patch must hold some echoes. The
+ * earliest echo has half a path of (|OC| + |O'C|)/2 less the radius around a target's centre C. O'
+ * is the sonar's image in the surface. No path by way of target and surface is shorter. grid: the
+ * grid on which echoes are tallied. */
 bool sea_surface_is_in_chains(const struct tracer *tracer, const struct line_grid *grid);
 
 /* The reach of chains on the seabed, from a part's centre, m: along-track and away from the sonar,
@@ -24,8 +24,7 @@ struct chain_reach {
  * whose detour is at most the part's mean height comes from outside (kernels/MATH.md, "Chains"). */
 struct chain_reach chain_reach_of(const struct tracer *tracer, const struct placement *placement);
 
-/* A fan and its strips. Sound goes aside between seabed and object, so they may exceed the patch.
- */
+/* A fan and its strips. Sound goes aside on the way, so the strips may leave the patch. */
 struct chain_fan {
     struct fan_record record;
     struct span strips;
@@ -41,9 +40,9 @@ uint32_t chain_fan_count(const struct tracer *tracer);
 sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,
                               const struct line_grid *grid, bool has_map, uint32_t i);
 
-/* Returns whether cells sample the paths of two interactions between seabed and target that end in
- * them. Otherwise the paths are followed from the seabed. Sampling needs paths that stand for their
- * reverse, and chains without the sea surface. */
+/* Returns whether paths of two interactions between seabed and a target are sampled by the cells
+ * where their echoes end. Otherwise rays from the seabed find them. Sampling needs paths that stand
+ * for their reverse, and chains without the sea surface. */
 bool second_order_is_sampled(const struct tracer *tracer, const struct line_grid *grid);
 
 /* Adds the targets' records behind the spheres, and completes the chains' record for samples. */
@@ -79,7 +78,7 @@ struct chain_trace {
     uint32_t
         first_order; /* interactions of the shortest path that is counted: 2, or 1 by brute force */
     uint32_t orders; /* number of orders from first_order on; each has a plane of the tally */
-    int exponents[CHAIN_ORDERS_MAX]; /* log2 of quanta per m^2 of the device's, by order */
+    int exponents[CHAIN_ORDERS_MAX]; /* log2 of quanta per m^2 on the device, by order */
     bool has_map, has_sea_surface;
     struct ray_table_record table; /* describes the rays of all fans */
     struct launch launch;

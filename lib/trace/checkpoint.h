@@ -17,7 +17,7 @@ struct checkpoint {
     struct sums_head head; /* tells what is traced: shard, first and so on */
     uint64_t next;    /* number of the strip to trace next, in the shard's strips of all launches */
     bool is_stopping; /* nothing more is traced; later launches are only counted */
-    int (*ask)(void *user); /* called after each slice of a launch; nonzero stops; NULL: never */
+    int (*ask)(void *user); /* called after each slice of a launch; nonzero stops; may be NULL */
     void *user;
     struct sums_writer writer; /* holds what is traced; unused where checkpoints are added up */
 
@@ -35,8 +35,9 @@ struct checkpoint {
     int64_t *sums;         /* added-up sums; owned */
 };
 
-/* Begins to trace a shard from head->first on. Borrows report, path and folder (sums_writer_begin).
- * After success the caller calls checkpoint_clear. Errors: STORAGE, MEMORY. */
+/* Begins to trace a shard from head->first on; earlier strips are in other checkpoints. Borrows
+ * report, path and folder (sums_writer_begin). After success the caller calls checkpoint_clear.
+ * Errors: STORAGE, MEMORY. */
 sonject_status checkpoint_begin(struct checkpoint *checkpoint, struct report *report,
                                 const char *path, const char *folder, const struct sums_head *head);
 
@@ -49,12 +50,12 @@ void checkpoint_clear(struct checkpoint *checkpoint);
 void checkpoint_launch(struct checkpoint *checkpoint, const struct fan_record *fan,
                        const struct ray_table *rays);
 
-/* Finds the launch's next turns to trace, for which checkpoint_advance follows; false: none left.
- */
+/* Finds the launch's next turns, which the caller traces and then gives to checkpoint_advance.
+ * Returns false where none are left. */
 bool checkpoint_next(struct checkpoint *checkpoint, struct span *turns);
 void checkpoint_advance(struct checkpoint *checkpoint, struct span turns);
 
-/* Returns whether less was traced than asked for: sums are then of no use. checkpoint: or NULL. */
+/* Returns whether less was traced than asked for: sums are useless then. False for NULL. */
 bool checkpoint_is_cut_short(const struct checkpoint *checkpoint);
 
 /* Hands traced sums to the checkpoint and sets *sums to the sums to go on with, valid until the
@@ -63,7 +64,8 @@ bool checkpoint_is_cut_short(const struct checkpoint *checkpoint);
 sonject_status checkpoint_sums(struct checkpoint *checkpoint, const int64_t *traced, size_t count,
                                const int64_t **sums);
 
-/* Adds up sums that are not one array: hands the runs of all files to `take`. Errors: as before. */
+/* Adds up sums that are not one array: hands the runs of all files to `take`. Errors: as
+ * checkpoint_sums. */
 sonject_status checkpoint_add_up(struct checkpoint *checkpoint, uint64_t count,
                                  sums_run_function *take, void *user);
 

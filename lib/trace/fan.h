@@ -16,7 +16,7 @@ struct elevations {
     double lowest, highest;
 };
 
-/* Finds the middle of the patch on the seabed: the origin of the frame that the patch has. */
+/* Finds the middle of the patch on the seabed, which is the origin of the patch's frame. */
 void patch_fan_origin(double origin[3], const struct patch_view *view);
 
 /* Fills in a fan record for the patch. Its rays, quanta and stream are left 0. has_map: the launch

@@ -13,8 +13,8 @@
 struct laying {
     struct fan_edges *edges;
     const struct tracer *tracer;
-    double central; /* grazing angle of the centre, rad */
-    double grazing; /* grazing angle of the last edge */
+    double central; /* grazing angle of the central direction, rad */
+    double grazing; /* grazing angle of the last edge, rad */
     double per_bin; /* rays of a bin, scaled; below 1 bins share one */
     double finest;  /* step that objects need, rad */
 };
@@ -72,7 +72,7 @@ sonject_status fan_edges_init(struct fan_edges *edges, struct fan_record *fan,
     const struct patch_view *view = &tracer->view;
     const double per_pixel = grid->bins_per_pixel;
     const double offset = (double)view->first_column * per_pixel; /* bin numbers are the patch's */
-    const double end = grid->bins.first + grid->bins.count + 1.0; /* echoes spill over by one */
+    const double end = grid->bins.first + grid->bins.count + 1.0; /* echoes spill into the next */
     const double nearest = fmax(nearest_m, view_bottom_range(view));
     struct laying laying = {.edges = edges, .tracer = tracer};
     double origin[3];

@@ -27,7 +27,7 @@ static double gain_of(const sonject_fouling_params *fouling)
 }
 
 /* Returns the albedo where all crests meet. I0(x), the mean of exp(x cos) over a cycle, is a wave's
- * factor of the mean. */
+ * factor in the mean. */
 static double peak_of(const sonject_fouling_params *fouling)
 {
     const double gain = gain_of(fouling);

@@ -15,10 +15,10 @@
 /* The cell of a round part, in square roots of wavelength times radius of curvature: an eleventh of
  * its first Fresnel zone across the ray. Along the track it is half of that. */
 #define CELL_OF_CURVATURE (1.0 / 16.0)
-/* Columns so wide, in wavelengths, hold so much seabed that the noise of edges hides in it. */
+/* Columns this wide, in wavelengths, hold so much seabed that the noise of edges hides in it. */
 #define EDGE_COLUMN_WAVELENGTHS (5.0 / 3.0)
-/* EDGE_WAVELENGTHS limits the change of the whole path across a cell of a flat face. Faces so flat
- * to see that this takes more than EDGE_FINER_MOST times the usual rays return little, and keep
+/* EDGE_WAVELENGTHS limits the change of the whole path across a cell of a flat face. Faces seen so
+ * flat that this takes more than EDGE_FINER_MOST times the usual rays return little, and have
  * coarser cells. The loss at edges is made up where half the path changes by at most EDGE_MADE_UP
  * wavelengths across a cell; beyond, that would be noise. */
 #define EDGE_WAVELENGTHS   0.3
@@ -165,8 +165,7 @@ static void choose_quanta(struct smooth_trace *trace, const struct tracer *trace
     trace->amplitude_of_quantum = ratio * ratio / fan->quanta;
 }
 
-/* Begins a launch of the parts in the way, in a frame centred on the one aimed at. sources: NULL
- * for the straight pair. */
+/* Begins a launch of the parts in the way, centred on the one aimed at. sources: NULL: straight. */
 static sonject_status begin_launch(struct smooth_trace *trace, struct tracer *tracer, uint32_t part,
                                    const struct image_pair_record *sources)
 {

@@ -1,6 +1,6 @@
-/* The coherent part: one object's glints by physical optics, strip by strip. These sub-strips are
- * at most a quarter wavelength wide. Glints that go straight and by image sources interfere, so
- * each pair of sources has a trace, and one grid adds up all of them. */
+/* The coherent part: one object's glints by physical optics, in sub-strips of at most a quarter
+ * wavelength. Glints that go straight and by image sources interfere, so each pair of sources has a
+ * trace, and one grid adds up all of them. */
 #ifndef SONJECT_TRACE_GLINTS_H
 #define SONJECT_TRACE_GLINTS_H
 
@@ -39,13 +39,13 @@ struct glint_cell {
 struct glint_cell glint_cell_of(const struct tracer *tracer, double wavelengths);
 
 /* Lays the rays of a fan, whose strips are known, from a source to a part. Edges of faces need
- * finer rays across them. steepest: the path's gradient on those faces; 0: no edge is heard. */
+ * finer cells across the ray. steepest: the path's gradient on those faces; 0: no edge is heard. */
 void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
                     const struct ray_path *path, struct glint_cell cell, double steepest);
 
 /* Prepares a trace of one part's glints like rough_trace_begin: straight there and back (pair
  * NULL), or by way of boundaries. A part without a smooth part has grid.strips.count 0.
- * grid.bins.count is 0 where no echo of a pair reaches the patch. Neither has anything to trace. */
+ * grid.bins.count is 0 where no echo of a pair reaches the patch. Both have nothing to trace. */
 sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer, uint32_t part,
                                   const struct image_pair *pair);
 void smooth_trace_end(struct smooth_trace *trace);

@@ -68,8 +68,8 @@ struct span bins_in_patch(const struct tracer *tracer, const struct line_grid *g
 
 /* Returns whether any pair keeps more than exp(-12), -104 dB, of what the part returns as a mirror.
  * Roughness takes exp(-P^2/2), P = 2 k eta cos(theta), theta being half the angle between the
- * directions to both sources. Otherwise echoes of edges of slanting faces are not traced either.
- * Roughness would leave more of them there, but edges are as rough. */
+ * directions to both sources. Where no pair does, echoes of edges of slanting faces are not traced
+ * either. Roughness would leave more of them, but edges are as rough. */
 bool part_has_glints(const struct tracer *tracer, uint32_t part);
 
 /* Returns the bins in the patch of all the part's pairs but the straight one; count 0 for none. */
@@ -83,8 +83,8 @@ struct span span_join(struct span one, struct span other);
 struct span span_overlap(struct span one, struct span other);
 
 /* Fills in a pair's record, and a fan from the outgoing source in a frame centred on the part. The
- * fan is as of fan_record_init, with bins and phases of half the path. Appends the rays of both
- * paths. Errors: as patch_rays_init. */
+ * fan is like that of fan_record_init, with bins and phases of half the path. Appends the rays of
+ * both paths. Errors: as patch_rays_init. */
 sonject_status image_pair_aim(struct fan_record *fan, struct image_pair_record *record,
                               struct ray_table *rays, const struct tracer *tracer, uint32_t part,
                               const struct image_pair *pair, const struct line_grid *grid);

@@ -120,7 +120,7 @@ static void fill_branch(struct builder *builder, const struct pending *pending)
     }
 }
 
-/* Every branch has at least two children, so there are fewer branches than objects. */
+/* Fills the tree. A branch has at least two children, so there are fewer branches than objects. */
 static void fill_tree(struct builder *builder, uint32_t count)
 {
     const struct split_range all = {0, count, split_box_of(builder->objects, 0, count)};

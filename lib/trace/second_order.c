@@ -68,7 +68,7 @@ static double top_of_part(const struct tracer *tracer, uint32_t part)
     return fmax(height + placement_half_extent(placement, upward), 0.01);
 }
 
-/* Returns the weight of a part, m^2. Both ways add in amplitude, over two places on the seabed. */
+/* Returns a part's weight, m^2. 8: both ways, whose amplitudes add, and two places on seabed. */
 static double weight_of_part(const struct tracer *tracer, uint32_t part)
 {
     return 8.0 * window_of_part(tracer, part).area_m2 * brightness_of_part(tracer, part) /

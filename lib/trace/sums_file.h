@@ -69,7 +69,7 @@ sonject_status sums_writer_begin(struct sums_writer *writer, struct report *repo
                                  const char *path, const char *folder);
 void sums_writer_clear(struct sums_writer *writer);
 
-/* Write a block of sums: begin, runs in any order, end. Errors: STORAGE, MEMORY. */
+/* Writes a block of sums: begin, runs in any order, end. Errors: STORAGE, MEMORY. */
 sonject_status sums_writer_begin_sums(struct sums_writer *writer, uint64_t count);
 sonject_status sums_writer_run(struct sums_writer *writer, uint64_t first, const int64_t *values,
                                size_t count);

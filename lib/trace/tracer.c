@@ -150,8 +150,7 @@ static sonject_status add_outcomes(struct tracer *tracer, const struct outcome_r
                           faults & FAULT_OUTSIDE_TILE ? " shadow outside its bounds;" : "");
 }
 
-/* Returns the groups a strip. A CPU's work-item does a whole strip; a GPU needs thousands of them.
- */
+/* Returns the groups of a strip: one on a CPU, whose work-item does all; a GPU needs thousands. */
 static int32_t segments_for(const struct tracer *tracer, const struct fan_record *fan)
 {
     if (tracer->device->group_items == 1)
