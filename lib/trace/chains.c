@@ -10,7 +10,7 @@
 #include "trace/object_buffer.h"
 
 #define PI              3.14159265358979323846
-#define SEABED_SHARE    8.0f /* large enough to follow all rays within about two radii of a sphere */
+#define SEABED_SHARE    8.0f /* enough to follow all rays within about two radii of a sphere */
 #define TALLY_BYTES_MAX ((size_t)1 << 30)
 
 typedef char orders_have_room[CHAIN_ORDERS_MAX == SCENE_INTERACTIONS_MAX ? 1 : -1];

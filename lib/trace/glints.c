@@ -165,7 +165,7 @@ static void choose_quanta(struct smooth_trace *trace, const struct tracer *trace
     trace->amplitude_of_quantum = ratio * ratio / fan->quanta;
 }
 
-/* Begins a launch of the parts in the way, centred on the one aimed at. sources: NULL: straight. */
+/* Begins a launch of the parts in the way, centred on the one aimed at. sources: or NULL. */
 static sonject_status begin_launch(struct smooth_trace *trace, struct tracer *tracer, uint32_t part,
                                    const struct image_pair_record *sources)
 {

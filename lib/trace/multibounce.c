@@ -37,9 +37,9 @@ bool multibounce_may_echo(const struct tracer *tracer, uint32_t part)
            (smooth_parts > 1 || !shape_is_convex(&placement->size, placement->shape));
 }
 
-/* Returns a bound, m, of what each further interaction adds to a path between the first and last
- * hit: the diagonal of a box around the smooth parts. The seabed takes two interactions, so half
- * the diagonal of a box around the parts and their images is a bound, too. */
+/* Returns the most, m, that each further interaction adds to a path between the first and last hit:
+ * the diagonal of a box around the smooth parts or, if larger, half that of a box around the parts
+ * and their images in the seabed. A way by the seabed takes two interactions. */
 static double longest_step(const struct tracer *tracer, uint32_t object)
 {
     double height;

@@ -10,7 +10,7 @@
 #include "trace/fouling.h"
 #include "trace/rough.h"
 
-#define MARGIN_M    1.0e-3 /* m beyond the heights, so that rays cross them all between the bounds */
+#define MARGIN_M    1.0e-3 /* m beyond the heights, so that rays cross them between the bounds */
 #define WORD        4
 #define ALIGNED(n)  (((n) + 15) & ~(size_t)15) /* in words, as wide as vectors are */
 #define WORDS_MOST  ((size_t)UINT32_MAX)
