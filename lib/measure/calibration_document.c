@@ -16,12 +16,11 @@
 #define MISFIT_UNSEEN 0.005 /* share of pixels off that levels within plain tiles explain */
 #define LOOKS_KEPT    64.0  /* most looks that injection.match.looks takes */
 #define RETURNS_MOST                                                                               \
-/* The most first returns that are listed. A scene's reader takes TREE_NODES_MAX values. */
-20000
+    20000 /* most first returns that are listed; a scene's reader takes TREE_NODES_MAX values */
 
-    static const uint32_t family_kinds[] = {[CURVE_POWER] = SONJECT_TRANSFER_GAMMA,
-                                            [CURVE_DECIBEL] = SONJECT_TRANSFER_DECIBEL,
-                                            [CURVE_SCHLICK] = SONJECT_TRANSFER_SCHLICK};
+static const uint32_t family_kinds[] = {[CURVE_POWER] = SONJECT_TRANSFER_GAMMA,
+                                        [CURVE_DECIBEL] = SONJECT_TRANSFER_DECIBEL,
+                                        [CURVE_SCHLICK] = SONJECT_TRANSFER_SCHLICK};
 static const char *const side_words[] = {
     [WATER_AT_LEFT] = "one, range grows to the right",
     [WATER_AT_RIGHT] = "one, range grows to the left",
