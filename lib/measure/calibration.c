@@ -261,9 +261,8 @@ static sonject_status settle_looks(struct report *report, struct calibration *fo
     return fit_one_look(report, found, swath, parameter);
 }
 
-/* Decides which kind of transfer the power's exponent makes. A simple exponent is then kept. Where
- * speckle does not tell looks and exponent apart, a narrow spread is taken for amplitudes of
- * several looks. */
+/* Decides the kind of transfer that the power's exponent makes. A simple exponent is then kept.
+ * Where speckle does not tell looks and exponent apart, a narrow spread means several looks. */
 static sonject_status settle_power(struct report *report, struct calibration *found,
                                    const struct stored_swath *swath)
 {

@@ -27,8 +27,7 @@ static const char *const side_words[] = {
     [WATER_BETWEEN] = "two",
 };
 
-/* Returns a number of four digits, so that the last bit of a machine's logarithms decides no
- * pixel. */
+/* Returns a number of four digits, so that no last bit of a logarithm decides a pixel. */
 static double rounded(double value)
 {
     char text[DIGITS + 16];
@@ -267,8 +266,7 @@ json_t *calibration_document(const struct calibration *found, const char *path, 
 
 /* ---- YAML. */
 
-/* Adds a text, in JSON's quotes, which YAML also takes, unless it is plainly a text without
- * them. */
+/* Adds a text in JSON's quotes, which YAML takes, too, or without quotes where none are needed. */
 static void add_text(struct growing_text *text, const char *value)
 {
     const size_t plain = strspn(value, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"

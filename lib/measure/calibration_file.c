@@ -38,8 +38,7 @@ static void find_type(struct stored_swath *swath, enum pixel_type type, const vo
     }
 }
 
-/* Reads a file's numbers, or the magnitudes of complex pixels. The caller frees *values by
- * free(). */
+/* Reads a file's numbers, or the magnitudes of complex pixels. *values is for free(). */
 static sonject_status read_swath(struct report *report, const char *path, struct swath_file *file,
                                  struct stored_swath *swath, float **values)
 {

@@ -225,8 +225,7 @@ static void look_at_steps(const struct calibration *found, const struct stored_s
     *at_lowest = low / pixels;
 }
 
-/* Returns by how many dB a standard error of the curve's parameter moves the noise floor relative
- * to the seabed. */
+/* Returns by how many dB a standard error of the curve's parameter moves the floor over seabed. */
 static double floor_by_parameter(const struct calibration *found, double level, double log_floor)
 {
     const struct curve_fit *fit = &found->fits[found->family];
@@ -291,8 +290,7 @@ static sonject_status find_floor(struct report *report, struct calibration *foun
 
 /* ---- The water column. */
 
-/* Returns the standard error of one ping's first return, from the pings' scatter about their
- * neighbours. */
+/* Returns the standard error of one ping's first return, from the scatter about its neighbours. */
 static double return_error(const double *columns, size_t rows, double *scratch)
 {
     for (size_t i = 1; i + 1 < rows; i++)

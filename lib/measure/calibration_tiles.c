@@ -52,9 +52,8 @@ static float median_of_floats(float *values, size_t count)
     return 0.5f * (values[(count - 1) / 2] + values[count / 2]);
 }
 
-/* Returns the deviation of the medians of a tile's parts, over the spread of its pixels. Such a
- * rank statistic changes little with the curve. Returns infinity for a tile that is blank, clipped
- * or constant. */
+/* Returns the deviation of the medians of a tile's parts, over the spread of its pixels. This rank
+ * statistic hardly depends on the curve. Infinite for a tile that is blank, clipped or constant. */
 static float unevenness(const struct stored_swath *swath, size_t row, size_t column, size_t side,
                         double ceiling)
 {

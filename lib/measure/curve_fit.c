@@ -128,8 +128,7 @@ static double looks_of(const double logs[2])
     return fmin(LOOKS_MOST, fmax(LOOKS_LEAST, exp(logs[1])));
 }
 
-/* Returns the log likelihood of all tiles, and fills that of each. Outside the bounds it falls with
- * the distance from them. */
+/* Returns the log likelihood of all tiles, and fills that of each. Outside the bounds it falls. */
 static double evaluate(struct fitting *fit, const double logs[2])
 {
     const struct plain_tiles *tiles = fit->tiles;
@@ -163,8 +162,7 @@ static double tile_quantile(const struct fitting *fit, size_t tile, double share
     return fit->places[edge - 1] + t * (fit->places[edge] - fit->places[edge - 1]);
 }
 
-/* Starts the levels at the tiles' medians. Returns the median of the tiles' interquartile
- * distances. */
+/* Starts the levels at the tiles' medians. Returns the median interquartile distance. */
 static double start_levels(struct fitting *fit, const double logs[2])
 {
     const struct plain_tiles *tiles = fit->tiles;
@@ -187,8 +185,7 @@ static double start_levels(struct fitting *fit, const double logs[2])
     return spread;
 }
 
-/* Chooses where a search begins: at the given looks, and at the parameter that fits their
- * quartiles. */
+/* Chooses where a search begins: at these looks, and at the parameter that fits their quartiles. */
 static void choose_start(struct fitting *fit, double looks, double logs[2])
 {
     if (fit->moves[1])

@@ -42,8 +42,7 @@ static double step_at(const double *sums, size_t column)
     return mean_level(sums, column, WINDOW) - mean_level(sums, column - WINDOW, WINDOW);
 }
 
-/* Returns the largest step near the first one that is high enough; 0 if there is none, or if what
- * lies before it is not dark. */
+/* Returns the column of the first high step, where it is largest; 0: none, or bright before it. */
 static size_t first_step(const double *sums, size_t columns)
 {
     size_t found = 0;
@@ -113,8 +112,7 @@ void first_returns_clear(struct first_returns *returns)
     memset(returns, 0, sizeof *returns);
 }
 
-/* Finds the first returns in count columns that begin at first. Range grows to the right, or to the
- * left if is_mirrored. */
+/* Finds first returns in count columns from first on; range grows to the left if is_mirrored. */
 static sonject_status find_side(struct report *report, const float *intensity, size_t rows,
                                 size_t stride, size_t first, size_t count, bool is_mirrored,
                                 size_t *first_columns)
@@ -159,8 +157,7 @@ static sonject_status find_darkest(struct report *report, const float *intensity
     return SONJECT_OK;
 }
 
-/* Finds the nadir halfway between both sides' first returns, whatever column the search began
- * at. */
+/* Finds the nadir halfway between both sides' first returns, wherever the search began. */
 static sonject_status join_sides(struct first_returns *returns, struct report *report,
                                  const size_t *right, const size_t *left, size_t rows,
                                  size_t middle)
@@ -173,8 +170,7 @@ static sonject_status join_sides(struct first_returns *returns, struct report *r
     }
     qsort(halfway, rows, sizeof *halfway, compare_doubles);
     returns->nadir_column = halfway[rows / 2];
-    /* Of normal values the quartiles are 1.349 deviations apart. Five rows share their first
-     * return. */
+    /* The quartiles of normal values are 1.349 deviations apart. Five rows share a first return. */
     const double spread = (halfway[3 * rows / 4] - halfway[rows / 4]) / 1.349;
     const double rounding = 0.3;
     returns->nadir_column_error =

@@ -1,5 +1,4 @@
-/* The column at which the seabed begins in each ping of a sidescan waterfall, behind its water
- * column. */
+/* The column at which the seabed begins, behind the water column, in each ping of a waterfall. */
 #ifndef SONJECT_MEASURE_FIRST_RETURN_H
 #define SONJECT_MEASURE_FIRST_RETURN_H
 
@@ -27,8 +26,8 @@ struct first_returns {
     enum water_sides sides;
     double nadir_column;       /* column of range 0; NAN: unseen; the image's edge for one side */
     double nadir_column_error; /* standard error */
-    double *columns; /* columns from the nadir to the seabed's first pixel in each row, the mean of
-                        two sides; NULL: unseen; owned */
+    double *columns; /* columns from nadir to seabed in each row, the mean of two sides; NULL:
+                        unseen; owned */
 };
 
 /* Finds which sides a waterfall shows, and its first returns. Errors: MEMORY. */

@@ -51,8 +51,7 @@ static double contrast_at(struct contrast_work *work, double parameter)
     return work->contrasts[work->count / 2];
 }
 
-/* Returns the logarithm of the parameter that gives the contrast of one look. *error gets its
- * standard error. */
+/* Returns the logarithm of the parameter that gives one look's contrast. *error: standard error. */
 static double solve(struct contrast_work *work, double low, double high, double *error)
 {
     for (int i = 0; i < HALVINGS; i++) {
@@ -67,8 +66,7 @@ static double solve(struct contrast_work *work, double low, double high, double 
         (contrast_at(work, exp(found + SLOPE_STEP)) - contrast_at(work, exp(found - SLOPE_STEP))) /
         (2.0 * SLOPE_STEP);
     contrast_at(work, exp(found));
-    /* A median errs by 1.2533 deviations over the root of the count; quartiles give the
-     * deviation. */
+    /* A median errs by 1.2533 deviations over the root of the count. */
     const size_t count = work->count;
     const double deviation = (work->contrasts[3 * count / 4] - work->contrasts[count / 4]) / 1.349;
     *error = slope > 0.0 ? 1.2533 * deviation / sqrt((double)count) / slope : INFINITY;

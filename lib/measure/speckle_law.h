@@ -1,5 +1,4 @@
-/* The distribution of the logarithm of speckle's intensity: an average of looks, on texture (the K
- * distribution). */
+/* The law of the logarithm of speckle's intensity: averaged looks, on texture (K distribution). */
 #ifndef SONJECT_MEASURE_SPECKLE_LAW_H
 #define SONJECT_MEASURE_SPECKLE_LAW_H
 
@@ -7,8 +6,7 @@
 #define LAW_LEAST  (-16.0)
 #define LAW_POINTS 1101
 
-/* The distribution of log intensity over its mean: the share below each point, and the density
- * there times LAW_STEP. */
+/* The law of log intensity over its mean: the share below each point, and density x LAW_STEP. */
 struct speckle_law {
     double below[LAW_POINTS];
     double density[LAW_POINTS];
