@@ -29,7 +29,7 @@
 struct estimate {
     double value, error;
     const char *unseen;
-    const char *how; /* how the estimate was found */
+    const char *how; /* the method */
 };
 
 /* A swath's stored numbers, or the magnitudes of complex pixels. */
@@ -128,8 +128,8 @@ struct calibration {
     double recorded_altitude_m; /* median or mean altitude in the file; 0: none */
     double recorded_share;      /* median of recorded altitude over first return; 0: unknown */
     /* The members below are for the page. */
-    double correlation[2][CALIBRATION_LAGS]; /* of intensity: [0] along the track, [1] in range */
-    double gain_db[GAIN_BANDS], gain_error_db[GAIN_BANDS]; /* of bands, dB; NAN: no tiles */
+    double correlation[2][CALIBRATION_LAGS]; /* intensity's: [0] along the track, [1] in range */
+    double gain_db[GAIN_BANDS], gain_error_db[GAIN_BANDS]; /* bands' levels; NAN: no tiles */
     double histogram[PAGE_BINS]; /* shares of pixels, in bins from 0 to histogram_top */
     double histogram_top;
     size_t gain_bands;

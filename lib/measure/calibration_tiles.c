@@ -9,10 +9,10 @@
 
 #define TILE_SIDE       32
 #define TILE_SIDE_SMALL 16
-#define TILES_FEW       40   /* with fewer tiles of TILE_SIDE, smaller ones are used */
+#define TILES_FEW       40   /* fewest tiles of TILE_SIDE; below, smaller ones are used */
 #define CANDIDATES_MOST 4000 /* most tiles examined */
 #define TILES_MOST      600  /* most tiles used */
-#define PARTS           4    /* of a tile along an axis; their medians tell how plain it is */
+#define PARTS           4    /* parts of a tile along an axis, whose medians tell how plain it is */
 #define CLIPPED_MOST    0.25 /* largest share of clipped pixels in a tile */
 #define BLANK_MOST      0.05
 #define QUANTILE_EDGES  48

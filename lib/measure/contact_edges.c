@@ -5,9 +5,9 @@
 #define STEPS_PER_PIXEL 4
 #define BEFORE_END      3    /* pixels before an end, whose largest mean spreads beyond it */
 #define SPREADS         3    /* shares of that mean that are tried */
-#define SPREAD_RATIO    0.71 /* of one share to the one before; the first is 1 */
+#define SPREAD_RATIO    0.71 /* ratio of one share to the one before; the first is 1 */
 #define REACH           6    /* deviations beyond which the point response is nil */
-#define WIDTH_RATIO     1.6  /* from a penumbra's width to the next; first: the response's */
+#define WIDTH_RATIO     1.6  /* ratio of penumbras' widths; the first is the response's */
 #define LOBE_BIAS_RATIO 2.0
 #define FAINTEST        1e-9 /* least mean, as a share of the dark level: some means are 0 */
 
@@ -97,7 +97,7 @@ static double cost_of_spread(const struct profile *profile, const struct end_lev
 struct profile_edge find_profile_end(const struct profile *profile, const struct end_levels *levels)
 {
     struct edge_belief belief = {0.0, 0.0, 0.0, 0.0};
-    double cost = 0.0; /* of an end behind pixel `first`, over that of an end before all pixels */
+    double cost = 0.0; /* cost of an end behind pixel `first`, less that before all pixels */
     size_t first = 0;
     for (size_t step = 0; step <= profile->count * STEPS_PER_PIXEL; step++) {
         const double place = (double)step / STEPS_PER_PIXEL - 0.5;
@@ -143,7 +143,7 @@ static void weigh_steps(struct edge_belief *belief, const struct profile *profil
                         const struct step_levels *levels, double width)
 {
     const double stride = fmax(1.0, width) / STEPS_PER_PIXEL;
-    double settled_cost = 0.0; /* of pixels well before the step, over that of pixels behind */
+    double settled_cost = 0.0; /* cost of pixels well before the step, less that behind */
     size_t settled = 0;        /* number of these pixels */
     double all_cost = (double)profile->count * levels->log_behind;
     for (size_t k = 0; k < profile->count; k++)

@@ -89,7 +89,7 @@ struct area_search {
     size_t start_columns; /* first columns of the box; an area must have a pixel in them */
     enum contact_part part;
     double threshold;
-    uint8_t *marks; /* of the image; pixels with other marks than 0 belong to no area */
+    uint8_t *marks; /* the image's; pixels with other marks than 0 belong to no area */
     size_t *stack;  /* box.rows * box.columns places */
 };
 

@@ -19,7 +19,7 @@
 #define MANY_LOOKS       4.0
 #define LEVEL_STEPS      12
 #define NO_GAIN          1e-5 /* smallest gain of a tile's likelihood by another level */
-#define STRAY_SHARE      1e-5 /* of pixels in any cell that are contacts or edges, no speckle */
+#define STRAY_SHARE      1e-5 /* share of pixels in any cell that are no speckle: contacts, edges */
 #define EVALUATIONS_MOST 160
 #define CLOSE            0.02 /* difference of likelihoods that no tile tells */
 #define MISFIT_BINS      20
@@ -30,12 +30,12 @@ struct fitting {
     const struct plain_tiles *tiles;
     double full_scale;
     enum curve_family family;
-    bool moves[2]; /* whether the parameter, the looks are fitted */
+    bool moves[2]; /* true where the parameter, the looks are fitted */
     double start[2];
     double texture;
     struct speckle_law law;
     double places[CELLS_MAX]; /* log intensities of the edges */
-    double *levels;           /* of the tiles, kept between evaluations */
+    double *levels;           /* the tiles', kept between evaluations */
     double *by_tile;
 };
 

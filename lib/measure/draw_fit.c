@@ -9,7 +9,7 @@
 #define MOVES      (2 * FITTED_KINDS) /* shifts, then logarithms of stretches */
 #define RELATIONS  3                  /* between sizes */
 #define RESIDUALS  (EXTENT_KINDS * QUANTILES_MAX + MOVES + RELATIONS)
-#define TERMS      (FITTED_KINDS + 1) /* of a response: a constant, then the draws */
+#define TERMS      (FITTED_KINDS + 1) /* terms of a response: a constant, then the draws */
 #define STEPS_MAX  60
 #define RIDGE      1e-5 /* share of the weights' sum: draws that were not varied get no response */
 #define NEAR_LEAST 0.5  /* least mean nearness of a round whose contacts are compared */

@@ -45,16 +45,16 @@ struct contact_extents {
     double of[EXTENT_KINDS];
     double highlight_visibility_db, shadow_visibility_db;
     double pad_pixels;          /* margin of the label around the visible contact, on each side */
-    double range_over_altitude; /* at the label's middle */
+    double range_over_altitude; /* ratio at the label's middle */
 };
 
 /* An injected contact: its draws and its measures. */
 struct drawn_contact {
     double drawn[FITTED_KINDS];
-    double now[FITTED_KINDS]; /* what later rounds' moves make of the draws */
+    double now[FITTED_KINDS]; /* the draws after later rounds' moves */
     double heading_rad;
     struct contact_extents shown; /* measures for `drawn` */
-    uint32_t round;               /* of its making, from 0 */
+    uint32_t round;               /* round in which the contact was made, from 0 */
     bool is_faint;                /* seen less well than real ones */
 };
 
@@ -77,7 +77,7 @@ struct draw_move {
 struct move_prior {
     double shift[FITTED_KINDS];   /* sum so far */
     double stretch[FITTED_KINDS]; /* sum so far, natural logarithm */
-    double contacts;              /* number of real ones */
+    double contacts; /* number of real ones; with few, the campaign's spreads count more */
 };
 
 /* Finds the quantiles of real contacts: 5 to 95 % from 100 contacts, 20 to 80 % below 30. goals:

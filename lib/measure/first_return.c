@@ -7,7 +7,7 @@
 #include "base/memory.h"
 
 #define WINDOW        24   /* columns on either side of the step */
-#define ROWS_AVERAGED 2    /* on either side count, too: 120 samples of speckle err by 0.5 dB */
+#define ROWS_AVERAGED 2    /* neighbours on either side: 120 samples of speckle err by 0.5 dB */
 #define PULSE         16   /* first columns, which may hold the transmitted pulse */
 #define STEP_DB       10.0 /* from water to seabed */
 #define FAINTEST      1e-30f

@@ -19,7 +19,7 @@ struct contrast_work {
     enum curve_family family;
     float most_uneven; /* largest unevenness of tiles that count */
     size_t count;      /* number of tiles that count */
-    double *contrasts; /* contrasts of these tiles */
+    double *contrasts; /* contrasts of tiles that count */
 };
 
 /* Returns the median contrast over the tiles. A tile's contrast does not depend on its level. */
@@ -66,7 +66,7 @@ static double solve(struct contrast_work *work, double low, double high, double 
         (contrast_at(work, exp(found + SLOPE_STEP)) - contrast_at(work, exp(found - SLOPE_STEP))) /
         (2.0 * SLOPE_STEP);
     contrast_at(work, exp(found));
-    /* A median errs by 1.2533 deviations over the root of the count. */
+    /* A median errs by 1.2533 deviations over sqrt(count); quartiles tell the deviation. */
     const size_t count = work->count;
     const double deviation = (work->contrasts[3 * count / 4] - work->contrasts[count / 4]) / 1.349;
     *error = slope > 0.0 ? 1.2533 * deviation / sqrt((double)count) / slope : INFINITY;
