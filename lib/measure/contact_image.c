@@ -83,8 +83,8 @@ bool boxes_overlap(const struct window_box *a, const struct window_box *b)
 
 /* A search for areas in `box` whose means are above the threshold, or below it for a shadow. */
 struct area_search {
-    const float *means, *intensity; /* of the image */
-    size_t columns;                 /* of the image */
+    const float *means, *intensity; /* the image's */
+    size_t columns;                 /* the image's */
     struct window_box box;
     size_t start_columns; /* first columns of the box; an area must have a pixel in them */
     enum contact_part part;

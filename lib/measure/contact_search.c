@@ -24,7 +24,7 @@ struct run_list {
 
 /* The seabed's level in each cell of the image. */
 struct level_map {
-    float *levels; /* of cells; owned */
+    float *levels; /* one for each cell; owned */
     size_t across; /* number of cells in a row of cells */
 };
 

@@ -61,7 +61,7 @@ struct contact_image {
     uint8_t *marks;                    /* enum contact_part of the contact measured last; owned */
     struct window_box marked;          /* box outside of which marks are 0 */
     uint8_t *taken;                    /* not 0 in all contacts measured so far; owned */
-    struct speckle_statistics speckle; /* of all pixels */
+    struct speckle_statistics speckle; /* statistics of all pixels */
 };
 
 /* Creates a contact image. The intensities must outlive it. The caller gives the image to

@@ -9,7 +9,7 @@
 #define WINDOW        24   /* columns on either side of the step */
 #define ROWS_AVERAGED 2    /* neighbours on either side: 120 samples of speckle err by 0.5 dB */
 #define PULSE         16   /* first columns, which may hold the transmitted pulse */
-#define STEP_DB       10.0 /* from water to seabed */
+#define STEP_DB       10.0 /* least step from water to seabed */
 #define FAINTEST      1e-30f
 #define FAINTEST_DB   (-300.0)
 #define WATER_MARGIN  8.0 /* columns behind the first return that are not plain seabed yet */
