@@ -94,7 +94,7 @@ const char *plot_tick_label(const struct plot_ticks *ticks, int64_t number,
     for (const char *from = label; *from; from++)
         if (*from == '-' || (*from >= '0' && *from <= '9'))
             label[length++] = *from;
-        else if (label[length - 1] != '.') /* the locale's may have several bytes */
+        else if (label[length - 1] != '.') /* the locale's point may have several bytes */
             label[length++] = '.';
     label[length] = '\0';
     return label;
@@ -256,7 +256,7 @@ struct plot {
     int64_t panel_height, panel_width; /* size in the picture */
     double minimum_db, maximum_db;
     float *values;  /* the cells of a panel */
-    uint32_t shown; /* number of that panel; count: none yet */
+    uint32_t shown; /* panel whose cells values holds; count: none yet */
     struct plot_ticks row_ticks, column_ticks;
     struct canvas canvas;
 };

@@ -12,8 +12,8 @@
 #define BAND_LIMITED_TAPS 32
 #define TAPS_MAX          32
 
-/* A sinc needs lattice points at most one width apart. Cutting the sinc off narrows its band;
- * narrowing the sinc makes up for that. These numbers keep the autocorrelation within 0.005. */
+/* A sinc needs lattice points at most one width apart. Cutting it off narrows the band; narrowing
+ * the sinc makes up for that and keeps the autocorrelation within 0.005 of a sinc. */
 #define BAND_LIMITED_STEP      0.8
 #define BAND_LIMITED_NARROWING 1.015f
 

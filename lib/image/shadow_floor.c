@@ -34,7 +34,7 @@
 #define COLUMN_DEVIATION 1.5
 #define COLUMN_BY_LENGTH 1.2
 #define BEYOND           2.0  /* deviations beyond a shadow's end by which seabed has returned */
-#define SHARP            0.5f /* least level there, over the seabed's */
+#define SHARP            0.5f /* least level beyond a sharp end, over the seabed's */
 #define LEAST_BY_COLUMN  4.0  /* columns of a shadow for each deviation */
 
 /* The deviation of shadows' levels where there are fewer than three, nepers: 4 dB. Those of a
@@ -192,8 +192,7 @@ struct axis {
 };
 
 /* Returns whether a dark run ends at seabed, one pixel beyond its last. Along the track, where no
- * shadow fades away, the mean some pixels further must be bright, too: dim ground has no such
- * edge. */
+ * shadow fades away, the mean some pixels further must be bright: dim ground has no such edge. */
 static bool ends(const struct shadow_search *search, const struct axis *axis, size_t first,
                  size_t last, size_t beyond)
 {

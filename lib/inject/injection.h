@@ -124,8 +124,8 @@ sonject_status element_echoes_compute(struct report *report, struct device *devi
                                       sonject_progress_function progress, void *user,
                                       const sonject_element_layout *layout, float *series);
 
-/* Returns the layout of the swath that the scene makes itself, uniform or synthetic. Without rows
- * where it makes none. */
+/* Returns the layout of the uniform or synthetic swath that the scene makes itself. The layout has
+ * no rows where the scene makes none. */
 struct raster_layout made_layout(const struct scene *scene);
 
 /* Makes the pixels of the scene's whole uniform or synthetic swath and describes them in *input.

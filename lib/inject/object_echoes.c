@@ -157,7 +157,7 @@ static double peak_around(const struct echo_points *points, size_t row, size_t c
     return xx < 0.0 && curvature > 0.0 && rise < log(2.0) ? energy * exp(rise) : energy;
 }
 
-/* Finds a peak where most energy is of the first lattice. *peak only grows. */
+/* Finds the peak among points of `own` that have at least half of its energy. *peak only grows. */
 static void find_peak(const struct echo_points *points, double *peak, double *range_m)
 {
     const struct patch_view *view = &points->own->view;

@@ -131,7 +131,7 @@ static void add_relief(struct digest *digest, const struct relief_features *reli
     struct hash *hash = digest->section;
     for (uint32_t i = 0; i < relief->count; i++)
         add_rows(hash, &relief_section, &relief->features[i], NULL);
-    if (relief->heights_m) /* the grid has keys */
+    if (relief->heights_m) /* the keys have the grid */
         hash_add(hash, relief->heights_m,
                  (size_t)relief->grid.rows * relief->grid.columns * sizeof *relief->heights_m);
     end_section(digest, "seabed.relief");
@@ -202,7 +202,7 @@ static void add_scene(struct digest *digest, const struct scene *scene, const ch
     end_section(digest, "objects[].mesh");
     hash_add_text(digest->section, input_identity);
     end_section(digest, "input's pixels");
-    if (digest->inputs) { /* in clear they say more */
+    if (digest->inputs) { /* clear values say more than digests */
         json_add(digest->inputs, "sonject", json_string(sonject_version()));
         json_add(digest->inputs, "injection.seed", json_seed(scene->injection.seed));
     }

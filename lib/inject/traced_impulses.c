@@ -12,7 +12,7 @@
 #include "trace/multibounce.h"
 #include "trace/rough.h"
 
-#define STRIPS_A_LAUNCH 64                /* after these, the caller may cancel */
+#define STRIPS_A_LAUNCH 64                /* strips; between launches the caller may cancel */
 #define CELLS_A_TIME    ((size_t)1 << 20) /* cells of multi-bounce echoes handed out at a time */
 
 /* The state of a trace. */
@@ -81,8 +81,8 @@ static sonject_status find_in_view(struct tracing *tracing, struct span strips)
     return SONJECT_OK;
 }
 
-/* Traces what rays hear of the seabed by the rough trace as it is now set: the seabed itself, or
- * again a level or even one. */
+/* Traces the seabed's echoes by the rough trace as it is now set: of the seabed itself, or again of
+ * a level or even one. */
 static sonject_status trace_seabed(struct tracing *tracing, enum impulse_kind kind,
                                    const char *stage)
 {

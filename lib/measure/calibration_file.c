@@ -114,7 +114,8 @@ static sonject_status compare_altitudes(struct report *report, const struct reco
     return SONJECT_OK;
 }
 
-/* Notes an unlikely altitude of this image. Runs and checks tell those who use it what to write. */
+/* Reports a recorded altitude unlike this image's first returns. Runs and checks tell their users
+ * what to write instead. */
 static void tell_altitude(struct report *report, const char *image, const struct calibration *found)
 {
     const double share = found->recorded_share;

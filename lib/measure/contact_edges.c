@@ -97,7 +97,7 @@ static double cost_of_spread(const struct profile *profile, const struct end_lev
 struct profile_edge find_profile_end(const struct profile *profile, const struct end_levels *levels)
 {
     struct edge_belief belief = {0.0, 0.0, 0.0, 0.0};
-    double cost = 0.0; /* cost of an end behind pixel `first`, less that before all pixels */
+    double cost = 0.0; /* cost of an end behind pixel `first`, minus that before all pixels */
     size_t first = 0;
     for (size_t step = 0; step <= profile->count * STEPS_PER_PIXEL; step++) {
         const double place = (double)step / STEPS_PER_PIXEL - 0.5;
@@ -143,7 +143,7 @@ static void weigh_steps(struct edge_belief *belief, const struct profile *profil
                         const struct step_levels *levels, double width)
 {
     const double stride = fmax(1.0, width) / STEPS_PER_PIXEL;
-    double settled_cost = 0.0; /* cost of pixels well before the step, less that behind */
+    double settled_cost = 0.0; /* cost of pixels well before the step, minus that behind */
     size_t settled = 0;        /* number of these pixels */
     double all_cost = (double)profile->count * levels->log_behind;
     for (size_t k = 0; k < profile->count; k++)

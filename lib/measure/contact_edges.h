@@ -13,7 +13,7 @@ struct profile {
     const double *lobe_bias; /* the most that side lobes of bright pixels may add */
     size_t count;
     double samples;   /* independent samples in the mean of a pixel */
-    double deviation; /* the point response's energy's, taken for Gaussian; pixels, > 0 */
+    double deviation; /* standard deviation of the response's energy, a Gaussian; pixels, > 0 */
 };
 
 /* Pixels from the centre of the first one, and the standard error from speckle alone. */

@@ -269,12 +269,13 @@ sonject_status find_seabed_level(const struct contact_image *image, struct repor
     return SONJECT_OK;
 }
 
-#define ROWS_BESIDE   8 /* above and below half a highlight's rows that may hold its shadow */
-#define SHADOW_PIXELS 9 /* fewest; in fewer, one mean of 3 x 3 speckled pixels may be dark */
+#define ROWS_BESIDE 8 /* above and below half a highlight's rows that may hold its shadow */
+#define SHADOW_PIXELS                                                                              \
+    9 /* fewest pixels; in fewer, one mean of 3 x 3 pixels may be dark by chance */
 #define COLUMNS_LEAST                                                                              \
-    32 /* fewest pixels; in fewer, one mean of 3 x 3 speckled pixels may be dark */
+    32 /* columns behind a highlight in which its shadow begins; twice its own if that is more */
 
-/* columns behind a highlight in which its shadow begins; twice its own if that is more */
+/* Marks the brightest area, and areas near it that speckle has cut off. */
 static struct contact_area mark_highlight(const struct contact_image *image,
                                           const struct area_search *search)
 {

@@ -64,7 +64,7 @@ struct contact_image {
     struct speckle_statistics speckle; /* statistics of all pixels */
 };
 
-/* Creates a contact image. The intensities must outlive it. The caller gives the image to
+/* Creates a contact image. The intensities must outlive that image. The caller gives the image to
  * contact_image_clear, also after failure. Errors: MEMORY. */
 sonject_status contact_image_create(struct contact_image *image, struct report *report,
                                     const float *intensity, size_t rows, size_t columns);
@@ -75,7 +75,7 @@ void contact_image_clear(struct contact_image *image);
 sonject_status find_seabed_level(const struct contact_image *image, struct report *report,
                                  const struct window_box *box, double *level);
 
-/* Returns the same level of all pixels in a box. blocks: room for seabed_blocks(box) numbers. */
+/* Returns the median level of all pixels in a box. blocks: room for seabed_blocks(box) numbers. */
 double level_within(const struct contact_image *image, const struct window_box *box, float *blocks);
 size_t seabed_blocks(const struct window_box *box);
 

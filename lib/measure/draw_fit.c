@@ -7,7 +7,7 @@
 #include "base/memory.h"
 
 #define MOVES      (2 * FITTED_KINDS) /* shifts, then logarithms of stretches */
-#define RELATIONS  3                  /* between sizes */
+#define RELATIONS  3                  /* number of ratios of sizes */
 #define RESIDUALS  (EXTENT_KINDS * QUANTILES_MAX + MOVES + RELATIONS)
 #define TERMS      (FITTED_KINDS + 1) /* terms of a response: a constant, then the draws */
 #define STEPS_MAX  60
@@ -203,7 +203,7 @@ struct move_fit {
     double centre[FITTED_KINDS];
     double response[EXTENT_KINDS][FITTED_KINDS];
     double *shown;  /* room for count values; owned */
-    double *factor; /* Cholesky's, of the correlations of quantiles; owned */
+    double *factor; /* Cholesky factor of the quantiles' correlations; owned */
     double trust;   /* factor on the deviations of the prior's stretches */
 };
 
@@ -280,8 +280,8 @@ static double sum_of_squares(const double *values, size_t count)
     return sum;
 }
 
-/* Finds moves by Levenberg-Marquardt steps within a round's limits. buffers: RESIDUALS x (MOVES +
- * 2). */
+/* Finds moves by Levenberg-Marquardt steps within a round's limits. buffers:
+ * RESIDUALS*(MOVES+2). */
 static void descend(const struct move_fit *fit, double *moves, double *buffers)
 {
     double *now = buffers;
