@@ -53,8 +53,9 @@ bool region_bytes(const struct raster_layout *layout, const struct region *regio
 bool region_is_inside(const struct raster_layout *layout, const struct region *region);
 
 /* Finds the amplitudes of count stored values (one channel). stored and amplitude must not overlap.
- * *clipped is increased by the number of values at full scale (integer types). Errors: INPUT (a
- * value has no finite amplitude; *bad gets its index, and the caller reports row and column). */
+ * *clipped is increased by the number of values at full scale (integer types). Errors: INPUT (an
+ * amplitude is not finite, or negative but under the plain transfer; *bad gets its index, and the
+ * caller reports row and column). */
 sonject_status transfer_to_amplitude(const sonject_transfer_params *transfer, enum pixel_type type,
                                      const void *stored, size_t count, float *amplitude,
                                      size_t *bad, uint64_t *clipped);

@@ -129,7 +129,7 @@ struct calibration {
     double recorded_share;      /* median of recorded altitude over first return; 0: unknown */
     /* The members below are for the page. */
     double correlation[2][CALIBRATION_LAGS]; /* intensity's: [0] along the track, [1] in range */
-    double gain_db[GAIN_BANDS], gain_error_db[GAIN_BANDS]; /* bands' levels; NAN: no tiles */
+    double gain_db[GAIN_BANDS], gain_error_db[GAIN_BANDS]; /* bands' levels; NAN: < 2 tiles */
     double histogram[PAGE_BINS]; /* shares of pixels, in bins from 0 to histogram_top */
     double histogram_top;
     size_t gain_bands;

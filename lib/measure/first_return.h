@@ -9,8 +9,8 @@
 
 /* Finds the first column of the seabed in each row of intensities. Range grows to the right from
  * column 0. The water column must be 10 dB darker than the seabed from where the transmitted pulse
- * has died down. A row without a water column gets the result of the row before. All results are 0
- * where fewer than nine in ten rows have one. Errors: MEMORY. */
+ * has died down. A row without a water column gets the result of the row before, or of the first
+ * that has one. All are 0 where fewer than nine in ten rows have one. Errors: MEMORY. */
 sonject_status find_first_return(struct report *report, const float *intensity, size_t rows,
                                  size_t columns, size_t *first_columns);
 
