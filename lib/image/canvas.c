@@ -4,9 +4,9 @@
 
 #include "base/memory.h"
 
-#define LETTER_GAP  4    /* between the strokes of neighbouring letters */
-#define SPACE_WIDTH 3    /* of a blank, besides the gaps */
-#define HALF_STROKE 0.72 /* half a stroke's thickness */
+#define LETTER_GAP  4    /* pixels between the strokes of neighbouring letters */
+#define SPACE_WIDTH 3    /* pixels of a blank, besides the gaps */
+#define HALF_STROKE 0.72 /* half a stroke's thickness, pixels */
 #define STROKES_MAX 40
 
 bool canvas_create(struct canvas *canvas, uint32_t height, uint32_t width, struct colour background)
@@ -25,7 +25,7 @@ static uint8_t mix(uint8_t under, uint8_t over, double coverage)
     return (uint8_t)(under + (over - under) * coverage + 0.5);
 }
 
-/* coverage 0...1: how much of the pixel takes the colour. */
+/* coverage 0...1: the share of the pixel that takes the colour. */
 static void blend(struct canvas *canvas, int64_t x, int64_t y, struct colour colour,
                   double coverage)
 {
@@ -61,9 +61,9 @@ void canvas_frame(struct canvas *canvas, int64_t x, int64_t y, int64_t width, in
     canvas_fill(canvas, x + width, y, 1, height, colour);
 }
 
-/* The strokes of each character from ' ' to '~': points of two characters each, a blank lifts the
- * pen. x is a digit; y a letter, E on the baseline, M the height of small letters, Q of capitals. A
- * stroke of one point is a dot. */
+/* The strokes of each character from ' ' to '~', as points of two characters each. A blank lifts
+ * the pen. x is a digit. y is a letter: E on the baseline, M the height of small letters, Q of
+ * capitals. A stroke of one point is a dot. */
 /* clang-format off */
 static const char *const glyphs[] = {
     "", "0Q0I 0E", "0Q0M 3Q3M", "2E4Q 5E7Q 0I8I 1M9M", "7O5P3P1O0N1L3K5K7J8H7F5E3E1F0G 4S4B",
@@ -94,7 +94,7 @@ static const char *const glyphs[] = {
 static const char unknown_glyph[] = "0E0Q7Q7E0E";
 
 struct stroke {
-    double x0, y0, x1, y1; /* to the right of the letter's left edge, and above the baseline */
+    double x0, y0, x1, y1; /* distance from the letter's left edge, height above the baseline */
 };
 
 static const char *glyph_of(char character)

@@ -8,21 +8,21 @@
 #include "base/memory.h"
 #include "image/canvas.h"
 
-/* All lengths are in pixels. */
-#define SINGLE_PANEL      800.0 /* longer side of a panel that stands alone */
-#define SIDE_BY_SIDE      560.0 /* and of one of several */
+/* Lengths are in pixels. */
+#define SINGLE_PANEL      800.0 /* longer side of a single panel */
+#define SIDE_BY_SIDE      560.0 /* longer side of one of several panels */
 #define PANELS_MAX        64
 #define MARGIN            18
 #define PANEL_GAP         34
 #define TITLE_HEIGHT      (FONT_CAPITAL_HEIGHT + 12)
 #define TICK_LENGTH       5
-#define LABEL_GAP         6 /* between a tick and its number, and between numbers and axis label */
+#define LABEL_GAP         6 /* between tick and number, and between numbers and axis label */
 #define BAR_GAP           14
 #define BAR_WIDTH         14
-#define TICK_EVERY_ROW    60.0 /* no closer than this */
+#define TICK_EVERY_ROW    60.0 /* least distance of ticks */
 #define TICK_EVERY_COLUMN 80.0
 
-#define LONGEST_SHAPE 5.0 /* length to width: longer images are drawn wider than they are */
+#define LONGEST_SHAPE 5.0 /* length to width to scale; longer images are widened */
 
 /* The energies of all float amplitudes lie between these. */
 #define LOWEST_DB      -900.0
@@ -32,8 +32,8 @@
 #define PERCENTILE_TOP 0.998
 
 #define LARGEST_EXPONENT 12
-#define LARGEST_NUMBER   1e6  /* ticks from 0: more digits than anyone reads */
-#define SLACK            1e-9 /* of a step, so that an end that is a tick counts as one */
+#define LARGEST_NUMBER   1e6  /* largest tick number from 0, which has enough digits */
+#define SLACK            1e-9 /* share of a step by which an end may miss a tick */
 
 static double power_of_ten(int exponent)
 {
@@ -49,7 +49,7 @@ static double step_of(const struct plot_ticks *ticks)
                                : ticks->multiple * power_of_ten(ticks->exponent);
 }
 
-/* The next larger step: 1, 2, 5, 10, ... */
+/* Takes the next larger step: 1, 2, 5, 10, ... */
 static void widen(struct plot_ticks *ticks)
 {
     if (ticks->multiple == 1) {
@@ -94,21 +94,21 @@ const char *plot_tick_label(const struct plot_ticks *ticks, int64_t number,
     for (const char *from = label; *from; from++)
         if (*from == '-' || (*from >= '0' && *from <= '9'))
             label[length++] = *from;
-        else if (label[length - 1] != '.') /* however long the locale's is */
+        else if (label[length - 1] != '.') /* the locale's point may have several bytes */
             label[length++] = '.';
     label[length] = '\0';
     return label;
 }
 
-/* One axis of a panel: `down` image pixels are averaged to a cell, which is drawn `up` pixels wide;
- * one of the two is 1. */
+/* One axis of a panel. `down` image pixels are averaged to a cell, which is drawn `up` pixels wide.
+ * One of the two is 1. */
 struct plot_scale {
     uint64_t pixels;
     uint32_t up, down;
     uint32_t cells;
 };
 
-/* The scale that draws `pixels` pixels about `length` picture pixels long. */
+/* Returns the scale that draws `pixels` image pixels about `length` picture pixels long. */
 static struct plot_scale scale_of(uint64_t pixels, double length)
 {
     struct plot_scale scale = {pixels, 1, 1, 0};
@@ -121,14 +121,14 @@ static struct plot_scale scale_of(uint64_t pixels, double length)
     return scale;
 }
 
-/* Height over width of a pixel; 1 where nothing tells it. */
+/* Returns the height of a pixel over its width, or 1 if that is unknown. */
 static double pixel_shape(double row_spacing_m, double column_spacing_m)
 {
     const double ratio = row_spacing_m / fabs(column_spacing_m);
     return isfinite(ratio) && ratio > 0.0 ? ratio : 1.0;
 }
 
-/* The sides of a picture to scale, whose longer one is given. */
+/* Chooses the sides of a picture to scale, given its longer side. */
 static void choose_sides(double rows, double columns, double shape, double longest, double *height,
                          double *width)
 {
@@ -150,8 +150,8 @@ void plot_small_sides(uint64_t rows, uint64_t columns, double row_spacing_m,
     sides[1] = (uint32_t)fmax(1.0, floor(width));
 }
 
-/* Scales that make the longer side of a panel about `target` pixels long and keep distances on
- * both axes in proportion, as far as whole factors can. */
+/* Chooses scales that make the longer side of a panel about `target` pixels long. Distances on both
+ * axes keep their proportion, as far as whole factors can. */
 static void choose_scales(const struct plot_frame *frame, double target,
                           struct plot_scale *along_track, struct plot_scale *range)
 {
@@ -163,8 +163,8 @@ static void choose_scales(const struct plot_frame *frame, double target,
     *range = scale_of(frame->columns, width);
 }
 
-/* Mean energies in dB (-infinity where there is none) or mean differences of each cell. Pixels that
- * are no numbers count for nothing; a cell of nothing else is NaN. */
+/* Fills each cell's mean energy in dB (-infinity for 0) or mean difference. Pixels that are no
+ * numbers do not count; a cell without others is NaN. */
 static sonject_status fill_cells(struct report *report, const struct plot_panel *panel,
                                  const struct plot_scale *along_track,
                                  const struct plot_scale *range, float *values)
@@ -185,7 +185,7 @@ static sonject_status fill_cells(struct report *report, const struct plot_panel 
         if ((row + 1) % along_track->down != 0 && row + 1 != along_track->pixels)
             continue;
         for (size_t cell = 0; cell < range->cells; cell++) {
-            const double mean = sums[cell] / (double)counts[cell]; /* NaN if there is none */
+            const double mean = sums[cell] / (double)counts[cell]; /* NaN if the cell has none */
             *values++ = (float)(panel->is_difference ? mean : 10.0 * log10(mean));
             sums[cell] = 0.0;
             counts[cell] = 0;
@@ -197,7 +197,7 @@ static sonject_status fill_cells(struct report *report, const struct plot_panel 
     return SONJECT_OK;
 }
 
-/* The middle of the bin below whose end at least `share` of all values lie. */
+/* Returns the middle of the first bin up to whose end at least `share` of all values lie. */
 static double percentile(const uint32_t *bins, uint64_t total, double share)
 {
     uint64_t passed = 0;
@@ -207,7 +207,8 @@ static double percentile(const uint32_t *bins, uint64_t total, double share)
     return LOWEST_DB + ((double)bin + 0.5) / BINS_PER_DB;
 }
 
-/* The 3rd and 99.8th percentile of the finite values, at least 1 dB apart. */
+/* Finds the 3rd and 99.8th percentile of the finite values. Where these are less than 1 dB apart,
+ * takes 10 dB to either side of their middle. */
 static sonject_status find_limits(struct report *report, const float *decibels, size_t count,
                                   double *minimum, double *maximum)
 {
@@ -252,15 +253,15 @@ struct plot {
     uint32_t count;
     const char *range_label;
     struct plot_scale along_track, range;
-    int64_t panel_height, panel_width; /* in the picture */
+    int64_t panel_height, panel_width; /* size in the picture */
     double minimum_db, maximum_db;
-    float *values;  /* cells of a panel */
-    uint32_t shown; /* its number; count: none yet */
+    float *values;  /* the cells of a panel */
+    uint32_t shown; /* panel whose cells values holds; count: none yet */
     struct plot_ticks row_ticks, column_ticks;
     struct canvas canvas;
 };
 
-/* A scale that colours stand for. */
+/* The scale of values that colours stand for. */
 struct colour_scale {
     double low, high;
     bool is_difference;
@@ -298,7 +299,7 @@ static struct colour_scale scale_of_panel(const struct plot *plot, uint32_t pane
     return plot->panels[panel].is_difference ? difference : grey;
 }
 
-/* A colour bar stands behind the last of neighbouring panels that share its scale. */
+/* Returns whether a panel has a colour bar: the last of neighbours that share a scale has one. */
 static bool has_bar(const struct plot *plot, uint32_t panel)
 {
     return panel + 1 == plot->count ||
@@ -322,7 +323,7 @@ static int64_t longest_label(const struct plot_ticks *ticks)
     return longest;
 }
 
-/* Room for a bar with its ticks and numbers. */
+/* Returns the room for a bar with its ticks and numbers. */
 static int64_t bar_room(const struct plot *plot, uint32_t panel)
 {
     const struct colour_scale scale = scale_of_panel(plot, panel);
@@ -330,7 +331,7 @@ static int64_t bar_room(const struct plot *plot, uint32_t panel)
     return BAR_GAP + BAR_WIDTH + TICK_LENGTH + LABEL_GAP + longest_label(&ticks);
 }
 
-/* Room on the left for the along-track axis. */
+/* Returns the room on the left for the along-track axis. */
 static int64_t axis_room(const struct plot *plot)
 {
     return MARGIN + FONT_ASCENT + 2 * LABEL_GAP + longest_label(&plot->row_ticks) + LABEL_GAP +
@@ -346,7 +347,7 @@ static struct plot_ticks axis_ticks(double first, double spacing, const struct p
                               fmax(1.0, (double)length / every));
 }
 
-/* Where the value of an axis lies, from the panel's edge. */
+/* Returns the distance from the panel's edge to a value of an axis. */
 static int64_t position_of(double value, double first, double spacing,
                            const struct plot_scale *scale)
 {

@@ -8,12 +8,12 @@
 #include "kernels/elementary.h"
 #include "kernels/random.h"
 
-#define GAUSSIAN_TAPS     8 /* lattice points one width apart: out to 4 widths */
+#define GAUSSIAN_TAPS     8 /* lattice points one width apart, out to 4 widths */
 #define BAND_LIMITED_TAPS 32
 #define TAPS_MAX          32
 
-/* A sinc needs lattice points at most one width apart. Cutting it off narrows its band; narrowing
- * the sinc makes up for that: with these figures the autocorrelation is within 0.005 of a sinc. */
+/* A sinc needs lattice points at most one width apart. Cutting it off narrows the band; narrowing
+ * the sinc makes up for that and keeps the autocorrelation within 0.005 of a sinc. */
 #define BAND_LIMITED_STEP      0.8
 #define BAND_LIMITED_NARROWING 1.015f
 
@@ -29,10 +29,10 @@ struct random_field {
     uint32_t stream, columns;
     struct axis along_track, range;
     size_t lattice_columns;
-    float *memory;        /* of all that follows but for range_first; owned */
+    float *memory;        /* memory of all members below but range_first; owned */
     float *range_weights; /* columns x range taps */
-    float *noise[2];      /* one lattice row */
-    float *blurred[2];    /* the last along-track taps lattice rows, blurred in range, by turns */
+    float *noise[2];      /* one row of the lattice */
+    float *blurred[2]; /* the last lattice rows, blurred in range; one for each along-track tap */
     float *row[2];
     uint32_t *range_first; /* lattice column of each pixel's first tap; owned */
     uint32_t next_lattice_row, next_row;
@@ -48,7 +48,7 @@ static struct axis axis_of(struct blur blur)
     return axis;
 }
 
-/* Weight of a lattice point `distance` steps away. */
+/* Returns the weight of a lattice point `distance` steps away. */
 static float weight_of(enum blur_kind kind, float distance)
 {
     if (kind == BLUR_GAUSSIAN)
@@ -58,8 +58,8 @@ static float weight_of(enum blur_kind kind, float distance)
     return sinc_of_cycles(half_cycles_per_step * distance) * (1.0f - x * x * x * x);
 }
 
-/* Weights of a pixel's taps, of unit energy, so that every pixel has variance 1 exactly. Returns
- * the first tap's lattice index. */
+/* Fills the weights of a pixel's taps. Their energy is 1, so every pixel has variance 1 exactly.
+ * Returns the first tap's lattice index. */
 static uint32_t weigh_taps(const struct axis *axis, uint32_t pixel, float *weights)
 {
     const double position = (double)pixel / axis->step;
@@ -76,7 +76,7 @@ static uint32_t weigh_taps(const struct axis *axis, uint32_t pixel, float *weigh
     return (uint32_t)whole_position;
 }
 
-/* False where memory lacks. */
+/* Returns false where memory is out. */
 static bool allocate_buffers(struct random_field *field)
 {
     const size_t columns = field->columns;
@@ -132,7 +132,7 @@ void random_field_release(struct random_field **field)
     *field = NULL;
 }
 
-/* White noise by Box and Muller. */
+/* Makes white noise by Box and Muller's method. */
 static void make_noise(struct random_field *field, uint32_t lattice_row)
 {
     const struct random_key key = random_key_of(

@@ -1,6 +1,6 @@
 /* Smooth random fields, made row by row: white Gaussian numbers on a lattice, blurred along each
- * axis. The numbers are counter-based and all arithmetic is + - * / and square roots in a fixed
- * order, so a field has the same bits on every machine with IEEE arithmetic. */
+ * axis. Numbers come from a counter, and arithmetic is + - * / and square roots in a fixed order,
+ * so a field has the same bits on every machine with IEEE arithmetic. */
 #ifndef SONJECT_IMAGE_RANDOM_FIELD_H
 #define SONJECT_IMAGE_RANDOM_FIELD_H
 
@@ -13,8 +13,8 @@ enum blur_kind {
     BLUR_BAND_LIMITED /* sinc(x / width), its own autocorrelation; width is the first zero */
 };
 
-/* Along one axis, in pixels. Below BLUR_SMALLEST_* the width counts as that: neighbouring pixels
- * are then all but independent (correlation 0.06 and 0). */
+/* A blur along one axis, in pixels. Widths below BLUR_SMALLEST_* count as that width: neighbouring
+ * pixels are then nearly independent (correlation 0.06 and 0). */
 struct blur {
     enum blur_kind kind;
     double width;
@@ -23,18 +23,18 @@ struct blur {
 #define BLUR_SMALLEST_GAUSSIAN     0.3
 #define BLUR_SMALLEST_BAND_LIMITED 0.5
 
-struct random_field; /* two independent real fields */
+struct random_field; /* Two independent real fields. */
 
-/* seed and stream choose the field. *field is for random_field_release, on failure NULL. Errors:
- * MEMORY. */
+/* Creates a field, which seed and stream choose. *field is for random_field_release; on failure it
+ * is NULL. Errors: MEMORY. */
 sonject_status random_field_create(struct report *report, uint64_t seed, uint32_t stream,
                                    uint32_t columns, struct blur along_track, struct blur range,
                                    struct random_field **field);
 
 void random_field_release(struct random_field **field);
 
-/* The next row of both fields, standard normal; valid until the next call. The first call gives
- * row 0; there are at most 2^20. */
+/* Makes the next row of both fields, standard normal, valid until the next call. The first call
+ * gives row 0. There are at most 2^20 rows. */
 void random_field_next_row(struct random_field *field, const float **first, const float **second);
 
 #endif

@@ -7,7 +7,7 @@
 #include "base/memory.h"
 
 #define ROWS_BYTES  ((uint64_t)64 << 20)
-#define STEPS_LEAST 16 /* fewer levels are no picture that tells its step */
+#define STEPS_LEAST 16 /* fewest levels; a picture of fewer does not tell its step */
 
 size_t pixel_bytes(enum pixel_type type)
 {
@@ -83,7 +83,7 @@ bool region_is_inside(const struct raster_layout *layout, const struct region *r
            region->first_column <= layout->columns - region->columns;
 }
 
-/* NaN where the value has no amplitude. */
+/* Returns NaN where the value has no amplitude. */
 static double amplitude_of(const sonject_transfer_params *transfer, double full_scale, double value)
 {
     const double q = value / full_scale;
@@ -110,7 +110,7 @@ static double value_of(const sonject_transfer_params *transfer, double full_scal
     case SONJECT_TRANSFER_INTENSITY:
         return a * a * full_scale;
     case SONJECT_TRANSFER_DECIBEL:
-        /* no logarithm of 0: the quietest normal number is quiet enough */
+        /* 0 has no logarithm; the smallest normal number is quiet enough. */
         return (20.0 * log10(fmax(a, (double)FLT_MIN)) - transfer->offset) / transfer->parameter;
     case SONJECT_TRANSFER_GAMMA:
         return pow(a, 1.0 / transfer->parameter) * full_scale;
@@ -129,14 +129,15 @@ static double transfer_full_scale(const sonject_transfer_params *transfer, enum 
     return most;
 }
 
-/* Only the plain transfer knows negative values: they are parts of complex pixels. */
+/* Returns whether a number is an amplitude. The plain transfer takes parts of complex pixels,
+ * too. */
 static bool is_amplitude(const sonject_transfer_params *transfer, float amplitude)
 {
     return isfinite(amplitude) &&
            (amplitude >= 0.0f || transfer->kind == SONJECT_TRANSFER_AMPLITUDE);
 }
 
-/* Amplitudes of every value that an integer type can hold; NULL where a table does not pay, or
+/* Returns the amplitudes of all values of an integer type. NULL where a table does not pay, or
  * memory is out. */
 static float *table_of(const sonject_transfer_params *transfer, enum pixel_type type, size_t count)
 {
@@ -215,7 +216,7 @@ uint32_t quantisation_step(enum pixel_type type, const void *stored, size_t coun
     for (size_t i = 0; step != 1 && i < count; i++) {
         uint32_t value = (uint32_t)pixel_number(type, stored, i);
         largest = value > largest ? value : largest;
-        while (value != 0) { /* Euclid's */
+        while (value != 0) { /* Euclid's algorithm */
             const uint32_t rest = step % value;
             step = value;
             value = rest;

@@ -7,47 +7,47 @@
 #include "base/memory.h"
 #include "image/statistics.h"
 
-/* Deviation of the local mean that is the seabed's level: in pixels, at least, and as a share of
+/* The least deviation of the local mean that is the seabed's level: in pixels, and as a share of
  * the image's shorter side. */
 #define LEVEL_DEVIATION 28.0
 #define LEVEL_SHARE     0.04
-#define SQUARE          4        /* pixels */
-#define SHARE_LEAST     0.02     /* of pixels about one that tell its level */
-#define PLAIN           4.0f     /* seabed lies within 6 dB of the level */
-#define DARK            0.316f   /* 5 dB */
-#define BLANK           1e-6f    /* of the level; nothing but 0 is no shadow */
-#define HIGHEST         0.126    /* -9 dB; a part that is not so dark is dim ground */
-#define LONE_HIGHEST    (-2.763) /* -12 dB, as a logarithm, where there is but one */
-#define LAGS            8        /* pixels; from here on speckle is forgotten */
-#define PIXELS_ENOUGH   65536    /* that tell speckle's length */
-#define BRIGHTEST       6.0      /* over the level, of pixels whose speckle counts */
-#define LOOKS_LEAST     3.0      /* independent pixels, of a shadow's middle */
+#define SQUARE          4        /* side of a square, pixels */
+#define SHARE_LEAST     0.02     /* least share of nearby pixels that tells a pixel's level */
+#define PLAIN           4.0f     /* ratio to the level, 6 dB, within which seabed is plain */
+#define DARK            0.316f   /* ratio to the level, -5 dB */
+#define BLANK           1e-6f    /* share of the level; all 0 is no shadow */
+#define HIGHEST         0.126    /* -9 dB; a brighter part is dim ground */
+#define LONE_HIGHEST    (-2.763) /* -12 dB, as a logarithm, for a single shadow */
+#define LAGS            8        /* pixels; speckle is uncorrelated from there on */
+#define PIXELS_ENOUGH   65536    /* enough pixels to tell the speckle's length */
+#define BRIGHTEST       6.0      /* over the level; speckle of brighter pixels does not count */
+#define LOOKS_LEAST     3.0      /* fewest independent pixels in a shadow's middle */
 
-/* What else makes a shadow's level uncertain, a look's variance: the middle of a small one is near
- * its edges, which fill it. */
+/* The other uncertainty of a shadow's level, as the variance of a look: the middle of a small
+ * shadow is near its edges, which fill it. */
 #define EDGES 3.0
 
-/* Deviations of the means that shadows are looked for in, at least, and for each pixel of speckle's
- * length: some 3 rows and 6 columns, which hold about 6 independent pixels or more. */
+/* The deviations of the means in which shadows are looked for: the least, and for each pixel of
+ * speckle's length. They take some 3 rows and 6 columns, about 6 independent pixels or more. */
 #define ROW_DEVIATION    0.7
 #define ROW_BY_LENGTH    0.4
 #define COLUMN_DEVIATION 1.5
 #define COLUMN_BY_LENGTH 1.2
-#define BEYOND           2.0  /* of the deviations, where a shadow's end has made way to seabed */
-#define SHARP            0.5f /* of the level */
-#define LEAST_BY_COLUMN  4.0  /* columns of a shadow, of these deviations */
+#define BEYOND           2.0  /* deviations beyond a shadow's end by which seabed has returned */
+#define SHARP            0.5f /* least level beyond a sharp end, over the seabed's */
+#define LEAST_BY_COLUMN  4.0  /* columns of a shadow for each deviation */
 
-/* Deviation of shadows' levels where fewer than three tell it, nepers: 4 dB. Those of a sidescan
- * line of 600 kHz differ by 4 to 7. */
+/* The deviation of shadows' levels where there are fewer than three, nepers: 4 dB. Those of a
+ * sidescan line of 600 kHz differ by 4 to 7 dB. */
 #define SCATTER_UNKNOWN 0.92
 
-/* A pixel's state: what it is, and whether it lies in the middle of its dark run along an axis. */
+/* The state of a pixel: its kind, and whether it is in the middle of its dark run along an axis. */
 enum {
     SEABED = 0,
     NO_SEABED = 1,
     SHADOW = 2,
     KINDS = 3,
-    MIDDLE = 4, /* of the rows; twice that of the columns */
+    MIDDLE = 4, /* along the rows' axis; twice that along the columns' */
     SEEN = 32
 };
 
@@ -56,8 +56,8 @@ struct shadow_search {
     uint8_t *states;
     size_t rows, columns;
     float *weights, *smooth, *level;
-    double row_length, column_length; /* of a look, pixels */
-    double variance;                  /* of speckle, over the mean's square */
+    double row_length, column_length; /* pixels for one look */
+    double variance;                  /* speckle's, over the mean's square */
     double row_deviation, column_deviation, level_deviation;
 };
 
@@ -66,8 +66,8 @@ static bool holds(const struct shadow_search *search, size_t i, int kind)
     return (search->states[i] & KINDS) == kind;
 }
 
-/* Local means of the values that have a weight, over planes of any size; not a number where hardly
- * any is near. weights and values are lost. */
+/* Finds local means of the values that have a weight, in planes of any size; NaN where hardly any
+ * is near. Overwrites weights and values. */
 static sonject_status weighted_mean(struct report *report, size_t rows, size_t columns,
                                     float *weights, float *values, double row_deviation,
                                     double column_deviation)
@@ -84,7 +84,7 @@ static sonject_status weighted_mean(struct report *report, size_t rows, size_t c
     return SONJECT_OK;
 }
 
-/* The seabed's level, which changes so slowly that squares of pixels tell it. values: of pixels. */
+/* Finds the seabed's level, which changes so slowly that squares of pixels tell it. */
 static sonject_status find_level(struct report *report, struct shadow_search *search,
                                  const float *values)
 {
@@ -109,8 +109,8 @@ static sonject_status find_level(struct report *report, struct shadow_search *se
     return status;
 }
 
-/* How many pixels along an axis are one look, by the squared differences of pixels some way apart
- * on some of its lines; variance: of a pixel. */
+/* Returns how many pixels along an axis are one look, from the squared differences of pixels some
+ * way apart on some of the axis's lines. *variance gets a pixel's. */
 static double look_length(const struct shadow_search *search, bool is_along, double *variance)
 {
     const size_t rows = search->rows, columns = search->columns;
@@ -145,15 +145,14 @@ static double look_length(const struct shadow_search *search, bool is_along, dou
     return pixels;
 }
 
-/* Fills the seabed's level and the means that shadows are looked for in, and tells apart what is
- * dark. */
+/* Fills the seabed's level and the means in which shadows are looked for, and marks dark pixels. */
 static sonject_status find_dark(struct report *report, struct shadow_search *search)
 {
     const size_t count = search->rows * search->columns;
     double variance;
     for (size_t i = 0; i < count; i++) {
         search->weights[i] = holds(search, i, SEABED) ? 1.0f : 0.0f;
-        search->smooth[i] = sqrtf(sqrtf(search->intensity[i])); /* so that no highlight counts */
+        search->smooth[i] = sqrtf(sqrtf(search->intensity[i])); /* lets highlights hardly count */
     }
     CHECK(find_level(report, search, search->smooth));
     for (size_t i = 0; i < count; i++)
@@ -183,17 +182,17 @@ static sonject_status find_dark(struct report *report, struct shadow_search *sea
     return SONJECT_OK;
 }
 
-/* An axis along which dark runs are looked at. */
+/* An axis along which dark runs are found. */
 struct axis {
-    size_t step, length, lines_apart; /* of pixels, and from line to line */
-    double deviation;                 /* of the means */
-    size_t least;                     /* pixels of a run */
-    bool is_sharp;                    /* where it ends */
+    size_t step, length, lines_apart; /* strides: to the next pixel, to the next line */
+    double deviation;                 /* deviation of the means */
+    size_t least;                     /* fewest pixels of a run */
+    bool is_sharp;                    /* its ends must be sharp */
     uint8_t mark;
 };
 
-/* Whether a dark run ends at seabed, one pixel beyond its last. Along the track, where no shadow
- * fades away, what lies some pixels beyond it must be bright, too; dim ground has no such edges. */
+/* Returns whether a dark run ends at seabed, one pixel beyond its last. Along the track, where no
+ * shadow fades away, the mean some pixels further must be bright: dim ground has no such edge. */
 static bool ends(const struct shadow_search *search, const struct axis *axis, size_t first,
                  size_t last, size_t beyond)
 {
@@ -226,7 +225,7 @@ static void mark_middles(const struct shadow_search *search, const struct axis *
     }
 }
 
-/* Lists a shadow's pixels from one on; list has room for all dark ones. */
+/* Lists the pixels of the shadow around a pixel. list has room for all dark pixels. */
 static size_t list_shadow(const struct shadow_search *search, size_t start, size_t *list)
 {
     size_t count = 1;
@@ -248,7 +247,7 @@ static size_t list_shadow(const struct shadow_search *search, size_t start, size
     return count;
 }
 
-/* Adds a dark part if its middle tells a shadow's level. */
+/* Adds a dark part as a shadow if its middle tells a level. */
 static sonject_status add_shadow(struct report *report, const struct shadow_search *search,
                                  const size_t *list, size_t count, struct shadow_floor *found)
 {
@@ -270,13 +269,13 @@ static sonject_status add_shadow(struct report *report, const struct shadow_sear
         if ((search->states[list[k]] & middle) == middle)
             search->states[list[k]] |= SHADOW_CORE;
     shadow->variance = (search->variance + EDGES) / looks;
-    /* the logarithm of a mean of few looks lies low */
+    /* The logarithm of a mean of few looks is biased low. */
     shadow->log_ratio = log(sum / pixels) + 0.5 * search->variance / looks;
     return SONJECT_OK;
 }
 
-/* The mean over shadows, each by its independent pixels. How much they differ beyond their own
- * variances is in its standard error. */
+/* Averages the shadows, weighted by their independent pixels. The standard error includes what they
+ * differ beyond their own variances. */
 static void average(struct shadow_floor *found)
 {
     const struct shadow *shadows = found->list;

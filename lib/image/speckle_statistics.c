@@ -6,17 +6,17 @@
 
 #include "base/memory.h"
 
-#define BLOCK_LEAST    16   /* pixels on a side, where the region is smaller than a block */
-#define KEPT_LEAST     0.75 /* of a block's pixels that must count */
-#define TREND_LEAST    0.2  /* of the mean */
-#define TEXTURE_LAG    5    /* from here on speckle is forgotten and only texture is left */
-#define CONTRAST_LEAST 0.01 /* squared; less is no speckle */
+#define BLOCK_LEAST    16   /* least side of a block, pixels, in regions smaller than a block */
+#define KEPT_LEAST     0.75 /* least share of a block's pixels that count */
+#define TREND_LEAST    0.2  /* least trend, over the mean */
+#define TEXTURE_LAG    5    /* only texture is left from this lag on, speckle is uncorrelated */
+#define CONTRAST_LEAST 0.01 /* least squared contrast of speckle */
 
-#define PILE_LEAST 16 /* pixels that make a pile */
-#define PILE_RATIO 8  /* times those of the next value */
+#define PILE_LEAST 16 /* fewest pixels that make a pile */
+#define PILE_RATIO 8  /* pixels of a pile over those of the next value */
 
-/* One block: contrast of the amplitudes, and covariances of the intensities over the square of
- * their mean, of lags along either axis. */
+/* The values of a block: contrast of the amplitudes, and covariances of the intensities over the
+ * square of their mean, for lags along either axis. */
 #define AMPLITUDE_CONTRAST 0
 #define ROW_LAG(lag)       (1 + (lag))
 #define COLUMN_LAG(lag)    (1 + SPECKLE_LAGS + (lag))
@@ -33,8 +33,8 @@ static bool is_kept(const struct block_view *block, size_t at)
     return !block->excluded || !block->excluded[at];
 }
 
-/* The block's intensity over its own linear trend in rows and columns, mean 1; what does not count
- * is negative. False where too few pixels count, or all are 0. */
+/* Divides the block's intensity by its own linear trend in rows and columns, to mean 1. Excluded
+ * pixels become negative. Returns false where too few pixels count, or all are 0. */
 static bool take_trend_off(const struct block_view *block,
                            double values[SPECKLE_BLOCK * SPECKLE_BLOCK])
 {
@@ -74,7 +74,7 @@ static bool take_trend_off(const struct block_view *block,
     return true;
 }
 
-/* Covariance of values of mean 1 that lie so far apart, both counting. */
+/* Returns the covariance of values of mean 1 at these lags, over pairs that both count. */
 static double covariance_of(const struct block_view *block, const double *values, size_t row_lag,
                             size_t column_lag)
 {
@@ -115,8 +115,8 @@ static bool measure_block(const struct block_view *block, double results[BLOCK_V
     return true;
 }
 
-/* Median of one value over the blocks; its standard error from the median deviation, as of normal
- * values: 1.2533 * 1.4826 times that over the root of their number. scratch: count. */
+/* Returns the median of one value over the blocks. *error gets its standard error from the median
+ * deviation, as for normal values: 1.2533 * 1.4826 times that over sqrt(count). scratch: count. */
 static double block_median(const double *blocks, size_t count, size_t value, double *scratch,
                            double *error)
 {
@@ -129,7 +129,7 @@ static double block_median(const double *blocks, size_t count, size_t value, dou
     return median;
 }
 
-/* What is left of the covariances far off: the texture's. */
+/* Returns the texture's covariance: what is left at large lags. */
 static double texture_of(const double covariance[SPECKLE_LAGS])
 {
     double sum = 0.0;
@@ -138,7 +138,7 @@ static double texture_of(const double covariance[SPECKLE_LAGS])
     return fmax(0.0, sum / (double)(SPECKLE_LAGS - TEXTURE_LAG));
 }
 
-/* The speckle's share of a second moment 1 + covariance, texture divided out. */
+/* Returns the speckle's share of a second moment 1 + covariance, with texture divided out. */
 static double speckle_of(double covariance, double texture)
 {
     return (1.0 + covariance) / (1.0 + texture) - 1.0;

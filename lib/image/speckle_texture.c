@@ -6,18 +6,18 @@
 #define CONSTANT_SHAPE  1e6
 #define HALF_STEPS      (TEXTURE_REACH * TEXTURE_STEPS_PER_UNIT)
 #define DENSITY_STEPS   16384
-#define LOWEST_EXPONENT -36.0 /* e^-36 = 2e-16 of the peak: nothing of the density is left */
+#define LOWEST_EXPONENT -36.0 /* e^-36 = 2e-16 of the peak: the density ends there */
 
 static const double factorials[] = {1,    1,     2,      6,       24,       120,       720,
                                     5040, 40320, 362880, 3628800, 39916800, 479001600, 6227020800};
 
-/* e^value for value < 700, to 1e-15: by + - * / alone, unlike the mathematics library's. */
+/* Returns e^value for value < 700, to 1e-15. Uses + - * / alone, unlike the mathematics library. */
 static double exponential(double value)
 {
     if (value < -700.0)
         return 0.0;
     const double power = floor(value * 1.4426950408889634 + 0.5);
-    /* ln 2 in two parts, the first with few bits, so that the remainder keeps its digits */
+    /* ln 2 is in two parts. The first has few bits, so that the remainder keeps its digits. */
     const double rest = (value - power * 0.693145751953125) - power * 1.42860682030941723e-6;
     double sum = 0.0;
     for (int term = 13; term >= 0; term--)
@@ -25,13 +25,13 @@ static double exponential(double value)
     return ldexp(sum, (int)power);
 }
 
-/* Density of the logarithm y of the Gamma-distributed intensity, 1 at its peak y = 0. */
+/* Returns the density of the logarithm y of a Gamma-distributed intensity, 1 at its peak y = 0. */
 static double density(double shape, double y)
 {
     return exponential(shape * (y + 1.0 - exponential(y)));
 }
 
-/* Where the density has fallen to e^LOWEST_EXPONENT, on the side that outer (further out) is. */
+/* Returns where the density has fallen to e^LOWEST_EXPONENT, between its peak and `outer`. */
 static double density_end(double shape, double outer)
 {
     double inner = 0.0;
@@ -45,7 +45,7 @@ static double density_end(double shape, double outer)
     return outer;
 }
 
-/* Simpson's rule over one step, with the densities at its ends. */
+/* Integrates over one step by Simpson's rule, with the densities at the ends. */
 static double share_of_step(double shape, double y, double step, double at_start, double at_end)
 {
     return fabs(step) / 6.0 * (at_start + 4.0 * density(shape, y + 0.5 * step) + at_end);
@@ -63,8 +63,8 @@ static double total_density(double shape, double start, double step)
     return total;
 }
 
-/* The fraction of a step at which the integral of a density that is linear over the step reaches
- * amount. */
+/* Returns the fraction of a step at which the integral reaches amount, for a density that is linear
+ * over the step. */
 static double fraction_of_step(double amount, double step, double at_start, double at_end)
 {
     const double rise = at_end - at_start;
@@ -74,7 +74,8 @@ static double fraction_of_step(double amount, double step, double at_start, doub
     return sum > 0.0 ? fmin(fmax(2.0 * target / sum, 0.0), 1.0) : 0.0;
 }
 
-/* tails[i]: probability that a standard normal deviate exceeds i / TEXTURE_STEPS_PER_UNIT. */
+/* Fills tails[i], the probability that a standard normal deviate exceeds i /
+ * TEXTURE_STEPS_PER_UNIT. */
 static void normal_tails(double tails[HALF_STEPS + 1])
 {
     const double step = 1.0 / TEXTURE_STEPS_PER_UNIT;
@@ -90,8 +91,8 @@ static void normal_tails(double tails[HALF_STEPS + 1])
     }
 }
 
-/* Fills one half of the table, walking from the density's end towards the median and stopping where
- * the probability passed equals that of a normal deviate: both tails stay exact that way. */
+/* Fills one half of the table. Walks from the density's end towards the median and stops where the
+ * probability passed equals that of a normal deviate, which keeps both tails exact. */
 static void fill_half(struct speckle_texture *texture, const double *tails, double shape,
                       double total, double start, double step, bool is_upper)
 {

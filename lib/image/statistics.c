@@ -8,23 +8,24 @@
 #include "base/memory.h"
 
 #define PASSES        3
-#define LINES_AT_ONCE 16 /* of float: a cache line */
+#define LINES_AT_ONCE 16 /* floats of a cache line */
 
 #define SIGN_BIT  UINT32_C(0x80000000)
-#define SORT_BITS 11 /* at a time: three times are enough for all 32 */
+#define SORT_BITS 11 /* bits sorted at a time; three times cover all 32 */
 #define SORT_BINS ((size_t)1 << SORT_BITS)
 
-/* A running mean along lines, some together: full weight up to radius, edge_weight (0...1) one
- * pixel further on either side, so that any variance can be had, not only those of whole widths. */
+/* A running mean along several lines at once. The weight is 1 up to radius and edge_weight (0...1)
+ * one pixel further on either side, so that any variance can be had, not only that of whole
+ * widths. */
 typedef double line_values[LINES_AT_ONCE];
 
 struct line_mean {
     size_t length, radius;
     double edge_weight;
-    double *weight;      /* of the whole window about a value */
+    double *weight;      /* sum of the weights about each value */
     line_values *line;   /* the values with radius + 1 zeros on either side */
     line_values *before; /* sums from the start of a block of 2 * radius + 1 */
-    line_values *after;  /* sums to its end, but 0 at its start */
+    line_values *after;  /* sums to the end of a block, but 0 at its start */
 };
 
 static size_t padded_length(const struct line_mean *mean)
@@ -80,8 +81,8 @@ static sonject_status line_mean_init(struct line_mean *mean, struct report *repo
     return SONJECT_OK;
 }
 
-/* Sums within blocks of the window's width: any window is the end of one block and the start of the
- * next. Nothing is ever subtracted, so a bright echo leaves no rounding error in its neighbours. */
+/* Sums within blocks of the window's width. Any window is the end of one block and the start of the
+ * next. Nothing is subtracted, so a bright echo leaves no rounding error in its neighbours. */
 static void sum_blocks(struct line_mean *mean)
 {
     line_values *line = mean->line + 1;
@@ -101,7 +102,7 @@ static void sum_blocks(struct line_mean *mean)
     }
 }
 
-/* Smooths mean->line, whose inner part the caller has filled, in place. */
+/* Smooths mean->line in place. The caller has filled its inner part. */
 static void smooth_line(struct line_mean *mean)
 {
     const size_t width = 2 * mean->radius + 1;
@@ -120,8 +121,8 @@ static void smooth_line(struct line_mean *mean)
     }
 }
 
-/* Smooths lines of `length` values, which lie `apart` values from one another as the values of one
- * lie `step`, some together, as memory is laid out by rows. `from` and `to` may be the same. */
+/* Smooths lines of `length` values, several at once, as memory is laid out by rows. Lines lie
+ * `apart` values from one another, values of a line `step`. `from` and `to` may be the same. */
 static sonject_status smooth_lines(struct report *report, const float *from, float *to,
                                    size_t lines, size_t apart, size_t length, size_t step,
                                    double deviation)
@@ -187,7 +188,7 @@ void spread_of(double *values, size_t count, double spread[3])
     spread[2] = values[(size_t)(0.95 * (double)(count - 1) + 0.5)];
 }
 
-/* A whole number that is larger the larger the float is. */
+/* Returns a whole number that grows with the float. */
 static uint32_t order_of(float value)
 {
     uint32_t bits;
@@ -195,7 +196,7 @@ static uint32_t order_of(float value)
     return bits & SIGN_BIT ? ~bits : bits | SIGN_BIT;
 }
 
-/* Sorts by some bits, keeping the order of what is equal in them. */
+/* Sorts by some bits, and keeps the order where these are equal. */
 static void sort_by_bits(const uint32_t *from, size_t count, int shift, uint32_t *to)
 {
     size_t places[SORT_BINS + 1] = {0};
@@ -207,8 +208,8 @@ static void sort_by_bits(const uint32_t *from, size_t count, int shift, uint32_t
         to[places[(from[i] >> shift) % SORT_BINS]++] = from[i];
 }
 
-/* The ranks of values over their mean, ascending; NULL when memory is out. By way of floats, so
- * that grey levels that are equal but for a factor stay equal. */
+/* Returns the ranks of values over their mean, ascending; NULL where memory is out. Goes by floats,
+ * so that grey levels that differ by a factor alone stay equal. */
 static uint32_t *sorted_over_mean(const float *values, size_t count)
 {
     const double mean = mean_of(values, count);
@@ -231,7 +232,7 @@ static uint32_t *sorted_over_mean(const float *values, size_t count)
 
 static double largest_distance(const uint32_t *a, const uint32_t *b, size_t count)
 {
-    size_t in_a = 0; /* values up to and with the current one */
+    size_t in_a = 0; /* number of values up to the current one */
     size_t in_b = 0;
     size_t largest = 0;
     while (in_a < count && in_b < count) {

@@ -1,7 +1,7 @@
 /* A synthetic seabed, row by row: circular Gaussian speckle with the sonar's point response, times
- * the square root of the local intensity, which is the product of sediment, ripples and the Gamma
- * texture of K-distributed speckle. Every number comes from a counter and + - * / and square roots
- * in a fixed order: the bits are the same wherever float and double are IEEE types that are
+ * the square root of the local intensity. The intensity is the product of sediment, ripples and the
+ * Gamma texture of K-distributed speckle. Every number comes from a counter and from + - * / and
+ * square roots in a fixed order. The bits are the same wherever float and double are IEEE types,
  * neither contracted nor held in wider registers, as this library is built. */
 #include "image/synthetic.h"
 
@@ -14,12 +14,12 @@
 #include "image/random_field.h"
 #include "kernels/elementary.h"
 
-/* Sand ripples: crests that wander, fork and end, and how strongly their two faces scatter. */
+/* Sand ripples: crests that wander, fork and end, and faces that scatter differently. */
 
 #define PI             3.14159265358979323846
 #define PROFILE_PHASES 256
 
-/* The wander is relative to the regular train of crests: where the two cancel a crest forks.
+/* The wander is relative to the regular train of crests. Where the two cancel, a crest forks.
  * Lengths are deviations of the blur in wavelengths. */
 #define WANDERS 2
 static const double wander_lengths[WANDERS] = {1.5, 0.5};
@@ -27,8 +27,7 @@ static const float wander_strengths[WANDERS] = {1.1f, 0.25f};
 
 #define FULL_STRENGTH 0.6f /* relative height from which a crest has its full contrast */
 
-/* The face towards the sonar is steeper than the back, and slopes saturate at the angle of
- * repose. */
+/* The face towards the sonar is steeper than the back. Slopes saturate at the angle of repose. */
 #define SECOND_HARMONIC_COSINE 0.30f
 #define SECOND_HARMONIC_SINE   0.10f
 #define SATURATION             0.20f
@@ -38,13 +37,13 @@ static const float wander_strengths[WANDERS] = {1.1f, 0.25f};
 struct ripples {
     struct random_field *wanders[WANDERS];
     float contrast;
-    float profile_mean, profile_scale, profile_square; /* of facing(), see measure_profile */
+    float profile_mean, profile_scale, profile_square; /* facing()'s, see measure_profile */
     double row_cycles, column_cycles;                  /* phase from pixel to pixel */
     uint32_t columns, next_row;
-    float *carrier[2]; /* cosine and sine of the column's phase; borrowed */
+    float *carrier[2]; /* cosine and sine of each column's phase; borrowed */
 };
 
-/* Slope towards the sonar, of either sign, at a phase that is given by its cosine and sine. */
+/* Returns the slope towards the sonar, of either sign. cosine, sine: of the phase. */
 static float slope_towards_sonar(float cosine, float sine)
 {
     const float double_sine = 2.0f * sine * cosine;
@@ -54,7 +53,7 @@ static float slope_towards_sonar(float cosine, float sine)
     return slope / sqrtf(SATURATION + slope * slope);
 }
 
-/* The slope with mean 0 over a ripple and lowest value -1, where full contrast is darkness. */
+/* Returns the slope scaled to mean 0 and lowest value -1, which full contrast turns dark. */
 static float facing(const struct ripples *ripples, float cosine, float sine)
 {
     return (slope_towards_sonar(cosine, sine) - ripples->profile_mean) * ripples->profile_scale;
@@ -80,8 +79,8 @@ static void measure_profile(struct ripples *ripples)
         ripples->profile_scale * ripples->profile_scale;
 }
 
-/* The sonar looks towards growing range, so the phase must not fall with range: crests that head
- * the other way are the same crests. */
+/* Sets the phase's direction. The sonar looks towards growing range, so the phase must not fall
+ * with range. Crests of the opposite heading are the same crests. */
 static void set_direction(struct ripples *ripples, const sonject_synthetic_params *synthetic,
                           const sonject_geometry_params *geometry)
 {
@@ -100,7 +99,7 @@ static void phase_of(double cycles, float *cosine, float *sine)
     sine_cosine_of_cycles((float)(cycles - floor(cycles)), sine, cosine);
 }
 
-/* carriers: two rows. Uses streams from `stream` on. Errors: MEMORY. */
+/* Sets up the ripples. carriers: two rows. Uses streams from `stream` on. Errors: MEMORY. */
 static sonject_status ripples_init(struct ripples *ripples, struct report *report,
                                    const sonject_synthetic_params *synthetic,
                                    const sonject_geometry_params *geometry, uint32_t stream,
@@ -125,8 +124,8 @@ static sonject_status ripples_init(struct ripples *ripples, struct report *repor
     return SONJECT_OK;
 }
 
-/* Multiplies the next row of intensities by the ripples' modulation, whose mean is 1 whatever
- * presence (0...1 for each column: the share of the full contrast that ripples have there). */
+/* Multiplies the next row of intensities by the ripples' modulation. Its mean is 1 at any presence
+ * (0...1 for each column: the share of the full contrast that ripples have there). */
 static void ripples_modulate_next_row(struct ripples *ripples, const float *presence,
                                       float *intensity)
 {
@@ -158,8 +157,8 @@ static void ripples_modulate_next_row(struct ripples *ripples, const float *pres
     }
 }
 
-/* Streams of random numbers, none of which the tracer uses: a seabed and an injection may have the
- * same seed and yet must not share numbers. */
+/* The streams of random numbers. The tracer uses none of them: a seabed and an injection may have
+ * the same seed and yet must not share numbers. */
 enum stream {
     STREAM_SEABED = 0x5eabed00,
     STREAM_TEXTURE,
@@ -167,18 +166,19 @@ enum stream {
     STREAM_RIPPLES = STREAM_SEABED + 32
 };
 
-/* Patches are where a field is above 0. A finer octave roughens the borders, and the narrow range
- * over which the level steps is sharp where the field is steep and soft where it is flat. */
+/* Patches lie where a field is above 0. Finer octaves roughen the borders. The level steps over a
+ * narrow range of the field: borders are sharp where the field is steep and soft where it is
+ * flat. */
 #define OCTAVES      5
 #define OCTAVE_GAIN  0.55f
-#define BORDER_WIDTH 0.22f /* of the sediments, in deviations of the first octave */
-/* Ripples die away more gently, and along a smoother line. */
+#define BORDER_WIDTH 0.22f /* the sediments', in deviations of the first octave */
+/* Ripples fade more gently, and along a smoother line. */
 #define RIPPLE_OCTAVES 2
 #define FADING_WIDTH   0.8f
-/* Mean distance between the zeros of a field with autocorrelation exp(-x^2 / 4 width^2). */
+/* The mean distance between zeros of a field with autocorrelation exp(-x^2 / 4 width^2). */
 #define CHORD_PER_WIDTH 4.44288293815836624702 /* sqrt(2) pi */
 
-/* How much of the field that ripples depend on is that of the sediment: they like one sort. */
+/* The weight of the sediment's field in that of the ripples, which prefer one sediment. */
 #define RIPPLES_FOLLOW_SEDIMENT 0.6f
 
 struct seabed {
@@ -187,20 +187,20 @@ struct seabed {
     struct ripples ripples;
     struct speckle_texture texture;
     bool has_texture, has_patches, has_ripples;
-    float bright_excess;        /* intensity of the brighter sediment over the darker one's, - 1 */
-    float *sediment, *presence; /* one row of fields, then of what they mean */
+    float bright_excess;        /* intensity of the brighter sediment over the darker, minus 1 */
+    float *sediment, *presence; /* one row of fields, then of levels and presence */
     float *intensity;
-    float *rows; /* all of these, and the ripples' carriers; owned */
+    float *rows; /* memory of these and of the ripples' carriers; owned */
 };
 
-/* A step from 0 to 1 around field = 0, without corners. */
+/* Returns a step from 0 to 1 around field = 0, without corners. */
 static float step_of(float field, float width)
 {
     const float t = fminf(fmaxf(0.5f + field / width, 0.0f), 1.0f);
     return t * t * (3.0f - 2.0f * t);
 }
 
-/* A Gaussian blur whose deviation is `width` metres. */
+/* Creates a field by a Gaussian blur whose deviation is `width` metres. */
 static sonject_status create_field(struct report *report, const struct seabed *seabed,
                                    const sonject_geometry_params *geometry, uint32_t stream,
                                    double width, struct random_field **field)
@@ -275,7 +275,7 @@ static void release_parts(struct seabed *seabed)
     free(seabed->rows);
 }
 
-/* The next row of the fields that say where the sediments and the ripples are. */
+/* Makes the next row of the fields that place the sediments and the ripples. */
 static void next_patches(struct seabed *seabed)
 {
     const uint32_t columns = seabed->synthetic->columns;
@@ -316,7 +316,7 @@ static void next_intensities(struct seabed *seabed)
 static void next_row(struct seabed *seabed, float *pixels)
 {
     const uint32_t columns = seabed->synthetic->columns;
-    /* the speckle's two parts have variance 1 each */
+    /* The speckle's two parts have variance 1 each. */
     const float level = 0.70710678f * (float)seabed->synthetic->mean_amplitude;
     const float *real_part;
     const float *imaginary_part;

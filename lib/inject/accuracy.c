@@ -7,19 +7,19 @@
 #include "base/memory.h"
 #include "base/report.h"
 
-#define REACH       2    /* pixels */
-#define PILOT_SCALE 0.5  /* of the usual number of rays; pilots of fewer foretell badly */
-#define MARGIN      1.15 /* pilots foretell the error within 12 % */
-#define SCALE_STEPS 64.0 /* so that run.json has a short number */
+#define REACH       2    /* pixels on either side */
+#define PILOT_SCALE 0.5  /* over the usual number of rays; pilots of fewer rays predict badly */
+#define MARGIN      1.15 /* pilots predict the error to 12 % */
+#define SCALE_STEPS 64.0 /* steps of the ray scale, so that run.json has a short number */
 
-/* The number of rays of a result over that of both pilots. */
+/* Returns the number of rays of a result over that of both pilots. */
 static double rays_of_result(const struct pilots *pilots)
 {
     return pilots->scene->injection.ray_scale / (2.0 * PILOT_SCALE);
 }
 
-/* The mean of both pilots' energies over the pixels of a window about one of them: single ones may
- * be missed by few rays, and their neighbours within the point response share their fate. */
+/* Returns the mean of both pilots' energies over a window around a pixel. Few rays may miss a
+ * single pixel, and its neighbours within the point response share its fate. */
 static double energy_about(const struct pilots *pilots, size_t window, size_t row, size_t column)
 {
     const struct injected_window *const one = &pilots->result[0].windows[window];
@@ -35,9 +35,9 @@ static double energy_about(const struct pilots *pilots, size_t window, size_t ro
     return sum / count;
 }
 
-/* Mean square of what a result differs from the mean of both pilots by, or, where that is NULL, the
- * pilots from each other: over the energy about and the noise, over the pixels that the pilots
- * change. NaN where there are none. */
+/* Returns the mean square of the relative difference between a result and the mean of both pilots,
+ * or, where result is NULL, between the pilots. Differences are over the energy around a pixel plus
+ * noise, and pixels are those that the pilots change. NaN if there are none. */
 static double mean_square_difference(const struct pilots *pilots,
                                      const struct injection_result *result)
 {
@@ -67,7 +67,7 @@ double pilots_error_of(const struct pilots *pilots, const struct injection_resul
 {
     if (result->window_count != pilots->result[0].window_count)
         return NAN;
-    /* variances go with one over the number of rays */
+    /* Variances fall as one over the number of rays. */
     return sqrt(mean_square_difference(pilots, result) / (1.0 + rays_of_result(pilots)));
 }
 
@@ -75,7 +75,7 @@ static sonject_status choose_rays(struct pilots *pilots, struct report *report,
                                   const struct scene *scene)
 {
     const double accuracy = scene->injection.accuracy;
-    const double variance = 0.5 * mean_square_difference(pilots, NULL); /* of one pilot */
+    const double variance = 0.5 * mean_square_difference(pilots, NULL); /* one pilot's */
     const double wanted = PILOT_SCALE * MARGIN * MARGIN * variance / (accuracy * accuracy);
     if (wanted > RAY_SCALE_MAX) {
         const double least = accuracy * sqrt(wanted / RAY_SCALE_MAX);
@@ -86,7 +86,7 @@ static sonject_status choose_rays(struct pilots *pilots, struct report *report,
                                            wanted, RAY_SCALE_MAX, 100.0 * least),
                             "injection.accuracy");
     }
-    /* where nothing is changed, nothing is asked */
+    /* If nothing is changed, no rays are asked for. */
     pilots->scene->injection.ray_scale =
         isnan(wanted) ? 1.0 : fmax(ceil(wanted * SCALE_STEPS) / SCALE_STEPS, PILOT_SCALE);
     pilots->scene->injection.ray_seed = scene->injection.ray_seed;
@@ -98,7 +98,7 @@ static sonject_status run_pilots(struct pilots *pilots, struct report *report,
                                  const struct injection_input *input,
                                  sonject_progress_function progress, void *user)
 {
-    /* what grows on objects is the same in both */
+    /* Only the ray seeds differ: what grows on objects is the same in both. */
     static const uint64_t turns[2] = {0x9e3779b97f4a7c15u, 0xd1b54a32d192ed03u};
     struct progress_share none = {progress, user, 0.0, 0.0};
     struct injection_input alone = *input;

@@ -15,22 +15,22 @@
 #include "trace/checkpoint.h"
 
 #define CHECKPOINT_S 60.0
-#define NAMES_MOST   12 /* shards that a message names */
+#define NAMES_MOST   12 /* most shards that a message names */
 
-/* One call's tracing. */
+/* The tracing of one call. */
 struct tracing {
     const struct checkpoint_job *job;
     struct report *report;
-    const struct scene *scene; /* the job's, and its input, as the pilots tell */
+    const struct scene *scene; /* the job's, and its input, after pilots */
     struct injection_input input;
     struct pilots pilots;
-    char *folder;          /* work; owned */
-    struct sums_head head; /* of what the call traces, or merges */
+    char *folder;          /* the folder `work`; owned */
+    struct sums_head head; /* head of what the call traces, or merges */
     struct checkpoint checkpoint;
     double checkpoint_start_s;
-    double fraction; /* that was told last */
+    double fraction; /* fraction that was told last */
     const char *stage;
-    bool is_cancelled, is_over; /* by the caller; its time */
+    bool is_cancelled, is_over; /* the caller cancelled; the time is up */
 };
 
 char *checkpoints_folder(const char *folder)
@@ -52,7 +52,7 @@ sonject_status refuse_foreign_sums(struct report *report, const char *path, cons
         report, path, "traced by %s: choose another folder, or delete the work in this one", what);
 }
 
-/* Whose tallies this call's are. */
+/* Identifies the tallies of this call. */
 static sonject_status identify(struct tracing *tracing)
 {
     const struct checkpoint_job *job = tracing->job;
@@ -65,7 +65,7 @@ static sonject_status identify(struct tracing *tracing)
     return code_hash(tracing->report, identity->code);
 }
 
-/* After it, also on failure, the pilots are to be cleared. */
+/* Begins a call. Afterwards, also on failure, the pilots are to be cleared. */
 static sonject_status begin(struct tracing *tracing, const struct checkpoint_job *job)
 {
     const struct run_request *request = job->request;
@@ -80,7 +80,7 @@ static sonject_status begin(struct tracing *tracing, const struct checkpoint_job
     return identify(tracing);
 }
 
-/* Before anything is traced, once it is known that it has to be. */
+/* Finds the number of rays before anything is traced, once it is known that anything has to be. */
 static sonject_status find_rays(struct tracing *tracing)
 {
     const struct checkpoint_job *job = tracing->job;
@@ -90,7 +90,7 @@ static sonject_status find_rays(struct tracing *tracing)
                              &tracing->input, job->progress, job->user);
 }
 
-/* NULL where the tallies are of the same scene, image and version; else what differs. */
+/* Returns NULL where the tallies are of the same scene, image and version, or what differs. */
 static const char *difference(const struct sums_identity *found, const struct sums_identity *mine)
 {
     if (strcmp(found->version, mine->version) != 0 || strcmp(found->code, mine->code) != 0)
@@ -98,7 +98,7 @@ static const char *difference(const struct sums_identity *found, const struct su
     return strcmp(found->scene, mine->scene) == 0 ? NULL : "another scene or image";
 }
 
-/* Work of shards of another number, or of a whole run and of shards, does not go together. */
+/* Checks that the folder holds no work of another number of shards; a whole run is one. */
 static sonject_status check_shards(const struct tracing *tracing)
 {
     uint64_t others;
@@ -113,8 +113,7 @@ static sonject_status check_shards(const struct tracing *tracing)
                          (unsigned long long)mine);
 }
 
-/* What is in the folder must be this scene's; what an earlier whole run left of another is dropped.
- */
+/* Checks that the folder's tallies are this scene's. Drops a whole run's of another scene. */
 static sonject_status check_folder(struct tracing *tracing, struct sums_folder *folder)
 {
     struct report *report = tracing->report;
@@ -134,8 +133,8 @@ static sonject_status check_folder(struct tracing *tracing, struct sums_folder *
     return SONJECT_OK;
 }
 
-/* Progress of a trace: a wish to stop is noted, and the rest of the trace gone through without
- * tracing. */
+/* Tells the progress of a trace. Notes a wish to stop: the trace then goes through its launches
+ * without tracing. */
 static int tell(void *user, double fraction, const char *stage)
 {
     struct tracing *tracing = user;
@@ -175,8 +174,7 @@ static sonject_status begin_checkpoint(struct tracing *tracing, uint64_t first)
     return SONJECT_OK;
 }
 
-/* After a checkpoint: keeps what it traced, to the end or not; CANCELLED where the call is to end.
- */
+/* Ends a checkpoint and keeps what it traced, to the end or not. CANCELLED ends the call. */
 static sonject_status end_checkpoint(struct tracing *tracing, sonject_status traced, uint64_t *next,
                                      bool *is_complete)
 {
@@ -213,7 +211,7 @@ sonject_status trace_into_file(const struct checkpoint_job *job, const char *pat
     return status;
 }
 
-/* Traces from a strip of the shard on, checkpoint by checkpoint, to its end. */
+/* Traces from a strip of the shard to its end, checkpoint by checkpoint. */
 static sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is_complete)
 {
     const struct checkpoint_job *job = tracing->job;
@@ -228,8 +226,8 @@ static sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is
     return SONJECT_OK;
 }
 
-/* Forms the result, and traces what tracing->checkpoint does not hold yet; for another response
- * than was traced where the request says so. */
+/* Forms the result, tracing what tracing->checkpoint does not hold. Forms another response than was
+ * traced where the request says so. */
 static sonject_status form_traced(struct tracing *tracing, struct injection_result *result)
 {
     CHECK(find_rays(tracing));
@@ -237,8 +235,7 @@ static sonject_status form_traced(struct tracing *tracing, struct injection_resu
                          tell, tracing, result);
 }
 
-/* Traces all in one go and forms the result as it does, or, where it is stopped between, keeps what
- * was traced and traces the rest. */
+/* Traces all in one go and forms the result. If stopped, keeps the tallies and traces the rest. */
 static sonject_status trace_and_form(struct tracing *tracing, struct injection_result *result,
                                      bool *is_formed)
 {
@@ -256,7 +253,7 @@ static sonject_status trace_and_form(struct tracing *tracing, struct injection_r
     return trace_rest(tracing, next, is_complete);
 }
 
-/* All that all shards traced, in the order of shards; files: room for all of the folder. */
+/* Lists all tallies in the order of shards. files: room for all files of the folder. */
 static sonject_status collect(const struct tracing *tracing, const struct sums_folder *folder,
                               const struct sums_file **files, size_t *count)
 {
@@ -287,7 +284,7 @@ static sonject_status collect(const struct tracing *tracing, const struct sums_f
     return status;
 }
 
-/* Forms what the checkpoints in the folder are together. */
+/* Forms the sum of the folder's checkpoints. */
 static sonject_status add_up(struct tracing *tracing, const struct sums_folder *folder,
                              struct injection_result *result)
 {
@@ -302,7 +299,7 @@ static sonject_status add_up(struct tracing *tracing, const struct sums_folder *
     return status;
 }
 
-/* Forms what a file of everything holds. */
+/* Forms the contents of a file of everything. */
 static sonject_status form_sums(struct tracing *tracing, struct injection_result *result)
 {
     const struct sums_file *const *file = &tracing->job->request->sums;
@@ -333,7 +330,7 @@ static sonject_status merge(struct tracing *tracing, struct injection_result *re
     return status;
 }
 
-/* A shard, or all of a run: what is there already, and then the rest. */
+/* Runs a shard, or all of a run: takes what is there, and traces the rest. */
 static sonject_status run_shard(struct tracing *tracing, struct injection_result *result,
                                 bool *is_formed)
 {

@@ -4,25 +4,25 @@
 #include "base/memory.h"
 #include "inject/echoes.h"
 
-/* One direction of the fine grid: a pixel's value is spread over its cells, and the image takes
- * the response's value at each cell's distance. */
+/* One direction of the fine grid. A pixel's value is spread over its cells, and the image takes the
+ * response's value at each cell's distance. */
 struct direction {
     struct complex_number (*response)(const struct point_response *, double);
     const struct point_response *of;
     double pixel_m;
-    int per_pixel;  /* cells */
-    int reach;      /* pixels, of the response */
-    bool is_linear; /* cells interpolate between pixels (columns), or copy their own (rows) */
+    int per_pixel;  /* cells in a pixel */
+    int reach;      /* reach of the response, pixels */
+    bool is_linear; /* cells interpolate between pixels (columns), or copy their own pixel (rows) */
 };
 
-/* Distance of a cell from the pixel that is formed, m: see struct line_grid. */
+/* Returns the distance of a cell from the formed pixel, m: see struct line_grid. */
 static double cell_distance(const struct direction *d, int cell)
 {
     const double shift = d->is_linear ? 0.0 : 0.5 / d->per_pixel - 0.5;
     return ((double)cell / d->per_pixel + shift) * d->pixel_m;
 }
 
-/* What the formed pixel takes of the measured pixel `lag` pixels away. */
+/* Returns the weight in the formed pixel of the measured pixel `lag` pixels away. */
 static struct complex_number pixel_weight(const struct direction *d, int lag)
 {
     const int first = d->is_linear ? (lag - 1) * d->per_pixel : lag * d->per_pixel;
@@ -46,7 +46,7 @@ static void add_product(struct complex_number *sum, struct complex_number a,
     sum->imaginary_part += a.real_part * b.imaginary_part - a.imaginary_part * b.real_part;
 }
 
-/* Sum over the cells of conj(response) times response `lag` pixels away. */
+/* Returns the sum over the cells of conj(response) times the response `lag` pixels away. */
 static struct complex_number autocorrelation(const struct direction *d, int lag)
 {
     struct complex_number sum = {0.0, 0.0};
@@ -56,9 +56,8 @@ static struct complex_number autocorrelation(const struct direction *d, int lag)
     return sum;
 }
 
-/* Mean energy of the formed image over that which speckle of the same energies would have. The
- * measured pixels have passed the sonar's response once already, so they are correlated by its
- * autocorrelation. */
+/* Returns the mean energy of the formed image over that of speckle of the same energies. Measured
+ * pixels passed the sonar's response once already, so its autocorrelation correlates them. */
 static double energy_gain(const struct direction *d)
 {
     const double white = autocorrelation(d, 0).real_part;

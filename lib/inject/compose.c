@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 
-/* Two planes of coloured noise, for free(). */
+/* Draws two planes of coloured noise, for free(). */
 static sonject_status planes_of_noise(struct tracer *tracer, uint32_t stream,
                                       const struct window *window, float **planes)
 {
@@ -16,8 +16,8 @@ static sonject_status planes_of_noise(struct tracer *tracer, uint32_t stream,
     return coloured_noise(tracer, stream, window, *planes, *planes + pixels);
 }
 
-/* The measured pixel with a phase: its own, or where the image has only magnitudes that of a
- * speckle field of the sonar's point response, so that it varies as a real one would. */
+/* Gives the measured pixel a phase: its own, or, in an image of magnitudes, that of a speckle field
+ * of the sonar's point response, so that the phase varies as a real one would. */
 static void input_with_phase(const float *pixels, bool is_complex, const float *phase, size_t count,
                              size_t i, double *real_part, double *imaginary_part)
 {
@@ -33,15 +33,15 @@ static void input_with_phase(const float *pixels, bool is_complex, const float *
     *imaginary_part = length > 0.0 ? pixels[i] * b / length : 0.0;
 }
 
-/* How much of the seabed's energy the objects hide. */
+/* Returns the share of the seabed's energy that objects hide. */
 static double hidden_share(const struct echoes *echoes, size_t i)
 {
     const double without = echoes->seabed_energy[i];
     return without > 0.0 ? fmin(1.0, echoes->lost_energy[i] / without) : 0.0;
 }
 
-/* V: the seabed's energy over that of a level seabed without objects. Slopes that face the sonar
- * return more than that. */
+/* Returns V: the seabed's energy over that of a level seabed without objects. Slopes that face the
+ * sonar return more than that. */
 static double visibility_of(const struct echoes *echoes, size_t i)
 {
     const double left = 1.0 - hidden_share(echoes, i);
@@ -51,8 +51,8 @@ static double visibility_of(const struct echoes *echoes, size_t i)
     return level > 0.0 ? left * (echoes->seabed_energy[i] / level) : left;
 }
 
-/* Whether the pixel is to be traced anew, whatever it is. The water column has no seabed to trace,
- * and keeps its own pixels but for what targets return there. */
+/* Returns whether the pixel is resynthesised, whatever it is. The water column has no seabed to
+ * trace, and keeps its own pixels but for the targets' echoes. */
 static bool is_traced_anew(const struct scene *scene, const struct patch_level *level,
                            const struct echoes *echoes, size_t i)
 {
@@ -60,18 +60,18 @@ static bool is_traced_anew(const struct scene *scene, const struct patch_level *
            i % echoes->columns >= level->water_columns;
 }
 
-/* Image energy per m^2 of cross-section. */
+/* Returns the image energy per m^2 of cross-section. */
 static double gain_at(const struct patch_level *level, const struct echoes *echoes, size_t i)
 {
     return level->level[i] / (double)level->cell_energy[i % echoes->columns];
 }
 
 #define CLEARLY_HIDDEN                                                                             \
-    0.1 /* share of a pixel's energy: then the pixel counts as hidden by as much */
+    0.1 /* share of a pixel's energy from which the pixel counts as hidden by as much */
 
-/* What the objects and the relief take from the seabed's energy, over its level: not over the
- * pixel's own, or the influence would end at dark pixels later than at bright ones and its edge
- * could be told by them. */
+/* Returns what objects and relief take from the seabed's energy, over its level. The pixel's own
+ * energy would not do: the influence would end later at dark pixels than at bright ones, and its
+ * edge would show. */
 static double seabed_change(const struct patch_level *level, const struct echoes *echoes, size_t i)
 {
     const double hidden = hidden_share(echoes, i);
@@ -82,8 +82,8 @@ static double seabed_change(const struct patch_level *level, const struct echoes
                : (double)echoes->lost_energy[i] / (double)level->cell_energy[i % echoes->columns];
 }
 
-/* Marks the pixels that the objects change by more than the scene's influence level (all of them
- * when the patch is traced anew), and finds the window that holds them. */
+/* Marks the pixels that the objects change by more than the scene's influence level, or all pixels
+ * in resynthesis. Returns the window that holds them. */
 static struct window mark_influence(const struct scene *scene, const struct patch_level *level,
                                     const struct echoes *echoes, uint8_t *influence)
 {
@@ -110,7 +110,7 @@ static struct window mark_influence(const struct scene *scene, const struct patc
     return window;
 }
 
-/* A pixel that nothing changes: what plain seabed returns. */
+/* Fills a pixel that nothing changes with what plain seabed returns. */
 static void leave_pixel(const struct patch_level *level, const struct echoes *echoes, size_t i,
                         struct injected_window *result)
 {
@@ -120,7 +120,7 @@ static void leave_pixel(const struct patch_level *level, const struct echoes *ec
         echoes->order_energy[order][i] = order == 0 ? result->energy[i] : 0.0f;
 }
 
-/* The pixel in image units: the measured seabed or its new realisation, what is left of that in
+/* Composes a pixel in image units: the measured seabed or its new realisation, as far as it is in
  * view, the target, and noise. */
 static void compose_pixel(const struct scene *scene, const struct patch_level *level,
                           const struct echoes *echoes, const float *pixels, const float *noise,
@@ -134,9 +134,9 @@ static void compose_pixel(const struct scene *scene, const struct patch_level *l
     double imaginary_part = resynthesises ? scale * echoes->seabed_imaginary[i] : 0.0;
     if (!resynthesises)
         input_with_phase(pixels, result->is_complex, phase, count, i, &real_part, &imaginary_part);
-    /* a realisation is of what is in view already */
+    /* A new realisation holds only what is in view. */
     const double seabed = resynthesises ? 1.0 : sqrt(visibility);
-    /* noise is lost with the pixel that held it; a brighter pixel holds enough */
+    /* Noise goes with hidden seabed and is added again. A brighter pixel has enough noise. */
     const double lost =
         sqrt(fmax(0.0, 1.0 - visibility) * (noise_over_level(level, i) * level->level[i]));
     const double noise_real = noise ? noise[i] : 0.0;
@@ -156,7 +156,7 @@ static void compose_pixel(const struct scene *scene, const struct patch_level *l
     result->energy[i] = echoes->energy[i];
 }
 
-/* Highlights are cut where the image's own are. */
+/* Cuts highlights where the image's own are cut. */
 static void saturate(double amplitude, size_t count, struct injected_window *result)
 {
     for (size_t i = 0; !result->is_complex && i < count; i++)
@@ -181,7 +181,7 @@ sonject_status compose(struct tracer *tracer, const struct image_match *match,
     if (status == SONJECT_OK && !is_complex && has_own_pixels)
         status = planes_of_noise(tracer, STREAM_INPUT_PHASE, &touched, &phase);
     if (status == SONJECT_OK) {
-        /* pixels that nothing touches must keep every bit, so they are copied, not computed */
+        /* Pixels that nothing touches must keep every bit, so they are copied, not computed. */
         memcpy(result->image, pixels, count * (is_complex ? 2 : 1) * sizeof(float));
         for (size_t i = 0; i < count; i++)
             if (result->influence[i])

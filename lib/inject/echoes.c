@@ -8,7 +8,7 @@
 #include "base/system/process.h"
 #include "trace/checkpoint.h"
 
-#define PATTERN_FLOOR 1e-6f /* a black pixel's share in view must still be known */
+#define PATTERN_FLOOR 1e-6f /* floor of the map: a black pixel's share in view must be known */
 
 sonject_status echo_request_tell(const struct echo_request *request, struct report *report,
                                  double fraction, const char *stage)
@@ -100,20 +100,20 @@ sonject_status form_speckle(struct tracer *tracer, const struct line_grid *grid,
     return status;
 }
 
-/* What impulses are formed with. */
+/* The image formation of impulses. */
 struct forming {
     struct echoes *echoes;
     struct tracer *tracer;
     const struct echo_request *request;
-    struct form_lines energies, field; /* of the set that comes in */
+    struct form_lines energies, field; /* for the set that comes in */
     struct object_former object;
-    float *beam_seabed; /* what pings hear of an even seabed, the patch's size */
+    float *beam_seabed; /* even seabed as pings hear it; planes of the patch's size */
     struct line_grid chains_grid;
-    float *chains; /* of all orders on the grid; NULL: none came in */
+    float *chains; /* sum of all orders on the grid; NULL: none came in */
 };
 
-/* Forms lines of energies, one plane, by a response, as they come; with the last ones `formed`
- * (rows x columns of the view) is whole. */
+/* Forms lines of energies, one plane, by a response, as they come. After the last lines `formed`
+ * (rows x columns of the view) is complete. */
 static sonject_status form_energies(struct forming *forming, const struct point_response *response,
                                     const struct impulse_lines *lines, float *formed)
 {
@@ -132,7 +132,7 @@ static sonject_status form_energies(struct forming *forming, const struct point_
     return status;
 }
 
-/* The measured complex reflectivity with the energies that are in view. */
+/* Adds the measured complex reflectivity with the energies in view. */
 static sonject_status add_coherent(struct forming *forming, const struct impulse_lines *lines)
 {
     const size_t cells = (size_t)lines->strips.count * (size_t)lines->grid.bins.count;
@@ -144,7 +144,7 @@ static sonject_status add_coherent(struct forming *forming, const struct impulse
     return status;
 }
 
-/* The seabed as it is, and its realisation where that is wanted. */
+/* Adds the seabed's energy, and its realisation where that is wanted. */
 static sonject_status add_seabed(struct forming *forming, const struct impulse_lines *lines)
 {
     struct tracer *tracer = forming->tracer;
@@ -183,7 +183,7 @@ static void multiply(float *plane, const float *map, size_t rows, size_t columns
                 fmaxf(map[row * map_columns + first_column + column], PATTERN_FLOOR);
 }
 
-/* Gives energies that were traced with an even reflectivity the map's pattern. */
+/* Multiplies energies that were traced with an even reflectivity by the map's pattern. */
 static void set_pattern(struct echoes *echoes, const float *map)
 {
     const size_t rows = echoes->rows;
@@ -197,8 +197,8 @@ static void set_pattern(struct echoes *echoes, const float *map)
                      echoes->objects[i].first_column, columns);
 }
 
-/* The seabed as it would be if it were level, after it and the objects: a composite changes the
- * measured pixels by the ratio of what relief and objects leave to that. */
+/* Adds the level seabed, after the seabed and the objects. A composite changes the measured pixels
+ * by the ratio of what relief and objects leave to the level seabed. */
 static sonject_status add_level(struct forming *forming, const struct impulse_lines *lines)
 {
     struct echoes *echoes = forming->echoes;
@@ -224,8 +224,7 @@ void response_of_pings(struct point_response *response, const struct tracer *tra
                         tracer->view.row_spacing_m);
 }
 
-/* What each ping's beam hears of an even seabed, after the objects; with its last lines, what was
- * found from broadside is forgotten. */
+/* Adds each ping's even seabed, after the objects. The last lines clear broadside results. */
 static sonject_status add_beam(struct forming *forming, const struct impulse_lines *lines)
 {
     struct echoes *echoes = forming->echoes;
@@ -246,8 +245,8 @@ static sonject_status add_beam(struct forming *forming, const struct impulse_lin
     return SONJECT_OK;
 }
 
-/* What an object hides of an even seabed: its share of what the ping would hear becomes the share
- * of the seabed's energy that is lost. */
+/* Adds what an object hides of an even seabed. The hidden share of what the ping would hear becomes
+ * the lost share of the seabed's energy. */
 static sonject_status add_hidden(struct forming *forming, const struct impulse_lines *lines)
 {
     struct tracer *tracer = forming->tracer;
@@ -285,7 +284,7 @@ static void add_plane(float *sum, const float *plane, size_t count)
         sum[i] += plane[i];
 }
 
-/* Paths of several interactions; forms order_energy where that is wanted. */
+/* Adds paths of several interactions, and forms order_energy where that is wanted. */
 static sonject_status add_chains(struct forming *forming, const struct impulse_lines *lines)
 {
     const size_t cells = line_grid_cells(&lines->grid);
@@ -301,8 +300,8 @@ static sonject_status add_chains(struct forming *forming, const struct impulse_l
     return SONJECT_OK;
 }
 
-/* Adds paths of several interactions to target_energy and to one realisation: the target's; by
- * brute force, which counts everything that is rough, it becomes the seabed's. */
+/* Adds paths of several interactions to target_energy and to the target's realisation. Brute force,
+ * which counts all rough echoes, makes them the seabed's realisation. */
 static sonject_status finish_chains(struct forming *forming, bool is_brute_force)
 {
     struct echoes *echoes = forming->echoes;
@@ -361,8 +360,8 @@ static sonject_status take(void *taker, const struct impulse_lines *lines)
     return status;
 }
 
-/* What one interaction brings is the energy of the objects' echoes, and of the seabed in view; by
- * brute force the chains bring it anew, all but the glints. */
+/* Sums up one interaction: the energy of the objects' echoes and of the seabed in view. By brute
+ * force the chains bring all of that again but the glints. */
 static sonject_status finish(struct forming *forming)
 {
     struct echoes *echoes = forming->echoes;
@@ -396,7 +395,7 @@ sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
     forming.tracer = tracer;
     forming.request = request;
     sonject_status status = allocate_planes(echoes, tracer, request);
-    /* rays are traced here, unless a checkpoint has what they would find */
+    /* Rays are traced here, unless a checkpoint has what they would find. */
     THEN(status, trace_impulses(traced, of_traced, &sink));
     if (status == SONJECT_OK && !checkpoint_is_cut_short(traced->checkpoint))
         status = finish(&forming);

@@ -9,14 +9,14 @@
 #include "inject/compose.h"
 #include "scene/placement.h"
 
-#define TRACE_SHARE 0.5 /* of a run's progress */
+#define TRACE_SHARE 0.5 /* share of a run's progress */
 
-/* Takes the impulses that an image would be made of, with the same deviates. */
+/* The taker of the impulses that an image would be formed of, with the same deviates. */
 struct element_taker {
     struct tracer *tracer;
     const struct echo_request *request;
     struct impulse_list impulses;
-    float *chains; /* energies of all orders, m^2; NULL until the first */
+    float *chains; /* energies of all orders, m^2; NULL until the first comes */
     struct line_grid chains_grid;
 };
 
@@ -39,7 +39,7 @@ static sonject_status add_speckle(struct element_taker *taker, const struct impu
                                     taker->tracer->scene->injection.seed, stream);
 }
 
-/* Orders are added up, and drawn together at the end. */
+/* Adds up the orders' energies, which are drawn together at the end. */
 static sonject_status add_chains(struct element_taker *taker, const struct impulse_lines *lines)
 {
     const size_t cells = line_grid_cells(&lines->grid);

@@ -1,4 +1,5 @@
-/* What tracing leaves for image formation: lines of bins on fine grids. */
+/* Impulses, which tracing hands to image formation: lines of bins on fine grids. A line is the bins
+ * of one strip; strips divide rows and bins divide columns (struct line_grid). */
 #ifndef SONJECT_INJECT_IMPULSES_H
 #define SONJECT_INJECT_IMPULSES_H
 
@@ -9,44 +10,44 @@
 #include "scene/patch_view.h"
 #include "trace/tracer.h"
 
-/* Sets of lines, in the order in which they are handed out. */
+/* The sets of lines, in the order in which they are handed out. */
 enum impulse_kind {
-    IMPULSES_SEABED, /* m^2: what the seabed returns without objects and, where its realisation is
-                        wanted, a second plane: what is in view of it */
+    IMPULSES_SEABED, /* m^2: the seabed without objects and, where its realisation is wanted, a
+                        second plane: the part in view */
     IMPULSES_OBJECT, /* one set for each object: the planes of its tile (kernels/layout.h), energy
-                        and lost energy in m^2, footprint in rays; no cells: none of it is seen */
-    IMPULSES_GLINT,  /* after their object, one set for each of its parts that has some: real and
+                        and lost energy in m^2, footprint in rays; no cells: not in view */
+    IMPULSES_GLINT,  /* after their object, one set for each of its parts that has glints: real and
                         imaginary part, m */
     IMPULSES_MULTIBOUNCE, /* after the object's glints, which they interfere with: echoes of several
                              smooth faces, a set for each region where they gather, m */
-    IMPULSES_BEAM,        /* m^2: what each ping hears of an even seabed; only of a real aperture */
-    IMPULSES_HIDDEN,      /* m^2: of that, what an object hides; one set for each after BEAM */
-    IMPULSES_LEVEL, /* m^2: as the seabed, without objects and relief; only where there is relief */
-    IMPULSES_CHAINS /* m^2: of paths of several interactions; a set for each order */
+    IMPULSES_BEAM,        /* m^2: even seabed as each ping hears it; real apertures only */
+    IMPULSES_HIDDEN,      /* m^2: the part of BEAM that an object hides; one set for each */
+    IMPULSES_LEVEL,       /* m^2: the seabed without objects and relief; only with relief */
+    IMPULSES_CHAINS       /* m^2: paths of several interactions; a set for each order */
 };
 
 #define IMPULSE_KINDS      8
 #define IMPULSE_PLANES_MAX 3
 
-/* Some strips of a set. Sets come strip by strip from their first to their last; those of objects,
- * of what they hide and of chains in one piece. */
+/* Some strips of a set. Sets come strip by strip from their first to their last. Those of OBJECT,
+ * HIDDEN and CHAINS come in one piece. */
 struct impulse_lines {
     enum impulse_kind kind;
-    uint32_t number;       /* of object, part, or region, counted over all objects; of CHAINS,
-                              interactions of the shortest path */
-    struct line_grid grid; /* of the whole set */
-    struct span strips;    /* these */
+    uint32_t number; /* number of the object, part, or region, counted over all objects; CHAINS:
+                        interactions of the shortest path */
+    struct line_grid grid; /* grid of the whole set */
+    struct span strips;    /* the strips that come */
     uint32_t planes;
     const float *plane[IMPULSE_PLANES_MAX]; /* strips.count x grid.bins.count each */
 };
 
-/* Who takes them: the former of an image or of series. */
+/* The taker of impulses: the former of an image or of series. */
 struct impulse_sink {
     sonject_status (*take)(void *taker, const struct impulse_lines *lines);
     void *taker;
 };
 
-/* Whether these are the first, or the last, of their set. */
+/* Return whether these lines are the first, or the last, of their set. */
 static inline int impulse_lines_begin(const struct impulse_lines *lines)
 {
     return lines->strips.first == lines->grid.strips.first;
@@ -61,13 +62,12 @@ static inline int impulse_lines_end(const struct impulse_lines *lines)
 struct echo_request;
 struct injection_input;
 
-/* By rays: traces everything that the request asks for, and hands it on as it comes, unless the
- * sink is NULL, so that only a checkpoint keeps it. Errors: INPUT, DEVICE, MEMORY, CANCELLED, and
- * the sink's own. */
+/* Traces all impulses that the request asks for and hands them on as they come. sink NULL: only a
+ * checkpoint keeps them. Errors: INPUT, DEVICE, MEMORY, CANCELLED, and the sink's own. */
 sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *request,
                               const struct impulse_sink *sink);
 
-/* Whether impulses that `traced` lays the grids of can be formed with the tracer's response: bins,
+/* Checks that impulses on the grids of `traced` can be formed with the tracer's response: bins,
  * strips and margins must be fine and wide enough. Errors: INPUT. */
 sonject_status check_response_fits(const struct tracer *tracer, const struct tracer *traced);
 

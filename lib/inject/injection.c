@@ -13,7 +13,7 @@
 #include "scene/point_response.h"
 #include "trace/checkpoint.h"
 
-/* A scene on its patch. */
+/* A scene laid out on its patch, with all that tracing needs. */
 struct prepared {
     struct injection_setup setup;
     struct image_match match;
@@ -21,8 +21,8 @@ struct prepared {
     struct influence_windows windows;
 };
 
-/* The numbers of the paper's Figure 5: how the resynthesised seabed compares with the measured one
- * where no object is in view. */
+/* Compares the resynthesised seabed with the measured one where no object is in view: the numbers
+ * of the paper's Figure 5. */
 static sonject_status compare_seabed(struct report *report, const struct echoes *echoes,
                                      const struct patch_level *level,
                                      const struct injected_window *result,
@@ -75,7 +75,7 @@ static void fill_statistics(const struct prepared *prepared, struct injection_re
                                                         : SONJECT_SOURCE_FALLBACK);
 }
 
-/* To be given to prepared_clear, also on failure. */
+/* Prepares a scene. The caller gives it to prepared_clear, also on failure. */
 static sonject_status prepare(struct prepared *prepared, struct report *report,
                               struct device *device, const struct scene *scene,
                               const struct injection_input *input)
@@ -84,7 +84,7 @@ static sonject_status prepare(struct prepared *prepared, struct report *report,
     struct tracer *tracer = &setup->tracer;
     memset(prepared, 0, sizeof *prepared);
     sonject_status status = injection_setup_init(setup, report, device, scene, input);
-    /* the grid follows the response */
+    /* The match comes first, since the grid follows the response. */
     THEN(status, match_image(tracer, setup->pixels, input, &prepared->match));
     THEN(status, patch_facts_init(&prepared->facts, report, scene, &tracer->view, setup->pixels,
                                   input->is_complex));
@@ -98,14 +98,15 @@ static void prepared_clear(struct prepared *prepared)
     injection_setup_clear(&prepared->setup);
 }
 
-/* What is asked of the echoes in a window. */
+/* The request for the echoes in a window. */
 struct window_job {
-    struct tracer tracer; /* that sees the window alone */
+    struct tracer tracer; /* sees the window alone */
     struct patch_request patch;
-    struct progress_share progress; /* the window's of the run */
+    struct progress_share progress; /* the window's share of the run's progress */
 };
 
-/* On success to be given to window_job_clear; on failure nothing is held. */
+/* Sets up the tracing of a window. On success the caller gives the job to window_job_clear; on
+ * failure nothing is held. */
 static sonject_status window_job_init(struct window_job *job, struct prepared *prepared,
                                       const struct influence_windows *windows, size_t number,
                                       bool is_complex, sonject_progress_function progress,
@@ -134,7 +135,7 @@ static sonject_status end_tracing(struct tracer *tracer)
     return tracer->checkpoint ? checkpoint_finish(tracer->checkpoint, &tracer->counts) : SONJECT_OK;
 }
 
-/* The window's pixels of the patch, for free(); NULL where memory is out. */
+/* Returns the patch's pixels in a window, for free(); NULL where memory is out. */
 static float *pixels_in_window(const struct prepared *prepared, const struct window *at,
                                bool is_complex)
 {
@@ -175,12 +176,12 @@ static sonject_status compose_window(struct prepared *prepared, struct window_jo
             object_truth_move(&result->objects[i], at);
     result->orders = echoes->orders;
     memcpy(window->order_energy, echoes->order_energy, sizeof window->order_energy);
-    memset(echoes->order_energy, 0, sizeof echoes->order_energy); /* they are the window's now */
+    memset(echoes->order_energy, 0, sizeof echoes->order_energy); /* the window owns them now */
     return SONJECT_OK;
 }
 
-/* Traces a window, of another response where `traced` is another, and composes what is formed of it
- * into the result, unless a checkpoint's tracing was cut short. */
+/* Traces a window, by the rays of another response where `traced` is another. Composes the formed
+ * echoes into the result, unless a checkpoint cut the tracing short. */
 static sonject_status inject_window(struct prepared *prepared, struct prepared *traced,
                                     const struct influence_windows *windows, size_t number,
                                     const bool *is_empty, sonject_progress_function progress,
@@ -219,7 +220,7 @@ static sonject_status inject_window(struct prepared *prepared, struct prepared *
     return status;
 }
 
-/* Rows of the view where nothing was heard, for free(); NULL where memory is out. */
+/* Marks the view's rows where nothing was heard; for free(), NULL where memory is out. */
 static bool *find_empty_rows(const struct patch_view *view, const struct injection_input *input)
 {
     bool *is_empty = allocate_array(view->rows, sizeof *is_empty);
@@ -262,7 +263,7 @@ static sonject_status run(struct report *report, struct device *device, const st
         status = prepare(&other, report, device, input->traced, input);
     THEN(status, inject_windows(&prepared, traced, input, progress, user, result));
     if (status == SONJECT_OK) {
-        /* into the patch's own pixels, which keep every bit where nothing changes them */
+        /* Paste into the patch's own pixels, which keep every bit where nothing changes them. */
         result->image = prepared.setup.pixels;
         prepared.setup.pixels = NULL;
         for (size_t i = 0; i < result->window_count; i++)
@@ -288,7 +289,7 @@ sonject_status injection_run(struct report *report, struct device *device,
     memset(result, 0, sizeof *result);
     CHECK(pilots_find(&own, report, device, &scene, &with, progress, user));
     const sonject_status status = run(report, device, scene, &with, progress, user, result);
-    /* what another response forms is not what the pilots formed */
+    /* The pilots' echoes are not formed with another response. */
     if (status == SONJECT_OK && with.pilots && !input->traced)
         result->statistics.energy_error = pilots_error_of(with.pilots, result);
     pilots_clear(&own);

@@ -1,5 +1,5 @@
-/* What is put into a measured magnitude image takes that image's own widths, looks and saturation:
- * what the image tells of them, coloured noise, and pixels of several looks, of images that were
+/* The statistics of a measured magnitude image that targets in it take on: widths of the response,
+ * looks and saturation. Also coloured noise, and pixels of several looks, for images that were
  * averaged before they were stored. */
 #include <math.h>
 #include <stdlib.h>
@@ -11,18 +11,18 @@
 #include "scene/point_response.h"
 
 #define PI            3.14159265358979323846
-#define REACH         160  /* pixels around the objects: ten blocks across */
-#define ASPECTS       256  /* of the numerical integral */
-#define CLEARLY       4.0  /* standard errors */
-#define DIFFERENCE    0.05 /* of correlations, below which they count as equal */
+#define REACH         160  /* pixels around the objects; ten blocks across */
+#define ASPECTS       256  /* points of the numerical integral over aspects */
+#define CLEARLY       4.0  /* standard errors that make a difference clear */
+#define DIFFERENCE    0.05 /* correlations closer than this count as equal */
 #define LOOKS_CLEARLY 1.15
 #define LOOKS_MOST    64.0
-#define WIDEST        8.0  /* pixels */
-#define FAINTEST      0.02 /* correlation; a response much narrower than a pixel shows none */
+#define WIDEST        8.0  /* widest response, pixels */
+#define FAINTEST      0.02 /* least correlation; a response much narrower than a pixel has none */
 #define HALVINGS      60
 #define CHUNK         256 /* strips drawn at a time */
 
-/* By Wiener and Khinchin: the aspects' energy, transformed. */
+/* Transforms the aspects' energy (Wiener and Khinchin). */
 double along_track_speckle_correlation(const struct point_response *response, double distance_m)
 {
     double sum = 0.0;
@@ -49,8 +49,8 @@ static bool clearly_differs(double measured, double error, double nominal)
     return fabs(measured - nominal) > fmax(DIFFERENCE, CLEARLY * error);
 }
 
-/* The resolution that gives neighbouring rows the correlation: at least their spacing, which gives
- * nearly none. */
+/* Finds the resolution that gives neighbouring rows the measured correlation. It is at least the
+ * row spacing, which gives nearly none. */
 static void match_along_track(struct point_response *response, const struct speckle_axis *axis,
                               double spacing_m)
 {
@@ -82,13 +82,14 @@ static void match_range(struct point_response *response, const struct speckle_ax
                               2.0 * sqrt(log(2.0)) * spacing_m / sqrt(-2.0 * log(correlation)));
 }
 
-/* Widths are matched where the scene has no other pulse or response than the image's own kind. */
+/* Returns whether widths can be matched: the scene must have the plain pulse and response. */
 static bool has_widths(const struct point_response *response)
 {
     return response->pulse_kind == SONJECT_PULSE_GAUSSIAN && cross_range_is_plain(response);
 }
 
-/* From REACH pixels before low to REACH behind high, where they exist. */
+/* Returns the number of pixels from REACH before low to REACH behind high, within 0...count. *first
+ * gets the first of them. */
 static size_t around(double low, double high, size_t count, size_t *first)
 {
     const double last = (double)count;
@@ -97,7 +98,7 @@ static size_t around(double low, double high, size_t count, size_t *first)
     return (size_t)(fmin(last, fmax(start, ceil(high) + REACH + 1.0)) - start);
 }
 
-/* The pixels around the objects; all where there is none. */
+/* Returns the window of pixels around the objects, or all pixels if there are no objects. */
 static struct window find_region(const struct tracer *tracer)
 {
     const struct patch_view *view = &tracer->view;
@@ -201,7 +202,7 @@ static int32_t limit(double value, struct span span)
     return (int32_t)(value < span.first ? span.first : value > last ? last : value);
 }
 
-/* The part of the patch's grid that the window's pixels are formed from. */
+/* Cuts the patch's grid to the part that the window's pixels are formed from. */
 static void cut_grid(struct line_grid *grid, const struct tracer *tracer,
                      const struct window *window)
 {
@@ -223,7 +224,7 @@ static void cut_grid(struct line_grid *grid, const struct tracer *tracer,
         grid->bins.first;
 }
 
-/* Energies of cells that make the formed noise's mean energy 1 at every range. */
+/* Fills the energies of cells that give the formed noise unit mean energy at every range. */
 static void fill_energies(const struct line_grid *grid, const struct tracer *tracer,
                           float *energies)
 {
@@ -232,7 +233,7 @@ static void fill_energies(const struct line_grid *grid, const struct tracer *tra
         view->row_spacing_m / grid->strips_per_row * view->column_spacing_m / grid->bins_per_pixel;
     const size_t bins = (size_t)grid->bins.count;
     for (size_t bin = 0; bin < bins; bin++) {
-        /* half a bin at least: a beam has no width at range 0 */
+        /* The range is half a bin at least, since a beam has no width at range 0. */
         const double range =
             fmax(view_processor_range(view, ((double)grid->bins.first + (double)bin) /
                                                 grid->bins_per_pixel),
@@ -297,14 +298,14 @@ uint32_t look_weights(double looks, double *weight, double *last)
     *last = 1.0;
     if (others < 1.0)
         return 1;
-    /* others a + b = 1 and others a^2 + b^2 = 1 / looks */
+    /* Solve others a + b = 1 and others a^2 + b^2 = 1 / looks. */
     const double root = others * others - others * count * (1.0 - 1.0 / looks);
     *weight = (others + sqrt(fmax(0.0, root))) / (others * count);
     *last = 1.0 - others * *weight;
     return (uint32_t)count;
 }
 
-/* Planes of the patch, real parts and imaginary parts. */
+/* Planes of the patch, in pairs of real and imaginary parts. */
 enum look_plane {
     PHASE_REAL,
     PHASE_IMAGINARY,
@@ -312,7 +313,7 @@ enum look_plane {
     NOISE_IMAGINARY,
     TARGET_REAL,
     TARGET_IMAGINARY,
-    PHASE_ENERGY, /* weighted mean over the looks */
+    PHASE_ENERGY, /* weighted mean over looks */
     INTENSITY,
     LOOK_PLANES
 };
@@ -338,8 +339,8 @@ static uint32_t stream_of(uint32_t look, uint32_t first_look, uint32_t which)
     return look == 0 ? first_look : STREAM_LOOKS + 3 * (look - 1) + which;
 }
 
-/* The target's echo in a look: the traced realisation in the first; in the others glints, and the
- * rough part's energy drawn anew. */
+/* Returns the target's echo in a look. The first look has the traced realisation. The others have
+ * the glints, and the rough part's energy drawn again. */
 static void target_in_look(const struct look_work *work, uint32_t look, size_t i, double *real_part,
                            double *imaginary_part)
 {
@@ -375,7 +376,7 @@ static void add_look(const struct look_work *work, uint32_t look, double weight,
     work->planes[INTENSITY][i] += (float)(weight * (a * a + b * b));
 }
 
-/* touched: the numbers of count pixels. */
+/* touched: the indices of count pixels. */
 static sonject_status add_looks(const struct look_work *work, double looks, const size_t *touched,
                                 size_t count)
 {

@@ -1,6 +1,5 @@
-/* What objects return by one interaction, formed: their rough surfaces and their glints; and the
- * peak of each echo, wherever pixels lie and however far apart they are: on a lattice of points
- * that is finer than the point response, and between them. */
+/* The formed echoes of objects by one interaction: rough surfaces and glints. Each echo's peak is
+ * found wherever pixels lie: on a lattice finer than the point response, and between its points. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,10 +9,10 @@
 #include "scene/point_response.h"
 #include "trace/multibounce.h"
 
-#define POINTS_PER_RESOLUTION 4 /* a parabola in dB between them errs by 0.02 dB */
+#define POINTS_PER_RESOLUTION 4 /* a parabola in dB between points errs by 0.02 dB */
 #define MARGIN                2 /* points around the tile */
 
-/* Points every `step` cells that hold a tile's cells, in cells of another size. */
+/* Returns points every `step` cells that cover a tile, whose cells have another size. */
 static struct span points_over(struct span tile, double cells_per_tile_cell, int32_t step)
 {
     struct span points;
@@ -28,8 +27,8 @@ static int32_t cells_of(double resolution_m, double cell_m)
     return (int32_t)fmax(1.0, floor(resolution_m / (POINTS_PER_RESOLUTION * cell_m)));
 }
 
-/* Lays points over a tile: every so many strips and bins of the grid as are a quarter of the
- * resolution, at least one. */
+/* Lays points over a tile, a quarter of the resolution apart in strips and bins of the grid, but at
+ * least one strip and bin. */
 static sonject_status peak_lattice_init(struct peak_lattice *lattice, const struct tracer *tracer,
                                         const struct line_grid *tile, const struct line_grid *grid)
 {
@@ -55,7 +54,7 @@ static sonject_status peak_lattice_init(struct peak_lattice *lattice, const stru
     lattice->view.columns = (size_t)columns.count;
     lattice->view.row_spacing_m = strips * strip;
     lattice->view.column_spacing_m = bins * bin;
-    /* rows are in the middle of their strips, columns on bins */
+    /* Rows lie in the middle of their strips, columns on bins. */
     lattice->view.first_x_m =
         view_x_of_row(view, -0.5) + ((double)rows.first + 0.5) * lattice->view.row_spacing_m;
     lattice->view.first_range_m =
@@ -65,7 +64,7 @@ static sonject_status peak_lattice_init(struct peak_lattice *lattice, const stru
     return SONJECT_OK;
 }
 
-/* Begins to form lines of a grid of such strips and bins. */
+/* Begins to form lines of a grid with these strips and bins. */
 static sonject_status peak_lattice_begin(struct peak_lattice *lattice, struct tracer *tracer,
                                          enum form_kind kind, const struct line_grid *grid)
 {
@@ -94,8 +93,8 @@ static sonject_status peak_lattice_finish(struct peak_lattice *lattice)
     return status;
 }
 
-/* Two lattices of one echo: a field or energies at the first one's points, and the other's energy
- * there. */
+/* The two lattices of one echo. Energy counts at the points of `own`, a field or energies, with the
+ * other's energy there. */
 struct echo_points {
     const struct peak_lattice *own, *other;
     bool own_is_field;
@@ -108,7 +107,7 @@ static double energy_at_point(const struct peak_lattice *lattice, bool is_field,
     return is_field ? a * a + b * b : a;
 }
 
-/* Between the points of a lattice, linear in both directions; 0 beyond them. */
+/* Returns the energy between a lattice's points, interpolated in both directions; 0 beyond them. */
 static double energy_between(const struct peak_lattice *lattice, bool is_field, double row,
                              double column)
 {
@@ -136,8 +135,8 @@ static double energy_of_both(const struct echo_points *points, size_t row, size_
                           view_column_of_range(other, view_processor_range(own, (double)column)));
 }
 
-/* The peak of the parabola through the levels of a point and its neighbours; the point's own energy
- * where that has none. */
+/* Returns the peak of the parabola through the levels of a point and its neighbours. At the
+ * lattice's edge and where there is no peak, returns the point's own energy. */
 static double peak_around(const struct echo_points *points, size_t row, size_t column)
 {
     const struct patch_view *view = &points->own->view;
@@ -158,7 +157,7 @@ static double peak_around(const struct echo_points *points, size_t row, size_t c
     return xx < 0.0 && curvature > 0.0 && rise < log(2.0) ? energy * exp(rise) : energy;
 }
 
-/* Of the peaks where most is of the first lattice; *peak grows. */
+/* Finds the peak among points of `own` that have at least half of its energy. *peak only grows. */
 static void find_peak(const struct echo_points *points, double *peak, double *range_m)
 {
     const struct patch_view *view = &points->own->view;
@@ -179,8 +178,8 @@ static void find_peak(const struct echo_points *points, double *peak, double *ra
     *range_m = view_processor_range(view, (double)(at % view->columns));
 }
 
-/* The largest expected cross-section, m^2, of glints (both parts of a field, m) and rough surfaces
- * (energies, m^2) together, and the processor range where it is. 0: there is no echo. */
+/* Returns the largest expected cross-section, m^2, of glints (a field, m) and rough surfaces
+ * (energies, m^2) together, or 0 if there is no echo. *range_m gets its processor range. */
 static double peak_of_echo(const struct peak_lattice *glint, const struct peak_lattice *rough,
                            double *range_m)
 {
@@ -193,7 +192,7 @@ static double peak_of_echo(const struct peak_lattice *glint, const struct peak_l
     return peak;
 }
 
-/* Adds a window's plane into a plane of the whole patch. */
+/* Adds a window's plane to a plane of the whole patch. */
 static void add_window(float *patch, const struct echoes *echoes, const float *window,
                        size_t first_column, size_t columns)
 {
@@ -202,7 +201,7 @@ static void add_window(float *patch, const struct echoes *echoes, const float *w
             patch[row * echoes->columns + first_column + column] += window[row * columns + column];
 }
 
-/* Pixels of the window in which some ray met the object. */
+/* Marks the window's pixels in which some ray met the object. */
 static void mark_covered(struct object_echo *echo, const struct line_grid *grid,
                          const float *footprint, size_t rows)
 {
@@ -219,7 +218,7 @@ static void mark_covered(struct object_echo *echo, const struct line_grid *grid,
         }
 }
 
-/* Energies of the tile between pixels. */
+/* Forms the tile's energies on a lattice. */
 static sonject_status form_rough_peak(struct peak_lattice *lattice, struct tracer *tracer,
                                       const struct impulse_lines *tile)
 {
@@ -265,7 +264,7 @@ static bool has_rough_part(const struct tracer *tracer, uint32_t number)
     return false;
 }
 
-/* Whether an object's glints may lie anywhere, by way of other objects. */
+/* Returns whether an object's glints may lie anywhere, by way of other objects. */
 static bool leads_anywhere(const struct tracer *tracer, uint32_t number)
 {
     const struct placed_object *object = &tracer->objects[number];
@@ -293,7 +292,7 @@ static sonject_status begin_object(struct object_former *former, struct echoes *
     former->columns = is_anywhere ? echoes->columns : echo->columns;
     former->glint = allocate_array(2 * echoes->rows * former->columns, sizeof(float));
     CHECK_MEMORY(tracer->report, former->glint, "an object's glints");
-    /* brute force draws all that is rough at once */
+    /* Brute force draws all rough echoes at once. */
     if (!is_rough || tracer->scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE)
         return SONJECT_OK;
     former->rough_energy = allocate_array(cells, sizeof(float));
@@ -311,7 +310,7 @@ static void add_field(const struct echoes *echoes, const struct formed *formed, 
                formed->columns);
 }
 
-/* Adds formed pixels to the object's glint, and to what is the same in every look. */
+/* Adds formed pixels to the object's glint, and to the coherent part of all looks. */
 static void add_glint(struct object_former *former, struct echoes *echoes,
                       const struct formed *formed)
 {
@@ -327,7 +326,7 @@ static void add_glint(struct object_former *former, struct echoes *echoes,
         add_field(echoes, formed, echoes->coherent_real, echoes->coherent_imaginary);
 }
 
-/* Lines of glints between pixels. */
+/* Forms lines of glints on a lattice. */
 static sonject_status find_glint_peak(struct object_former *former, struct tracer *tracer,
                                       const struct impulse_lines *lines)
 {
@@ -365,7 +364,8 @@ static sonject_status form_glint(struct object_former *former, struct echoes *ec
     return status;
 }
 
-/* Adds the energy of the object's glints to that of all objects; where its own echo is, to that. */
+/* Adds the energy of the object's glints to that of all objects, and to the object's own echo
+ * within its columns. */
 static void add_glint_energy(const struct object_former *former, struct echoes *echoes)
 {
     struct object_echo *echo = &echoes->objects[former->number];

@@ -7,9 +7,9 @@
 #include "inject/compose.h"
 
 #define NOISE_LOWEST  1e-3         /* -30 dB */
-#define NOISE_UNKNOWN 5.6234133e-3 /* -22.5 dB, amid what shadows are measured at */
-#define PART_SIDE     1024         /* pixels, about, of the parts that shadows are looked for in */
-#define PARTS_MOST    16           /* which tell as much as a larger patch would */
+#define NOISE_UNKNOWN 5.6234133e-3 /* -22.5 dB, among measured shadow levels */
+#define PART_SIDE     1024         /* side of the parts searched for shadows, pixels, about */
+#define PARTS_MOST    16           /* most parts; they tell as much as a larger patch would */
 
 static sonject_status check_pixels(struct report *report, const struct patch_view *view,
                                    const float *pixels, bool is_complex, double *mean)
@@ -62,9 +62,9 @@ static size_t parts_of(size_t pixels)
     return pixels < PART_SIDE ? 1 : (pixels + PART_SIDE / 2) / PART_SIDE;
 }
 
-/* The noise floor, from shadows of the patch: ambient and receiver noise, and the side lobes and
- * echoes by other ways that fill real shadows. What a picture was clipped at says less than is
- * there. A large patch tells it by parts spread over its rows and columns. */
+/* Estimates the noise floor from shadows of the patch. It is ambient and receiver noise, and the
+ * side lobes and echoes by other paths that fill real shadows. NOISE_LOWEST is for clipped
+ * pictures, which show too little. A large patch is searched in parts. */
 static sonject_status estimate_noise(struct patch_facts *facts, struct report *report,
                                      const struct patch_view *view, const float *pixels,
                                      bool is_complex)

@@ -8,14 +8,14 @@
 #include "image/statistics.h"
 #include "scene/point_response.h"
 
-#define LEVEL_FLOOR 1e-6  /* of the mean intensity: blank corners of a swath have no level */
-#define WATER_SHARE 0.05f /* of seabed around a pixel that tells its level */
+#define LEVEL_FLOOR 1e-6  /* share of the mean intensity; blank corners of a swath have no level */
+#define WATER_SHARE 0.05f /* least share of seabed around a pixel that gives its level */
 
 double seabed_cell_energy(const struct patch_view *view, const struct point_response *response,
                           double mu, double processor_range_m)
 {
-    /* half a cell beyond the first return: before it there is no seabed, and straight below its
-     * cells would cover any area */
+    /* Half a cell beyond the first return. Before it there is no seabed, and straight below the
+     * sonar cells would cover any area. */
     const double steepest = view_bottom_range(view) + 0.5 * range_energy_width(response);
     const double grazing = view_grazing(view, fmax(processor_range_m, steepest));
     const double sine = sin(grazing);
@@ -48,13 +48,13 @@ float *window_intensities(const struct window *at, const struct patch_view *view
     return intensity;
 }
 
-/* A region of the patch whose level is sought, the first of its columns in the water column. */
+/* A region of the patch whose level is sought. Its first columns are in the water column. */
 struct level_region {
     const struct scene *scene;
-    const struct patch_view *view; /* of the patch */
+    const struct patch_view *view; /* the patch's */
     struct window at;
     size_t water_columns;
-    double mean; /* intensity of the patch */
+    double mean; /* mean intensity of the patch */
 };
 
 static sonject_status smooth(struct report *report, const struct level_region *region,
@@ -65,7 +65,7 @@ static sonject_status smooth(struct report *report, const struct level_region *r
                       radius_m / region->view->column_spacing_m, mean);
 }
 
-/* The local mean of the seabed alone; in the water column that of the seabed nearby. */
+/* Finds the local mean of the seabed alone. In the water column it is that of the seabed nearby. */
 static sonject_status level_beside_water(struct report *report, const struct level_region *region,
                                          const float *intensity, float *level)
 {
@@ -103,7 +103,7 @@ static sonject_status find_level(struct report *report, const struct level_regio
     return SONJECT_OK;
 }
 
-/* The map is the intensity, or its local mean, over the level. */
+/* Finds the map: the intensity, or its local mean, over the level. */
 static sonject_status find_map(struct report *report, const struct level_region *region,
                                const float *intensity, const float *level, float *map)
 {
@@ -118,7 +118,7 @@ static sonject_status find_map(struct report *report, const struct level_region 
     return SONJECT_OK;
 }
 
-/* From so many pixels before a window to as many behind it, where they exist. */
+/* Returns the length of a window widened by a reach on both sides, within 0...all. */
 static size_t widened(size_t first, size_t count, size_t reach, size_t all, size_t *start)
 {
     const size_t end = first + count + reach;
@@ -126,8 +126,7 @@ static size_t widened(size_t first, size_t count, size_t reach, size_t all, size
     return (end < all ? end : all) - *start;
 }
 
-/* All that tells the level in the window; where that lies in the water column also the seabed
- * behind. */
+/* Returns the region that tells the level in the window, with seabed behind the water column. */
 static struct level_region region_about(const struct scene *scene, const struct patch_view *view,
                                         const struct window *window, double mean)
 {
@@ -165,7 +164,7 @@ void patch_level_clear(struct patch_level *level)
     memset(level, 0, sizeof *level);
 }
 
-/* A part of a plane that holds what lies at `from`. */
+/* Copies a part of a plane. The plane's pixels lie at `from`. */
 static void cut(const struct window *from, const float *plane, const struct window *part,
                 float *out)
 {
@@ -246,7 +245,7 @@ sonject_status patch_request_init(struct patch_request *patch, struct tracer *tr
         patch_request_clear(patch);
         return report_out_of_memory(tracer->report, "the reflectivity");
     }
-    /* of unit mean square: the pixels over the root of the level */
+    /* The pixels over the root of the level have unit mean square. */
     for (size_t i = 0; i < 2 * count; i++)
         patch->reflectivity[i % 2 * count + i / 2] = pixels[i] / sqrtf(patch->level.level[i / 2]);
     patch->request.reflectivity_real = patch->reflectivity;
@@ -259,7 +258,7 @@ double decibels(double ratio)
     return ratio > 0.0 ? 10.0 * log10(ratio) : -INFINITY;
 }
 
-/* In energy; 1 where nothing is heard. */
+/* Returns an object's gain in energy; 1 if nothing is heard. */
 static double gain_of(const sonject_object_params *object, double energy, double over_seabed)
 {
     const double asked = pow(10.0, object->level_db / 10.0);
@@ -270,11 +269,11 @@ static double gain_of(const sonject_object_params *object, double energy, double
     return 1.0;
 }
 
-/* In energy, of a pixel. What came by the seabed has the gain of the object that is heard there, or
- * whose shadow it fills, or where there is neither the objects' mean. */
+/* Scales a pixel's echoes. Echoes by way of the seabed get the gain of the object that is heard
+ * there, or whose shadow they fill, or else the objects' mean. */
 static void scale_pixel(struct echoes *echoes, const double *gains, double mean, size_t i)
 {
-    double energy = 0.0; /* of first hits alone, and the same with the gains */
+    double energy = 0.0; /* first hits alone; `scaled`: with the gains */
     double scaled = 0.0;
     double hidden = 0.0;
     double scaled_hidden = 0.0;
@@ -324,7 +323,7 @@ sonject_status set_target_levels(const struct tracer *tracer, struct echoes *ech
         gains[i] = 1.0;
         if (!tracer_follows(tracer, i))
             continue;
-        /* over the seabed that the peak of the echo lies on */
+        /* Compare with the seabed that the echo's peak lies on. */
         const double over_seabed =
             echo->peak_energy > 0.0
                 ? echo->peak_energy / seabed_cell_energy(&tracer->view, &tracer->response, lambert,

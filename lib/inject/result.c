@@ -1,4 +1,4 @@
-/* What an injection gives back, from windows in the view's order to the patch in the image's. */
+/* The result of an injection, from windows in the view's order to the patch in the image's. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -10,13 +10,13 @@
 #include "device/device.h"
 #include "schema/keys.h"
 
-/* Members one by one: the padding of a structure is not part of its value. */
+/* Hashes a member by itself, since padding of a structure is not part of its value. */
 #define ADD(hash, member) hash_add(hash, &(member), sizeof(member))
 
-/* A digest in the making: of a section of the scene's keys, and of all sections. */
+/* A digest in the making: one of a section of the scene's keys, and one of all sections. */
 struct digest {
     struct hash *section, *whole;
-    json_t **inputs; /* that get each section's; NULL: they are not asked for */
+    json_t **inputs; /* gets the sections' digests; NULL: not wanted */
 };
 
 static void end_section(struct digest *digest, const char *name)
@@ -28,21 +28,21 @@ static void end_section(struct digest *digest, const char *name)
         json_add(digest->inputs, name, json_string(text));
 }
 
-/* NaN has many patterns and one meaning: that nothing was given. */
+/* Adds a number. NaN has many patterns and one meaning: nothing was given. */
 static void add_number(struct hash *hash, double number)
 {
     const double told = isnan(number) ? (double)NAN : number;
     ADD(hash, told);
 }
 
-/* A section with a structure of its own, which has a digest of its own. */
+/* Returns whether a section has a structure of its own, and with it a digest of its own. */
 static bool is_part(const struct field *field)
 {
     return field->kind == FIELD_SECTION && (field->offset != 0 || field->is_in_scene);
 }
 
-/* All that a section's keys set in its structure, but for parts. Files count by what is in them,
- * which is the scene's. */
+/* Adds all that a section's keys set in its structure, but for parts. Files count by their
+ * contents, which the scene holds. */
 static void add_rows(struct hash *hash, const struct section *section, const void *structure,
                      const struct scene *scene)
 {
@@ -91,8 +91,7 @@ static void add_section(struct digest *digest, const char *name, const struct se
     }
 }
 
-/* The seed is told apart from what else is said of the injection. The array of the element level
- * is no part of an image. */
+/* Adds the scene's keys. The seed has its own digest. The element level's array is in no image. */
 static void add_keys(struct digest *digest, const struct scene *scene)
 {
     sonject_injection_params injection = scene->injection;
@@ -132,13 +131,13 @@ static void add_relief(struct digest *digest, const struct relief_features *reli
     struct hash *hash = digest->section;
     for (uint32_t i = 0; i < relief->count; i++)
         add_rows(hash, &relief_section, &relief->features[i], NULL);
-    if (relief->heights_m) /* whose grid is of the keys */
+    if (relief->heights_m) /* the keys have the grid */
         hash_add(hash, relief->heights_m,
                  (size_t)relief->grid.rows * relief->grid.columns * sizeof *relief->heights_m);
     end_section(digest, "seabed.relief");
 }
 
-/* Objects by their numbers, and what they are made of all together. */
+/* Adds the objects by their numbers, and the parts of all objects together. */
 static void add_objects(struct digest *digest, const struct scene *scene)
 {
     struct hash *hash = digest->section;
@@ -170,7 +169,7 @@ static void add_meshes(struct hash *hash, const struct scene *scene)
     }
 }
 
-/* What is read from files, or has no keys. */
+/* Adds what is read from files, or has no keys. */
 static void add_tables(struct digest *digest, const struct scene *scene)
 {
     struct hash *hash = digest->section;
@@ -203,7 +202,7 @@ static void add_scene(struct digest *digest, const struct scene *scene, const ch
     end_section(digest, "objects[].mesh");
     hash_add_text(digest->section, input_identity);
     end_section(digest, "input's pixels");
-    if (digest->inputs) { /* these say more by themselves */
+    if (digest->inputs) { /* clear values say more than digests */
         json_add(digest->inputs, "sonject", json_string(sonject_version()));
         json_add(digest->inputs, "injection.seed", json_seed(scene->injection.seed));
     }

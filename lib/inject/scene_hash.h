@@ -1,4 +1,4 @@
-/* Whether two runs have the same inputs. */
+/* Hashes that tell whether two runs have the same inputs. */
 #ifndef SONJECT_INJECT_SCENE_HASH_H
 #define SONJECT_INJECT_SCENE_HASH_H
 
@@ -9,24 +9,23 @@
 #include "device/device.h"
 #include "scene/scene.h"
 
-/* Hash of everything that the result depends on: version, scene, the input's identity, but not
- * where files lie. The device is not part of it, since the answer does not depend on it. Errors:
- * MEMORY. */
+/* Hashes everything that the result depends on: version, scene, and the input's identity. Places of
+ * files and the device do not count, since the answer does not depend on them. Errors: MEMORY. */
 sonject_status scene_hash(struct report *report, const struct scene *scene,
                           const char *input_identity, char hash[HASH_TEXT_CAPACITY]);
 
-/* The same, and of what it is made: by sections of the scene's keys, digests, but for the version
- * and the seed. *inputs: for json_decref, also on failure. Errors: MEMORY. */
+/* Makes the same hash, and lists its digests by sections of the scene's keys in *inputs, with
+ * version and seed in clear. *inputs is for json_decref, also on failure. Errors: MEMORY. */
 sonject_status scene_inputs(struct report *report, const struct scene *scene,
                             const char *input_identity, char hash[HASH_TEXT_CAPACITY],
                             json_t **inputs);
 
-/* The hash of what a file of sums cannot be formed without: all but the sonar's pulse and
- * cross-range response. Errors: MEMORY. */
+/* Hashes all that a file of sums depends on: all but the sonar's pulse and cross-range response.
+ * Errors: MEMORY. */
 sonject_status traced_scene_hash(struct report *report, const struct scene *scene,
                                  const char *input_identity, char hash[HASH_TEXT_CAPACITY]);
 
-/* Of the library's version and the kernels' sources. Errors: MEMORY. */
+/* Hashes the library's version and the kernels' sources. Errors: MEMORY. */
 sonject_status code_hash(struct report *report, char hash[HASH_TEXT_CAPACITY]);
 
 #endif

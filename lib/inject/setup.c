@@ -1,4 +1,4 @@
-/* A scene laid out on its patch, ready for rays. */
+/* The layout of a scene on its patch, ready for rays. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -82,7 +82,7 @@ static sonject_status check_straight_rays(const struct tracer *tracer)
                           "layers of water bend them");
 }
 
-/* The coherent map's scale is known for one real cross-range response. */
+/* Checks the response: the coherent map's scale is known for one real cross-range response only. */
 static sonject_status check_coherent_map(const struct tracer *tracer)
 {
     const struct scene *scene = tracer->scene;
@@ -94,7 +94,7 @@ static sonject_status check_coherent_map(const struct tracer *tracer)
                           "measured cross-range response: use map: intensity or despeckled");
 }
 
-/* The sonar's response on the patch. */
+/* Finds the sonar's response on the patch. */
 static sonject_status find_response(struct tracer *tracer)
 {
     const struct patch_view *view = &tracer->view;

@@ -12,7 +12,7 @@
 #include "swath/raster_file.h"
 #include "swath/swath_file.h"
 
-/* The scene's patch; all zeros mean the whole swath, or of two sides that one. */
+/* Chooses the scene's patch. All zeros mean the whole swath, or the scene's side of two. */
 static sonject_status choose_patch(struct report *report, const struct scene *scene,
                                    struct swath *swath)
 {
@@ -164,7 +164,7 @@ static sonject_status identify(struct report *report, struct swath *swath, const
     return SONJECT_OK;
 }
 
-/* path: NULL where there is no file. */
+/* path: NULL if there is no file. */
 static sonject_status bad_pixel(struct report *report, const char *path, const struct swath *swath,
                                 size_t index)
 {
@@ -183,13 +183,13 @@ static sonject_status bad_pixel(struct report *report, const char *path, const s
                 : report_failure(report, SONJECT_ERROR_INPUT, "%s", text);
 }
 
-/* Bytes of a pixel as it is stored. */
+/* Returns the bytes of a pixel as it is stored. */
 static size_t stored_bytes(const struct swath *swath)
 {
     return swath->layout.channels * pixel_bytes(swath->layout.type);
 }
 
-/* A row of the patch among the stored pixels of a whole swath. */
+/* Returns a row of the patch among the stored pixels of a whole swath. */
 static unsigned char *row_in_swath(const struct swath *swath, const void *whole, size_t row)
 {
     return (unsigned char *)whole +
@@ -214,7 +214,8 @@ static bool is_zero(const unsigned char *bytes, size_t count)
     return i == count;
 }
 
-/* A row that is dark in the patch alone is a ping all the same. whole: as of read_patch. */
+/* Finds rows that are empty all across the swath: a row that is dark in the patch alone is a ping.
+ * whole: as in read_patch. */
 static sonject_status find_empty_rows(struct report *report, struct swath_file *file,
                                       const void *whole, struct swath *swath)
 {
@@ -241,7 +242,7 @@ static sonject_status find_empty_rows(struct report *report, struct swath_file *
     return status;
 }
 
-/* So that neither levels nor floors are measured on rows where nothing was heard. */
+/* Fills the empty rows, so that neither levels nor floors are measured where nothing was heard. */
 static sonject_status fill_empty_rows(struct report *report, const struct scene *scene,
                                       const struct swath *swath)
 {
@@ -314,7 +315,7 @@ sonject_status swath_find_empty(struct report *report, const struct scene *scene
     return fill_empty_rows(report, scene, swath);
 }
 
-/* whole: the file's pixels, if they are in memory. */
+/* whole: the file's pixels if they are in memory, else NULL. */
 static sonject_status read_patch(struct report *report, const struct scene *scene,
                                  struct swath_file *file, const void *whole, struct swath *swath)
 {
@@ -333,7 +334,7 @@ static sonject_status read_patch(struct report *report, const struct scene *scen
     return fill_empty_rows(report, scene, swath);
 }
 
-/* Made swaths are made whole, and kept for writing them back; the patch is cut out of them. */
+/* Makes the whole swath, which is kept for writing, and cuts the patch out of it. */
 static sonject_status make_patch(struct report *report, const struct scene *scene,
                                  struct swath *swath)
 {
@@ -359,7 +360,7 @@ sonject_status swath_open(struct report *report, const struct scene *scene, stru
     return status;
 }
 
-/* Swaths of up to so many bytes are kept in memory. */
+/* The largest swath that is kept in memory, bytes. */
 #define STORE_BYTES_MAX ((size_t)256 << 20)
 
 void swath_store_close(struct swath_store *store)
@@ -371,7 +372,7 @@ void swath_store_close(struct swath_store *store)
     memset(store, 0, sizeof *store);
 }
 
-/* Whether the scene's input is what the store holds. */
+/* Returns whether the store holds the scene's input. */
 static bool store_holds(const struct swath_store *store, const struct scene *scene)
 {
     const bool is_same_array = store->array && scene->array
@@ -524,7 +525,7 @@ static bool ends_with(const char *text, const char *end)
     return length >= end_length && strcmp(text + length - end_length, end) == 0;
 }
 
-/* Amplitudes as 8-bit numbers, 1 = 255; in place, since they need less room. */
+/* Turns amplitudes into 8-bit numbers, 1 into 255. Works in place, since these need less room. */
 static void to_bytes(float *pixels, size_t count)
 {
     unsigned char *bytes = (unsigned char *)pixels;

@@ -14,86 +14,84 @@
 
 /* Owned parts are freed by swath_close. */
 struct swath {
-    struct raster_layout layout; /* of the whole swath */
+    struct raster_layout layout; /* layout of the whole swath */
     struct region patch;
     sonject_transfer_params
-        transfer;  /* the scene's, with the file's largest number as full scale */
+        transfer;  /* the scene's; full_scale at most the file's largest number */
     void *stored;  /* the patch's pixels as the file stores them; if made, the whole swath's; NULL:
-                      they are linear, in memory */
-    float *pixels; /* the patch, linear: amplitudes or pairs */
+                      linear pixels in memory */
+    float *pixels; /* the patch in linear amplitudes or pairs */
     bool is_complex;
-    bool is_made;  /* by sonject */
-    bool is_whole; /* numbers that the file limits: integers, also where the layout has floats */
-    const char *new_extension; /* of the image; NULL: it is the input's file with other pixels */
-    struct track track;        /* of a recording */
-    struct ping_list skipped;  /* of a recording's pings, those that make no row */
-    struct ping_list empty;    /* rows of the swath in the patch that hold nothing but 0; pixels has
-                                  the row's above that is not, else below, in their place */
-    uint64_t clipped;          /* pixels at full scale */
-    char identity[HASH_TEXT_CAPACITY]; /* of the swath's size and the patch's pixels; if made, of
-                                          all pixels */
+    bool is_made;              /* made by sonject */
+    bool is_whole;             /* the file stores integers, even if the layout has floats */
+    const char *new_extension; /* the image's; NULL: a copy of the input's file with other pixels */
+    struct track track;        /* track of a recording */
+    struct ping_list skipped;  /* a recording's pings that make no row */
+    struct ping_list empty;    /* the swath's rows in the patch that are all 0; pixels has the row
+                                  above, else one below, in their place */
+    uint64_t clipped;          /* number of pixels at full scale */
+    char identity[HASH_TEXT_CAPACITY]; /* hash of the swath's size and the pixels: the patch's; if
+                                          made, all */
 };
 
-/* Finds layout and patch without reading pixels (a made swath: from its parameters). To be given to
- * swath_close; on failure nothing is held. Errors: INPUT, STORAGE, MEMORY, UNSUPPORTED. */
+/* Finds layout and patch without pixels; a made swath's from its parameters. The caller gives the
+ * swath to swath_close; on failure nothing is held. Errors: INPUT, STORAGE, MEMORY, UNSUPPORTED. */
 sonject_status swath_describe(struct report *report, const struct scene *scene,
                               struct swath *swath);
 
-/* The same, and reads (or makes) the patch. */
+/* Describes the swath, and reads or makes the patch. */
 sonject_status swath_open(struct report *report, const struct scene *scene, struct swath *swath);
 void swath_close(struct swath *swath);
 
-/* A file that many patches are cut out of: it stays open, and where it is small its pixels are read
- * once. Starts as all zeros, is for swath_store_close. */
+/* A file that many patches are cut out of. It stays open, and if it is small its pixels are read
+ * once. Starts as all zeros; the caller gives it to swath_store_close. */
 struct swath_store {
     struct swath_file *file;
     char *path;
     int32_t channel;
-    char *array;  /* NULL: the only one */
-    void *pixels; /* all of them; NULL: regions are read as they are asked for */
+    char *array;  /* NULL: the file's only array */
+    void *pixels; /* all pixels; NULL: regions are read when they are asked for */
 };
 
-/* swath_open for a scene whose input is a file, by way of the store, which takes that file instead
- * of the one it holds. */
+/* Opens the swath of a scene whose input is a file, as swath_open does, through the store. The
+ * store closes the file that it holds if that is another. */
 sonject_status swath_open_stored(struct report *report, const struct scene *scene,
                                  struct swath_store *store, struct swath *swath);
 void swath_store_close(struct swath_store *store);
 
-/* For pixels in memory, of which rows, columns, transfer, stored and is_whole are set: makes the
- * linear ones, and finds the empty rows, as for a file. path: for messages; NULL: no file. Errors:
- * INPUT, MEMORY. */
+/* Linearise pixels in memory, and find their empty rows, as for a file. rows, columns, transfer,
+ * stored and is_whole must be set. path: for messages; NULL: no file. Errors: INPUT, MEMORY. */
 sonject_status swath_linearise(struct report *report, const char *path, struct swath *swath);
 sonject_status swath_find_empty(struct report *report, const struct scene *scene,
                                 struct swath *swath);
 
-/* The patch as the file would store it, pixels touched by the result replaced; for free(), NULL
- * when memory is out. clipped: as of swath_write. */
+/* Returns the patch as the file would store it, with touched pixels replaced; for free(), NULL
+ * where memory is out. clipped: as in swath_write. */
 void *swath_stored_result(const struct swath *swath, const struct injection_result *result,
                           uint64_t *clipped);
 
-/* The patch, as an injection takes it; its pixels stay the swath's. */
+/* Returns the patch as an injection takes it. The swath keeps its pixels. */
 struct injection_input swath_input(const struct swath *swath);
 
-/* Takes the swath's empty rows out of what the result changes, and out of the patch. */
+/* Restores the swath's empty rows in the patch, and removes them from the result. */
 void swath_leave_empty(const struct swath *swath, struct injection_result *result);
 
-/* Pings or rows for messages: "3, 5, 17 and 8 more". */
+/* Writes pings or rows for messages: "3, 5, 17 and 8 more". */
 const char *ping_list_text(const struct ping_list *list, char text[PING_LIST_CAPACITY]);
 
-/* "image.png" and the like: the input's extension where it is patched, else .tif. To be given to
- * free(); NULL when memory is out. */
+/* Returns a name such as "image.png": with the input's extension where that is patched, else .tif.
+ * For free(); NULL where memory is out. */
 char *swath_image_name(const struct scene *scene, const struct swath *swath);
 
-/* Writes the swath with the result's patch at path, in the input's format, type and transfer;
- * pixels that were not touched keep their stored bytes. *clipped gets the number of touched pixels
- * that full scale cut. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
+/* Writes the swath with the result's patch at path, in the input's format, type and transfer.
+ * Untouched pixels keep their stored bytes. *clipped gets the number of touched pixels that full
+ * scale cut. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
 sonject_status swath_write(struct report *report, const struct scene *scene,
                            const struct swath *swath, const struct injection_result *result,
                            const char *path, sonject_progress_function progress, void *user,
                            uint64_t *clipped);
 
-/* Writes the synthetic seabed that is the scene's input with its geometry as metadata:
- * sonject_seabed_write. */
+/* Writes the scene's synthetic seabed with its geometry as metadata: sonject_seabed_write. */
 sonject_status write_seabed(struct report *report, const struct scene *scene, const char *path);
 
 #endif

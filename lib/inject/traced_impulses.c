@@ -12,18 +12,18 @@
 #include "trace/multibounce.h"
 #include "trace/rough.h"
 
-#define STRIPS_A_LAUNCH 64                /* between two looks at whether the caller cancels */
-#define CELLS_A_TIME    ((size_t)1 << 20) /* of multi-bounce echoes that are handed out */
+#define STRIPS_A_LAUNCH 64                /* strips; between launches the caller may cancel */
+#define CELLS_A_TIME    ((size_t)1 << 20) /* cells of multi-bounce echoes handed out at a time */
 
-/* What tracing works with. */
+/* The state of a trace. */
 struct tracing {
     struct tracer *tracer;
     const struct echo_request *request;
     const struct impulse_sink *sink;
     struct rough_trace rough;
-    float *tiles;          /* the objects' */
+    float *tiles;          /* the objects' tiles */
     float *chunk, *second; /* lines that are handed out */
-    uint32_t regions;      /* of multi-bounce echoes so far */
+    uint32_t regions;      /* regions of multi-bounce echoes so far */
 };
 
 static sonject_status emit(const struct tracing *tracing, const struct impulse_lines *lines)
@@ -33,7 +33,7 @@ static sonject_status emit(const struct tracing *tracing, const struct impulse_l
                : tracing->sink->take(tracing->sink->taker, lines);
 }
 
-/* The next strips of a grid, at most `most`; count 0 after the last. */
+/* Returns the next strips of a grid, at most `most`; count 0 after the last. */
 static struct span next_strips(const struct line_grid *grid, struct span before, int32_t most)
 {
     const int32_t end = grid->strips.first + grid->strips.count;
@@ -48,7 +48,7 @@ static bool wants_field(const struct tracing *tracing)
     return tracing->request->field != SEABED_FIELD_NONE;
 }
 
-/* Takes what the objects hide off the energies of a chunk of strips. */
+/* Subtracts the energy that objects hide from a chunk of strips. */
 static void subtract_lost(const struct rough_trace *trace, uint32_t objects, const float *tiles,
                           struct span strips, float *energy)
 {
@@ -69,7 +69,7 @@ static void subtract_lost(const struct rough_trace *trace, uint32_t objects, con
     }
 }
 
-/* What is left in view of the chunk's strips, whose rays have all been traced. */
+/* Finds the energy in view of a chunk's strips, whose rays have all been traced. */
 static sonject_status find_in_view(struct tracing *tracing, struct span strips)
 {
     const struct rough_trace *trace = &tracing->rough;
@@ -81,8 +81,8 @@ static sonject_status find_in_view(struct tracing *tracing, struct span strips)
     return SONJECT_OK;
 }
 
-/* What rays hear of the seabed, by the rough trace as it now is: as it is; or again, of one that is
- * level or even. */
+/* Traces the seabed's echoes by the rough trace as it is now set: of the seabed itself, or again of
+ * a level or even one. */
 static sonject_status trace_seabed(struct tracing *tracing, enum impulse_kind kind,
                                    const char *stage)
 {
@@ -110,7 +110,7 @@ static sonject_status trace_seabed(struct tracing *tracing, enum impulse_kind ki
                                        stage));
     }
     if (is_again)
-        tracing->tracer->counts.pings = pings; /* the same ones */
+        tracing->tracer->counts.pings = pings; /* the pings are the same */
     return status;
 }
 
@@ -225,7 +225,7 @@ static void tracing_clear(struct tracing *tracing)
     free(tracing->second);
 }
 
-/* What each ping hears of an even seabed, and what objects hide of that. */
+/* Traces the even seabed that each ping hears, and the part that objects hide. */
 static sonject_status trace_beam(struct tracer *tracer, const struct echo_request *request,
                                  const struct impulse_sink *sink)
 {
@@ -321,18 +321,18 @@ sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *
     return status;
 }
 
-#define EDGE_LOSS       0.02   /* of an edge pixel's energy, which half its margin lacks */
+#define EDGE_LOSS       0.02   /* largest share of energy that an edge pixel may lack */
 #define EDGE_DEVIATIONS 1.4522 /* erfc(x) / 2 = EDGE_LOSS, G^2 being exp(-(r / sigma)^2) */
 #define ROUNDING        1e-6
 
-/* The pulse's range resolution is inverse to the bandwidth. */
+/* Returns a bandwidth in kHz. The pulse's range resolution is inverse to the bandwidth. */
 static double bandwidth_for(const struct tracer *tracer, double share)
 {
     return 1e-3 * tracer->scene->sonar.bandwidth_hz * share;
 }
 
-/* Bins fine enough for the tracer's pulse, and margins so wide that a pixel at the patch's edge
- * lacks at most EDGE_LOSS of its energy. Half of what is not within the margin lies beyond it. */
+/* Checks that bins are fine enough for the tracer's pulse, and margins wide enough: a pixel at the
+ * patch's edge lacks at most EDGE_LOSS. Half of what a reach omits lies on the margin's side. */
 static sonject_status check_bins(const struct tracer *tracer, const struct line_grid *grid,
                                  const char *path)
 {
@@ -344,7 +344,7 @@ static sonject_status check_bins(const struct tracer *tracer, const struct line_
     const double reach = response->pulse_kind == SONJECT_PULSE_GAUSSIAN
                              ? EDGE_DEVIATIONS * response->range_deviation_m
                              : range_energy_reach(response, 2.0 * EDGE_LOSS);
-    /* a margin that ends at range 0 holds all that any pulse reaches */
+    /* A margin that ends at range 0 holds all that any pulse reaches. */
     const double wide = tracer->view.first_range_m - margin < bin ? HUGE_VAL : margin / reach;
     if (fine >= 1.0 - ROUNDING && wide >= 1.0 - ROUNDING)
         return SONJECT_OK;
@@ -355,7 +355,7 @@ static sonject_status check_bins(const struct tracer *tracer, const struct line_
                           bandwidth_for(tracer, fine));
 }
 
-/* The same of strips and the cross-range response. */
+/* Checks strips and their margins for the cross-range response. */
 static sonject_status check_strips(const struct tracer *tracer, const struct line_grid *grid,
                                    const char *path)
 {
@@ -377,7 +377,7 @@ static sonject_status check_strips(const struct tracer *tracer, const struct lin
                          reach, path, margin, is_moved ? "this motion" : "a coarser resolution");
 }
 
-/* Of glints, whose bins are finer and as wide for all parts. */
+/* Checks glints, whose bins are finer and equally wide for all parts. */
 static sonject_status check_glints(const struct tracer *tracer, const struct tracer *traced,
                                    const char *path)
 {

@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "measure/contacts.h"
 
-/* Grows a box, which holds nothing where it has no rows, by a pixel. */
+/* Grows a box by a pixel. A box without rows holds nothing. */
 static void box_include(sonject_box *box, size_t row, size_t column)
 {
     const bool is_empty = box->rows == 0;
@@ -26,7 +26,7 @@ static bool box_is_cut(const sonject_box *box, const struct echoes *echoes)
                              box->first_column + box->columns == echoes->columns);
 }
 
-/* A ray of the pixel or of a neighbour met the object: side lobes are not the object. */
+/* Returns whether a ray of the pixel or of a neighbour met the object. Side lobes do not count. */
 static bool is_on_object(const struct object_echo *echo, size_t rows, size_t row, size_t column)
 {
     const size_t local = column - echo->first_column;
@@ -41,7 +41,7 @@ static bool is_on_object(const struct object_echo *echo, size_t rows, size_t row
     return false;
 }
 
-/* Expected energies of a pixel, m^2. */
+/* The expected energies of a pixel, m^2. */
 struct pixel_levels {
     double own, others, background, hidden_share;
 };
@@ -119,7 +119,7 @@ static void find_object(const struct patch_level *level, double ceiling,
     truth->target_strength_db = decibels(echo->peak_energy);
 }
 
-/* Of an object's shadow, when the masks of all objects are known. */
+/* Finds the visible share of an object's shadow, once the masks of all objects are known. */
 static void find_visible_shadow(const struct patch_level *level, const struct echoes *echoes,
                                 uint32_t number, struct injected_window *result)
 {
@@ -144,7 +144,7 @@ static double transmission_loss(const struct tracer *tracer, const double origin
            tracer->scene->medium.absorption_db_per_m * ray.length_m;
 }
 
-/* From one side of an object to the other. */
+/* Returns the size from one side of an object to the other. */
 static double overall_size(const struct tracer *tracer, const struct placed_object *object,
                            const double direction[3])
 {
@@ -185,8 +185,8 @@ static void locate(const struct tracer *tracer, uint32_t number, sonject_object_
     truth->transmission_loss_db = transmission_loss(tracer, origin, ray);
 }
 
-/* What is expected of a pixel with one object alone, over plain seabed: its echo, what came by way
- * of the seabed or other objects, the seabed that is left, and noise instead of what is not. */
+/* Returns the expected energy of a pixel with one object alone, over plain seabed: the echo, echoes
+ * by way of the seabed or other objects, the seabed that is left, and noise for the rest. */
 static double expected_over_seabed(const struct patch_level *level, const struct echoes *echoes,
                                    const struct object_echo *echo, size_t row, size_t column)
 {
@@ -210,7 +210,7 @@ static double expected_over_seabed(const struct patch_level *level, const struct
            hidden * noise_over_level(level, i);
 }
 
-/* Lays the ruler of contacts on an object as it is expected to show, in its box with a margin. */
+/* Measures an object, as it is expected to show, like a contact: in its box with a margin. */
 static sonject_status measure_object(const struct tracer *tracer, const struct patch_level *level,
                                      const struct speckle_statistics *speckle,
                                      const struct echoes *echoes, uint32_t number,
@@ -253,7 +253,7 @@ static sonject_status measure_object(const struct tracer *tracer, const struct p
     return status;
 }
 
-/* A box within another, counted from there. */
+/* Returns a box counted from the corner of another that holds it. */
 static struct window_box box_within(const sonject_box *box, const struct window_box *wide)
 {
     struct window_box inner = window_box_of(box);
@@ -262,8 +262,8 @@ static struct window_box box_within(const sonject_box *box, const struct window_
     return inner;
 }
 
-/* How the object shows amid the image's own speckle, behind so many columns of water; empty rows
- * are no seabed. */
+/* Measures how the object shows amid the image's own speckle. The first water_columns and empty
+ * rows are no seabed. */
 static sonject_status see_object(struct report *report, const struct injected_window *result,
                                  size_t water_columns, const bool *is_empty,
                                  sonject_object_truth *truth)
@@ -335,7 +335,7 @@ sonject_status find_truth(const struct tracer *tracer, const struct patch_level 
             locate(tracer, i, &result->objects[i]);
             find_object(level, match->ceiling, echoes, is_empty, i, result);
         }
-    /* a pixel where another object's echo stands in the shadow is a highlight */
+    /* Another object's echo in a shadow is a highlight. */
     for (size_t i = 0; i < echoes->rows * echoes->columns; i++)
         if (result->highlight[i])
             result->shadow[i] = 0;

@@ -15,7 +15,7 @@
 #define TRUTH_MARGIN  (CONTACT_MARGIN + SEABED_MARGIN)
 #define JOINING_COSTS 65536.0 /* pixels that can be traced while a window is set up */
 
-/* Of the view's rows and columns, both ends included. */
+/* A range of the view's rows and columns, both ends included. */
 struct extent {
     double first_row, last_row, first_column, last_column;
 };
@@ -32,7 +32,7 @@ static void include_columns(struct extent *extent, double first, double last)
     extent->last_column = fmax(extent->last_column, last);
 }
 
-/* Echoes and shadow of a part on a grid, as the response spreads them. */
+/* Includes the echoes and the shadow of a part on a grid, as the response spreads them. */
 static void include_echoes(struct extent *extent, const struct tracer *tracer, uint32_t part,
                            const struct point_response *response, bool by_beam)
 {
@@ -53,8 +53,8 @@ static void include_echoes(struct extent *extent, const struct tracer *tracer, u
                     (bins.first + bins.count + pulse) / per_pixel);
 }
 
-/* Echoes of several interactions are in the columns behind the part's own: each detour to seabed as
- * far away as sound is exchanged with adds to the path at most there and back. Along the track two
+/* Includes echoes of several interactions, in the columns behind the part's own. Each detour to
+ * seabed within reach adds at most the distance there and back to the path. Along the track two
  * interactions focus halfway. */
 static void include_chains(struct extent *extent, const struct tracer *tracer, uint32_t part)
 {
@@ -80,7 +80,7 @@ static void include_chains(struct extent *extent, const struct tracer *tracer, u
                     view_column_of_range(view, farthest * view->range_ratio));
 }
 
-/* Echoes by several smooth faces lie along the track between the parts that they meet. */
+/* Includes echoes by several smooth faces, which lie along the track between their parts. */
 static void include_multibounce(struct extent *extent, const struct tracer *tracer, uint32_t part)
 {
     struct line_grid grid;
@@ -119,10 +119,9 @@ static struct extent extent_of_object(const struct tracer *tracer,
     return extent;
 }
 
-/* Whole blocks of pixels of `count` from first to last with a margin. Blocks are those whose
- * columns share a beam's response in the patch; and a response that differs a little needs no other
- * window.
- */
+/* Returns whole blocks of pixels of `count` from first to last with a margin. The columns of a
+ * block share a beam's response in the patch. With whole blocks, a response that differs a little
+ * has the same window. */
 static size_t pixels_between(double first, double last, size_t count, size_t *start)
 {
     const double block = floor((first - TRUTH_MARGIN) / FORM_BLOCK_COLUMNS);
@@ -154,8 +153,8 @@ static double pixels_in(const struct influence_window *window)
     return (double)window->at.rows * (double)window->at.columns;
 }
 
-/* Whether one window for both costs less than two. Those that overlap share pixels, and are joined
- * anyway. */
+/* Returns whether one window for both costs less than two. Overlapping windows share pixels and are
+ * always joined. */
 static bool belong_together(const struct influence_window *one,
                             const struct influence_window *other)
 {

@@ -9,7 +9,7 @@
 
 struct influence_window {
     struct window at;
-    bool follows[SCENE_OBJECTS_MAX]; /* the scene's objects that belong to it */
+    bool follows[SCENE_OBJECTS_MAX]; /* the scene's objects in this window */
 };
 
 struct influence_windows {
@@ -17,11 +17,11 @@ struct influence_windows {
     size_t count;
 };
 
-/* Finds windows of a composite, each object in one of them: its echoes and its shadow with all the
- * point response spreads of them (glints' side lobes to -60 dB), seabed that it exchanges sound
- * with, and the pixels about it that its truth is measured from. Windows that overlap, or nearly,
- * are one. Where all of the patch is traced (is_whole; a resynthesis, brute force, relief, residual
- * motion, no object), that is the only one. Errors: MEMORY. */
+/* Finds the windows of a composite. A window holds objects' echoes and shadows, as far as the point
+ * response spreads them (glints' side lobes to -60 dB), seabed that exchanges sound with the
+ * objects, and the pixels around from which truth is measured. Overlapping or close windows are
+ * joined. There is one window, the patch, where all of it is traced: is_whole, a resynthesis, brute
+ * force, relief, residual motion, or no object. Errors: MEMORY. */
 sonject_status influence_windows_find(struct influence_windows *windows,
                                       const struct tracer *tracer, bool is_whole);
 void influence_windows_clear(struct influence_windows *windows);

@@ -12,19 +12,19 @@
 #define EDGES_LEAST 4
 
 /* Looks. */
-#define LOOKS_NO_SPECKLE  32.0 /* as many, of one fit, say that the law is not that of speckle */
-#define LOOKS_MISFIT      0.02 /* and as large a misfit that looks mean little */
-#define LOOKS_ERROR_MOST  0.35 /* of the logarithm */
-#define LOOKS_ONE         0.1  /* of the logarithm: what differs less from one look is one look */
-#define LOOKS_BIAS        0.01 /* of what levels vary within plain tiles */
-#define PARAMETER_ONE     0.03 /* of the logarithm, likewise */
+#define LOOKS_NO_SPECKLE  32.0 /* a fit of more looks means that there is no speckle */
+#define LOOKS_MISFIT      0.02 /* fitted looks of a larger misfit mean little */
+#define LOOKS_ERROR_MOST  0.35 /* largest standard error of seen looks, of their logarithm */
+#define LOOKS_ONE         0.1  /* less than this from one look counts as one look, logarithm */
+#define LOOKS_BIAS        0.01 /* relative error, since levels vary within plain tiles */
+#define PARAMETER_ONE     0.03 /* closer to a simple exponent than this is simple, logarithm */
 #define PARAMETER_UNKNOWN 0.5
 #define EXPONENT_MOST     4.0
 
 /* Texture. */
-#define TEXTURE_FIRST_LAG 4 /* speckle is forgotten from here on */
+#define TEXTURE_FIRST_LAG 4 /* speckle is uncorrelated from this lag on */
 #define TEXTURE_END_LAG   8
-#define TEXTURE_MOST      0.6 /* of the variance of log intensity */
+#define TEXTURE_MOST      0.6 /* largest share of the variance of log intensity */
 
 static const char too_small[] =
     "fewer than 12 tiles of 16 x 16 pixels are neither blank, constant nor clipped";
@@ -80,8 +80,9 @@ static void find_ceiling(const struct stored_swath *swath, struct calibration *f
 
 /* ---- The curve, and the speckle with it. */
 
-/* Texture's share of the variance of log intensity: what pixels some way apart have in common along
- * both axes; bands along one of them are none. error: its standard error. */
+/* Finds texture's share of the variance of log intensity, from the covariance of pixels some way
+ * apart. The lesser of both axes counts, since bands along one axis are no texture. error: the
+ * standard error of the share. */
 static sonject_status texture_share(struct report *report, const struct calibration *found,
                                     const struct stored_swath *swath, enum curve_family family,
                                     double *share, double *error)
@@ -90,7 +91,7 @@ static sonject_status texture_share(struct report *report, const struct calibrat
     const size_t side = tiles->side, pixels = side * side;
     double *logs = allocate_array(pixels, sizeof *logs);
     double sums[2] = {0.0, 0.0}, squares[2] = {0.0, 0.0}, variance = 0.0;
-    /* a stored 0 has no logarithm but where it is one itself */
+    /* Except in the decibel family, a stored 0 has no logarithm. */
     const double least = tiles->edges[tiles->edges[0] > 0.0 || family == CURVE_DECIBEL ? 0 : 1];
     CHECK_MEMORY(report, logs, "a calibration");
     for (size_t tile = 0; tile < tiles->count; tile++) {
@@ -130,7 +131,7 @@ static sonject_status texture_share(struct report *report, const struct calibrat
     return SONJECT_OK;
 }
 
-/* The texture that has this share of the variance of log intensity beside so many looks. */
+/* Returns the texture that makes a share of the variance of log intensity, at the given looks. */
 static double texture_of_share(double share, double looks)
 {
     const double variance = share / (1.0 - share) * log_gamma_variance(looks);
@@ -153,7 +154,7 @@ static sonject_status fit_family(struct report *report, struct calibration *foun
                           looks, found->fits[family].texture, &found->fits[family]);
 }
 
-/* Curve, looks and texture of a family, all free. */
+/* Fits looks and texture of a family, and its parameter if that is NAN. */
 static sonject_status fit_freely(struct report *report, struct calibration *found,
                                  const struct stored_swath *swath, enum curve_family family,
                                  double parameter)
@@ -171,8 +172,9 @@ static sonject_status fit_freely(struct report *report, struct calibration *foun
     return SONJECT_OK;
 }
 
-/* Whether the tiles' likelihoods differ by no more than they scatter (Q. H. Vuong, "Likelihood
- * ratio tests for model selection and non-nested hypotheses", Econometrica 57, 1989). */
+/* Returns whether the tiles' likelihoods differ by no more than their scatter (Q. H. Vuong,
+ * "Likelihood ratio tests for model selection and non-nested hypotheses", Econometrica 57,
+ * 1989). */
 static bool are_alike(const struct calibration *found, enum curve_family a, enum curve_family b)
 {
     const double count = (double)found->tiles.count;
@@ -210,14 +212,14 @@ static void choose_family(struct calibration *found, const bool tried[CURVE_FAMI
     else if (found->alike[CURVE_DECIBEL] && power->parameter > EXPONENT_MOST)
         found->family = CURVE_DECIBEL; /* no recorder has such an exponent */
     found->alike[found->family] = false;
-    /* nearly straight, it is the same curve */
+    /* Both curves are nearly straight, so they are the same curve. */
     if (found->family == CURVE_POWER && is_near(power->parameter, power->parameter_error, 1.0) &&
         is_near(found->fits[CURVE_SCHLICK].parameter, found->fits[CURVE_SCHLICK].parameter_error,
                 1.0))
         found->alike[CURVE_SCHLICK] = false;
 }
 
-/* The parameter of the chosen family for one look. */
+/* Finds the parameter of the chosen family for one look. */
 static sonject_status fit_one_look(struct report *report, struct calibration *found,
                                    const struct stored_swath *swath, double parameter)
 {
@@ -232,12 +234,12 @@ static sonject_status fit_one_look(struct report *report, struct calibration *fo
     CHECK(find_by_contrast(report, &found->tiles, swath, curve_full_scale(found, swath), family,
                            fit));
     const double error = fit->parameter_error;
-    CHECK(fit_family(report, found, swath, family, fit->parameter, 1.0)); /* for the levels */
+    CHECK(fit_family(report, found, swath, family, fit->parameter, 1.0)); /* fits the levels */
     fit->parameter_error = error;
     return SONJECT_OK;
 }
 
-/* Looks of the chosen family, and its parameter where they are known to be one. */
+/* Decides on the looks of the chosen family. Refits its parameter where one look is taken. */
 static sonject_status settle_looks(struct report *report, struct calibration *found,
                                    const struct stored_swath *swath, double parameter)
 {
@@ -259,8 +261,8 @@ static sonject_status settle_looks(struct report *report, struct calibration *fo
     return fit_one_look(report, found, swath, parameter);
 }
 
-/* The kind that the power's exponent makes, which is then fitted no more. Where no law of speckle
- * tells looks and exponent apart, several looks of plain amplitudes explain a narrow spread. */
+/* Decides the kind of transfer that the power's exponent makes. A simple exponent is then kept.
+ * Where speckle does not tell looks and exponent apart, a narrow spread means several looks. */
 static sonject_status settle_power(struct report *report, struct calibration *found,
                                    const struct stored_swath *swath)
 {
@@ -337,7 +339,7 @@ static sonject_status find_curve(struct report *report, struct calibration *foun
     return SONJECT_OK;
 }
 
-/* ---- All of it. */
+/* ---- The whole calibration. */
 
 void calibration_clear(struct calibration *calibration)
 {
@@ -367,7 +369,7 @@ static void forget_curve(struct calibration *found)
     memset(&found->shape, 0, sizeof found->shape);
 }
 
-/* Tiles, and the curve that they tell; of too few there is none. */
+/* Chooses tiles and finds the curve from them. From too few tiles nothing is seen. */
 static sonject_status find_from_tiles(struct report *report, struct calibration *found,
                                       const struct stored_swath *swath)
 {
@@ -379,15 +381,17 @@ static sonject_status find_from_tiles(struct report *report, struct calibration 
     return SONJECT_OK;
 }
 
-/* How ill a row suits a first target: its altitude is unlike the others', 1 dB for each 5 %. */
+/* Returns how badly a row suits a first target, dB: 1 dB for each 5 % that its altitude differs
+ * from the median. */
 static double oddness_of_row(const struct calibration *found, size_t row)
 {
     const double returned = found->median_return > 0.0 ? found->returns.columns[row] : 0.0;
     return returned > 0.0 ? 20.0 * fabs(log(returned / found->median_return)) : 0.0;
 }
 
-/* What highlights have over the seabed before they are cut, where objects without a position lie.
- * The place is a dark one among them, so that a first target stands out, at a usual altitude. */
+/* Finds how far highlights can rise over the seabed before they clip, in the middle columns, where
+ * objects without a position are placed. The place for a first target is a dark tile there, so that
+ * the target stands out, in a row of usual altitude. */
 static void find_room(struct calibration *found, const struct stored_swath *swath)
 {
     const double *levels = found->fits[found->family].levels;

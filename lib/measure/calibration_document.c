@@ -1,4 +1,4 @@
-/* A calibration as a document: keys that a scene takes, and what was measured. */
+/* A calibration as a document: the keys that a scene takes, and what was measured. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,12 +11,12 @@
 #include "schema/keys.h"
 
 #define DIGITS        4
-#define WHOLE_MOST    1e6 /* whole numbers, such as a ceiling, stay as they are */
+#define WHOLE_MOST    1e6 /* whole numbers below, such as a ceiling, keep all digits */
 #define LINE_WIDTH    96
-#define MISFIT_UNSEEN 0.005 /* that levels varying within plain tiles make, as shares */
-#define LOOKS_KEPT    64.0  /* that injection.match.looks takes at most */
+#define MISFIT_UNSEEN 0.005 /* share of pixels off that levels within plain tiles explain */
+#define LOOKS_KEPT    64.0  /* most looks that injection.match.looks takes */
 #define RETURNS_MOST                                                                               \
-    20000 /* first returns that are told; a scene's reader takes TREE_NODES_MAX values */
+    20000 /* most first returns that are listed; a scene's reader takes TREE_NODES_MAX values */
 
 static const uint32_t family_kinds[] = {[CURVE_POWER] = SONJECT_TRANSFER_GAMMA,
                                         [CURVE_DECIBEL] = SONJECT_TRANSFER_DECIBEL,
@@ -27,7 +27,7 @@ static const char *const side_words[] = {
     [WATER_BETWEEN] = "two",
 };
 
-/* A number of four digits, so that no last bit of a machine's logarithms decides a pixel. */
+/* Returns a number of four digits, so that no last bit of a logarithm decides a pixel. */
 static double rounded(double value)
 {
     char text[DIGITS + 16];
@@ -44,7 +44,7 @@ static json_t *number_of(double value)
                                                              : json_number(rounded(value));
 }
 
-/* A column of the swath, to halves: four digits would not tell those of wide swaths. */
+/* Returns a column of the swath, to halves: four digits would not resolve those of wide swaths. */
 static json_t *column_of(double column)
 {
     return json_number(0.5 * round(2.0 * column));
@@ -74,7 +74,7 @@ static json_t *seen(const struct estimate *estimate, const char *unit)
     return object;
 }
 
-/* A length, m, that the file or the caller tells. */
+/* Returns a length, m, that the file or the caller gave. */
 static json_t *told(double value)
 {
     return JSON_OBJECT({"value", number_of(value)}, {"unit", json_text("m")});
@@ -94,7 +94,7 @@ static json_t *transfer_keys(const struct calibration *found)
     return transfer;
 }
 
-/* Adds a section that has keys. */
+/* Adds a section if it has keys, or else releases it. */
 static void add_section(json_t **document, const char *key, json_t *section)
 {
     if (section && json_object_size(section) == 0)
@@ -121,7 +121,7 @@ static void add_scene_keys(json_t **document, const struct calibration *found)
     add_section(document, "injection", injection);
 }
 
-/* Each every-th number. */
+/* Lists the numbers at multiples of every. */
 static json_t *numbers(const double *values, size_t count, size_t every)
 {
     json_t *list = json_array();
@@ -266,7 +266,7 @@ json_t *calibration_document(const struct calibration *found, const char *path, 
 
 /* ---- YAML. */
 
-/* A text in quotes, as JSON has them and YAML takes them, unless it is plainly one. */
+/* Adds a text in JSON's quotes, which YAML takes, too, or without quotes where none are needed. */
 static void add_text(struct growing_text *text, const char *value)
 {
     const size_t plain = strspn(value, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"

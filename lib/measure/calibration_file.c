@@ -1,4 +1,4 @@
-/* A calibration of an image file or of numbers in memory, and the files that it leaves. */
+/* The calibration of an image file or of numbers in memory, and the files that it writes. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,8 +14,8 @@
 #define FULL_8_BIT  255.0
 #define FULL_16_BIT 65535.0
 
-/* The unit that all values are multiples of, and the type's full scale; of floats that are whole
- * numbers those of integers. */
+/* Finds the unit that all values are multiples of, and the full scale of the pixel type. Floats
+ * that are all whole numbers get those of integers. */
 static void find_type(struct stored_swath *swath, enum pixel_type type, const void *stored)
 {
     const size_t count = swath->rows * swath->columns;
@@ -38,7 +38,7 @@ static void find_type(struct stored_swath *swath, enum pixel_type type, const vo
     }
 }
 
-/* Numbers of a file, or magnitudes of complex ones; *values is for free(). */
+/* Reads a file's numbers, or the magnitudes of complex pixels. *values is for free(). */
 static sonject_status read_swath(struct report *report, const char *path, struct swath_file *file,
                                  struct stored_swath *swath, float **values)
 {
@@ -69,7 +69,7 @@ static sonject_status read_swath(struct report *report, const char *path, struct
     return status;
 }
 
-/* noted: by the file; NULL: there is none. */
+/* noted: the geometry that the file notes; NULL: no file. */
 static void find_geometry(const struct noted_geometry *noted, const struct image_options *options,
                           struct calibration_geometry *geometry)
 {
@@ -85,7 +85,7 @@ static void find_geometry(const struct noted_geometry *noted, const struct image
     }
 }
 
-/* What the pings say of the altitude beside where their seabed begins. */
+/* Compares the altitude that the pings record with where their seabed begins. */
 static sonject_status compare_altitudes(struct report *report, const struct recording *recording,
                                         struct calibration *found)
 {
@@ -107,13 +107,15 @@ static sonject_status compare_altitudes(struct report *report, const struct reco
     }
     if (count > 0) {
         found->recorded_share = median_of(shares, count);
-        found->recorded_altitude_m = median_of(altitudes, count); /* as first returns are told */
+        found->recorded_altitude_m =
+            median_of(altitudes, count); /* the median, as for first returns */
     }
     free(shares);
     return SONJECT_OK;
 }
 
-/* Of this image; who takes that altitude all the same is told what to write by runs and checks. */
+/* Reports a recorded altitude unlike this image's first returns. Runs and checks tell their users
+ * what to write instead. */
 static void tell_altitude(struct report *report, const char *image, const struct calibration *found)
 {
     const double share = found->recorded_share;
@@ -133,7 +135,7 @@ static sonject_status write_results(struct report *report, const sonject_calibra
     *text = NULL;
     if (params->image)
         CHECK(file_hash(report, params->image, hash));
-    /* the folder is whoever's: the same swath tells the same anywhere */
+    /* Only the name counts: a swath gives the same document in any folder. */
     json_t *document = calibration_document(found, params->image ? path_name(params->image) : NULL,
                                             params->image ? hash : NULL, params->channel);
     sonject_status status = SONJECT_OK;

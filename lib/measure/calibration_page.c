@@ -15,7 +15,7 @@
 #define CHARTS_ACROSS 3
 #define CHART_WIDTH   400
 #define CHART_HEIGHT  290
-#define LEFT          76 /* of a chart: numbers and the name of its axis */
+#define LEFT          76 /* room beside a chart for the numbers and the name of its axis */
 #define RIGHT         18
 #define ABOVE         34
 #define BELOW         58
@@ -27,7 +27,7 @@
 #define LAW_LOWEST    (-4.5)
 #define LAW_HIGHEST   2.7
 #define LAW_BINS      48
-#define MARGIN        0.05 /* of an axis, beyond what is drawn */
+#define MARGIN        0.05 /* share of an axis that is left free beyond what is drawn */
 
 static const struct colour white = {250, 250, 250};
 static const struct colour ink = {40, 40, 40};
@@ -39,7 +39,7 @@ static const struct colour family_colours[] = {{172, 28, 36}, {224, 130, 20}, {3
 
 struct chart {
     struct canvas *canvas;
-    int64_t left, top; /* of the inside */
+    int64_t left, top; /* upper left pixel of the inside of the frame */
     double low[2], high[2];
 };
 
@@ -66,7 +66,7 @@ static void text_at(const struct chart *chart, int64_t x, int64_t y, const char 
     draw_text(chart->canvas, x, y, text, SIZE_MAX, TEXT_RIGHTWARDS, colour);
 }
 
-/* Ticks of both axes, their names, and a title. */
+/* Draws the ticks and names of both axes, and the title. */
 static void draw_frame(const struct chart *chart, const char *title, const char *across,
                        const char *up)
 {
@@ -111,7 +111,7 @@ static void draw_dot(const struct chart *chart, double x, double y, double thick
                     chart_y(chart, y), thickness, colour);
 }
 
-/* A line between two points; what leaves the chart is left out. */
+/* Draws a line between two points, unless one of them is outside the chart. */
 static void draw_piece(const struct chart *chart, const double from[2], const double to[2],
                        double thickness, struct colour colour)
 {
@@ -120,7 +120,7 @@ static void draw_piece(const struct chart *chart, const double from[2], const do
                     chart_x(chart, to[0]), chart_y(chart, to[1]), thickness, colour);
 }
 
-/* Lines of a legend, from the chart's upper corner. */
+/* Draws a line of the legend, counted from the upper left or upper right corner of the chart. */
 static void draw_legend(const struct chart *chart, int line, bool is_right, const char *text,
                         struct colour colour)
 {
@@ -136,7 +136,7 @@ static void draw_reason(const struct chart *chart, const char *title, const char
     text_at(chart, chart->left, chart->top - 2 * LABEL_GAP, title, ink);
     canvas_frame(chart->canvas, chart->left, chart->top, CHART_WIDTH, CHART_HEIGHT, pale);
     text_at(chart, chart->left + 12, y, "not seen:", red);
-    while (*reason) { /* words until a line is full */
+    while (*reason) { /* fills line after line with words */
         size_t length = 0, end = 0;
         while (reason[end] && end < sizeof line - 1 &&
                text_length(reason, end + 1) < CHART_WIDTH - 24) {
@@ -162,7 +162,7 @@ static const char *family_text(const struct calibration *found, enum curve_famil
     return curve_text(found, family, text);
 }
 
-/* Median and distance between the quartiles of each tile, and what the families say. */
+/* Draws median and interquartile distance of each tile, and the curves of the families. */
 static void draw_spread(struct chart *chart, const struct calibration *found,
                         const struct stored_swath *swath, const double *medians,
                         const double *spreads, struct speckle_law *law)
@@ -247,7 +247,7 @@ static void draw_histogram(struct chart *chart, const struct calibration *found)
             chart->top + 22, text, red);
 }
 
-/* The law of log intensity over the tiles' levels. */
+/* Draws the distribution of log intensity over the tiles' levels, and the fitted law. */
 static void draw_law(struct chart *chart, const struct calibration *found,
                      const struct stored_swath *swath, struct speckle_law *law)
 {
@@ -410,7 +410,7 @@ static void draw_gain(struct chart *chart, const struct calibration *found)
     draw_legend(chart, 0, true, text, red);
 }
 
-/* One line that says what came of it. */
+/* Writes one line that sums up the calibration. */
 static void draw_head(struct canvas *canvas, const struct calibration *found, const char *title)
 {
     char text[2 * TEXT_BYTES], curve[TEXT_BYTES], excerpt[TEXT_BYTES], alike[TEXT_BYTES];
@@ -435,7 +435,7 @@ static void draw_head(struct canvas *canvas, const struct calibration *found, co
     draw_text(canvas, 24, 54, text, SIZE_MAX, TEXT_RIGHTWARDS, blue);
 }
 
-/* Medians and distances between the quartiles of the tiles' stored numbers. */
+/* Fills the medians and interquartile distances of the tiles' stored numbers. */
 static void fill_spreads(const struct calibration *found, const struct stored_swath *swath,
                          float *sorted, double *medians, double *spreads)
 {

@@ -10,15 +10,15 @@
 
 /* Response. */
 #define FAINTEST_CORRELATION 0.02
-#define FAR_LAG              8   /* from here on speckle is forgotten */
-#define WIDTH_MOST           5.5 /* pixels: wider ones are still correlated at lags 8 to 11 */
-#define WIDTH_BIAS           0.015 /* plain tiles are chosen by what speckle they happen to have, too */
-#define UNEVEN_MOST          2.0  /* of the tiles' median variance */
-#define PEAK_MOST            14.0 /* over a tile's mean; brighter pixels are no speckle */
+#define FAR_LAG              8   /* speckle is uncorrelated from this lag on */
+#define WIDTH_MOST           5.5 /* pixels; wider responses are still correlated at lags 8 to 11 */
+#define WIDTH_BIAS           0.015 /* relative error: tiles are chosen by chance speckle, too */
+#define UNEVEN_MOST          2.0   /* largest variance of a tile, over the median variance */
+#define PEAK_MOST            14.0  /* over a tile's mean; brighter pixels are no speckle */
 
 /* Noise floor. */
-#define ROUNDING_MOST 0.05 /* of the floor */
-#define LOWEST_SHARE  0.05 /* of pixels that may lie at the lowest number */
+#define ROUNDING_MOST 0.05 /* most that rounding may add, as a share of the floor */
+#define LOWEST_SHARE  0.05 /* most pixels at the lowest number, as a share */
 
 static double median_level(const struct calibration *found, double *scratch)
 {
@@ -26,7 +26,7 @@ static double median_level(const struct calibration *found, double *scratch)
     return median_of(scratch, found->tiles.count);
 }
 
-/* Intensities over a level. Values that are whole numbers go by a table. */
+/* Fills intensities relative to a level. Uses a table where values are whole numbers. */
 static sonject_status fill_intensities(struct report *report, const struct calibration *found,
                                        const struct stored_swath *swath, double level,
                                        float *intensity)
@@ -51,7 +51,7 @@ static sonject_status fill_intensities(struct report *report, const struct calib
 
 /* ---- The response, from the correlation of the plain tiles' intensity. */
 
-/* Sums of products of pixels of a tile some way apart along an axis, over the mean's square. */
+/* Returns the covariance of a tile's pixels at a lag along an axis, over the square of the mean. */
 static double tile_covariance(const float *tile, size_t side, size_t stride, size_t lag, int axis,
                               double mean)
 {
@@ -65,8 +65,9 @@ static double tile_covariance(const float *tile, size_t side, size_t stride, siz
     return sum / ((double)(side * (side - lag)) * mean * mean);
 }
 
-/* Half-power width of a Gaussian response that correlates intensities so: exp(-2 ln 2 x^2 / w^2),
- * which falls to a half at w / sqrt 2. Between lags the logarithm goes with the lag's square. */
+/* Returns the half-power width w of a Gaussian response whose intensities have this correlation,
+ * exp(-2 ln 2 x^2 / w^2), which falls to a half at w / sqrt 2. Between lags the logarithm is
+ * interpolated over the square of the lag. */
 static double width_of(const double correlation[CALIBRATION_LAGS])
 {
     size_t lag = 1;
@@ -80,13 +81,13 @@ static double width_of(const double correlation[CALIBRATION_LAGS])
     return sqrt(2.0 * (near + (far - near) * (log(2.0) - before) / (after - before)));
 }
 
-/* Leaves out tiles of more than twice the median variance, across edges and shadows; sums up the
- * others, and returns how many they are. */
+/* Leaves out tiles of more than twice the median variance, which lie across edges and shadows. Sums
+ * up the others, and returns their number. */
 static size_t leave_uneven(double *values, size_t count, double sums[CALIBRATION_LAGS])
 {
     size_t taken = 0;
     double median = 0.0;
-    /* the median by halving: as many above as below */
+    /* Find the median by halving: as many values are above as below. */
     for (double step = 1.0; step > 1e-4; step *= 0.5) {
         size_t below = 0;
         for (size_t i = 0; i < count; i++)
@@ -197,8 +198,8 @@ static void find_gain(struct calibration *found, double level)
 
 /* ---- The noise floor, from shadows. */
 
-/* What rounding to stored steps adds to the intensities of the shadows' pixels, as a share of them,
- * and which share of these pixels lies at the lowest number. */
+/* Finds what rounding to stored steps adds to the intensities of shadow pixels, as a share of
+ * these, and the share of shadow pixels that lie at the lowest number. */
 static void look_at_steps(const struct calibration *found, const struct stored_swath *swath,
                           const float *intensity, const uint8_t *states, double level,
                           double *rounding, double *at_lowest)
@@ -224,14 +225,14 @@ static void look_at_steps(const struct calibration *found, const struct stored_s
     *at_lowest = low / pixels;
 }
 
-/* By how many dB a standard error of the curve's parameter moves the floor over the seabed. */
+/* Returns by how many dB a standard error of the curve's parameter moves the floor over seabed. */
 static double floor_by_parameter(const struct calibration *found, double level, double log_floor)
 {
     const struct curve_fit *fit = &found->fits[found->family];
     const double error =
         found->transfer.kind < SONJECT_TRANSFER_DECIBEL ? 0.0 : fit->parameter_error;
     const double b = fit->parameter;
-    double slopes[2]; /* of log intensities by the logarithm of b, at the floor and the seabed */
+    double slopes[2]; /* d log intensity / d log b, at the floor and at the seabed */
     if (found->family != CURVE_SCHLICK)
         return DECIBELS * log_floor * error;
     for (int i = 0; i < 2; i++) {
@@ -289,7 +290,7 @@ static sonject_status find_floor(struct report *report, struct calibration *foun
 
 /* ---- The water column. */
 
-/* Standard error of a ping's first return, of what the pings scatter about their neighbours. */
+/* Returns the standard error of one ping's first return, from the scatter about its neighbours. */
 static double return_error(const double *columns, size_t rows, double *scratch)
 {
     for (size_t i = 1; i + 1 < rows; i++)
@@ -297,7 +298,7 @@ static double return_error(const double *columns, size_t rows, double *scratch)
     return rows < 3 ? NAN : 1.4826 * median_of(scratch, rows - 2) / sqrt(6.0);
 }
 
-/* scratch: as many as there are rows. */
+/* scratch: one number for each row. */
 static void tell_water(struct calibration *found, double *scratch)
 {
     static const char no_water[] =

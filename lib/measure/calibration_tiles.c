@@ -1,5 +1,4 @@
-/* The tiles that a calibration rests on: fixed ones all over the swath, of which the plainer half
- * is taken. */
+/* The tiles that a calibration rests on: the plainer half of fixed tiles all over the swath. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,11 +9,11 @@
 
 #define TILE_SIDE       32
 #define TILE_SIDE_SMALL 16
-#define TILES_FEW       40   /* of the larger ones; below, smaller ones are taken */
-#define CANDIDATES_MOST 4000 /* tiles looked at */
-#define TILES_MOST      600  /* tiles taken */
-#define PARTS           4    /* of a tile along an axis, whose medians tell how plain it is */
-#define CLIPPED_MOST    0.25 /* of a tile's pixels */
+#define TILES_FEW       40   /* fewest tiles of TILE_SIDE; below, smaller ones are used */
+#define CANDIDATES_MOST 4000 /* most tiles examined */
+#define TILES_MOST      600  /* most tiles used */
+#define PARTS           4    /* parts of a tile along an axis, whose medians tell how plain it is */
+#define CLIPPED_MOST    0.25 /* largest share of clipped pixels in a tile */
 #define BLANK_MOST      0.05
 #define QUANTILE_EDGES  48
 
@@ -30,7 +29,7 @@ static int compare_candidates(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Back to the order of their places. */
+/* Compares the places of two candidates, to restore their order. */
 static int compare_places(const void *a, const void *b)
 {
     const struct candidate *x = a, *y = b;
@@ -53,8 +52,8 @@ static float median_of_floats(float *values, size_t count)
     return 0.5f * (values[(count - 1) / 2] + values[count / 2]);
 }
 
-/* How unlike the medians of its parts are, over the spread of its pixels: a rank statistic, which
- * no curve changes much. Infinite for a tile that is blank, clipped or constant. */
+/* Returns the deviation of the medians of a tile's parts, over the spread of its pixels. This rank
+ * statistic hardly depends on the curve. Infinite for a tile that is blank, clipped or constant. */
 static float unevenness(const struct stored_swath *swath, size_t row, size_t column, size_t side,
                         double ceiling)
 {
@@ -82,7 +81,7 @@ static float unevenness(const struct stored_swath *swath, size_t row, size_t col
     return (float)(sqrt(fmax(0.0, squares / parts - sum * sum / (parts * parts))) / spread);
 }
 
-/* Looks at tiles all over the swath; *count gets how many can be used. */
+/* Examines tiles all over the swath. *count gets the number of usable ones. NULL: memory is out. */
 static struct candidate *find_candidates(const struct stored_swath *swath,
                                          const struct first_returns *water, size_t side,
                                          double ceiling, size_t *count)
@@ -105,8 +104,8 @@ static struct candidate *find_candidates(const struct stored_swath *swath,
     return list;
 }
 
-/* Edges at quantiles of all that is in the tiles, between whole numbers where the numbers are
- * whole. What clips has a cell of its own. */
+/* Chooses edges at quantiles of all numbers in the tiles. Where the numbers are whole, edges lie
+ * between whole numbers. Clipped numbers have a cell of their own. */
 static sonject_status choose_edges(struct plain_tiles *tiles, struct report *report,
                                    const struct stored_swath *swath, double ceiling)
 {
@@ -144,7 +143,7 @@ static sonject_status choose_edges(struct plain_tiles *tiles, struct report *rep
 
 static size_t cell_of(const struct plain_tiles *tiles, double value)
 {
-    size_t low = 0, high = tiles->edge_count; /* the first edge not below the value */
+    size_t low = 0, high = tiles->edge_count; /* high: first edge not below the value */
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
         if (tiles->edges[middle] < value)

@@ -3,15 +3,15 @@
 #include "measure/contact_edges.h"
 
 #define STEPS_PER_PIXEL 4
-#define BEFORE_END      3    /* pixels: of the largest mean of the last ones, */
-#define SPREADS         3    /* shares are tried as what spreads, */
-#define SPREAD_RATIO    0.71 /* each so many times the last; the first is all of it */
-#define REACH           6 /* deviations of the point response beyond which nothing of it is left */
-#define WIDTH_RATIO     1.6 /* of penumbras' widths; the first is the point response's */
+#define BEFORE_END      3    /* pixels before an end, whose largest mean spreads beyond it */
+#define SPREADS         3    /* shares of that mean that are tried */
+#define SPREAD_RATIO    0.71 /* ratio of one share to the one before; the first is 1 */
+#define REACH           6    /* deviations beyond which the point response is nil */
+#define WIDTH_RATIO     1.6  /* ratio of penumbras' widths; the first is the response's */
 #define LOBE_BIAS_RATIO 2.0
-#define FAINTEST        1e-9 /* of a dark level: there are means of 0 */
+#define FAINTEST        1e-9 /* least mean, as a share of the dark level: some means are 0 */
 
-/* share: of the places that this one stands for, in pixels. */
+/* share: the pixels of places that this place stands for. */
 static void weigh(struct edge_belief *belief, double place, double share, double cost)
 {
     if (belief->weight == 0.0 || cost < belief->least) {
@@ -35,13 +35,13 @@ static struct profile_edge edge_believed(const struct edge_belief *belief)
     return edge;
 }
 
-/* Of a step's energy, the share that comes so many deviations beyond it. */
+/* Returns the share of a step's energy that lies more than so many deviations beyond the step. */
 static double spread(double deviations)
 {
     return 0.5 * erfc(deviations / 1.4142135623730951);
 }
 
-/* Negative log likelihood of a mean > 0, a sample, where any level of a range is expected. */
+/* Returns the negative log likelihood, per sample, of a mean > 0, where a range is expected. */
 static double cost_within(double mean, double least, double most)
 {
     const double ratio = mean / fmin(fmax(mean, least), most);
@@ -59,7 +59,7 @@ static double cost_of_lit(const struct profile *profile, const struct end_levels
                        levels->lit + LOBE_BIAS_RATIO * profile->lobe_bias[k], INFINITY);
 }
 
-/* spread_there: of what is lit. */
+/* spread_there: the energy that lit pixels spread to this one. */
 static double cost_of_dark(const struct profile *profile, const struct end_levels *levels, size_t k,
                            double spread_there)
 {
@@ -67,15 +67,15 @@ static double cost_of_dark(const struct profile *profile, const struct end_level
                        spread_there + levels->dark + profile->lobe_bias[k]);
 }
 
-/* Pixels whose centres lie before a place >= -0.5. */
+/* Returns the number of pixels whose centres lie before a place >= -0.5. */
 static size_t pixels_before(double place, size_t count)
 {
     const size_t before = (size_t)(place + 1.0);
     return before < count ? before : count;
 }
 
-/* Of an end at `place`, what the spread of that share of the pixels before it adds to the cost of
- * those behind. */
+/* Returns the cost that spreading adds to the pixels behind an end at `place`, where a share of the
+ * largest mean before it spreads. */
 static double cost_of_spread(const struct profile *profile, const struct end_levels *levels,
                              double place, double share)
 {
@@ -97,7 +97,7 @@ static double cost_of_spread(const struct profile *profile, const struct end_lev
 struct profile_edge find_profile_end(const struct profile *profile, const struct end_levels *levels)
 {
     struct edge_belief belief = {0.0, 0.0, 0.0, 0.0};
-    double cost = 0.0; /* of an end behind pixel `first`, over that of one before all pixels */
+    double cost = 0.0; /* cost of an end behind pixel `first`, minus that before all pixels */
     size_t first = 0;
     for (size_t step = 0; step <= profile->count * STEPS_PER_PIXEL; step++) {
         const double place = (double)step / STEPS_PER_PIXEL - 0.5;
@@ -111,7 +111,7 @@ struct profile_edge find_profile_end(const struct profile *profile, const struct
     return edge_believed(&belief);
 }
 
-/* Linear between the entries, which costs 1e-5 of a sample. */
+/* Values between the entries are interpolated, which errs by 1e-5 of a sample. */
 void step_levels_init(struct step_levels *levels, double before, double behind)
 {
     levels->inverse_behind = 1.0 / behind;
@@ -124,9 +124,9 @@ void step_levels_init(struct step_levels *levels, double before, double behind)
     }
 }
 
-/* Negative log likelihood of a pixel's mean less than REACH deviations from the step, over that of
- * one behind it; of all the pixels that a profile's mean is of, a sample, so that profiles of other
- * means compare. */
+/* Returns the negative log likelihood, per sample, of a pixel's mean at less than REACH deviations
+ * from the step, minus that of a pixel behind the step. The likelihood of m = p is not taken off,
+ * so that profiles of other means can be compared. */
 static double cost_at_step(const struct step_levels *levels, double mean, double deviations)
 {
     const double at = (deviations + REACH) * (STEP_ENTRIES / (2.0 * REACH));
@@ -138,14 +138,13 @@ static double cost_at_step(const struct step_levels *levels, double mean, double
            levels->log_behind;
 }
 
-/* Adds the places of a step whose penumbra has that deviation; wider ones are less likely before.
- */
+/* Adds the places of a step whose penumbra is this wide. Wider penumbras have less prior weight. */
 static void weigh_steps(struct edge_belief *belief, const struct profile *profile,
                         const struct step_levels *levels, double width)
 {
     const double stride = fmax(1.0, width) / STEPS_PER_PIXEL;
-    double settled_cost = 0.0; /* of pixels well before the step, over that of all behind it */
-    size_t settled = 0;        /* these */
+    double settled_cost = 0.0; /* cost of pixels well before the step, minus that behind */
+    size_t settled = 0;        /* number of these pixels */
     double all_cost = (double)profile->count * levels->log_behind;
     for (size_t k = 0; k < profile->count; k++)
         all_cost += profile->means[k] * levels->inverse_behind;
@@ -170,7 +169,7 @@ void weigh_profile_step(struct edge_posterior *belief, const struct profile *pro
 struct profile_edge mean_step_believed(const struct edge_posterior *parts, size_t count)
 {
     struct edge_belief all = {0.0, 0.0, 0.0, 0.0};
-    double variance = 0.0; /* within the widths, weighted as those are */
+    double variance = 0.0; /* sum of the variances within each width, weighted by likelihood */
     double least = INFINITY;
     double costs[STEP_WIDTHS];
     for (int i = 0; i < STEP_WIDTHS; i++) {

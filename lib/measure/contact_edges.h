@@ -1,51 +1,51 @@
-/* Where profiles of mean intensity end or step, amid speckle. A mean over n independent samples of
- * speckle has the gamma distribution of shape n: where m is expected, a mean p has the negative log
- * likelihood n (p/m - 1 - ln p/m), over that of m = p. Places are means over that likelihood, all
- * places alike likely before. */
+/* The places where profiles of mean intensity end or step, amid speckle. A mean p over n
+ * independent samples of speckle has the gamma distribution of shape n. Where m is expected, its
+ * negative log likelihood is n (p/m - 1 - ln p/m), relative to that of m = p. Places are means over
+ * the likelihood, with an even prior. */
 #ifndef SONJECT_MEASURE_CONTACT_EDGES_H
 #define SONJECT_MEASURE_CONTACT_EDGES_H
 
 #include <stddef.h>
 
-/* Mean intensities of pixels one after the other. */
+/* Mean intensities of successive pixels. */
 struct profile {
     const double *means;
-    const double *lobe_bias; /* what side lobes of what is bright may add, at most */
+    const double *lobe_bias; /* the most that side lobes of bright pixels may add */
     size_t count;
-    double samples;   /* independent ones, a pixel */
-    double deviation; /* of the point response's energy, taken for Gaussian; pixels, > 0 */
+    double samples;   /* independent samples in the mean of a pixel */
+    double deviation; /* standard deviation of the response's energy, a Gaussian; pixels, > 0 */
 };
 
-/* In pixels from the first one's centre; the error is standard, and of speckle alone. */
+/* Pixels from the centre of the first one, and the standard error from speckle alone. */
 struct profile_edge {
     double place, error;
 };
 
-/* What is expected on either side of an end; both > 0. */
+/* The levels expected before and behind an end; both > 0. */
 struct end_levels {
-    double lit;  /* at least that before it, and LOBE_BIAS_RATIO times the side-lobe bias */
-    double dark; /* at most that and the side-lobe bias behind it, beside what the point response
-                    spreads there */
+    double lit;  /* least level before; LOBE_BIAS_RATIO times the side-lobe bias is added */
+    double dark; /* most behind; side-lobe bias and the spread of the point response are added */
 };
 
-/* Where a profile that is lit at its first pixels becomes dark, and stays so: what is lit may have
- * any levels. */
+/* Finds where a profile that is lit at its first pixels becomes dark and stays dark. Lit pixels may
+ * have any level above the least. */
 struct profile_edge find_profile_end(const struct profile *profile,
                                      const struct end_levels *levels);
 
-/* Sums over places, each weighted with its likelihood over the largest one's. */
+/* Sums over places, each weighted with its likelihood over the largest likelihood. */
 struct edge_belief {
-    double least; /* negative log likelihood */
+    double least; /* least negative log likelihood */
     double weight, sum, squares;
 };
 
-#define STEP_WIDTHS 7 /* of penumbras that are tried */
+#define STEP_WIDTHS 7 /* widths of penumbras that are tried */
 
 struct edge_posterior {
     struct edge_belief widths[STEP_WIDTHS];
 };
 
-/* What is expected about a step from one level to another, both > 0, by deviations from it. */
+/* The levels expected about a step from one level to another, both > 0, over deviations from the
+ * step. REACH deviations on either side are tabulated. */
 #define STEP_ENTRIES 1536
 struct step_levels {
     double inverse_behind, log_behind;
@@ -53,19 +53,19 @@ struct step_levels {
 };
 void step_levels_init(struct step_levels *levels, double before, double behind);
 
-/* Weighs where a profile steps so: half way up a penumbra of any width. Several profiles through an
- * edge, such as ones along different slants, may be weighed one after the other, the belief all
- * zeros at first. */
+/* Weighs the places where a profile steps: the middle of a penumbra of any width. Several profiles
+ * through one edge, such as those along different slants, may be weighed one after the other.
+ * belief is all zeros at first. */
 void weigh_profile_step(struct edge_posterior *belief, const struct profile *profile,
                         const struct step_levels *levels);
 
-/* The mean place of parts of one edge, whose penumbra is equally wide in all of them: how wide, and
- * with that how far out they lie, is believed for all together. */
+/* Returns the mean place of the parts of one edge. The penumbra is equally wide in all parts, so
+ * its width, and with it how far out the parts lie, is weighed for all together. */
 struct profile_edge mean_step_believed(const struct edge_posterior *parts, size_t count);
 
-/* Where the first part of a profile, brighter than its rest, ends; each has one level. The
- * side-lobe bias is what side lobes may add of that level. *gain: how much more likely that is than
- * one level for all, the logarithm; 0: no first part is brighter. */
+/* Finds where a first part of a profile ends that is brighter than the rest. Each has one level.
+ * lobe_bias is relative to that level. *gain gets the logarithm of the likelihood over that of one
+ * level for all; 0: no first part is brighter. */
 struct profile_edge find_profile_change(const struct profile *profile, double *gain);
 
 #endif

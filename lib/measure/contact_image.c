@@ -1,4 +1,4 @@
-/* How bright the image's seabed is, and which pixels are a contact's highlight and shadow. */
+/* The level of an image's seabed, and the pixels of a contact's highlight and shadow. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,9 +7,7 @@
 #include "measure/contacts.h"
 #include "measure/first_return.h"
 
-/* Which pixels are a contact's highlight and shadow, and the seabed around them. */
-
-#define PART_SEEN 128 /* of an area that is not the largest */
+#define PART_SEEN 128 /* mark of an area that is not the largest */
 
 static size_t smaller(size_t a, size_t b)
 {
@@ -21,7 +19,7 @@ static size_t larger(size_t a, size_t b)
     return a > b ? a : b;
 }
 
-/* Mean over 3 x 3 pixels, fewer at the image's edges. */
+/* Fills the means over 3 x 3 pixels, fewer at the image's edges. */
 static void mean_of_neighbours(const float *intensity, size_t rows, size_t columns, float *mean)
 {
     for (size_t row = 0; row < rows; row++)
@@ -50,7 +48,7 @@ struct window_box box_with_margin(const struct window_box *box, size_t margin, s
     return wide;
 }
 
-/* From the first of these rows and columns to before the last of those. */
+/* Returns the box from the first row and column to before the last ones. */
 static struct window_box box_of_limits(size_t first_row, size_t first_column, size_t last_row,
                                        size_t last_column)
 {
@@ -67,7 +65,7 @@ struct window_box box_around(const struct window_box *a, const struct window_box
                          larger(a->first_column + a->columns, b->first_column + b->columns));
 }
 
-/* What both have in common; they must overlap. */
+/* Returns the intersection of two boxes, which must overlap. */
 static struct window_box box_within(const struct window_box *a, const struct window_box *b)
 {
     return box_of_limits(larger(a->first_row, b->first_row),
@@ -83,16 +81,15 @@ bool boxes_overlap(const struct window_box *a, const struct window_box *b)
            b->first_column < a->first_column + a->columns;
 }
 
-/* Areas of pixels of `box` for which means lie beyond the threshold: above it for a highlight,
- * below it for a shadow. */
+/* A search for areas in `box` whose means are above the threshold, or below it for a shadow. */
 struct area_search {
-    const float *means, *intensity; /* of the image */
-    size_t columns;                 /* of the image */
+    const float *means, *intensity; /* the image's */
+    size_t columns;                 /* the image's */
     struct window_box box;
-    size_t start_columns; /* of the box, its first ones: an area must have a pixel in them */
+    size_t start_columns; /* first columns of the box; an area must have a pixel in them */
     enum contact_part part;
     double threshold;
-    uint8_t *marks; /* of the image: where one is not 0 no area is */
+    uint8_t *marks; /* the image's; pixels with other marks than 0 belong to no area */
     size_t *stack;  /* box.rows * box.columns places */
 };
 
@@ -103,7 +100,7 @@ static bool is_wanted(const struct area_search *search, size_t i, uint8_t mark)
            (search->part == PART_HIGHLIGHT ? mean > search->threshold : mean < search->threshold);
 }
 
-/* Turns the marks of the area around a pixel from one value to another. */
+/* Changes the marks of the area around a pixel from one value to another. */
 static struct contact_area fill_area(const struct area_search *search, size_t start, uint8_t from,
                                      uint8_t to)
 {
@@ -142,7 +139,7 @@ static struct contact_area fill_area(const struct area_search *search, size_t st
     return area;
 }
 
-/* Marks with the part that area which has the most energy, or for a shadow the most pixels. */
+/* Marks the area of most energy as the part, or for a shadow the area of most pixels. */
 static struct contact_area mark_largest_area(const struct area_search *search)
 {
     const struct window_box *box = &search->box;
@@ -172,8 +169,7 @@ static struct contact_area mark_largest_area(const struct area_search *search)
 }
 
 #define BLOCK                                                                                      \
-    6 /* pixels on a side. A mean of 36 exponential values has its median 1 %                      \
-         below its mean */
+    6 /* pixels on a side. The median of a mean of 36 exponential values is 1 % below the mean */
 
 sonject_status contact_image_create(struct contact_image *image, struct report *report,
                                     const float *intensity, size_t rows, size_t columns)
@@ -236,8 +232,8 @@ size_t seabed_blocks(const struct window_box *box)
     return (box->rows / BLOCK) * (box->columns / BLOCK) + 1;
 }
 
-/* The median of the blocks of a box that do not overlap another one or the water column; negative
- * if there are none. */
+/* Returns the median of the blocks of `wide` that touch neither `box` nor the water column, or a
+ * negative number if there are none. */
 static double level_beside(const struct contact_image *image, const struct window_box *wide,
                            const struct window_box *box, float *blocks)
 {
@@ -273,13 +269,12 @@ sonject_status find_seabed_level(const struct contact_image *image, struct repor
     return SONJECT_OK;
 }
 
-#define ROWS_BESIDE   8 /* of a highlight, beyond half of its own, that may hold its shadow */
-#define SHADOW_PIXELS 9 /* at least: in fewer, one mean of 3 x 3 speckled pixels may be dark */
+#define ROWS_BESIDE   8 /* above and below half a highlight's rows that may hold its shadow */
+#define SHADOW_PIXELS 9 /* fewest pixels: one mean of 3 x 3 pixels may be dark by chance */
 #define COLUMNS_LEAST                                                                              \
-    32 /* behind a highlight, in which its shadow begins; twice its own if more                    \
-        */
+    32 /* columns behind a highlight in which its shadow begins; twice its own if that is more */
 
-/* The brightest area, and those near it that speckle has cut off. */
+/* Marks the brightest area, and areas near it that speckle has cut off. */
 static struct contact_area mark_highlight(const struct contact_image *image,
                                           const struct area_search *search)
 {
@@ -320,7 +315,7 @@ static struct window_box beside(const struct contact_image *image, const struct 
     return beyond;
 }
 
-/* What the last contact left is cleared. */
+/* Clears the marks of the last contact. */
 static void begin_marks(struct contact_image *image, const struct window_box *box)
 {
     const struct window_box *last = &image->marked;

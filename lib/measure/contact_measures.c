@@ -62,7 +62,8 @@ static double decibels(double intensity)
     return intensity > 0.0 ? 10.0 * log10(intensity) : NAN;
 }
 
-/* A bar of uniform energy has the variance length^2 / 12 along itself. */
+/* Measures the axes of the highlight's energy. A bar of uniform energy has the variance length^2 /
+ * 12 along itself. */
 static void measure_axis(const float *intensity, size_t columns, const uint8_t *marks,
                          const struct contact_sizes *sizes, double row_spacing_m,
                          double column_spacing_m, sonject_contact_measures *measures)
@@ -129,7 +130,7 @@ static void fill(const struct contact_sizes *sizes, double row_spacing_m, double
     measures->shadow_contrast_db = measures->shadow_db - measures->seabed_db;
 }
 
-/* Everything that is a number is not known yet. */
+/* Sets all numbers to NaN, since none is known yet. */
 static void forget(sonject_contact_measures *measures)
 {
     const double unknown = NAN;
@@ -139,7 +140,7 @@ static void forget(sonject_contact_measures *measures)
         memcpy((char *)measures + contact_numbers[i].offset, &unknown, sizeof unknown);
 }
 
-/* Whether an area touches an edge of the box around it. */
+/* Returns whether an area touches an edge of the box around it. */
 static bool is_cut_by(const struct contact_area *area, const struct window_box *box)
 {
     const struct window_box *inner = &area->box;
@@ -159,7 +160,7 @@ sonject_status check_spacings(struct report *report, double row_spacing_m, doubl
     return SONJECT_OK;
 }
 
-/* A box of the image, in which all of a contact is. Errors: INPUT (it is not inside). */
+/* Takes a box of the image as the place of a contact. Errors: INPUT (the box is not inside). */
 static sonject_status place_in_box(struct report *report, const sonject_box *box, size_t rows,
                                    size_t columns, struct contact_place *place)
 {
@@ -178,7 +179,7 @@ static sonject_status place_in_box(struct report *report, const sonject_box *box
     return SONJECT_OK;
 }
 
-/* All but the seabed's speckle. Errors: INPUT, MEMORY. */
+/* Measures everything but the seabed's speckle. Errors: INPUT, MEMORY. */
 static sonject_status contact_measure(struct report *report, struct contact_image *image,
                                       const struct contact_place *place, double row_spacing_m,
                                       double column_spacing_m, sonject_contact_measures *measures)
@@ -196,8 +197,7 @@ static sonject_status contact_measure(struct report *report, struct contact_imag
     return SONJECT_OK;
 }
 
-/* How well each of so many contacts is seen, when all are known: none is another's seabed. Errors:
- * MEMORY. */
+/* Measures how well each contact is seen, once all are known: none is seabed. Errors: MEMORY. */
 static sonject_status contacts_add_visibility(struct report *report,
                                               const struct contact_image *image,
                                               sonject_contact_measures *measures, size_t count)
@@ -213,8 +213,7 @@ static sonject_status contacts_add_visibility(struct report *report,
     return SONJECT_OK;
 }
 
-/* The seabed's speckle in all that no contact was found in so far, for so many contacts. Errors:
- * MEMORY. */
+/* Adds the seabed's speckle to each contact. No contact takes seabed. Errors: MEMORY. */
 static sonject_status contacts_add_seabed(struct report *report, const struct contact_image *image,
                                           sonject_contact_measures *measures, size_t count)
 {
@@ -257,10 +256,10 @@ sonject_status measure_one_contact(struct report *report, const float *intensity
                                   column_spacing_m, found);
 }
 
-/* ---- Contacts of boxes, of a truth.json or looked for, as JSON. */
+/* ---- Contacts as JSON: of boxes, of a truth.json, or from a search. */
 
 #define TRUTH_BYTES_MAX ((size_t)1 << 26)
-#define LENGTH_MOST     1e6 /* m */
+#define LENGTH_MOST     1e6 /* m; longest box */
 
 /* The contacts to measure. */
 struct contact_list {
@@ -283,7 +282,8 @@ static bool read_count(const json_t *object, const char *key, uint64_t *value)
     return json_is_integer(member) && number >= 0 && number <= (json_int_t)1 << 31;
 }
 
-/* A truth's box with a margin, within the image: its masks end where they are half dark. */
+/* Takes a truth's box with a margin, within the image, since a truth's masks end where they are
+ * half dark. Returns false where the box is not inside the image. */
 static bool take_truth_box(const json_t *box, size_t rows, size_t columns, sonject_box *taken)
 {
     uint64_t row, column, box_rows, box_columns;
@@ -348,8 +348,8 @@ static void turn_box(sonject_box *box, size_t columns)
         box->first_column = columns - box->first_column - box->columns;
 }
 
-/* So that range grows to the right, as contacts are measured. Boxes outside stay what they are, to
- * be refused. */
+/* Mirrors the image and its boxes so that range grows to the right, as contacts are measured. Boxes
+ * outside the image stay as they are, to be refused. */
 static void turn_image(const struct contact_list *list, struct measured *intensities)
 {
     const size_t columns = intensities->columns;
@@ -391,7 +391,7 @@ static json_t *measures_document(const char *image, const sonject_contact_measur
     return document;
 }
 
-/* *text is NULL where memory is out. */
+/* *text gets NULL where memory is out. */
 static sonject_status write_list(struct report *report, const char *image,
                                  const sonject_contact_measures *measures, size_t count,
                                  size_t left_off, char **text)
@@ -405,7 +405,7 @@ static sonject_status write_list(struct report *report, const char *image,
     return *text ? SONJECT_OK : report_out_of_memory(report, image);
 }
 
-/* Those of the list; measures: as many. */
+/* Measures the contacts of the list. measures: one for each. */
 static sonject_status measure_list(struct report *report, const struct contact_list *list,
                                    struct contact_image *image, sonject_contact_measures *measures)
 {
@@ -419,7 +419,7 @@ static sonject_status measure_list(struct report *report, const struct contact_l
     return status;
 }
 
-/* The brightest of the image; measures: `most` of them. */
+/* Measures the brightest contacts of the image. measures: room for `most` of them. */
 static sonject_status find_contacts(struct report *report, const struct contact_list *list,
                                     double contrast, struct contact_image *image, size_t most,
                                     sonject_contact_measures *measures, size_t *count,

@@ -1,17 +1,17 @@
-/* How long and wide a contact's highlight and shadow are.
+/* The length and width of a contact's highlight and shadow.
  *
- * Where the formulas come from:
+ * The sources of the formulas:
  * - Speckle is circular Gaussian: a mean of n independent intensities has the gamma distribution of
- *   shape n (Goodman, Speckle Phenomena in Optics, section 3.3). n are the looks and pixels of a
- *   line over the correlation's sum, sqrt(pi) lengths where that falls to 1/e as a Gaussian.
- * - Edges are the mean of their likelihood, and its deviation is their error (contact_edges.h).
- * - The point response: speckle's correlation is that of its amplitude with itself, squared; a
- *   Gaussian's energy then has half the deviation of the length at which it falls to 1/e. Other
- *   responses are taken for one. 1/(2 pi^2 x^2) is the mean of sinc^2 over one of its side lobes.
- * - A shadow has two levels if those are e^10 times as likely as one: by chance once in some 200
- *   shadows of 100 pixels.
- * Thresholds are conventions, not physics: those of contact_mask.h, and of a shadow's near edge the
- * geometric mean of its own level and the seabed's. */
+ *   shape n (Goodman, Speckle Phenomena in Optics, section 3.3). n is looks times pixels of a line,
+ *   over the sum of the correlation: sqrt(pi) times the length at which a Gaussian falls to 1/e.
+ * - An edge is the mean of its likelihood, and the deviation is its error (contact_edges.h).
+ * - The point response: speckle's correlation is the square of its amplitude's autocorrelation. The
+ *   energy of a Gaussian then has half the deviation of the length at which that falls to 1/e.
+ *   Other responses are taken for Gaussian. 1/(2 pi^2 x^2) is the mean of sinc^2 over a side lobe.
+ * - A shadow has two levels if those are e^10 times as likely as one. By chance that happens in one
+ *   of some 200 shadows of 100 pixels.
+ * Thresholds are conventions, not physics: those of contacts.h, and, for a shadow's near edge, the
+ * geometric mean of the levels of shadow and seabed. */
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -22,25 +22,25 @@
 #include "measure/contacts.h"
 
 #define LOBE_BIAS_REACH 32   /* rows */
-#define DEVIATION_LEAST 0.15 /* pixels, of a point response that is finer than they are */
+#define DEVIATION_LEAST 0.15 /* pixels; floor for finer point responses */
 #define ROOT_OF_PI      1.7724538509055159
 #define PI              3.14159265358979323846
-#define EDGE_REACH      8 /* pixels beyond a part in which its edge is looked for */
-#define END_ROWS        4 /* of a highlight, whose columns tell where its end is looked for */
-#define BANDS           3 /* of rows, in each of which a shadow's edges are taken for straight */
-#define TILTS           8 /* to either side, that a far edge may have along the highlight */
+#define EDGE_REACH      8 /* pixels beyond a part in which its edge may lie */
+#define END_ROWS        4 /* rows of a highlight whose columns locate its end */
+#define BANDS           3 /* bands of rows in which a shadow's edge counts as straight */
+#define TILTS           8 /* tilts to either side that a far edge may have, along the highlight */
 #define TILT_STEP       0.125
-/* Of the seabed: a shadow darker than that counts as that dark, since side lobes of the seabed
- * around it fill its edges. */
+/* The darkest level of a shadow, as a share of the seabed's: side lobes of the seabed around a
+ * shadow fill its edges. */
 #define SHADOW_LEAST 0.03
-/* Of a shadow's level: noise makes a shadow no brighter than that. */
+/* The brightest level of a shadow with noise, as a multiple of its own level. */
 #define SHADOW_CEILING 2.0
-#define EDGE_MARGIN    3.0  /* columns of a shadow at its edges that may not be as dark as it is */
-#define DIM_GAIN       10.0 /* from which on a shadow is taken to have two levels */
+#define EDGE_MARGIN    3.0  /* columns at a shadow's edges that may be less dark */
+#define DIM_GAIN       10.0 /* log likelihood from which a shadow has two levels */
 
-/* Lines through a contact, laid along its highlight, and their mean intensities. Columns of boxes
- * that are used with them count along row middle_row: in a row further on they lie slant more to
- * the right, in one of a tilted edge as much more as it is tilted. */
+/* Lines through a contact, laid along its highlight, and their mean intensities. A box's columns
+ * hold at middle_row. Elsewhere they are shifted to the right, by slant for each row from
+ * middle_row and by an edge's tilt for each row from tilt_row. */
 struct contact_lines {
     const struct contact_image *image;
     double seabed; /* mean intensity */
@@ -49,16 +49,16 @@ struct contact_lines {
     double *means, *lobe_bias; /* room for one profile */
 };
 
-/* Rows of a box, or columns, one after the other from `start`, backwards where step is -1. */
+/* Rows or columns of a box, one after the other from `start`, backwards where step is -1. */
 struct profile_path {
     struct window_box box;
     bool is_along_track; /* row after row */
     size_t start;
     int step;
-    size_t most; /* at most so many, and none beyond the image's edge */
+    size_t most; /* longest path, which also ends at the image's edge */
 };
 
-/* How many columns further to the right lines lie in a row. */
+/* Returns by how many columns lines are shifted to the right in a row. */
 static long line_shift(const struct contact_lines *lines, size_t row)
 {
     return lround(lines->slant * ((double)row - lines->middle_row) +
@@ -76,8 +76,7 @@ static double highlight_at(const struct contact_image *image, size_t row, size_t
     return is_marked ? intensity_at(image, row, column) : 0.0;
 }
 
-/* What side lobes of the highlight bring to a pixel: sinc^2 falls as 1/(pi x)^2, and is half of
- * that on average. */
+/* Returns what side lobes of the highlight add to a pixel: 1/(pi x)^2, halved on average. */
 static double lobe_bias_at(const struct contact_image *image, size_t row, size_t column)
 {
     double sum = 0.0;
@@ -111,21 +110,21 @@ static double mean_of(const struct contact_lines *lines, const struct window_box
     return count > 0 ? sum / (double)count : otherwise;
 }
 
-/* Of the pixels of the box that are inside the image; the seabed's where none is. */
+/* Returns the mean over the box's pixels inside the image, or the seabed's if there are none. */
 static double mean_along_lines(const struct contact_lines *lines, const struct window_box *box)
 {
     return mean_of(lines, box, intensity_at, lines->seabed);
 }
 
-/* Pixels for one that is independent: the sum of exp(-(x / length)^2) over all. */
+/* Returns the number of pixels for one independent sample: the sum of exp(-(x / length)^2). */
 static double pixels_a_sample(double correlation_length)
 {
     return fmax(1.0, ROOT_OF_PI * correlation_length);
 }
 
-/* Of the energy of a Gaussian response, whose speckle's correlation is exp(-x^2 / (2 deviation)^2):
- * by the neighbouring pixel where that falls to 1/e between pixels, which are too far apart then to
- * tell where. */
+/* Returns the deviation of the energy of a Gaussian response, whose speckle has the correlation
+ * exp(-x^2 / (2 deviation)^2). Where that falls to 1/e within a pixel, the length is too coarse,
+ * and the correlation of neighbouring pixels counts instead. */
 static double deviation_of(const struct speckle_axis *axis)
 {
     const double next = axis->correlation[1];
@@ -135,7 +134,7 @@ static double deviation_of(const struct speckle_axis *axis)
     return fmax(DEVIATION_LEAST, deviation);
 }
 
-/* The box's row or column that is so far along the path. */
+/* Returns the box's row or column number k of the path. */
 static struct window_box line_of(const struct profile_path *path, size_t k)
 {
     const size_t index = path->step > 0 ? path->start + k : path->start - k;
@@ -145,7 +144,7 @@ static struct window_box line_of(const struct profile_path *path, size_t k)
     return path->is_along_track ? row : column;
 }
 
-/* Mean intensities along a path, valid until the next call. */
+/* Returns the mean intensities along a path, valid until the next call. */
 static struct profile profile_along(const struct contact_lines *lines,
                                     const struct profile_path *path)
 {
@@ -171,8 +170,8 @@ static struct profile profile_along(const struct contact_lines *lines,
     return profile;
 }
 
-/* The same with the side-lobe bias of the pixels that are marked as highlight: side lobes along the
- * track, as of an aperture without a window. */
+/* Returns the mean intensities with the side-lobe bias of the highlight's marked pixels. Side lobes
+ * lie along the track, as from an aperture without a window. */
 static struct profile profile_with_lobe_bias(const struct contact_lines *lines,
                                              const struct profile_path *path)
 {
@@ -197,7 +196,7 @@ static struct contact_length length_between(const struct profile_edge *a,
     return length;
 }
 
-/* The middle third of a part's rows, at least one. */
+/* Returns the middle third of a part's rows, at least one. */
 static struct window_box middle_rows(const struct window_box *part)
 {
     struct window_box middle = *part;
@@ -206,15 +205,15 @@ static struct window_box middle_rows(const struct window_box *part)
     return middle;
 }
 
-/* Of what is bright against the seabed and what is darker. */
+/* Returns the levels that tell a highlight from the seabed or darker pixels. */
 static struct end_levels levels_of_highlight(const struct contact_lines *lines)
 {
     const struct end_levels levels = {HIGHLIGHT_OVER_SEABED * lines->seabed, lines->seabed};
     return levels;
 }
 
-/* Lays lines along the straight line through the marked pixels of each row; *part gets the columns
- * that they take at the middle row, as many as in the mean row. */
+/* Lays lines along the straight line through the marked pixels of the rows. *part gets the columns
+ * of these lines at the middle row, as many as an average row has. */
 static void lie_along(struct contact_lines *lines, const struct contact_area *area,
                       struct window_box *part)
 {
@@ -242,7 +241,7 @@ static void lie_along(struct contact_lines *lines, const struct contact_area *ar
     part->columns = (size_t)fmax(1.0, width + 0.5);
 }
 
-/* The columns, along the lines, of a highlight's marks in some of its rows. */
+/* Returns the columns, counted along the lines, of a highlight's marks in some of its rows. */
 static struct window_box columns_marked(const struct contact_lines *lines,
                                         const struct window_box *highlight, size_t first_row,
                                         size_t rows)
@@ -264,8 +263,7 @@ static struct window_box columns_marked(const struct contact_lines *lines,
     return columns;
 }
 
-/* Where a highlight ends along the track, in rows: its last ones if step is 1, its first ones if
- * -1. */
+/* Returns the row at which a highlight ends: among its last rows if step is 1, its first if -1. */
 static struct profile_edge end_along_track(const struct contact_lines *lines,
                                            const struct window_box *highlight, int step)
 {
@@ -284,7 +282,7 @@ static struct profile_edge end_along_track(const struct contact_lines *lines,
     return end;
 }
 
-/* In range, across some rows. */
+/* Returns the width of a highlight in range, across some rows. */
 static struct contact_length width_of_highlight(const struct contact_lines *lines,
                                                 const struct window_box *rows)
 {
@@ -299,7 +297,7 @@ static struct contact_length width_of_highlight(const struct contact_lines *line
     return length_between(&near, &far);
 }
 
-/* Leaves the lines along the highlight, and returns its middle column there. */
+/* Leaves the lines along the highlight. Returns the highlight's middle column at the middle row. */
 static size_t measure_highlight(struct contact_lines *lines, struct contact_sizes *sizes)
 {
     struct window_box along;
@@ -314,7 +312,7 @@ static size_t measure_highlight(struct contact_lines *lines, struct contact_size
     return along.first_column + along.columns / 2;
 }
 
-/* The darkest third of a shadow's columns, at least three; *level gets its mean. */
+/* Returns the darkest third of a shadow's columns, at least three. *level gets the mean. */
 static struct window_box darkest_columns(const struct contact_lines *lines,
                                          const struct window_box *middle, double *level)
 {
@@ -333,7 +331,7 @@ static struct window_box darkest_columns(const struct contact_lines *lines,
     return darkest;
 }
 
-/* From `start`, in a shadow, to where the seabed begins, on an edge that may be tilted. */
+/* Weighs where the seabed begins on a path from `start` in a shadow. The edge may be tilted. */
 static struct edge_posterior weigh_edge_in_seabed(const struct contact_lines *lines,
                                                   const struct profile_path *path, double dark)
 {
@@ -362,12 +360,12 @@ static struct profile_edge edge_in_seabed(const struct contact_lines *lines,
 /* A shadow as it is measured in range. */
 struct shadow_view {
     struct window_box part;
-    size_t highlight; /* a column of it, or core if there is none */
-    size_t core;      /* a column in the dark */
-    double dark;      /* level */
+    size_t highlight; /* a column of the highlight; core if there is none */
+    size_t core;      /* a column in the dark part */
+    double dark;      /* level of the dark part */
 };
 
-/* Where it begins, and where what is bright ends before it: columns from its core. */
+/* The near edge of a shadow, and the far end of the brightness before it: columns from the core. */
 struct shadow_edges {
     struct profile_edge bright, near;
 };
@@ -408,7 +406,7 @@ static struct shadow_edges find_near_edges(const struct contact_lines *lines,
     return edges;
 }
 
-/* Whether the shadow begins with what is brighter than its rest, from its mean edges. */
+/* Measures how far a first part of the shadow is brighter than the rest, between the mean edges. */
 static void measure_dim_part(const struct contact_lines *lines, const struct shadow_view *shadow,
                              const struct window_box *middle, double near,
                              struct contact_sizes *sizes)
@@ -432,7 +430,7 @@ static void measure_dim_part(const struct contact_lines *lines, const struct sha
     sizes->dim_columns.error = change.error;
 }
 
-/* Means over bands of the rows; speckle is another in each. */
+/* Measures a shadow in range, as the mean over bands of rows, whose speckle is independent. */
 static void measure_in_range(const struct contact_lines *lines, const struct shadow_view *shadow,
                              const struct window_box *middle, struct contact_sizes *sizes)
 {
@@ -463,7 +461,7 @@ static void measure_in_range(const struct contact_lines *lines, const struct sha
     measure_dim_part(lines, shadow, middle, near / count, sizes);
 }
 
-/* highlight: a column of it along the lines; NULL: there is none. */
+/* highlight: a column of the highlight along the lines; NULL: no highlight. */
 static void measure_shadow(const struct contact_lines *lines, const size_t *highlight,
                            struct contact_sizes *sizes)
 {

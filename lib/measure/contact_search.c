@@ -5,27 +5,27 @@
 #include "base/memory.h"
 #include "measure/contacts.h"
 
-#define CELL        64 /* pixels on a side, for each of which the seabed's level is found */
-#define CELL_MARGIN 32 /* around a cell, that counts too */
-#define LINE        8  /* columns from the first return on: what begins there is its line */
+#define CELL        64 /* pixels on a side; each cell has one level of the seabed */
+#define CELL_MARGIN 32 /* pixels around a cell that count for its level, too */
+#define LINE        8  /* columns from the first return on; areas that begin there belong to it */
 
-/* Pixels of a row one after the other that are bright. */
+/* Successive bright pixels of a row. */
 struct run {
     size_t row, first, last; /* last: included */
-    size_t area;             /* a run of the same area that comes no later; itself: the first */
-    double contrast;         /* the largest in it; infinite: it begins in water, or with its end */
+    size_t area;             /* an earlier run of the same area; its own index: the first run */
+    double contrast;         /* largest in the run; infinite: begins in the water or at its end */
 };
 
-/* Grows as runs are found. */
+/* A list that grows as runs are found. */
 struct run_list {
     struct run *runs; /* owned */
     size_t count, capacity;
 };
 
-/* What does not change while runs are looked for. */
+/* The seabed's level in each cell of the image. */
 struct level_map {
-    float *levels; /* of cells; owned */
-    size_t across; /* cells in a row of them */
+    float *levels; /* one for each cell; owned */
+    size_t across; /* number of cells in a row of cells */
 };
 
 static bool append(struct run_list *list, const struct run *run)
@@ -96,7 +96,7 @@ static bool list_runs(struct run_list *list, const struct contact_image *image,
     return true;
 }
 
-/* The area's first run, to which what lies on the way is made to point. */
+/* Returns the area's first run. Runs on the way there are made to point closer to it. */
 static size_t area_of(struct run *runs, size_t run)
 {
     while (runs[run].area != run) {
@@ -116,7 +116,7 @@ static void join(struct run *runs, size_t a, size_t b)
         runs[first].area = second;
 }
 
-/* Runs that touch in neighbouring rows become one area. */
+/* Joins runs that touch in neighbouring rows to one area. */
 static void join_runs(struct run_list *list)
 {
     struct run *runs = list->runs;
@@ -144,7 +144,8 @@ static int by_contrast(const void *a, const void *b)
     return 0;
 }
 
-/* Sorts areas, without what is in the water column and the first return, however far that goes. */
+/* Sorts areas and removes those in the water column and the first return, however far it
+ * reaches. */
 static void leave_out_returns(struct bright_area *areas, size_t *count)
 {
     size_t returns = 0;
@@ -155,7 +156,7 @@ static void leave_out_returns(struct bright_area *areas, size_t *count)
     memmove(areas, areas + returns, *count * sizeof *areas);
 }
 
-/* The first run of an area comes before its others: areas are counted in the runs' order. */
+/* Lists the areas in the order of their first runs, which come before their other runs. */
 static bool list_areas(struct run_list *list, struct bright_area **areas, size_t *count)
 {
     struct run *runs = list->runs;
@@ -183,9 +184,9 @@ static bool list_areas(struct run_list *list, struct bright_area **areas, size_t
     return has_memory;
 }
 
-/* Lists them: the brightest first, then by row and column; none that begins before the first return
- * of a sidescan image or with it. *areas is for free(), after failure as
- * well. Errors: MEMORY. */
+/* Lists the bright areas: the brightest first, then by row and column. Areas that begin before the
+ * first return of a sidescan image, or at it, are left out. The caller frees *areas by free(), also
+ * after failure. Errors: MEMORY. */
 static sonject_status list_bright_areas(struct report *report, const struct contact_image *image,
                                         struct bright_area **areas, size_t *count)
 {
@@ -203,7 +204,7 @@ static sonject_status list_bright_areas(struct report *report, const struct cont
     return has_memory ? SONJECT_OK : report_out_of_memory(report, "the search for contacts");
 }
 
-#define SIDE_LOBE_ROWS 64 /* from a contact in which its side lobes may be taken for others */
+#define SIDE_LOBE_ROWS 64 /* rows from a contact in which side lobes may look like contacts */
 
 sonject_status contact_search_begin(struct contact_search *search, struct report *report,
                                     const struct contact_image *image)
@@ -225,7 +226,7 @@ static bool overlap_in_columns(const struct window_box *a, const struct window_b
            b->first_column < a->first_column + a->columns;
 }
 
-/* Whether an area touches a contact that was found, or is a side lobe of it. */
+/* Returns whether an area touches a contact that was found, or is one of its side lobes. */
 static bool belongs_to_found(const struct contact_search *search, const struct contact_image *image,
                              const struct bright_area *area)
 {
@@ -242,7 +243,7 @@ static bool belongs_to_found(const struct contact_search *search, const struct c
     return false;
 }
 
-/* A box with bright areas that are so near to it, or to those, that they are pieces of it. */
+/* Returns a box widened by bright areas that are close enough to be pieces of it. */
 static struct window_box box_of_pieces(const struct contact_search *search,
                                        const struct contact_image *image,
                                        const struct window_box *first)
@@ -265,7 +266,7 @@ static struct window_box box_of_pieces(const struct contact_search *search,
     return box;
 }
 
-/* What may hold the contact: beyond the highlight as far as the image goes. */
+/* Returns the place that may hold the contact. Beyond the highlight it reaches the image's end. */
 static struct contact_place place_of(const struct contact_image *image,
                                      const struct window_box *bright)
 {
@@ -289,7 +290,7 @@ static bool add_found(struct contact_search *search, const struct contact_place 
     return true;
 }
 
-/* The place of an area's contact, no larger than it must be, and the seabed's level around it. */
+/* Finds the tight place of an area's contact, and the level of the seabed around it. */
 static sonject_status find_place(struct contact_search *search, struct report *report,
                                  struct contact_image *image, const struct bright_area *area,
                                  struct contact_place *place, double *level)
@@ -322,7 +323,7 @@ sonject_status contact_search_next(struct contact_search *search, struct report 
         const sonject_status status = find_place(search, report, image, area, place, &level);
         if (status != SONJECT_OK || level > 0.0)
             return status;
-        memset(place, 0, sizeof *place); /* nothing but black is around it */
+        memset(place, 0, sizeof *place); /* only black pixels are around it */
     }
     return SONJECT_OK;
 }

@@ -1,22 +1,22 @@
-/* How far a contact's parts stand out of the seabed's speckle, as somebody sees who labels images:
- * small means, such as an eye takes, against the highest and the lowest of equal means near by. */
+/* The contrast of a contact's parts to the seabed's speckle, as one who labels images sees it:
+ * small means, as an eye takes them, against the highest and lowest such means nearby. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
 #include "measure/contacts.h"
 
-#define GUARD       2   /* pixels about contacts that are not seabed */
-#define WINDOWS_MIN 400 /* of seabed: two beyond a quantile */
+#define GUARD       2   /* pixels around contacts that do not count as seabed */
+#define WINDOWS_MIN 400 /* fewest windows of seabed: two lie beyond a quantile */
 
-/* What is looked for. */
+/* The extreme mean that is looked for. */
 struct extreme {
     size_t column_reach; /* windows have 3 rows and 2 column_reach + 1 columns */
-    double quantile;     /* of the seabed's */
+    double quantile;     /* quantile of the seabed's means */
     bool is_highest;
 };
 
-/* Whether the window about a pixel is in the image, and all of it and about it seabed. */
+/* Returns whether the window around a pixel, with its guard, is in the image and all seabed. */
 static bool is_seabed(const struct contact_image *image, size_t row, size_t column,
                       size_t column_reach)
 {
@@ -35,7 +35,7 @@ static bool is_seabed(const struct contact_image *image, size_t row, size_t colu
     return true;
 }
 
-/* NaN where the window is not all within the image. */
+/* Returns the mean of the window around a pixel; NaN where the window leaves the image. */
 static double mean_about(const struct contact_image *image, size_t row, size_t column, size_t reach)
 {
     double sum = 0.0;
@@ -47,7 +47,7 @@ static double mean_about(const struct contact_image *image, size_t row, size_t c
     return sum / (double)(3 * (2 * reach + 1));
 }
 
-/* means: room for as many as the box has pixels. */
+/* means: room for one number per pixel of the seabed's box. */
 static double contrast_of(const struct contact_image *image, const struct window_box *seabed,
                           const struct window_box *part, const struct extreme *wanted, float *means)
 {

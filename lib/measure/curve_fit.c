@@ -1,8 +1,8 @@
-/* Which curve of a family makes the tiles' numbers those of speckle. All tiles share the curve and
- * the law of speckle, each has a level of its own: a composite likelihood (C. Varin, N. Reid, D.
- * Firth, "An overview of composite likelihood methods", Statistica Sinica 21, 2011), whose errors
- * come from what the tiles' derivatives scatter, so that correlated pixels count as what they are.
- */
+/* Finds the curve of a family that gives the tiles' numbers the distribution of speckle. All tiles
+ * share the curve and the law of speckle; each has its own level. This is a composite likelihood
+ * (C. Varin, N. Reid, D. Firth, "An overview of composite likelihood methods", Statistica Sinica
+ * 21, 2011). Its errors come from the scatter of the tiles' derivatives, which allows for
+ * correlated pixels. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,24 +18,24 @@
 #define PARAMETER_MOST   1e5
 #define MANY_LOOKS       4.0
 #define LEVEL_STEPS      12
-#define NO_GAIN          1e-5 /* of a tile's likelihood by another level */
-#define STRAY_SHARE      1e-5 /* of pixels, in any cell, that are no speckle: contacts, edges */
+#define NO_GAIN          1e-5 /* smallest gain of a tile's likelihood by another level */
+#define STRAY_SHARE      1e-5 /* share of pixels in any cell that are no speckle: contacts, edges */
 #define EVALUATIONS_MOST 160
-#define CLOSE            0.02 /* of the likelihood: no tile tells such a difference */
+#define CLOSE            0.02 /* difference of likelihoods that no tile tells */
 #define MISFIT_BINS      20
-#define STEP_PARAMETER   0.01 /* of derivatives */
+#define STEP_PARAMETER   0.01 /* finite difference for derivatives by logarithms */
 #define STEP_LOOKS       0.02
 
 struct fitting {
     const struct plain_tiles *tiles;
     double full_scale;
     enum curve_family family;
-    bool moves[2]; /* the parameter, the looks */
+    bool moves[2]; /* true where the parameter, the looks are fitted */
     double start[2];
     double texture;
     struct speckle_law law;
     double places[CELLS_MAX]; /* log intensities of the edges */
-    double *levels;           /* of tiles, kept from one evaluation to the next */
+    double *levels;           /* the tiles', kept between evaluations */
     double *by_tile;
 };
 
@@ -63,8 +63,8 @@ double curve_value(enum curve_family family, double parameter, double full_scale
     return full_scale * exp(0.5 * log_intensity / parameter);
 }
 
-/* Likelihood of a tile whose level is so high, its derivative by the level, and the information
- * that it has of it. */
+/* Returns the log likelihood of a tile at a level. *slope gets its derivative by the level, and
+ * *information the tile's Fisher information on the level. */
 static double tile_likelihood(const struct fitting *fit, const uint16_t *counts, double level,
                               double *slope, double *information)
 {
@@ -109,7 +109,7 @@ static double fit_level(const struct fitting *fit, const uint16_t *counts, doubl
             break;
         *level += step;
         best = tried;
-        /* what the step showed of the curvature tells more of the peak than the information */
+        /* The curvature that the step showed tells more of the peak than the information does. */
         const double curvature = (slope - tried_slope) / step;
         information = curvature > 0.0 ? curvature : tried_information;
         slope = tried_slope;
@@ -128,7 +128,7 @@ static double looks_of(const double logs[2])
     return fmin(LOOKS_MOST, fmax(LOOKS_LEAST, exp(logs[1])));
 }
 
-/* Likelihood of all tiles, and of each; what lies outside the bounds is worse the farther. */
+/* Returns the log likelihood of all tiles, and fills that of each. Outside the bounds it falls. */
 static double evaluate(struct fitting *fit, const double logs[2])
 {
     const struct plain_tiles *tiles = fit->tiles;
@@ -144,7 +144,7 @@ static double evaluate(struct fitting *fit, const double logs[2])
     return sum - 1e3 * (fabs(logs[0] - log(parameter)) + fabs(logs[1] - log(looks)));
 }
 
-/* The place below which that share of a tile's numbers lies. */
+/* Returns the log intensity below which a share of a tile's numbers lies. */
 static double tile_quantile(const struct fitting *fit, size_t tile, double share)
 {
     const struct plain_tiles *tiles = fit->tiles;
@@ -162,7 +162,7 @@ static double tile_quantile(const struct fitting *fit, size_t tile, double share
     return fit->places[edge - 1] + t * (fit->places[edge] - fit->places[edge - 1]);
 }
 
-/* Levels by the tiles' medians; returns the median spread between their quartiles. */
+/* Starts the levels at the tiles' medians. Returns the median interquartile distance. */
 static double start_levels(struct fitting *fit, const double logs[2])
 {
     const struct plain_tiles *tiles = fit->tiles;
@@ -185,7 +185,7 @@ static double start_levels(struct fitting *fit, const double logs[2])
     return spread;
 }
 
-/* Where a search begins: so many looks, and the parameter that makes their quartiles right. */
+/* Chooses where a search begins: at these looks, and at the parameter that fits their quartiles. */
 static void choose_start(struct fitting *fit, double looks, double logs[2])
 {
     if (fit->moves[1])
@@ -201,7 +201,7 @@ static void choose_start(struct fitting *fit, double looks, double logs[2])
     start_levels(fit, logs);
 }
 
-/* The better of two corners that move along one or two axes (J. A. Nelder, R. Mead, "A simplex
+/* A corner of the simplex that moves along one or two axes (J. A. Nelder, R. Mead, "A simplex
  * method for function minimization", Computer Journal 7, 1965). */
 struct corner {
     double logs[2], likelihood;
@@ -269,8 +269,8 @@ static double climb(struct fitting *fit, double logs[2])
     return corners[0].likelihood;
 }
 
-/* Standard errors: H^-1 J H^-1 of the second derivatives H and the scatter J of the tiles' first
- * ones. */
+/* Finds the standard errors H^-1 J H^-1 from the second derivatives H and the scatter J of the
+ * tiles' first derivatives. */
 static sonject_status find_errors(struct fitting *fit, struct report *report, const double logs[2],
                                   double errors[2])
 {
@@ -321,9 +321,9 @@ static sonject_status find_errors(struct fitting *fit, struct report *report, co
     return SONJECT_OK;
 }
 
-/* Largest distance between what shares of the tiles' numbers should lie below the law's twentieths
- * and what do (Kolmogorov and Smirnov's statistic, coarsely); *error: its standard error, of what
- * the tiles scatter there. */
+/* Returns the largest difference between the shares of the tiles' numbers that should lie below the
+ * law's twentieths and those that do (Kolmogorov and Smirnov's statistic, coarsely). *error gets
+ * its standard error, from the scatter of the tiles there. */
 static double find_misfit(const struct fitting *fit, double *error)
 {
     const struct plain_tiles *tiles = fit->tiles;
@@ -337,7 +337,7 @@ static double find_misfit(const struct fitting *fit, double *error)
                 cell < tiles->edge_count
                     ? speckle_law_below(&fit->law, fit->places[cell] - fit->levels[i], &density)
                     : 1.0;
-            /* a cell's pixels lie evenly within its part of the law */
+            /* Pixels of a cell count as even within its part of the law. */
             for (int bin = 0; counts[cell] > 0 && bin < MISFIT_BINS; bin++) {
                 const double low = fmax(below, (double)bin / MISFIT_BINS);
                 const double high = fmin(upper, (bin + 1.0) / MISFIT_BINS);

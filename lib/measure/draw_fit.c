@@ -7,22 +7,22 @@
 #include "base/memory.h"
 
 #define MOVES      (2 * FITTED_KINDS) /* shifts, then logarithms of stretches */
-#define RELATIONS  3                  /* of sizes to each other */
+#define RELATIONS  3                  /* number of ratios of sizes */
 #define RESIDUALS  (EXTENT_KINDS * QUANTILES_MAX + MOVES + RELATIONS)
-#define TERMS      (FITTED_KINDS + 1) /* of a response: a constant comes first */
+#define TERMS      (FITTED_KINDS + 1) /* terms of a response: a constant, then the draws */
 #define STEPS_MAX  60
-#define RIDGE      1e-5 /* of the weights' sum, so that what was not varied has no response */
-#define NEAR_LEAST 0.5  /* mean nearness of a round whose contacts are compared */
-#define OWN_ERROR  1.0  /* variance of a quantile that shares nothing with others, of its own */
+#define RIDGE      1e-5 /* share of the weights' sum: draws that were not varied get no response */
+#define NEAR_LEAST 0.5  /* least mean nearness of a round whose contacts are compared */
+#define OWN_ERROR  1.0  /* variance that a quantile shares with no other */
 
-/* How far a round may go: natural logarithms of sizes, dB, and logarithms of stretches. */
+/* The largest move of a round: natural logarithms of sizes, dB, and logarithms of stretches. */
 static const double most[MOVES] = {0.7, 0.7, 0.7, 20.0, 8.0, 0.5, 0.5, 0.5, 0.5, 0.5};
 
-/* How far draws may have moved since contacts were made, for these to be compared still. */
+/* The deviations of nearness: how far draws may move before contacts count less. */
 static const double near[FITTED_KINDS] = {0.3, 0.3, 0.3, 3.0, 3.0};
 
-/* How far the campaign's own values are believed, standard deviations of all moves; and the ratio
- * of sizes to each other, which contacts of any heading tell poorly. */
+/* The prior's standard deviations: how far all moves together may leave the campaign's own values.
+ * BELIEVED_RATIO is that of the ratios of sizes, which contacts of any heading tell poorly. */
 static const double believed[MOVES] = {1.0, 1.0, 1.0, 15.0, 10.0, 0.15, 0.15, 0.3, 0.5, 0.5};
 #define BELIEVED_RATIO 0.25
 
@@ -34,7 +34,7 @@ double sorted_quantile(const double *sorted, size_t count, double share)
     return sorted[below] + (place - (double)below) * (sorted[above] - sorted[below]);
 }
 
-/* The standard normal distribution's quantile, after Hastings (1955), to 4.5e-4. */
+/* Returns the standard normal distribution's quantile, after Hastings (1955), to 4.5e-4. */
 static double normal_deviate(double share)
 {
     const double tail = fmin(share, 1.0 - share);
@@ -46,7 +46,7 @@ static double normal_deviate(double share)
 
 double quantile_error(double share, double middle_half, double count)
 {
-    /* the outermost values of so many lie about there */
+    /* The outermost of the values lie at about this share. */
     const double outermost = 0.5 / fmax(count, 2.0);
     share = fmin(fmax(share, outermost), 1.0 - outermost);
     const double z = normal_deviate(share);
@@ -55,7 +55,7 @@ double quantile_error(double share, double middle_half, double count)
     return deviation * sqrt(share * (1.0 - share) / count) / density;
 }
 
-/* Shares that so many contacts tell: of 100, 30 or fewer, of whom a few do not show everything. */
+/* Chooses shares that 100, 30 or fewer contacts can tell. A few of them do not show everything. */
 static size_t choose_levels(size_t count, double *levels)
 {
     static const double many[] = {0.05, 0.15, 0.25, 0.375, 0.5, 0.625, 0.75, 0.85, 0.95};
@@ -79,7 +79,7 @@ sonject_status quantile_goals(struct report *report, const struct contact_extent
         for (size_t i = 0; i < count; i++)
             if (isfinite(contacts[i].of[k]))
                 seen[n++] = contacts[i].of[k];
-        /* the two slant extents say of contacts in images what others say better */
+        /* Other extents say the same as the two slant extents, and more precisely. */
         if (n < SEEN_LEAST || k == EXTENT_HIGHLIGHT_SLANT || k == EXTENT_SHADOW_SLANT)
             continue;
         qsort(seen, n, sizeof *seen, compare_doubles);
@@ -94,10 +94,10 @@ sonject_status quantile_goals(struct report *report, const struct contact_extent
     return SONJECT_OK;
 }
 
-/* ---- How what is shown follows from what is drawn. */
+/* ---- The response of measures to draws. */
 
-/* Extents along and across the track of an ellipse of that length and width in plan, in place of
- * these two; the rest as it is. Extents of contacts follow these more nearly than sizes. */
+/* Replaces length and width by the extents along and across the track of an ellipse of that size in
+ * plan. Keeps the rest. Measures follow these extents more closely than they follow sizes. */
 static void project(const double *drawn, double heading_rad, double *projected)
 {
     const double length = exp(drawn[FITTED_LENGTH]);
@@ -109,8 +109,7 @@ static void project(const double *drawn, double heading_rad, double *projected)
     projected[1] = log(hypot(length * s, width * c));
 }
 
-/* Makes Cholesky's lower factor of a symmetric positive matrix of n x n, in its place. False where
- * it is none. */
+/* Factors a symmetric n x n matrix in place (Cholesky, lower). False if it is not positive. */
 static bool factor_symmetric(double *a, size_t n)
 {
     for (size_t i = 0; i < n; i++)
@@ -125,7 +124,7 @@ static bool factor_symmetric(double *a, size_t n)
     return true;
 }
 
-/* Solves a x = b for a lower factor, in place. */
+/* Solves a x = b in place for a lower factor. */
 static void solve_lower(const double *a, double *b, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
@@ -135,7 +134,7 @@ static void solve_lower(const double *a, double *b, size_t n)
     }
 }
 
-/* Solves a x = b for a symmetric positive matrix, in place. False where it is none. */
+/* Solves a x = b in place for a symmetric positive matrix. False if the matrix is not positive. */
 static bool solve_symmetric(double *a, double *b, size_t n)
 {
     if (!factor_symmetric(a, n))
@@ -149,7 +148,7 @@ static bool solve_symmetric(double *a, double *b, size_t n)
     return true;
 }
 
-/* How near contacts were made to where draws are now: 1, and less the farther these have moved. */
+/* Returns how near a contact's draws are to where they are now: 1 if unmoved, else less. */
 static double nearness(const struct drawn_contact *contact)
 {
     double sum = 0.0;
@@ -158,14 +157,14 @@ static double nearness(const struct drawn_contact *contact)
     return exp(-0.5 * sum);
 }
 
-/* The slopes of an extent over what is drawn, by weighted least squares. */
+/* Finds the slopes of a measure over what is drawn, by weighted least squares. */
 static void find_response(const struct drawn_contact *contacts, size_t count, size_t extent,
                           double response[FITTED_KINDS])
 {
     double a[TERMS * TERMS] = {0.0};
     double b[TERMS] = {0.0};
     double total = 0.0;
-    double varied = 0.0; /* of the floor */
+    double varied = 0.0; /* largest change of the floor */
     for (size_t i = 0; i < count; i++) {
         const double y = contacts[i].shown.of[extent];
         const double weight = nearness(&contacts[i]);
@@ -187,7 +186,7 @@ static void find_response(const struct drawn_contact *contacts, size_t count, si
     memset(response, 0, FITTED_KINDS * sizeof *response);
     if (solve_symmetric(a, b, TERMS))
         memcpy(response, b + 1, FITTED_KINDS * sizeof *response);
-    /* The noise is in all shadows alike, and hardly in anything else. */
+    /* The noise floor adds to all shadows alike, and hardly to anything else. */
     if (extent != EXTENT_SHADOW_LEVEL)
         response[FITTED_FLOOR] = 0.0;
     else if (varied < 0.5)
@@ -197,15 +196,15 @@ static void find_response(const struct drawn_contact *contacts, size_t count, si
 /* ---- Moves. */
 
 struct move_fit {
-    const struct drawn_contact **contacts; /* that are compared; owned */
+    const struct drawn_contact **contacts; /* the contacts that are compared; owned */
     size_t count;
     const struct quantile_goal *goals;
     const struct move_prior *prior;
     double centre[FITTED_KINDS];
     double response[EXTENT_KINDS][FITTED_KINDS];
     double *shown;  /* room for count values; owned */
-    double *factor; /* Cholesky's, of the quantiles' correlations; owned */
-    double trust;   /* of the prior: its stretches' deviations are so many times as large */
+    double *factor; /* Cholesky factor of the quantiles' correlations; owned */
+    double trust;   /* factor on the deviations of the prior's stretches */
 };
 
 double draw_moved(const struct draw_move *move, double value)
@@ -220,7 +219,7 @@ static void moves_as_steps(const struct move_fit *fit, const double *moves,
         steps[k] = (struct draw_move){fit->centre[k], moves[k], exp(moves[FITTED_KINDS + k])};
 }
 
-/* Differences of quantiles, over their errors. Returns their number. */
+/* Fills the differences of quantiles over their errors. Returns their number. */
 static size_t add_extent_residuals(const struct move_fit *fit, const double *moves, size_t extent,
                                    double *residuals)
 {
@@ -281,13 +280,13 @@ static double sum_of_squares(const double *values, size_t count)
     return sum;
 }
 
-/* Levenberg's and Marquardt's steps within the limits of a round. buffers: RESIDUALS times
- * MOVES + 2. */
+/* Finds moves by Levenberg-Marquardt steps within a round's limits. buffers:
+ * RESIDUALS*(MOVES+2). */
 static void descend(const struct move_fit *fit, double *moves, double *buffers)
 {
     double *now = buffers;
     double *tried = buffers + RESIDUALS;
-    double *slopes = tried + RESIDUALS; /* MOVES of RESIDUALS */
+    double *slopes = tried + RESIDUALS; /* MOVES x RESIDUALS */
     double damping = 1e-2;
     size_t count = find_residuals(fit, moves, now);
     double cost = sum_of_squares(now, count);
@@ -332,9 +331,9 @@ static void descend(const struct move_fit *fit, double *moves, double *buffers)
     }
 }
 
-/* Which contacts show less of an extent than its quantiles' levels: 1 - level where they do, -level
- * where they do not, 0 where they do not show it. below: levels of count. Returns their number, 0
- * where too few show it. */
+/* Notes which contacts lie below each quantile of an extent: 1 - level if below, -level if not, 0
+ * if they do not show it. below: levels x count. Returns the number of levels, or 0 where too few
+ * contacts show the extent. */
 static size_t note_below(const struct move_fit *fit, size_t extent, double *below)
 {
     const struct quantile_goal *goal = &fit->goals[extent];
@@ -356,8 +355,8 @@ static size_t note_below(const struct move_fit *fit, size_t extent, double *belo
     return goal->levels;
 }
 
-/* Quantiles of one sample are off together as often as the same contacts lie below both. Errors:
- * MEMORY. */
+/* Fills the factor from the correlation of quantiles. Quantiles of one sample err together as often
+ * as the same contacts lie below both. Errors: MEMORY. */
 static sonject_status correlate(struct move_fit *fit, struct report *report)
 {
     const size_t count = fit->count;
@@ -390,9 +389,8 @@ static sonject_status correlate(struct move_fit *fit, struct report *report)
     return SONJECT_OK;
 }
 
-/* The contacts that are compared, what is drawn of them in the mean, and how it shows. Rounds are
- * compared whole: where draws are stretched, the large alone or the small alone stay where they
- * were. */
+/* Chooses the contacts that are compared, and finds their mean draws and responses. Rounds are
+ * compared whole: after a stretch only large or only small draws stay where they were. */
 static void prepare(struct move_fit *fit, const struct drawn_contact *contacts, size_t count)
 {
     for (size_t first = 0, end; first < count; first = end) {
@@ -421,7 +419,7 @@ sonject_status fit_moves(struct report *report, const struct drawn_contact *cont
     sonject_status status =
         fit.contacts && fit.shown && buffers ? SONJECT_OK : report_out_of_memory(report, "the fit");
     if (status == SONJECT_OK) {
-        /* few contacts tell little of how widely they are spread */
+        /* Few contacts tell little of how wide their distribution is. */
         fit.trust = prior->contacts >= 100.0 ? 1.0 : prior->contacts >= 30.0 ? 0.7 : 0.45;
         prepare(&fit, contacts, count);
         if (fit.count < SEEN_LEAST)

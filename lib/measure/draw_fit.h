@@ -1,6 +1,5 @@
-/* What is to be drawn so that injected contacts measure as real ones do: sizes, levels and the
- * noise floor are moved until quantiles of what both show agree. Formulas: kernels/MATH.md, "Fit".
- */
+/* The fit of a campaign's draws: sizes, levels and the noise floor are moved until injected
+ * contacts have the same quantiles of measures as real ones. Formulas: kernels/MATH.md, "Fit". */
 #ifndef SONJECT_MEASURE_DRAW_FIT_H
 #define SONJECT_MEASURE_DRAW_FIT_H
 
@@ -12,97 +11,95 @@
 
 #include "base/report.h"
 
-/* What is moved. Lengths are natural logarithms of m, levels dB. */
+/* The draws that are moved. Lengths are natural logarithms of m, levels dB. */
 enum fitted {
-    FITTED_LENGTH, /* overall, along the nose */
+    FITTED_LENGTH, /* overall length, along the nose */
     FITTED_WIDTH,
     FITTED_HEIGHT, /* above the seabed */
-    FITTED_LEVEL,  /* of the echo's peak over the seabed */
+    FITTED_LEVEL,  /* the echo's peak over the seabed */
     FITTED_FLOOR,  /* noise over the seabed */
     FITTED_KINDS
 };
 
-/* What is compared. Extents are natural logarithms of m. */
+/* The measures that are compared. Extents are natural logarithms of m. */
 enum extent {
     EXTENT_HIGHLIGHT_ALONG,
     EXTENT_HIGHLIGHT_RANGE, /* on the ground */
     EXTENT_SHADOW_ALONG,
-    EXTENT_SHADOW_HEIGHT, /* that would throw a shadow of this length */
+    EXTENT_SHADOW_HEIGHT, /* height that would throw a shadow of this length */
     EXTENT_AXIS_LENGTH,
     EXTENT_AXIS_WIDTH,
-    EXTENT_HIGHLIGHT_ROWS, /* of the boxes around highlight and shadow */
+    EXTENT_HIGHLIGHT_ROWS, /* here and below: boxes around highlight and shadow */
     EXTENT_HIGHLIGHT_COLUMNS,
     EXTENT_SHADOW_ROWS,
-    EXTENT_HIGHLIGHT_SLANT, /* in slant range, as it is published */
+    EXTENT_HIGHLIGHT_SLANT, /* here and below: in slant range, as published */
     EXTENT_SHADOW_SLANT,
-    EXTENT_LENGTHS, /* those above are lengths, those below dB over the seabed */
+    EXTENT_LENGTHS, /* above are lengths, below are dB over the seabed */
     EXTENT_HIGHLIGHT_LEVEL = EXTENT_LENGTHS,
     EXTENT_SHADOW_LEVEL,
     EXTENT_KINDS
 };
 
-/* A contact as it is measured; NaN: not seen. */
+/* The measures of a contact; NaN: not seen. */
 struct contact_extents {
     double of[EXTENT_KINDS];
     double highlight_visibility_db, shadow_visibility_db;
-    double pad_pixels;          /* by which its label is wider than what shows, on each side */
-    double range_over_altitude; /* of the label's middle */
+    double pad_pixels;          /* margin of the label around the visible contact, on each side */
+    double range_over_altitude; /* ratio at the label's middle */
 };
 
-/* An injected contact: what was drawn, and what it shows. */
+/* An injected contact: its draws and its measures. */
 struct drawn_contact {
     double drawn[FITTED_KINDS];
-    double now[FITTED_KINDS]; /* what its draws have become since, by later rounds' moves */
+    double now[FITTED_KINDS]; /* the draws after later rounds' moves */
     double heading_rad;
-    struct contact_extents shown; /* by what was drawn */
-    uint32_t round;               /* in which it was made, from 0 */
-    bool is_faint;                /* seen less than real ones are */
+    struct contact_extents shown; /* measures for `drawn` */
+    uint32_t round;               /* round in which the contact was made, from 0 */
+    bool is_faint;                /* seen less well than real ones */
 };
 
 #define QUANTILES_MAX 32
-#define SEEN_LEAST    8 /* contacts that show an extent, for it to be compared */
+#define SEEN_LEAST    8 /* fewest contacts that show an extent that is compared */
 
-/* What real contacts show. */
+/* The quantiles of real contacts. */
 struct quantile_goal {
-    size_t levels; /* 0: it is not compared */
+    size_t levels; /* 0: the extent is not compared */
     double level[QUANTILES_MAX], value[QUANTILES_MAX];
-    double error[QUANTILES_MAX]; /* standard, of the values */
+    double error[QUANTILES_MAX]; /* standard errors of the values */
 };
 
-/* How a kind of draw is moved: around the mean of what was drawn, x becomes
- * centre + shift + stretch (x - centre). */
+/* A move of draws: about the mean `centre`, x becomes centre + shift + stretch (x - centre). */
 struct draw_move {
     double centre, shift, stretch;
 };
 
-/* What is known of the moves before: how far they have gone so far, and how far the campaign's own
- * values are to be believed. */
+/* The prior of a round's moves: the sum of earlier moves, and the number of real contacts. */
 struct move_prior {
-    double shift[FITTED_KINDS];   /* so far */
-    double stretch[FITTED_KINDS]; /* natural logarithm, so far */
-    double contacts;              /* real ones */
+    double shift[FITTED_KINDS];   /* sum so far */
+    double stretch[FITTED_KINDS]; /* sum so far, natural logarithm */
+    double contacts; /* number of real ones; with few, the campaign's spreads count more */
 };
 
-/* The quantiles of what real contacts show: 5 to 95 % from 100 contacts, 20 to 80 % below 30.
- * goals: EXTENT_KINDS. Errors: MEMORY. */
+/* Finds the quantiles of real contacts: 5 to 95 % from 100 contacts, 20 to 80 % below 30. goals:
+ * EXTENT_KINDS. Errors: MEMORY. */
 sonject_status quantile_goals(struct report *report, const struct contact_extents *contacts,
                               size_t count, struct quantile_goal *goals);
 
-/* The standard error of the value below which a share of contacts lies, of so many whose middle
- * half is so wide; after a normal distribution's. */
+/* Returns the standard error of a quantile of `count` contacts, for a normal distribution whose
+ * middle half has this width. */
 double quantile_error(double share, double middle_half, double count);
 
-/* The value below which a share lies of what ascending values were drawn from, as often too low as
- * too high (Hyndman and Fan's eighth); those of few would else lie too far inside. */
+/* Returns the quantile, at a share, of the distribution that ascending values come from, as often
+ * too low as too high (Hyndman and Fan's eighth). Others, from few values, lie too far inside. */
 double sorted_quantile(const double *sorted, size_t count, double share);
 
-/* What a value becomes. */
+/* Returns the value that a move makes of a value. */
 double draw_moved(const struct draw_move *move, double value);
 
-/* One round: how to move draws so that contacts, round after round, whose draws have become what
- * `now` says, show what the goals say. Rounds whose draws have hardly moved are compared; all tell
- * how what is shown follows from what is drawn, the nearer the better. moves: FITTED_KINDS. Errors:
- * MEMORY, INPUT (too few contacts are seen). */
+/* Runs one round: finds the moves that make contacts show what the goals say. `now` has the draws
+ * after the moves of earlier rounds. Rounds whose draws have hardly moved are compared with the
+ * goals. All rounds tell how measures follow from draws, weighted by nearness. moves: FITTED_KINDS.
+ * Errors: MEMORY, INPUT (too few contacts are seen). */
 sonject_status fit_moves(struct report *report, const struct drawn_contact *contacts, size_t count,
                          const struct quantile_goal *goals, const struct move_prior *prior,
                          struct draw_move *moves);

@@ -7,18 +7,18 @@
 #include "base/memory.h"
 
 #define WINDOW        24   /* columns on either side of the step */
-#define ROWS_AVERAGED 2    /* of a row, that count too: 120 samples of speckle know 0.5 dB */
+#define ROWS_AVERAGED 2    /* neighbours on either side: 120 samples of speckle err by 0.5 dB */
 #define PULSE         16   /* first columns, which may hold the transmitted pulse */
-#define STEP_DB       10.0 /* from water to seabed */
+#define STEP_DB       10.0 /* least step from water to seabed */
 #define FAINTEST      1e-30f
 #define FAINTEST_DB   (-300.0)
-#define WATER_MARGIN  8.0 /* columns behind the first return that are no plain seabed */
-#define PROFILE_ROWS  200 /* that tell where to look for the nadir */
-#define NADIR_SPREAD  4.0 /* columns, that the middle of both sides may vary */
-#define ROWS_SHARE    0.9 /* of the rows, that must have one: shadows begin with seabed in some */
+#define WATER_MARGIN  8.0 /* columns behind the first return that are not plain seabed yet */
+#define PROFILE_ROWS  200 /* most rows that tell where to look for the nadir */
+#define NADIR_SPREAD  4.0 /* columns; most that the middle between both sides may vary */
+#define ROWS_SHARE    0.9 /* least share of rows with a first return; shadows hide some */
 
-/* sums[j]: of the levels (dB) before column j, in a row and those beside it. Levels are averaged
- * and not intensities, since fish and spikes are bright. */
+/* Fills sums[j] with the sum of the levels before column j, dB, averaged over a row and its
+ * neighbours. Levels are averaged, not intensities, since fish and spikes are bright. */
 static void sum_levels(const float *levels, size_t rows, size_t columns, size_t row, double *sums)
 {
     const size_t first = row > ROWS_AVERAGED ? row - ROWS_AVERAGED : 0;
@@ -42,12 +42,12 @@ static double step_at(const double *sums, size_t column)
     return mean_level(sums, column, WINDOW) - mean_level(sums, column - WINDOW, WINDOW);
 }
 
-/* The largest step near the first one that is high enough; 0: all before it is not dark. */
+/* Returns the column of the first high step, where it is largest; 0: none, or bright before it. */
 static size_t first_step(const double *sums, size_t columns)
 {
     size_t found = 0;
     double largest = STEP_DB;
-    double brightest = FAINTEST_DB; /* of the water */
+    double brightest = FAINTEST_DB; /* window within the water column */
     for (size_t column = PULSE + WINDOW; column + WINDOW <= columns; column++) {
         const double step = step_at(sums, column);
         if (step >= largest) {
@@ -112,7 +112,7 @@ void first_returns_clear(struct first_returns *returns)
     memset(returns, 0, sizeof *returns);
 }
 
-/* First returns of the columns from first on, count of them, to the right or to the left. */
+/* Finds first returns in count columns from first on; range grows to the left if is_mirrored. */
 static sonject_status find_side(struct report *report, const float *intensity, size_t rows,
                                 size_t stride, size_t first, size_t count, bool is_mirrored,
                                 size_t *first_columns)
@@ -128,8 +128,8 @@ static sonject_status find_side(struct report *report, const float *intensity, s
     return status;
 }
 
-/* The middle of the darkest columns, all those about the darkest one whose mean levels over the
- * rows are nearer to its than to the median; a transmitted pulse amid them counts, too. */
+/* Finds the middle of the darkest columns: those around the darkest one whose mean levels over the
+ * rows are nearer to its level than to the median. A transmitted pulse among them counts, too. */
 static sonject_status find_darkest(struct report *report, const float *intensity, size_t rows,
                                    size_t columns, size_t *middle)
 {
@@ -157,7 +157,7 @@ static sonject_status find_darkest(struct report *report, const float *intensity
     return SONJECT_OK;
 }
 
-/* The nadir is halfway between both sides' first returns, whatever column the search began at. */
+/* Finds the nadir halfway between both sides' first returns, wherever the search began. */
 static sonject_status join_sides(struct first_returns *returns, struct report *report,
                                  const size_t *right, const size_t *left, size_t rows,
                                  size_t middle)
@@ -170,7 +170,7 @@ static sonject_status join_sides(struct first_returns *returns, struct report *r
     }
     qsort(halfway, rows, sizeof *halfway, compare_doubles);
     returns->nadir_column = halfway[rows / 2];
-    /* as of normal values, 1.349 deviations between the quartiles; five rows share their water */
+    /* The quartiles of normal values are 1.349 deviations apart. Five rows share a first return. */
     const double spread = (halfway[3 * rows / 4] - halfway[rows / 4]) / 1.349;
     const double rounding = 0.3;
     returns->nadir_column_error =

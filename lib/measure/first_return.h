@@ -1,4 +1,4 @@
-/* Where the seabed begins in each ping of a sidescan waterfall, behind its water column. */
+/* The column at which the seabed begins, behind the water column, in each ping of a waterfall. */
 #ifndef SONJECT_MEASURE_FIRST_RETURN_H
 #define SONJECT_MEASURE_FIRST_RETURN_H
 
@@ -7,14 +7,14 @@
 
 #include "base/report.h"
 
-/* The first column of the seabed, for each row of intensities, range growing to the right from
- * column 0; all 0 where not nearly all rows begin with a water column: darker than the seabed by 10
- * dB from where the transmitted pulse has died down. A row that has none is given that of the row
- * before. Errors: MEMORY. */
+/* Finds the first column of the seabed in each row of intensities. Range grows to the right from
+ * column 0. The water column must be 10 dB darker than the seabed from where the transmitted pulse
+ * has died down. A row without a water column gets the result of the row before, or of the first
+ * that has one. All are 0 where fewer than nine in ten rows have one. Errors: MEMORY. */
 sonject_status find_first_return(struct report *report, const float *intensity, size_t rows,
                                  size_t columns, size_t *first_columns);
 
-/* How a waterfall lies about its track. */
+/* The sides that a waterfall shows, and where the water column lies. */
 enum water_sides {
     WATER_UNSEEN,   /* no water column */
     WATER_AT_LEFT,  /* range grows to the right from the first column */
@@ -24,17 +24,18 @@ enum water_sides {
 
 struct first_returns {
     enum water_sides sides;
-    double nadir_column;       /* where range is 0; NAN: unseen. Of one side it is the edge */
+    double nadir_column;       /* column of range 0; NAN: unseen; the image's edge for one side */
     double nadir_column_error; /* standard error */
-    double *columns;           /* from the nadir to the seabed's first pixel, the mean of both sides
-                                  where there are two, for each row; NULL: unseen; owned */
+    double *columns; /* columns from nadir to seabed in each row, the mean of two sides; NULL:
+                        unseen; owned */
 };
 
-/* Finds out how a waterfall lies, and its first returns. Errors: MEMORY. */
+/* Finds which sides a waterfall shows, and its first returns. Errors: MEMORY. */
 sonject_status first_returns_find(struct first_returns *returns, struct report *report,
                                   const float *intensity, size_t rows, size_t columns);
 
-/* Whether any of a place's pixels lies in the water column or at its end; columns: the image's. */
+/* A rectangle of an image's pixels. first_returns_cover returns whether any of them lies in the
+ * water column or at its end. columns: the image's width. */
 struct water_place {
     size_t row, column, rows, columns;
 };

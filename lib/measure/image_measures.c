@@ -57,7 +57,7 @@ sonject_status measure_amplitudes(struct report *report, struct measured *measur
     return SONJECT_OK;
 }
 
-/* The spacings that a file tells. */
+/* Takes the spacings that a file notes, unless its range is on the ground. */
 static void take_spacings(const struct swath_file *file, struct measured *measured)
 {
     struct noted_geometry noted;
@@ -69,7 +69,7 @@ static void take_spacings(const struct swath_file *file, struct measured *measur
     measured->column_spacing_m = told.column_spacing_m;
 }
 
-/* All of an image; *stored is for free(). measured: gets the spacings; NULL: nobody asks. */
+/* Reads all of an image. *stored is for free(). measured: gets the spacings, unless NULL. */
 static sonject_status read_stored(struct report *report, const char *path, int32_t channel,
                                   const char *array, struct raster_layout *layout, void **stored,
                                   struct measured *measured)

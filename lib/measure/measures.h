@@ -1,4 +1,4 @@
-/* What images and their contacts measure, as callers are told it. */
+/* The measures of images and their contacts, as the public functions report them. */
 #ifndef SONJECT_MEASURE_MEASURES_H
 #define SONJECT_MEASURE_MEASURES_H
 
@@ -8,47 +8,46 @@
 #include "measure/contacts.h"
 #include "scene/params.h"
 
-#define BOXES_MAX 100000 /* contacts that are measured at once */
+#define BOXES_MAX 100000 /* most contacts that are measured at once */
 
-/* Errors: INPUT: not 0...1000 km. */
+/* Checks that both spacings are 0...1000 km. Errors: INPUT. */
 sonject_status check_spacings(struct report *report, double row_spacing_m, double column_spacing_m);
 
-/* An image that is measured: planes of rows x columns; owned. */
+/* An image to measure: planes of rows x columns; owned. */
 struct measured {
     size_t rows, columns;
     float *amplitudes;
-    uint8_t *labels;                        /* not 0: no seabed; NULL: not told */
-    double row_spacing_m, column_spacing_m; /* that its file tells, of slant range; 0: none */
+    uint8_t *labels;                        /* not 0: no seabed; NULL: unknown */
+    double row_spacing_m, column_spacing_m; /* the file's, for slant range; 0: none */
 };
 void measured_clear(struct measured *measured);
 
-/* Changes the amplitudes to intensities. Errors: INPUT. */
+/* Squares the amplitudes to intensities. Errors: INPUT. */
 sonject_status measured_square(struct report *report, struct measured *measured);
 
-/* The image's seabed; its amplitudes become intensities. Errors: INPUT, MEMORY. */
+/* Measures the image's seabed. Its amplitudes become intensities. Errors: INPUT, MEMORY. */
 sonject_status measure_amplitudes(struct report *report, struct measured *measured,
                                   sonject_measurement *measurement);
 
-/* The same of a file: sonject_measure. */
+/* Measures the seabed of a file: sonject_measure. */
 sonject_status measure_file(struct report *report, const sonject_measure_params *params,
                             const struct image_options *options, sonject_measurement *measurement);
 
-/* Amplitudes of the file alone; measured: all zeros. Errors: INPUT, STORAGE, MEMORY, UNSUPPORTED.
- */
+/* Reads the file's amplitudes. measured: all zeros. Errors: INPUT, STORAGE, MEMORY, UNSUPPORTED. */
 sonject_status read_amplitudes(struct report *report, const sonject_measure_params *params,
                                const struct image_options *options, struct measured *measured);
 
-/* Contacts of intensities as JSON: sonject_measure_contacts. Parameters have no zeros left that
- * stand for something else. intensities: turned about where range grows to the left. */
+/* Measures contacts of intensities as JSON: sonject_measure_contacts. Parameters must have no zeros
+ * left that stand for defaults. intensities: mirrored where range grows to the left. */
 sonject_status measure_listed_contacts(struct report *report, const sonject_measure_params *params,
                                        struct measured *intensities, char **text);
 
-/* One contact of intensities: sonject_measure_contact. */
+/* Measures one contact of intensities: sonject_measure_contact. */
 sonject_status measure_one_contact(struct report *report, const float *intensity, size_t rows,
                                    size_t columns, const sonject_box *box, double row_spacing_m,
                                    double column_spacing_m, sonject_contact_measures *found);
 
-/* The same where its place is known: boxes inside the image. */
+/* Measures one contact whose place is known. The place's boxes are inside the image. */
 sonject_status measure_placed_contact(struct report *report, const float *intensity, size_t rows,
                                       size_t columns, const struct contact_place *place,
                                       double row_spacing_m, double column_spacing_m,

@@ -1,5 +1,5 @@
-/* The curve by the plain tiles' amplitude contrast alone, for swaths whose numbers no law of
- * speckle describes. */
+/* Finds the curve from the amplitude contrast of the plain tiles alone, for swaths whose numbers
+ * follow no law of speckle. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,21 +8,21 @@
 #include "measure/calibration.h"
 #include "measure/contacts.h"
 
-#define RAYLEIGH_CONTRAST 0.5227 /* standard deviation over mean, sqrt(4 / pi - 1) */
+#define RAYLEIGH_CONTRAST 0.5227 /* one look's deviation over mean, sqrt(4 / pi - 1) */
 #define HALVINGS          40
-#define SLOPE_STEP        0.05 /* of the parameter's logarithm */
+#define SLOPE_STEP        0.05 /* step of the parameter's logarithm */
 
 struct contrast_work {
     const struct plain_tiles *tiles;
     const struct stored_swath *swath;
     double full_scale;
     enum curve_family family;
-    float most_uneven; /* of the tiles that count */
-    size_t count;      /* of them */
-    double *contrasts; /* of each */
+    float most_uneven; /* largest unevenness of tiles that count */
+    size_t count;      /* number of tiles that count */
+    double *contrasts; /* contrasts of tiles that count */
 };
 
-/* The median over the tiles. Contrasts do not depend on a tile's level. */
+/* Returns the median contrast over the tiles. A tile's contrast does not depend on its level. */
 static double contrast_at(struct contrast_work *work, double parameter)
 {
     const struct plain_tiles *tiles = work->tiles;
@@ -51,8 +51,7 @@ static double contrast_at(struct contrast_work *work, double parameter)
     return work->contrasts[work->count / 2];
 }
 
-/* The logarithm of the parameter that gives the contrast of one look; *error: its standard error.
- */
+/* Returns the logarithm of the parameter that gives one look's contrast. *error: standard error. */
 static double solve(struct contrast_work *work, double low, double high, double *error)
 {
     for (int i = 0; i < HALVINGS; i++) {
@@ -67,7 +66,7 @@ static double solve(struct contrast_work *work, double low, double high, double 
         (contrast_at(work, exp(found + SLOPE_STEP)) - contrast_at(work, exp(found - SLOPE_STEP))) /
         (2.0 * SLOPE_STEP);
     contrast_at(work, exp(found));
-    /* of a median: 1.2533 deviations over the root, a deviation from the quartiles */
+    /* A median errs by 1.2533 deviations over sqrt(count); quartiles tell the deviation. */
     const size_t count = work->count;
     const double deviation = (work->contrasts[3 * count / 4] - work->contrasts[count / 4]) / 1.349;
     *error = slope > 0.0 ? 1.2533 * deviation / sqrt((double)count) / slope : INFINITY;
@@ -95,7 +94,7 @@ sonject_status find_by_contrast(struct report *report, const struct plain_tiles 
         memcpy(sorted, tiles->unevenness, tiles->count * sizeof *sorted);
         qsort(sorted, tiles->count, sizeof *sorted, compare_floats);
         work.most_uneven = sorted[tiles->count / 2];
-        /* what the seabed's own unevenness does to it, the plainer half of the tiles tells */
+        /* The plainer half of the tiles shows what the seabed's own unevenness changes. */
         const double plainer = solve(&work, low, high, &plainer_error);
         fit->parameter = exp(found);
         fit->parameter_error = hypot(fit->parameter_error, plainer - found);

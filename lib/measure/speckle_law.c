@@ -4,9 +4,9 @@
 #include <stddef.h>
 
 #define TEXTURE_LEAST 1e-3
-#define NODES         48 /* of the texture's distribution */
+#define NODES         48 /* points of the texture's distribution on either side */
 #define NODE_STEP     0.25
-#define SERIES_LEAST  8.0 /* from here on the series is good to 1e-9 */
+#define SERIES_LEAST  8.0 /* the series errs by less than 1e-9 from this shape on */
 
 double log_gamma_variance(double shape)
 {
@@ -17,13 +17,13 @@ double log_gamma_variance(double shape)
     return sum + r + 0.5 * r2 + r * r2 * (1.0 / 6.0 - r2 * (1.0 / 30.0 - r2 / 42.0));
 }
 
-/* Density of the logarithm of a gamma variable of mean 1, but for a factor. */
+/* Returns the density of the logarithm of a gamma variable of mean 1, but for a factor. */
 static double log_gamma_density(double shape, double x)
 {
     return exp(shape * (x + 1.0 - exp(x)));
 }
 
-/* The law of the looks alone, seen through the texture's: sums over points some steps apart. */
+/* Convolves the density of the looks with the texture's, sampled at points some steps apart. */
 static void spread_by_texture(double *density, double texture)
 {
     double weights[2 * NODES + 1], plain[LAW_POINTS];
