@@ -17,8 +17,7 @@ FUNCTION vfloat cosine_power(vfloat cosine, float exponent)
     return exponential_of_negative(smaller(exponent * natural_logarithm(positive), SPLAT(0.0f)));
 }
 
-/* Returns (n + 1)/2 (cos cos)^(n - 1), the factor of mu for an exponent n; Lambert's law has
- * n = 1. */
+/* Returns (n + 1)/2 (cos cos)^(n - 1), the factor of mu for an exponent n; n = 1 is Lambert's. */
 FUNCTION vfloat diffuse_shape(vfloat cosine_one, vfloat cosine_other, float exponent)
 {
     if (exponent == 1.0f)

@@ -62,8 +62,7 @@ FUNCTION vfloat uniform_from(word bits)
     return (VFLOAT_OF(bits >> 9) + 0.5f) * 1.1920928955078125e-7f;
 }
 
-/* Draws two uniform deviates of (0, 1). ray: its number; draw: counts
- * interactions and dimensions. */
+/* Draws two uniform deviates of (0, 1) for ray number `ray`. draw: numbers them within the ray. */
 FUNCTION void two_uniforms(struct random_key key, word ray, RECORD_WORD draw, vfloat *first,
                            vfloat *second)
 {
