@@ -16,8 +16,7 @@ struct leg {
         reflection_imaginary; /* product of the boundaries' coherent amplitudes */
 };
 
-/* Returns the cosine of incidence on a boundary, by Snell's law. cosine: of the leg
- * at the object. */
+/* Returns the cosine of incidence on a boundary, by Snell's law. cosine: at the object. */
 FUNCTION vfloat cosine_at_boundary(GLOBAL const struct boundary_record *boundary, vfloat cosine)
 {
     if (boundary->speed_ratio == 1.0f)

@@ -402,7 +402,7 @@ struct relief_record {
 
 /* The hierarchy over many objects. */
 #define OBJECTS_IN_LOOP    16 /* up to this number, objects are tested one after the other */
-#define OBJECTS_IN_PACKET  40 /* the same for rays that run apart from each other */
+#define OBJECTS_IN_PACKET  40 /* this limit for rays that run apart from each other */
 #define OBJECT_TREE_SLOTS  16 /* children of a branch */
 #define OBJECT_TREE_LEVELS 6  /* most branches from the root to an object, the root included */
 

@@ -37,7 +37,7 @@
 FUNCTION void threefry(RECORD_WORD key0, RECORD_WORD key1, word *a,
                        word *b){THREEFRY_BODY(RECORD_WORD)}
 
-/* Does the same on scalars, for keys. */
+/* Turns a counter of scalars into two random words, for keys. */
 FUNCTION void threefry_scalar(RECORD_WORD key0, RECORD_WORD key1, RECORD_WORD *a, RECORD_WORD *b)
 {
     THREEFRY_BODY(RECORD_WORD)

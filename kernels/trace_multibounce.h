@@ -67,8 +67,7 @@ struct multibounce_path {
     vfloat first_reach;     /* as in struct chain (chain_hit.h) */
     vfloat first_wavefront; /* width per rad of elevation at the first hit */
     vfloat first_spreading; /* amplitude spreading up to the first hit, 1/m */
-    vfloat reflection_real,
-        reflection_imaginary; /* product over all bounces and boundaries so far */
+    vfloat reflection_real, reflection_imaginary; /* product over all bounces and boundaries */
     mask is_alive;
 };
 
