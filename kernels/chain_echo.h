@@ -156,11 +156,11 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
     outcome->impulses += (RECORD_WORD)count;
 }
 
-/* The ways in which a path counts. A path may stand for its reverse, if nothing finds the reverse
- * itself. So does a path that began with a specular bounce, since the reverse would end on it. In
- * focused columns path and reverse are seen from the same place. There a chain that began on the
- * seabed and ends on a target stands for its reverse, since it is led to the target on purpose; the
- * chain from the target is left out. */
+/* The ways in which a path counts. A path that began with a specular bounce also stands for its
+ * reverse: the reverse would end with that bounce, so nothing finds it. Focused columns see path
+ * and reverse from the same place. There a chain from the seabed that ends on a target also stands
+ * for its reverse, since it is led to the target on purpose, and the chain from the target is left
+ * out. */
 struct ways_counted {
     mask is_counted, counts_reverse;
 };
