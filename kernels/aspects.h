@@ -28,9 +28,8 @@ FUNCTION int has_beam(const struct fan_record *fan)
     return fan->beam.reach > 0.0f;
 }
 
-/* Returns the share 0...1 of the aperture that a ray looks from: the lattice of the plastic
- * number, each point moved within an eighth. Shares are even over any few neighbours among
- * rays and strips. */
+/* Returns the share 0...1 of the aperture that a ray looks from: the lattice of the plastic number,
+ * each point moved within an eighth. Shares are even over any few neighbouring rays and strips. */
 FUNCTION vfloat aspect_share(const struct fan_record *fan, RECORD_WORD track_strip, word ray,
                              vfloat jitter)
 {

@@ -112,7 +112,7 @@ struct chain_echo {
     int is_heard[WIDTH]; /* -1: there is some, in bins that exist; 0: there is none */
     int bin[WIDTH];      /* the first of two */
     float later[WIDTH];  /* share of the second */
-    int strip[WIDTH], reverse_strip[WIDTH]; /* on the whole track; reverse NO_STRIP: no such echo */
+    int strip[WIDTH], reverse_strip[WIDTH]; /* numbers on the whole track; reverse NO_STRIP: none */
 };
 
 #define NO_STRIP (-1073741824)
@@ -157,10 +157,10 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
 }
 
 /* The ways in which a path counts. A path that began with a specular bounce also stands for its
- * reverse: the reverse would end with that bounce, so nothing finds it. Focused columns see path
- * and reverse from the same place. There a chain from the seabed that ends on a target also stands
- * for its reverse, since it is led to the target on purpose, and the chain from the target is left
- * out. */
+ * reverse: the reverse would end with that bounce, so nothing finds it. Focused columns see
+ * path and reverse from the same place. There a chain from the seabed that ends on a target
+ * also stands for its reverse. It is led to the target on purpose, and the chain from the
+ * target is left out. */
 struct ways_counted {
     mask is_counted, counts_reverse;
 };
@@ -204,7 +204,7 @@ FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains
         ways.is_counted = ~(~chain->began_smooth & ~began_on_seabed & ends_on_seabed);
         ways.counts_reverse =
             ways.counts_reverse | (~chain->began_smooth & began_on_seabed & ~ends_on_seabed);
-        if (order == 2 && chains->cell_samples > 0) { /* with the shares of second_order.h */
+        if (order == 2 && chains->cell_samples > 0) { /* paths have the shares of second_order.h */
             ways.counts_reverse = ways.counts_reverse | ~ways.is_counted;
             ways.is_counted = ~none;
         }

@@ -32,8 +32,7 @@ FUNCTION vfloat element_pattern(float cycles, vfloat slope)
     return sinc_of_cycles(magnitude(cycles * slope));
 }
 
-/* Returns m along-track from an element to a strip's middle. Whole strips
- * are subtracted exactly. */
+/* Returns the way along-track from an element to a strip's middle, m. Whole strips are exact. */
 FUNCTION float element_offset(const struct impulse_grid_record *grid, int strip, int element_strip,
                               float element_fraction)
 {

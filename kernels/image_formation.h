@@ -1,6 +1,6 @@
-/* From bins to pixels: speckle, pulse, cross-range response. A field is two float planes, its real
- * and imaginary part, or two energies that are formed side by side. Every output is a sum in one
- * fixed order. */
+/* Image formation, from bins to pixels: speckle, pulse, cross-range response. A field is two float
+ * planes, its real and imaginary part, or two energies that are formed side by side. Every output
+ * is a sum in one fixed order. */
 #ifndef SONJECT_KERNELS_IMAGE_FORMATION_H
 #define SONJECT_KERNELS_IMAGE_FORMATION_H
 
@@ -22,9 +22,9 @@ FUNCTION void complex_normal(struct random_key key, word number, vfloat *real_pa
     *imaginary_part = amplitude * sine;
 }
 
-/* Sorts a line's bins so that those which neighbouring pixels take one tap from lie side by side.
- * Bin k * bins_per_pixel + phase + first goes to sorted[phase * stride + k], for the WIDTH elements
- * k from `column` on and all phases. Bins outside the line are empty. */
+/* Sorts a line's bins so that the bins from which neighbouring pixels take one tap lie side by
+ * side. Bin k * bins_per_pixel + phase + first goes to sorted[phase * stride + k], for the WIDTH
+ * elements k from `column` on and all phases. Bins outside the line are empty. */
 FUNCTION void sort_bins_of(GLOBAL const float *line, int bins, int first, int bins_per_pixel,
                            int stride, int column, GLOBAL float *sorted)
 {
@@ -99,7 +99,7 @@ FUNCTION void compress_complex_of(GLOBAL const float *sorted_real,
 
 /* The strips from which a row takes its aspects. */
 struct aspects {
-    int first_strip, end_strip; /* of the lines, on the track's numbering: first...end - 1 */
+    int first_strip, end_strip; /* strips of the lines, on the track's numbering: first...end - 1 */
     int strips_per_row;
     int reach; /* the response is kept within +-reach strips; 2 reach + 1 taps */
 };

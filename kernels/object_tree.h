@@ -1,6 +1,6 @@
-/* The nearest of many objects, to the bit as a loop over all of them finds it: the nearest, and of
- * equally near ones that of the lowest number. Neither the order of the walk nor the packet of a
- * ray changes anything (kernels/MATH.md, "Many objects"). */
+/* The nearest of many objects, and of equally near ones that of the lowest number. A loop over all
+ * of them finds the same, to the bit. Neither the order of the walk nor the packet of a ray changes
+ * anything (kernels/MATH.md, "Many objects"). */
 #ifndef SONJECT_KERNELS_OBJECT_TREE_H
 #define SONJECT_KERNELS_OBJECT_TREE_H
 

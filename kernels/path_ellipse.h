@@ -59,8 +59,7 @@ FUNCTION struct section section_of(const struct seabed_line *line, vfloat length
     return section;
 }
 
-/* Returns a share in which places are chosen evenly, about the angle that they fill
- * from the hit. */
+/* Returns a place's share, in which places are chosen evenly: about the angle seen from the hit. */
 FUNCTION vfloat share_of_place(vfloat y, vfloat depth)
 {
     return y / (magnitude(y) + depth);

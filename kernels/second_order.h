@@ -39,9 +39,9 @@ FUNCTION struct echo_cell cell_number(const struct fan_record *fan,
     return cell;
 }
 
-/* Returns about the echo of a part by way of the seabed to a cell, over the echo of the seabed
- * itself. The way between the two is no shorter than the detour. The longer it is, the flatter it
- * meets the seabed. */
+/* Estimates a part's echo by way of the seabed in a cell, over the seabed's own echo. The way
+ * between part and seabed is no shorter than the detour. The longer it is, the flatter it meets the
+ * seabed. */
 FUNCTION vfloat weight_of_target(GLOBAL const struct target_record *target,
                                  const struct echo_cell *cell)
 {
@@ -137,7 +137,7 @@ FUNCTION struct chain_hit seabed_below(const struct fan_record *fan,
     hit.point.y = y;
     hit.point.z = SPLAT(fan->seabed_height);
 #if HAS_RELIEF
-    if (has_relief(fan)) { /* from little above the relief, so that heights keep digits */
+    if (has_relief(fan)) { /* rays start little above it, so that heights keep their digits */
         struct vector3 above = hit.point;
         struct vector3 down;
         above.z = above.z + (relief_of(fan, objects).grid->highest + 0.01f);
@@ -170,8 +170,8 @@ FUNCTION struct places places_of_cell(const struct fan_record *fan, const struct
                           least_y);
 }
 
-/* Returns the share of an echo that counts for a ray from a target that met the seabed. The samples
- * count the rest. */
+/* Returns the share of an echo that counts for a ray from a target that met the seabed. Samples
+ * count for the rest. */
 NOINLINE vfloat share_of_ray(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
                              GLOBAL const struct sphere_record *spheres, const struct chain *chain)
 {

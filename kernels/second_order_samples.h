@@ -103,7 +103,7 @@ struct sample_trace {
 
 /* A path from the sonar by way of a target to the seabed. */
 struct second_order_path {
-    struct chain chain; /* at the target */
+    struct chain chain; /* chain at the target */
     struct way_to_seabed onward;
     vfloat samples, rays; /* densities that find the path (step_to_seabed) */
 };
@@ -236,7 +236,7 @@ NOINLINE void trace_second_order_strip(const struct fan_record *fan,
                             .is_followed,
                         &followed);
         }
-        const int least = is_over ? 1 : WIDTH; /* at the end, the samples that are left */
+        const int least = is_over ? 1 : WIDTH; /* the last samples may be fewer */
         while (followed.count >= least)
             find_facing(&trace, &followed, &facing, outcome);
         while (facing.count >= least)
