@@ -157,10 +157,9 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
 }
 
 /* The ways in which a path counts. A path that began with a specular bounce also stands for its
- * reverse: the reverse would end with that bounce, so nothing finds it. Focused columns see
- * path and reverse from the same place. There a chain from the seabed that ends on a target
- * also stands for its reverse. It is led to the target on purpose, and the chain from the
- * target is left out. */
+ * reverse: the reverse would end with that bounce, so nothing finds it. Focused columns see path
+ * and reverse from the same place. There a chain from the seabed that ends on a target also stands
+ * for its reverse. It is led to the target on purpose; the chain from the target is left out. */
 struct ways_counted {
     mask is_counted, counts_reverse;
 };

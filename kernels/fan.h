@@ -18,7 +18,7 @@ struct fan_ray {
     vfloat range_at_closest;  /* range at that point less the reference range */
     vfloat wavefront; /* width of the wavefront at that point, m per rad of elevation; it grows by 1
                          m per m, and without layers it is the range */
-    vfloat spreading; /* as in struct arrival; only where layers bend the ray */
+    vfloat spreading; /* spreading as in struct arrival; only where layers bend the ray */
     vfloat range_per_metre; /* range per m along the ray; 1 except in slices */
     vfloat turn;            /* turn of the direction per rad of elevation; 1 except in slices */
 };

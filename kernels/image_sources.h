@@ -38,7 +38,7 @@ FUNCTION struct leg follow_leg(const struct fan_record *fan,
     leg.reflection_real = SPLAT(1.0f);
     leg.reflection_imaginary = SPLAT(0.0f);
     const vfloat cosine =
-        magnitude(direction.z); /* the same at every bounce, since boundaries are level */
+        magnitude(direction.z); /* equal at every bounce, since boundaries are level */
     const int is_bent = source->table.pieces > 0;
     int is_seen = 1; /* through layers, only obstacles in the water around the object are seen */
     int kind = source->last_boundary;
@@ -80,7 +80,7 @@ struct line_from_source {
     struct vector3 direction; /* unit, towards the hit */
     vfloat wavefront; /* width per rad of elevation at the hit; without layers, the line's length */
     vfloat excess;    /* range less the source's range, formed without a difference of ranges */
-    vfloat spreading; /* of layers, as in struct arrival (lib/medium/water.h) */
+    vfloat spreading; /* spreading of layers, as in struct arrival (lib/medium/water.h) */
 };
 
 FUNCTION struct line_from_source line_through_layers(GLOBAL const struct source_record *source,
@@ -173,11 +173,11 @@ FUNCTION struct image_hit find_image_hit(const struct fan_record *fan,
 /* The path from the outgoing source by way of a hit to the returning source. */
 struct image_path {
     mask is_open;
-    struct line_from_source back; /* from the returning source to the hit */
+    struct line_from_source back; /* line from the returning source to the hit */
     vfloat wavefront_out;         /* width per rad of the fan's elevation at the hit */
     vfloat range;                 /* half the path less that by way of the frame's origin */
     vfloat spreading;             /* square of half the path over the product of both legs */
-    vfloat cosine_back;           /* between the normal and the return path */
+    vfloat cosine_back;           /* cosine between the normal and the return path */
     vfloat reflection_real, reflection_imaginary; /* product of all boundaries */
 };
 

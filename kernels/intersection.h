@@ -196,7 +196,7 @@ enum wanted_face {
 struct surface_face {
     struct vector3 normal;
 #if HAS_MESHES
-    struct vector3 lift; /* from the hit to the start of rays that test visibility, m */
+    struct vector3 lift; /* way from the hit to the start of rays that test visibility, m */
 #endif
 };
 

@@ -113,9 +113,9 @@ struct object_record {
     float radius;      /* m */
     float ring_radius; /* m */
     /* The slanted face of a wedge or cone: */
-    float slant_across;    /* its unit normal's component along x or away from the z axis */
-    float slant_up;        /* its unit normal's z component */
-    float slant_offset;    /* its distance from the centre, m */
+    float slant_across;    /* unit normal's component along x or away from the z axis */
+    float slant_up;        /* unit normal's z component */
+    float slant_offset;    /* distance from the centre, m */
     float bounding_radius; /* m, about the centre */
     struct end_record ends[ENDS];
     RECORD_WORD mesh_words; /* a mesh only: offset of its mesh_record from here, in 4-byte words */
@@ -402,7 +402,7 @@ struct relief_record {
 
 /* The hierarchy over many objects. */
 #define OBJECTS_IN_LOOP    16 /* up to this number, objects are tested one after the other */
-#define OBJECTS_IN_PACKET  40 /* this limit for rays that run apart from each other */
+#define OBJECTS_IN_PACKET  40 /* limit for rays that run apart from each other */
 #define OBJECT_TREE_SLOTS  16 /* children of a branch */
 #define OBJECT_TREE_LEVELS 6  /* most branches from the root to an object, the root included */
 

@@ -9,7 +9,7 @@
 #define MESH_LEAST_COSINE 0.01f
 
 struct mesh_surface {
-    struct vector3 point;  /* on the facet, in the mesh's frame */
+    struct vector3 point;  /* point on the facet, in the mesh's frame */
     struct vector3 facet;  /* unit normal of the facet, outward */
     struct vector3 smooth; /* unit normal of the smooth surface, outward; without such a surface,
                               the facet's */

@@ -12,7 +12,7 @@ struct table_ray {
     vfloat offset;    /* offset of its closest point from the frame's origin, along `upward` */
     vfloat range;     /* range at that point less the reference range */
     vfloat wavefront; /* width per rad of elevation at that point; it grows by 1 m per m */
-    vfloat spreading; /* as in struct arrival (lib/medium/water.h) */
+    vfloat spreading; /* spreading of struct arrival (lib/medium/water.h) */
 };
 
 /* Looks up a ray. Its offset a(e) is a cubic in each piece, and its wavefront the derivative of a.

@@ -18,7 +18,7 @@ struct relief_view {
 
 /* One coordinate of a ray, in cells of the grid. */
 struct relief_axis {
-    float start;  /* at distance 0 */
+    float start;  /* value at distance 0 */
     float gain;   /* per m; 0 if it is too small to matter */
     float metres; /* m per cell; without meaning if gain is 0 */
     int way;      /* sign of the gain */
@@ -26,7 +26,7 @@ struct relief_axis {
 
 struct relief_ray {
     struct relief_axis row, column;
-    float height; /* at distance 0, over the mean seabed, m */
+    float height; /* height at distance 0 over the mean seabed, m */
     float rise;   /* m per m */
 };
 

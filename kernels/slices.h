@@ -138,7 +138,7 @@ FUNCTION struct sliced_hit find_sliced_hit(const struct fan_record *fan,
     struct aspect_ray aspect = *squinted;
     const vfloat aside = aspect.sine / aspect.cosine;
     float bottom = bottom_of_slice(slice_of_table(fan, pieces, 1));
-    vfloat x = aspect.start.x + distance_to_height(straight, bottom) * aside; /* at the bottom */
+    vfloat x = aspect.start.x + distance_to_height(straight, bottom) * aside; /* x at the bottom */
     hit.nearest.distance = SPLAT(FAR_AWAY);
     hit.nearest.object = VINT_OF(SPLAT(-1.0f));
     meet_in_slice(fan, objects, straight, &aspect, slice_of_table(fan, pieces, 1), SPLAT(FAR_AWAY),

@@ -64,7 +64,7 @@ struct multibounce_path {
     vfloat range;           /* range of the first hit less the outgoing source's range, m */
     vfloat length;          /* path from the first hit to this one, m */
     vfloat first_x;         /* along-track position of the first hit, m */
-    vfloat first_reach;     /* as in struct chain (chain_hit.h) */
+    vfloat first_reach;     /* reach as in struct chain (chain_hit.h) */
     vfloat first_wavefront; /* width per rad of elevation at the first hit */
     vfloat first_spreading; /* amplitude spreading up to the first hit, 1/m */
     vfloat reflection_real, reflection_imaginary; /* product over all bounces and boundaries */

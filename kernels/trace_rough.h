@@ -32,8 +32,8 @@ FUNCTION struct connection connect_to_source(const struct fan_record *fan,
                                              struct vector3 normal, vfloat distance, vfloat along,
                                              vfloat across)
 {
-    /* From the hit back to the receiver it is -direction * r. If layers bend the ray, the receiver
-     * only seems to be there. The source point lies an offset beside the receiver. */
+    /* The way from the hit back to the receiver is -direction * r. If layers bend the ray, the
+     * receiver only seems to be there. The source point lies an offset beside it. */
     const vfloat r = (ray->wavefront + distance) / squinted->cosine;
     const vfloat range = ray->range_at_closest + distance;
     const vfloat offset_x = (along - 0.5f) * fan->source_side;
@@ -58,11 +58,11 @@ FUNCTION struct connection connect_to_source(const struct fan_record *fan,
 /* The energies of one group of rays, lane by lane, ready to be tallied. */
 struct rough_echo {
     float seabed[WIDTH], target[WIDTH];             /* quanta; 0: none */
-    int seabed_strip[WIDTH], target_strip[WIDTH];   /* on the whole track, in focus */
+    int seabed_strip[WIDTH], target_strip[WIDTH];   /* numbers on the whole track, in focus */
     int seabed_bin[WIDTH], target_bin[WIDTH];       /* the first of two */
     float seabed_later[WIDTH], target_later[WIDTH]; /* share of the second */
     int object[WIDTH];
-    float row[WIDTH], column[WIDTH]; /* of the reflectivity map */
+    float row[WIDTH], column[WIDTH]; /* place in the reflectivity map */
     float chance[WIDTH];             /* uniform deviate for rounding */
 };
 

@@ -16,7 +16,7 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 #define FUNCTION    static inline __attribute__((always_inline)) /* vectors are slow to pass */
-#define NOINLINE    static __attribute__((noinline)) /* for code that is rare and large */
+#define NOINLINE    static __attribute__((noinline))             /* rare and large code is called */
 #define GLOBAL      __global
 #define UNROLLED    _Pragma("unroll") /* keeps sums of a loop in registers */
 #define JOIN_(a, b) a##b
