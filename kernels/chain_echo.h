@@ -76,7 +76,7 @@ FUNCTION struct source_path path_to_source(const struct fan_record *fan, const s
     return way;
 }
 
-/* Returns the same way through layers. The ray is looked up in the upright plane of point and
+/* Works as path_to_source, through layers. The ray is looked up in the upright plane of point and
  * source, then turned to where that plane stands. */
 FUNCTION struct source_path path_through_layers(const struct fan_record *fan,
                                                 GLOBAL const struct ray_piece_record *pieces,

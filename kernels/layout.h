@@ -5,7 +5,7 @@
  * centres on what is traced. A strip is a piece of the track within a row of pixels, a bin a piece
  * of range within a pixel. A window is the piece of the patch that is traced, and a chunk the
  * strips of one launch. A part is one shape of an object. A tile holds the sums of one object,
- * counted in quanta. */
+ * counted in quanta, the units of integer sums. */
 #ifndef SONJECT_KERNELS_LAYOUT_H
 #define SONJECT_KERNELS_LAYOUT_H
 
@@ -140,11 +140,11 @@ enum tile_plane {
 };
 
 /* The rays of a source where layers of water bend them: pieces of elevation, each a cubic. A slice
- * is a layer that targets reach into; the lowest one is the straight water. First come the pieces
- * of the straight water. Behind them each other slice has a record of its own, its pieces of offset
- * and spreading, and as many pieces with ranges as their offset. A slice's own record holds in
- * `offset` the height of its bottom in the frame, its sound speed over the straight water's, and
- * the reciprocal. */
+ * is a layer that targets reach into; the lowest one is the straight water. The pieces of the
+ * straight water come first. Behind them lie, for each higher slice, a record of its own, then
+ * pieces of offset and spreading, then as many pieces with ranges as their offset. A slice's own
+ * record holds in `offset` the height of its bottom in the frame, its sound speed over the straight
+ * water's, and the reciprocal. */
 struct ray_table_record {
     RECORD_INT pieces; /* 0: there are no layers, and rays are straight */
     RECORD_INT slices; /* number of slices, with the straight water */
@@ -185,10 +185,9 @@ struct beam_record {
     float across[3]; /* unit vector of the other side, in the frame */
 };
 
-/* A fan of rays over a track, in a frame that the host centres on what is traced. The sonar moves
- * along the line (y, z) = (-cos, sin)(depression) * reference_range of that frame. Where layers
- * bend the rays, the sonar only seems to be there. Ranges are travel times multiplied by the sound
- * speed around the origin. */
+/* A fan of rays over a track, in a frame that the host centres on what is traced. In this frame the
+ * sonar moves along (y, z) = (-cos, sin)(depression) * reference_range. Where layers bend the rays,
+ * it only seems to. Ranges are travel times multiplied by the sound speed around the origin. */
 struct fan_record {
     float reference_range;                    /* m, from the track to the frame's origin */
     float cosine_depression, sine_depression; /* depression from the track to the origin */
@@ -389,10 +388,10 @@ struct fouling_record {
 
 #define RELIEF_BLOCK 8 /* cells of a block of the relief, each way */
 
-/* The seabed's relief: heights over the mean seabed on a level grid, 0 outside. Rows run
- * along-track, columns in ground range. Behind the record lie rows x columns heights (m), as many
- * pairs of slopes (along-track, in range), and the highest and lowest point of each of block_rows x
- * block_columns blocks. */
+/* The seabed's relief: heights over the mean seabed on a level grid, 0 outside; rows along-track,
+ * columns in ground range. Behind the record lie rows x columns heights (m), as many pairs of
+ * slopes (along-track, in range), and block_rows x block_columns pairs of a block's highest and
+ * lowest point. */
 struct relief_record {
     RECORD_INT rows, columns; /* grid points, at least 2 each */
     RECORD_INT block_rows, block_columns;

@@ -25,10 +25,9 @@ struct wavefront_cell {
     struct fan_ray ray;
     vfloat elevation;
     mask is_ray;
-    float width_along; /* m */
-    vfloat offset_along,
-        fraction_across; /* place where the ray met the cell: m off its middle; 0...1 */
-    vfloat chance;       /* uniform deviate for rounding the echo */
+    float width_along;                    /* m */
+    vfloat offset_along, fraction_across; /* place of the hit: m off the middle; 0...1 */
+    vfloat chance;                        /* uniform deviate for rounding the echo */
 };
 
 /* Returns the shift of a stratum's cells across the ray, -0.5...0.5 of their width, even over any

@@ -1,6 +1,6 @@
-/* The list of all shapes. A row gives a shape its number, its case in the kernels, its word in
- * scene files, its row of the host (in lib/scene/shapes, with a file of its name) and its turn in
- * tests. */
+/* The list of all shapes. A row gives a shape its number, its case in the kernels and its word in
+ * scene files. It also gives its row of the host (lib/scene/shapes has a file of its name) and its
+ * turn in the tests. */
 #ifndef SONJECT_KERNELS_SHAPES_H
 #define SONJECT_KERNELS_SHAPES_H
 
