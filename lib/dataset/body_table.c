@@ -165,7 +165,7 @@ static sonject_status read_file_name(struct reader *reader, const struct tree_no
 }
 
 static const struct field table_fields[] = {
-    {"file", "of the table", .kind = FIELD_SPECIAL, .read = read_file_name, REQUIRED},
+    {"file", "file of the table", .kind = FIELD_SPECIAL, .read = read_file_name, REQUIRED},
     {"weight", "column of the rows' weights", .kind = FIELD_SPECIAL, .read = read_weight_name},
 };
 static const struct section table_section = {ROWS(table_fields)};

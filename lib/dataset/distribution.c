@@ -236,10 +236,10 @@ static sonject_status read_limits(struct reader *reader, const struct tree_node 
 
 #define LATER .kind = FIELD_SPECIAL /* read when all are there, since they share a unit */
 static const struct field normal_fields[] = {
-    {"mean", "of the normal distribution before it is cut off", LATER, REQUIRED},
-    {"deviation", "its standard deviation", LATER, REQUIRED},
-    {"minimum", "nothing is drawn below it", LATER},
-    {"maximum", "nothing is drawn above it", LATER},
+    {"mean", "mean of the normal distribution before it is cut off", LATER, REQUIRED},
+    {"deviation", "standard deviation of the normal distribution", LATER, REQUIRED},
+    {"minimum", "least value that is drawn", LATER},
+    {"maximum", "greatest value that is drawn", LATER},
 };
 static const struct section normal_section = {ROWS(normal_fields)};
 
