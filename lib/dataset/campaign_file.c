@@ -1,4 +1,4 @@
-/* Campaign files: the tables of their keys. */
+/* The tables of keys of campaign files. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,7 +23,7 @@ sonject_status grow_list(struct report *report, void *list, size_t count, size_t
     return SONJECT_OK;
 }
 
-/* Keys that the campaign itself gives values. */
+/* Returns whether the campaign itself sets a key. */
 static bool is_taken(const char *key, bool is_object)
 {
     static const char *const taken[] = {"sonject", "input.path", "patch", "objects", "elements"};
@@ -101,8 +101,8 @@ static sonject_status read_draw(struct reader *reader, struct campaign *campaign
     return status;
 }
 
-/* What is drawn of an item, or, where that is NULL, of the scene: draws of "objects[].heading" and
- * the like are those of all objects. */
+/* Reads the draws of an item, or of the scene if item is NULL. In the scene's draws,
+ * "objects[].heading" and the like hold for all objects. */
 static sonject_status read_draws(struct reader *reader, const struct tree_node *node,
                                  struct campaign *campaign, struct item *item)
 {
@@ -121,7 +121,7 @@ static sonject_status read_draws(struct reader *reader, const struct tree_node *
                                : is_of_all ? &campaign->object_draws
                                            : &campaign->draws);
         if (is_table && status != SONJECT_OK)
-            return status; /* others may be ratios of its columns */
+            return status; /* other draws may be ratios of the table's columns */
     }
     return status;
 }
@@ -174,7 +174,7 @@ static const struct field item_fields[] = {
 static const struct section item_section = {ROWS(item_fields), .finish = finish_item};
 #undef STRUCTURE
 
-/* Whole numbers: fixed, or a choice of such. */
+/* Reads whole numbers: a fixed one, or a choice of several. */
 static sonject_status read_number(struct reader *reader, const struct tree_node *node,
                                   struct campaign *campaign, uint64_t least, uint64_t most,
                                   struct distribution *number)
@@ -284,12 +284,12 @@ static sonject_status read_columns(struct reader *reader, const struct tree_node
     return read_side(reader, node, &campaign->chip_columns);
 }
 
-/* Of enum output, from the first that a user chooses on; labels begin with yolo. */
+/* The words of enum output, from the first that a user chooses on. Labels begin with yolo. */
 static const char *const output_words[] = {"highlight", "shadow", "masks", "influence",
                                            "energy",    "field",  "yolo",  "voc"};
 #define LABEL_WORDS 2
 
-/* One of the list `outputs` or `labels`, as the path says. */
+/* Reads an entry of the list `outputs` or `labels`, as the reader's path says. */
 static sonject_status read_output(struct reader *reader, const struct tree_node *node,
                                   void *structure)
 {
@@ -323,7 +323,7 @@ static sonject_status read_outputs(struct reader *reader, const struct tree_node
     return read_list(reader, node, &words, campaign);
 }
 
-/* Items of which something may be drawn. */
+/* Checks that the items' weights are not all 0. */
 static sonject_status check_items(struct reader *reader, const struct tree_node *node,
                                   const char *key, const struct item *items, uint32_t count)
 {
@@ -420,7 +420,8 @@ static sonject_status finish_campaign(struct reader *reader, const struct tree_n
     return SONJECT_OK;
 }
 
-/* Draws are read last, in this order, so that streams of random numbers keep their places. */
+/* The keys of a campaign. Draws are read last, in this order, so that streams of random numbers
+ * keep their places. */
 static const struct field campaign_fields[] = {
     {"sonject_campaign", "version of the format, 1", SPECIAL(read_version, "whole number"),
      REQUIRED},

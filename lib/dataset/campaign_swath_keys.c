@@ -1,4 +1,4 @@
-/* Campaign files: swaths with their keys and contacts to avoid, and splits. */
+/* The keys of campaign files on swaths, contacts to avoid, and splits. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,9 +9,9 @@
 
 #define SWATHS_MAX 10000
 #define PIXELS_MAX (UINT64_C(1) << 40)
-#define BOXES_MAX  1000 /* in a swath */
+#define BOXES_MAX  1000 /* boxes in a swath */
 
-/* The name of a file to open, and as it is written. */
+/* Reads a swath's path, and keeps the text as written. */
 static sonject_status read_swath_path(struct reader *reader, const struct tree_node *node,
                                       void *structure)
 {
