@@ -1,5 +1,4 @@
-/* Sets of labelled contacts: formats of paths, places of images, checks of boxes, and the pairing
- * of highlights with shadows. */
+/* Sets of labelled contacts: their formats, images and boxes, and pairs of highlight and shadow. */
 #include "dataset/contact_files.h"
 
 #include <math.h>

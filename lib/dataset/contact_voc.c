@@ -40,8 +40,7 @@ struct voc {
     size_t depth, depth_in_way;
     char text[PATH_CAPACITY]; /* text of the element */
     size_t length;
-    bool reads_objects; /* true in the second reading, since a file may name its image behind its
-                           objects */
+    bool reads_objects; /* in a second reading: a file may name its image behind them */
     char image_name[PATH_CAPACITY];
     char class_name[CLASS_CAPACITY]; /* class of the object that is read; "": not read yet */
     double numbers[NUMBERS];         /* NaN: not read */
