@@ -1,5 +1,4 @@
-/* Tables of measured bodies for campaigns. A column is a key of objects, and a row is a body, which
- * is drawn as a whole. */
+/* Tables of measured bodies, which are drawn as whole rows. Columns are keys of objects. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

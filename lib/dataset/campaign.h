@@ -27,7 +27,7 @@
 #define CAMPAIGN_CHIP_MAX    8192 /* rows or columns, if they are not all of a swath's */
 #define SPLIT_NAME_CAPACITY  33
 
-/* Returns a counter-based random number in (0, 1): the middle of one of 2^52 equal parts. Streams
+/* Returns a counter-based random number: the middle of one of 2^52 equal parts of (0, 1). Streams
  * are independent. */
 double uniform_number(uint64_t seed, uint32_t stream, uint64_t index);
 
@@ -117,12 +117,10 @@ uint32_t distribution_steps(const struct distribution *distribution);
 const char *distribution_step(const struct distribution *distribution, uint32_t step,
                               char text[DISTRIBUTION_TEXT_CAPACITY]);
 
-/* The places of chips in a swath: inside the swath, and touching no box to avoid. A place is a
- * chip's first pixel. */
+/* Places of chips in a swath: first pixels of chips that are inside and touch no box to avoid. */
 struct crop_places {
     struct region chips;  /* all places, if there were no boxes */
-    struct region *boxes; /* boxes of forbidden places, sorted by first column; may reach outside
-                             chips; owned */
+    struct region *boxes; /* boxes of forbidden places, some beyond chips, by first column; owned */
     size_t box_count;
     uint64_t places;                    /* number of places; 0: there is no room */
     uint64_t block_rows, block_columns; /* chips begin at multiples of these sides */
@@ -232,8 +230,7 @@ enum faint {
     FAINT_DIFFICULT
 };
 
-/* The files of an image. Each kind has a folder of its own. All images have the first two and the
- * last. */
+/* The files of an image, each kind in a folder. All images have the first two and the last. */
 enum output {
     OUTPUT_IMAGE,
     OUTPUT_TRUTH,
@@ -285,9 +282,8 @@ struct campaign {
     struct tree tree; /* the file's tree, overrides included; places point into it */
 };
 
-/* Reads a campaign file with overrides, "key.path=value". text: used instead of the file's own
- * text; may be NULL. campaign: to be given to campaign_clear, also on failure. Errors: INPUT,
- * STORAGE, MEMORY. */
+/* Reads a campaign file with overrides, "key.path=value". text: used instead of the file's; may be
+ * NULL. campaign: for campaign_clear, also on failure. Errors: INPUT, STORAGE, MEMORY. */
 sonject_status campaign_read(struct report *report, const char *path, const char *text,
                              const char *const *overrides, size_t count, struct campaign *campaign);
 void campaign_clear(struct campaign *campaign);
@@ -300,8 +296,8 @@ extern const struct section campaign_section, campaign_swath_section;
 sonject_status campaign_check_key(const struct tree *tree, struct tree_place place,
                                   const char *path, const char *key, bool is_object);
 
-/* Checks an entry's key, as campaign_check_key does. The entry's text is key, or ends with key.
- * Errors: INPUT. */
+/* Checks an entry's key in the same way; the entry's text is key, or ends with key. Errors: INPUT.
+ */
 sonject_status campaign_check_entry(struct reader *reader, const struct tree_entry *entry,
                                     const char *key, bool is_object);
 
@@ -381,16 +377,15 @@ struct image_plan {
 struct attempts {
     uint32_t of_all;
     uint32_t of_targets[CAMPAIGN_TARGETS_MAX];
-    struct object_places places; /* of all objects, while single targets are drawn again */
+    struct object_places places; /* places of all objects, while single targets are drawn again */
 };
 
 /* Counts a draw as given up, so that all values and places are drawn again. */
 void attempts_next(struct attempts *attempts);
 
 /* Makes the plan of image id, below campaign->images. Each draw given up changes the values and
- * places of objects, and every ATTEMPTS_OF_CHIP of them move the chip; all else stays. plan: to be
- * given to image_plan_clear, also on failure. Errors: INPUT (no place is left for an object),
- * MEMORY. */
+ * places of objects, and every ATTEMPTS_OF_CHIP of them move the chip; all else stays. plan: for
+ * image_plan_clear, also on failure. Errors: INPUT (no place is left for an object), MEMORY. */
 sonject_status image_plan_make(struct report *report, const struct campaign *campaign, uint64_t id,
                                const struct attempts *attempts, struct image_plan *plan);
 
@@ -535,9 +530,8 @@ struct image_work {
 };
 
 /* Makes the images with two threads for each processor, 16 at most, fewer where images are large.
- * After a failure, images under way are finished, and no other is begun. The message is of the
- * first image that failed. slot: how each thread opens the device. Errors: those of make,
- * CANCELLED, MEMORY. */
+ * After a failure, images under way are finished; the message is of the first image that failed.
+ * slot: how each thread opens the device. Errors: those of make, CANCELLED, MEMORY. */
 sonject_status campaign_work(struct sonject_campaign *campaign, const struct device_slot *slot,
                              const struct image_work *work);
 

@@ -420,8 +420,7 @@ static sonject_status finish_campaign(struct reader *reader, const struct tree_n
     return SONJECT_OK;
 }
 
-/* The keys of a campaign. Draws are read last, in this order, so that streams of random numbers
- * keep their places. */
+/* Draws are read last, in this order, so that streams of random numbers keep their places. */
 static const struct field campaign_fields[] = {
     {"sonject_campaign", "version of the format, 1", SPECIAL(read_version, "whole number"),
      REQUIRED},

@@ -30,8 +30,7 @@ static sonject_status name_image(struct report *report, uint64_t id, sonject_sta
     return report_failure(report, status, "image %llu: %s", (unsigned long long)id, message);
 }
 
-/* Reports "--set KEY: what" at the place in the campaign file, or in a table, that gave the key.
- * Returns false where neither gave the key. */
+/* Reports "--set KEY: what" where the campaign's file or table gave the key; false: neither did. */
 static bool place_line(struct tree *tree, const struct image_plan *plan, const char *line)
 {
     static const char start[] = "--set ";

@@ -243,8 +243,7 @@ sonject_status campaign_image_write(struct sonject_campaign *campaign, struct ca
     return status;
 }
 
-/* Checks a record's own hash, image, campaign and split. Errors: INPUT (the record was changed, or
- * is another image's), MEMORY. */
+/* Checks a record. Errors: INPUT (the record was changed, or is another image's), MEMORY. */
 static sonject_status check_record(const struct data_set *set, size_t split, uint64_t id,
                                    json_t *record, const char *path)
 {

@@ -114,7 +114,7 @@ static void limit_columns(const struct limits *limits, double half, double near_
     *high = near_m <= far_m ? fmin(*high, floor(fmax(near, far) + 1e-9)) : -1.0;
 }
 
-/* Narrows low...high to first columns of chips, or objects, beyond the first return at an altitude.
+/* Narrows low...high to first columns of chips or objects beyond the first return at an altitude.
  */
 static void leave_out_water(const struct limits *limits, double half, double altitude_m,
                             double *low, double *high)
@@ -128,9 +128,8 @@ static void leave_out_water(const struct limits *limits, double half, double alt
         *low = fmax(*low, floor(bottom) + 1.0);
 }
 
-/* Narrows the first columns of chips to the limits at the lowest altitude. An image of all columns
- * begins where the swath does, so its objects are limited instead. Returns false where none is
- * left. */
+/* Limits the first columns of chips at the lowest altitude. An image of all columns begins where
+ * the swath does, so its objects are limited instead. Returns false where none is left. */
 static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, struct region *chips)
 {
     const struct campaign *campaign = limits->campaign;
@@ -160,8 +159,7 @@ static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, s
 
 #define ALTITUDE_BLOCKS 64 /* blocks of rows, each with one range of altitudes */
 
-/* Returns the number of JPEG blocks over the first rows of chips. Altitude blocks are made of whole
- * JPEG blocks. */
+/* Returns the number of JPEG blocks, of which altitude blocks are made, over chips' first rows. */
 static uint64_t jpeg_blocks(const struct crop_places *room)
 {
     return (room->chips.rows + room->block_rows - 1) / room->block_rows;
@@ -235,8 +233,7 @@ static void limit_chips(const struct limits *limits, struct swath_plan *plan)
     }
 }
 
-/* Limits objects in images of all columns by altitudes. Forbids chips that leave objects no column.
- */
+/* Limits objects in images of all columns by altitude. Forbids chips that leave them no column. */
 static sonject_status limit_objects(struct report *report, const struct limits *limits,
                                     struct swath_plan *plan)
 {
@@ -279,8 +276,8 @@ static void begin_at_block(uint64_t block, uint32_t edge, uint64_t *first, uint6
 }
 
 /* Finds the first pixels, along one axis, of chips in which a box takes all places of objects. In
- * other chips that show the box, objects keep away from it by themselves. low, high: where objects
- * lie in a chip. */
+ * other chips, objects keep away from the box by themselves. low, high: where objects lie in a
+ * chip. */
 static void forbid_covered(const struct campaign *campaign, uint64_t block, double low, double high,
                            uint64_t first, uint64_t count, uint64_t *first_forbidden,
                            uint64_t *forbidden)

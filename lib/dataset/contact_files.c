@@ -201,9 +201,8 @@ static int compare_contacts(const void *one, const void *other)
     return 0;
 }
 
-/* Returns the distance, pixels, between the end of a highlight and the start of a shadow. It is 0
- * where the shadow begins at the highlight's end, at the same rows. Infinite where the two cannot
- * be of one object. */
+/* Returns the distance, pixels, from the end of a highlight to the start of a shadow: 0 where the
+ * shadow begins there, at the same rows. Infinite where the two cannot be of one object. */
 static double distance_between(const struct labelled_contact *one,
                                const struct labelled_contact *other)
 {
@@ -293,8 +292,7 @@ static void pair_all(struct contact_set *set)
 
 /* ---- Reading. */
 
-/* Returns "data/images/train" for "data/labels/train"; NULL: the path has no "labels", or memory is
- * out. */
+/* Returns "data/images/train" for "data/labels/train"; NULL: there is none, or memory is out. */
 static char *folder_of_images(const char *folder)
 {
     for (size_t at = strlen(folder); at-- > 0;)

@@ -1,5 +1,4 @@
-/* Labelled contacts from files: COCO, YOLO, VOC, contacts.csv, or published quantiles without any
- * image. */
+/* Labelled contacts from files: COCO, YOLO, VOC, contacts.csv, or quantiles without any image. */
 #ifndef SONJECT_DATASET_CONTACT_FILES_H
 #define SONJECT_DATASET_CONTACT_FILES_H
 

@@ -61,8 +61,8 @@ static sonject_status read_name_keys(struct yolo *yolo, const char *text, size_t
     return status;
 }
 
-/* Reads the classes' names from the first of their files that is there, beside the labels or above
- * the labels. */
+/* Reads the classes' names from the first of their files that is there, beside or above the labels.
+ */
 static sonject_status read_names(struct yolo *yolo, const char *folder)
 {
     static const char *const files[] = {"classes.txt", "../classes.txt", "data.yaml",

@@ -49,8 +49,7 @@ static sonject_status each_folder(struct report *report, const char *folder, con
     return SONJECT_OK;
 }
 
-/* Removes files that numbers name, such as images, chips and calibrations, and then the folder if
- * it is empty. */
+/* Removes numbered files, such as images, chips and calibrations, and the folder if it is empty. */
 static sonject_status remove_numbered(struct report *report, const char *path)
 {
     struct folder_names list;
@@ -168,8 +167,7 @@ static sonject_status draw_swaths(struct sonject_campaign *campaign, const char 
     return SONJECT_OK;
 }
 
-/* Checks whose images the folder holds. If overwrites is true, the images of another campaign are
- * removed. */
+/* Checks whose images the folder holds. overwrites: another campaign's are removed. */
 static sonject_status check_head(struct sonject_campaign *campaign, const char *folder,
                                  bool overwrites, bool *is_same)
 {

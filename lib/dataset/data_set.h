@@ -15,13 +15,12 @@ extern const struct output_kind {
 
 #define IMAGE_NAME_CAPACITY 48
 
-/* Writes the name of an image's file within its split, "images/00000007.png", and returns name.
- * extension: of image files. */
+/* Writes an image's file name within its split, "images/00000007.png". extension: of image files.
+ * Returns name. */
 const char *image_file_name(uint64_t id, enum output output, const char *extension,
                             char name[IMAGE_NAME_CAPACITY]);
 
-/* The content of campaign.json that documents need. Starts as all zeros; to be given to
- * data_set_clear. */
+/* The content of campaign.json for documents. Starts as all zeros; for data_set_clear. */
 struct data_set {
     struct report *report;
     const char *folder;
@@ -57,9 +56,8 @@ sonject_status data_set_finish(struct data_set *set);
 sonject_status data_set_record(const struct data_set *set, size_t split, uint64_t id,
                                json_t **record);
 
-/* Finds whether an image is there, each file as its record says. changed (may be NULL): if it is
- * "", it gets the path of a file that is not so, or of a damaged record. Errors: STORAGE, MEMORY.
- */
+/* Finds whether an image is there, each file as its record says. changed (may be NULL): if "", it
+ * gets the path of a file that is not so, or of a damaged record. Errors: STORAGE, MEMORY. */
 sonject_status data_set_has_image(const struct data_set *set, size_t split, uint64_t id,
                                   char changed[PATH_CAPACITY], bool *has);
 
@@ -72,8 +70,7 @@ sonject_status write_report_page(const struct data_set *set);
 
 #define SHEET_CELLS 64 /* most images in a picture */
 
-/* Finds the sides of an image in a picture of images, rows first. Errors: those of data_set_finish.
- */
+/* Finds the sides of an image in such a picture, rows first. Errors: those of data_set_finish. */
 sonject_status sheet_image_sides(const struct data_set *set, size_t split, const json_t *record,
                                  uint32_t sides[2]);
 

@@ -29,8 +29,8 @@ static size_t split_but(const struct data_set *set, size_t one, size_t other, bo
     return found;
 }
 
-/* Names the splits train and val for trainers. Where no split is called so, train is the first
- * split without another use, and val the last one, or else the test split. Folders are relative to
+/* Names the splits train and val for trainers. Where none is called so, train is the first split
+ * without other use, and val the last one, or else the test split. Folders are relative to
  * data.yaml. */
 sonject_status write_yolo_card(const struct data_set *set)
 {

@@ -104,8 +104,7 @@ static double mass_between(double low, double high)
     return 0.5 * (erfc(-high * ROOT_HALF) - erfc(-low * ROOT_HALF));
 }
 
-/* Finds a quantile of the normal distribution cut to low...high by bisection, to the last digits
- * that are written. */
+/* Finds a quantile of the cut normal distribution by bisection, to the last written digits. */
 static double normal_quantile(double low, double high, double u)
 {
     const double mass = u * mass_between(low, high);

@@ -93,8 +93,7 @@ static sonject_status find_inputs(struct report *report, const struct scene *sce
     return *inputs ? SONJECT_OK : report_out_of_memory(report, "inputs");
 }
 
-/* Writes the files. elements.json comes last, so a folder that has it is complete. document:
- * released. */
+/* Writes the files, elements.json last, so a folder that has it is complete. document: released. */
 static sonject_status write_files(struct report *report, const struct scene *scene,
                                   const sonject_element_layout *layout, json_t *inputs,
                                   json_t *document, const float *series, const char *folder)

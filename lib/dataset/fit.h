@@ -61,7 +61,7 @@ struct fitted_selection {
     struct ratio_limits *swaths;    /* limits of each swath; NULL: none */
 };
 
-/* The draws that a fit moves; the campaign must outlive them. All zeros first; for fit_draws_clear.
+/* The draws that a fit moves; the campaign must outlive them. Starts as zeros; for fit_draws_clear.
  */
 struct fit_draws {
     bool lacks_shadows;              /* contacts lack shadows: what only shadows show stays */
@@ -86,9 +86,8 @@ void fit_draws_clear(struct fit_draws *draws);
 /* Moves all numbers and the added draws. */
 void fit_draws_move(struct fit_draws *draws, const struct draw_move *moves);
 
-/* Makes the campaign's text, comments included, with the moved numbers in their places. comment:
- * lines to put before the text. *text: for free(). Errors: INPUT (a key cannot be added there),
- * MEMORY. */
+/* Makes the campaign's text, comments included, with the moved numbers in it. comment: lines to put
+ * before. *text: for free(). Errors: INPUT (a key cannot be added there), MEMORY. */
 sonject_status fit_draws_text(const struct fit_draws *draws, struct report *report,
                               const struct fitted_selection *selection, const char *comment,
                               char **text);

@@ -1,5 +1,4 @@
-/* The numbers of a campaign's file that a fit moves, and the text with new numbers in their places.
- */
+/* The numbers of a campaign's file that a fit moves, and the text with new numbers in place. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,8 +17,7 @@
 #define RATIO_KEY  "range_over_altitude"
 #define OF_OBJECTS "objects[]."
 
-/* Returns the kinds of an object's sizes that a key sets; 0: none that is moved. item: NULL for
- * draws of all objects. */
+/* Returns the kinds of sizes that a key sets; 0: none that is moved. item: NULL for all objects. */
 static uint32_t kinds_of_key(const char *key, const struct draws *draws, const struct item *item)
 {
     static const struct {
@@ -295,8 +293,7 @@ struct splice_list {
     size_t count;
 };
 
-/* Returns a place's offset in bytes. Columns count characters, which may have several UTF-8 bytes.
- */
+/* Returns a place's offset, bytes. Columns count characters, which may have several UTF-8 bytes. */
 static size_t offset_of(const char *text, struct tree_place place)
 {
     size_t at = 0;

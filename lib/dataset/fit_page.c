@@ -45,8 +45,7 @@ enum series {
     SERIES_KINDS
 };
 
-/* Lists an extent of a series' contacts, m or dB, and returns the number of values. values: room
- * for all. */
+/* Lists an extent of a series' contacts, m or dB, and returns how many. values: room for all. */
 static size_t list_values(const struct fit *fit, size_t extent, enum series series, double *values)
 {
     const uint32_t round = series == SERIES_BEFORE ? 0 : FIT_ROUNDS - 1;
@@ -99,8 +98,8 @@ static json_t *histograms_document(const struct fit *fit, double *values)
     return histograms;
 }
 
-/* Returns how far quantiles of injected contacts are at most from real ones, in standard errors; 0:
- * not known. */
+/* Returns the largest distance of quantiles of injected contacts from real ones, standard errors;
+ * 0: unknown. */
 static double farthest_quantile(const struct fit *fit, size_t extent, double *values)
 {
     const struct quantile_goal *goal = &fit->goals[extent];

@@ -60,8 +60,7 @@ void attempts_next(struct attempts *attempts)
     memset(&attempts->places, 0, sizeof attempts->places);
 }
 
-/* Sets the swath. Before it is measured, only its scene is of use, and chips get the least sides.
- */
+/* Sets the swath. Before it is measured, chips have the least sides: only its scene is of use. */
 static void set_swath(struct drawing *drawing, uint32_t number)
 {
     const struct swath_plan *swath = &drawing->campaign->swaths[number];
@@ -91,8 +90,7 @@ static uint64_t attempt_seed(const struct drawing *drawing, uint64_t seed)
     return seed ^ (ATTEMPT_STRIDE * drawing->attempt);
 }
 
-/* Adds a key to the plan. text: taken over; NULL counts as memory that was out. table: see struct
- * plan_key. */
+/* Adds a key to the plan. text: taken over; NULL: memory is out. table: see struct plan_key. */
 static void add_key_of(struct drawing *drawing, struct tree_place place, const char *table,
                        char *text)
 {
@@ -431,8 +429,7 @@ static const struct item *choose_item(const struct drawing *drawing, const struc
     return item;
 }
 
-/* Chooses the image's objects. Targets come first, the one of the image's category before others.
- */
+/* Chooses the image's objects. Targets come first, and among them the one of the category. */
 static uint32_t choose_objects(struct drawing *drawing, const struct item *trial_clutter,
                                const struct item **items)
 {

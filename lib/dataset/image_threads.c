@@ -56,8 +56,7 @@ static void keep_line(void *user, uint32_t level, const char *line)
     growing_text_add(&thread->lines, "%u%s\n", (unsigned)level, line);
 }
 
-/* Notes a thread's progress; not 0 cancels. Also called, with the last fraction, while a thread
- * waits for another process. */
+/* Notes progress; not 0 cancels. While waiting for a process, called with the last fraction. */
 static int note_fraction(void *user, double fraction, const char *stage)
 {
     struct image_thread *thread = user;

@@ -30,8 +30,7 @@ struct contact {
     double row, column; /* place of its centre */
     bool has_place;
     struct place place; /* place of its centre on the map, with the sonar's heading */
-    /* The pixels of the object in the labels: highlight and shadow, less the pixels that other
-     * objects take. */
+    /* Pixels in the labels: highlight and shadow, less the pixels that other objects take. */
     uint64_t pixels; /* number; 0: none, and the members below are empty */
     sonject_box box; /* box around the pixels */
     uint64_t *runs; /* numbers of pixels outside and inside the object by turns, column after column
@@ -82,8 +81,7 @@ sonject_status labels_write(struct report *report, const struct image_labels *la
                             const struct class_names *classes, enum label_file file,
                             const char *path);
 
-/* Returns COCO's annotations of the image, numbered from 1, for image id 1; NULL where memory is
- * out. */
+/* Returns COCO's annotations, numbered from 1, for image 1; NULL where memory is out. */
 json_t *coco_annotations(const struct image_labels *labels);
 
 /* Return COCO's entry of an image, and of a class. */

@@ -93,8 +93,7 @@ void tell_scene(struct report *report, const struct scene *scene)
     tell_calibration_doubts(report, scene);
 }
 
-/* Notes objects that nobody who labels the image would find, and objects of which little but white
- * is left. */
+/* Notes objects that no labeller would find, and objects of which little but white is left. */
 static void tell_seen(struct report *report, const struct scene *scene,
                       const struct injection_result *result)
 {

@@ -53,8 +53,7 @@ sonject_status read_traced_scene(struct report *report, const struct kept_scene 
                                  const sonject_form_params *params, const char *calibration,
                                  struct scene *scene);
 
-/* Writes the hydrophones' time series of the scene's input into the folder; see
- * sonject_elements_run. */
+/* Writes the hydrophones' time series of the input into the folder; see sonject_elements_run. */
 sonject_status run_elements(struct report *report, struct device_slot *slot,
                             const struct scene *scene, const sonject_run_params *params,
                             sonject_progress_function progress, void *user);
@@ -104,8 +103,7 @@ sonject_status report_page_write(struct report *report, json_t *data, size_t dig
 #define HISTOGRAM_BINS 24
 json_t *histogram_counts(const double *values, size_t count, double low, double high);
 
-/* The parts of a result that are files of their own. Masks have the swath's size, all others the
- * patch's. */
+/* Parts of a result in files of their own. Masks have the swath's size, all others the patch's. */
 enum layer {
     LAYER_FIELD,
     LAYER_ENERGY,
@@ -127,8 +125,7 @@ sonject_status write_layer(struct report *report, const struct run_facts *facts,
 sonject_status write_layers(struct report *report, struct run_facts *facts, const char *folder);
 
 /* Writes coco.json, contacts.csv, and the files of facts->label_formats, and lists them in
- * facts->files. Removes label files of other formats that an earlier run left. Errors: STORAGE,
- * MEMORY. */
+ * facts->files. Removes label files of other formats of an earlier run. Errors: STORAGE, MEMORY. */
 sonject_status write_labels(struct report *report, struct run_facts *facts, const char *folder);
 
 /* Returns the formats (sum of sonject_labels) that a run.json names. */
@@ -175,15 +172,14 @@ const char *source_word(uint32_t source);
 /* Returns the numbers that a run used and their sources; NULL where memory is out. */
 json_t *sources_document(const struct scene *scene, const sonject_statistics *statistics);
 
-/* ---- Results of earlier calls in a folder. A result's last document names its inputs and its
- * files. */
+/* ---- Results of earlier calls. A result's last document names its inputs and its files. */
 
 #define RUN_DOCUMENT "run.json"
 
 struct earlier_request {
     const char *folder, *document; /* the result's last document, such as RUN_DOCUMENT */
     const json_t *inputs;          /* inputs of the call's result */
-    const struct scene *scene;     /* its input may be a file */
+    const struct scene *scene;     /* scene of the call, whose input may be a file */
     uint32_t label_formats;        /* wanted formats */
     bool overwrites;               /* another result may be replaced */
     bool hashes_all;               /* see file_entry_holds */
@@ -207,8 +203,7 @@ sonject_status earlier_check_merged(struct report *report, const char *folder,
                                     uint32_t label_formats);
 
 /* Removes a result's document, so that the folder does not count as complete while another result
- * is written over it. Returns the list of the earlier result's files, for earlier_tidy. Never
- * fails. */
+ * is written over it. Returns the list of the result's files, for earlier_tidy. Never fails. */
 json_t *earlier_withdraw(const char *folder, const char *document);
 
 /* Removes the files of an earlier result that are not among the new ones, and the remains of dead

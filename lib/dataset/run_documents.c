@@ -11,8 +11,7 @@
 #include "base/system/process.h"
 #include "base/units.h"
 
-/* Returns the horizontal range of a level seabed at a slant range, m; NaN before the first return.
- */
+/* Returns the horizontal range of level seabed at a slant range, m; NaN before the first return. */
 static double level_ground_range(const struct run_facts *facts, double slant_range_m)
 {
     const double altitude = facts->scene->sonar.altitude_m;
@@ -56,8 +55,7 @@ static json_t *level_document(const sonject_object_params *object,
                        JSON_NUMBER(truth, ceiling_over_seabed_db));
 }
 
-/* Returns the edge that a box of the patch touches: "swath", "patch" where the swath goes on, or
- * null. */
+/* Returns the edge that a box touches: "swath", "patch" where the swath goes on, or null. */
 static json_t *cut_document(const struct run_facts *facts, bool is_cut, const sonject_box *box)
 {
     const struct region *patch = &facts->swath->patch;
@@ -71,8 +69,7 @@ static json_t *cut_document(const struct run_facts *facts, bool is_cut, const so
     return is_cut ? json_string(goes_on ? "patch" : "swath") : json_null();
 }
 
-/* Returns the position of a row and a ground range on the map; null where the recording gives none.
- */
+/* Returns the map position of a row and a ground range; null where the recording gives none. */
 static json_t *position_document(const struct run_facts *facts, double row, double ground_range_m)
 {
     const struct track *track = &facts->swath->track;
@@ -137,8 +134,7 @@ static json_t *object_document(const struct run_facts *facts, uint32_t index)
         {"level", level_document(object, truth)});
 }
 
-/* Describes the measured image around the objects, and the values with which objects were put in.
- */
+/* Describes the measured image around the objects, and the values used to put objects in. */
 static json_t *blending_document(const sonject_statistics *statistics)
 {
     json_t *seabed =
@@ -153,8 +149,8 @@ static json_t *blending_document(const sonject_statistics *statistics)
         JSON_NUMBER(statistics, noise_floor_db), JSON_NUMBER(statistics, saturation_amplitude));
 }
 
-/* Returns the patch's corners on the map: first row near and far, last row far and near; null where
- * these are not known. */
+/* Returns the patch's corners on the map, or null: first row near and far, last row far and near.
+ */
 static json_t *corners_document(const struct run_facts *facts)
 {
     const sonject_geometry_params *geometry = &facts->scene->geometry;

@@ -15,10 +15,9 @@
 #include "schema/keys.h"
 #include "schema/scene_file.h"
 
-#define MADE_FOR "  made_for: " /* the last line, behind the measured values */
+#define MADE_FOR "  made_for: " /* the last line, among the measured values */
 
-/* Returns the geometry of the whole swath, which is the same for each of its patches. Zeros: the
- * file gives it. */
+/* Returns the geometry of the swath, the same for each patch. Zeros: the file gives it. */
 static sonject_geometry_params swath_geometry(const struct scene *scene)
 {
     static const sonject_geometry_params unknown;

@@ -41,8 +41,7 @@ static void add_note(void *user, uint32_t level, const char *line)
     growing_text_add(user, "           note: %s\n", line);
 }
 
-/* Describes the altitudes of all pings, where each ping has its own: the altitude at the objects
- * may be far off. */
+/* Describes the pings' altitudes, where each has its own: that at the objects may be far off. */
 static sonject_status describe_altitudes(struct growing_text *text, struct report *report,
                                          const struct scene *scene, const struct region *patch)
 {
