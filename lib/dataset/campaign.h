@@ -296,7 +296,7 @@ extern const struct section campaign_section, campaign_swath_section;
 sonject_status campaign_check_key(const struct tree *tree, struct tree_place place,
                                   const char *path, const char *key, bool is_object);
 
-/* Checks an entry's key in the same way; the entry's text is key, or ends with key. Errors: INPUT.
+/* Checks an entry's key (its text: key, or ending with key) as campaign_check_key. Errors: INPUT.
  */
 sonject_status campaign_check_entry(struct reader *reader, const struct tree_entry *entry,
                                     const char *key, bool is_object);

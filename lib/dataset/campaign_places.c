@@ -114,8 +114,7 @@ static void limit_columns(const struct limits *limits, double half, double near_
     *high = near_m <= far_m ? fmin(*high, floor(fmax(near, far) + 1e-9)) : -1.0;
 }
 
-/* Narrows low...high to first columns of chips or objects beyond the first return at an altitude.
- */
+/* Narrows low...high to first columns of chips or objects beyond an altitude's first return. */
 static void leave_out_water(const struct limits *limits, double half, double altitude_m,
                             double *low, double *high)
 {
@@ -364,7 +363,7 @@ static uint64_t side_of(uint32_t asked, uint64_t pixels, uint32_t edge)
     return asked > 0 ? asked : CAMPAIGN_CHIP_MIN + (pixels > taken ? pixels - taken : 0);
 }
 
-/* Fails with all that is asked of images, or of objects in images, since no place is left. */
+/* Fails and tells all that is asked of images, or of objects in images, as no place is left. */
 static sonject_status refuse_swath(const struct limits *limits, const struct swath_plan *plan)
 {
     const struct campaign *campaign = limits->campaign;

@@ -44,7 +44,7 @@ static void resample(const struct raster_layout *layout, const void *pixels,
         }
 }
 
-/* Scales to 0...1 grey levels as they are, other pixels in dB from the 1st to 99.8th percentile. */
+/* Scales values to 0...1: grey levels as they are, others in dB, 1st to 99.8th percentile. */
 static sonject_status shade(struct report *report, enum pixel_type type, struct thumbnail *small)
 {
     const size_t count = (size_t)small->sides[0] * small->sides[1];

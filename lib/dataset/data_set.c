@@ -1,5 +1,5 @@
-/* The documents of a whole data set. campaign.json describes it, is written by the process that
- * begins it, and is checked by all others. COCO documents of splits are put together image by
+/* The documents of a whole data set. campaign.json says what the set is; the process that begins
+ * the set writes it, and all others check it. COCO documents of splits are put together image by
  * image. dataset.json comes last, so that a folder that has it is complete. */
 #include "dataset/data_set.h"
 

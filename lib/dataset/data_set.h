@@ -70,7 +70,7 @@ sonject_status write_report_page(const struct data_set *set);
 
 #define SHEET_CELLS 64 /* most images in a picture */
 
-/* Finds the sides of an image in such a picture, rows first. Errors: those of data_set_finish. */
+/* Finds an image's sides in a picture of images, rows first. Errors: those of data_set_finish. */
 sonject_status sheet_image_sides(const struct data_set *set, size_t split, const json_t *record,
                                  uint32_t sides[2]);
 

@@ -31,7 +31,7 @@ static json_t *array_document(const sonject_elements_params *elements)
         JSON_NUMBER(elements, hydrophone_length_m), JSON_NUMBER(elements, aspect_limit_rad));
 }
 
-/* Describes where the scene's image lies, for users who want to image the same. */
+/* Describes the place of the scene's image, for users who want to image the same area. */
 static json_t *image_document(const struct scene *scene, const struct injection_input *input)
 {
     const sonject_geometry_params *geometry = &scene->geometry;

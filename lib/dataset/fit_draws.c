@@ -161,8 +161,8 @@ static sonject_status find_in_section(struct fit_draws *draws, struct report *re
     return SONJECT_OK;
 }
 
-/* Notes sizes of a target that no number moves: none of all objects' first of_all numbers, nor of
- * those from the first-th on. */
+/* Notes sizes of a target that no number moves. The target's numbers are the first of_all ones,
+ * those of all objects, and those from the first-th on. */
 static void note_fixed(struct fit_draws *draws, const struct item *item, size_t of_all,
                        size_t first)
 {

@@ -262,8 +262,8 @@ static void choose_kind(struct drawing *drawing, uint64_t within)
 #define CANDIDATES 16   /* places tried for an object beside others */
 #define PLACES_MAX 1000 /* tries to find an object a free place */
 
-/* Draws an object's own draws, and the draws of all objects that it has not. number: of the object;
- * 0 is the target, if there is one. is_beside: clutter, or another target. */
+/* Draws an object's values: its own draws, and the draws of all objects that it has not. number: of
+ * the object; 0 is the target, if there is one. is_beside: clutter, or another target. */
 static void draw_object(struct drawing *drawing, const struct item *item, uint32_t number,
                         bool is_beside)
 {

@@ -36,7 +36,7 @@ struct image_thread {
     struct image_maker maker;
     struct sonject_campaign campaign;
     struct report report;
-    struct report_host host; /* fraction of its image; guarded by the pool's lock */
+    struct report_host host; /* host.fraction, of the image, is guarded by the pool's lock */
     struct decoder decoder;
     struct device_slot slot;
     struct growing_text lines; /* log lines of its image */

@@ -193,7 +193,7 @@ sonject_status earlier_check(struct report *report, const struct earlier_request
 
 /* Compares the inputs of two results, objects with a member for each input. image: the name of an
  * image that differs besides, or NULL. Errors: ARGUMENT (inputs differ, and overwrites is false:
- * the message names the first), MEMORY. */
+ * the message names the first ones), MEMORY. */
 sonject_status inputs_check(struct report *report, const char *folder, const json_t *there,
                             const json_t *here, const char *image, bool overwrites, bool *is_same);
 

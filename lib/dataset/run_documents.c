@@ -149,8 +149,7 @@ static json_t *blending_document(const sonject_statistics *statistics)
         JSON_NUMBER(statistics, noise_floor_db), JSON_NUMBER(statistics, saturation_amplitude));
 }
 
-/* Returns the patch's corners on the map, or null: first row near and far, last row far and near.
- */
+/* Returns the patch's corners on the map, or null: first row near, far; last row far, near. */
 static json_t *corners_document(const struct run_facts *facts)
 {
     const sonject_geometry_params *geometry = &facts->scene->geometry;
