@@ -355,8 +355,8 @@ static const struct field chip_fields[] = {
      "[nearest, farthest] slant range of images' middles, or of objects if columns is all",
      SPECIAL(read_range, "list of two lengths")},
     {"range_over_altitude",
-     "[least, most] slant range over altitude at images' middles, or objects if columns is all; "
-     "may begin in the water column",
+     "[least, most] slant range over altitude at images' middles (objects if columns is all); "
+     "water column allowed",
      SPECIAL(read_ratio, "list of two numbers"), .range = "1..." TEXT_OF(RATIO_MAX)},
 };
 static const struct section chip_section = {ROWS(chip_fields)};
@@ -440,8 +440,8 @@ static const struct field campaign_fields[] = {
     {"format", "format of image files; as_input: a JPEG, coded alike, where the swath is a JPEG",
      WORD(format) = {[FORMAT_LOSSLESS] = "lossless", [FORMAT_AS_INPUT] = "as_input"}},
     {"grey",
-     "[black, white] levels of 8 bit images for detectors, over full scale, as convert --db; "
-     "default: the swath's numbers",
+     "[black, white] of 8 bit images for detectors: levels over full scale, as convert --db; "
+     "default: swath's numbers",
      SPECIAL(read_grey, "list of two levels")},
     {"labels", "label formats besides COCO: yolo, voc", SPECIAL(read_outputs, "list of words")},
     {"empty", "fraction of images without any object", QUANTITY(empty, NUMBER), WITHIN(0.0, 1.0)},
