@@ -36,8 +36,8 @@ struct image_library {
     /* reads the samples of a region, row after row */
     sonject_status (*read)(struct report *report, void *image, const struct region *region,
                            void *pixels);
-    /* changes samples; float64s that read as the same float32 keep their bits; NULL: copies are new
-     * images */
+    /* changes samples; float64 numbers keep their bits if they read as the same float32. NULL:
+     * copies are new images */
     sonject_status (*change)(struct report *report, void *image, const struct region *region,
                              const void *pixels);
 };

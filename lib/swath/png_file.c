@@ -14,8 +14,7 @@
 
 #define DESCRIPTION "Description" /* keyword of the description */
 
-/* The chunk that marks sonject's own palettes, whose pixels are numbers. Pixels with other palettes
- * are colours. */
+/* The chunk that marks sonject's own palettes: their pixels are numbers, all others colours. */
 #define NUMBERS_CHUNK "soNu"
 
 struct png_image {

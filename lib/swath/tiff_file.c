@@ -20,8 +20,7 @@ struct kept_block {
     bool is_there;
 };
 
-/* An open TIFF. Blocks are tiles, or strips as wide as the image, of which the last may be
- * short. */
+/* An open TIFF. Blocks are tiles or strips. Strips are full rows, and the last may be short. */
 struct tiff_image {
     const char *name, *path; /* name: for messages */
     TIFF *file;
