@@ -24,8 +24,8 @@ static inline void hdf5_leave(const struct hdf5_session *session)
 #include <hdf5.h>
 
 /* The state between hdf5_enter and hdf5_leave. hdf5_enter waits until no other thread is there, and
- * keeps HDF5 from printing. If nothing has used HDF5 before, the first call also asks it not to
- * tidy up when the program ends, which crashes if a full disk kept it from closing a file. */
+ * keeps HDF5 from printing. The first call also asks HDF5, if unused before, not to tidy up when
+ * the program ends. Tidying up crashes if a full disk kept HDF5 from closing a file. */
 struct hdf5_session {
     H5E_auto2_t print;
     void *print_data;

@@ -25,7 +25,7 @@ struct decoder;
 /* Data that a context lends to all its calls. */
 struct report_host {
     void *log_user;
-    struct decoder *decoder; /* for images and HDF5 files (swath/decoder.h) */
+    struct decoder *decoder; /* reads images and HDF5 files (swath/decoder.h) */
     /* The running call's progress function (may be NULL) and what it was last told. */
     sonject_progress_function progress;
     void *progress_user;

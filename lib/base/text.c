@@ -182,7 +182,7 @@ static size_t character_length(const unsigned char *text)
 }
 
 /* Returns whether a well-formed character is a control (C0, DEL, C1), ends a line or paragraph, or
- * changes the direction of later text, which can make a line read as another. */
+ * changes the direction of later text. Such changes can make a line read as another. */
 static bool is_control(const unsigned char *byte)
 {
     if (byte[0] < 0x20 || byte[0] == 0x7F)

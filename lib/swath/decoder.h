@@ -55,9 +55,9 @@ struct decoder_reply {
     uint64_t bytes; /* number of bytes that follow */
 };
 
-/* Returns the path of the program, for free(); NULL if out of memory. The program is in the folder
- * sonject beside the library (beside the host's program if the library is part of it), right beside
- * the library (in Python's package and the build), or where sonject was installed. In tests the
+/* Returns the path of the program, for free(); NULL if out of memory. Looks in three places: the
+ * folder sonject beside the library (or beside the host's program that contains the library), right
+ * beside the library (Python's package, the build), and where sonject was installed. In tests the
  * folder is BUILT_FOLDER. */
 char *decoder_path(void);
 

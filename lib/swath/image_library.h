@@ -8,7 +8,7 @@
 #include "image/raster.h"
 #include "swath/image_head.h"
 
-#define DESCRIPTION_MAX ((size_t)1 << 16) /* of a description that is kept, with its final 0 */
+#define DESCRIPTION_MAX ((size_t)1 << 16) /* bytes of a kept description, its 0 included */
 
 /* The fault that a library reported; all 0: none yet. */
 struct library_fault {

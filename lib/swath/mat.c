@@ -1,8 +1,8 @@
 /* Arrays of MATLAB files of version 5 (.mat: -v6 and -v7 of MATLAB, and those of scipy and Octave).
  * Arrays are two-dimensional, of double, single, uint8, uint16 or int16 numbers; double and single
  * may be complex. Rows and columns are MATLAB's. A copy differs from its source only in the array's
- * changed numbers; all other variables keep every byte. A variable is written anew if it is
- * compressed, or if MATLAB packed its numbers into a smaller type. */
+ * changed numbers; all other variables keep every byte. A variable is written again as a whole if
+ * it is compressed, or if MATLAB packed its numbers into a smaller type. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +18,7 @@
 #define HEADER_BYTES    128
 #define HEAD_BYTES      512  /* enough for class, sides and name of a variable */
 #define DEFLATE_RATIO   1040 /* more than the bytes that a deflated byte holds */
-#define NAME_MAX_BYTES  64   /* with the final 0 */
+#define NAME_MAX_BYTES  64   /* final 0 included */
 #define FLAG_COMPLEX    0x0800u
 #define SUBSYSTEM_PLACE 116 /* in the header: offset of the data of MATLAB's own objects */
 
@@ -54,7 +54,7 @@ struct part {
 
 /* A variable in the file. */
 struct variable {
-    uint64_t place, bytes; /* of the element in the file, with its tag */
+    uint64_t place, bytes; /* the element in the file, tag included */
     bool is_compressed, is_complex;
     uint32_t kind; /* MATLAB's class */
     uint64_t rows, columns;

@@ -11,7 +11,7 @@
 
 #define BLOCKS_MAX      ((uint32_t)1 << 25)
 #define NEW_STRIP_BYTES ((uint64_t)1 << 18)                 /* in a new image */
-#define CLASSIC_MAX     (UINT32_MAX - ((uint64_t)64 << 20)) /* with some room for the directory */
+#define CLASSIC_MAX     (UINT32_MAX - ((uint64_t)64 << 20)) /* less 64 MB for the directory */
 
 /* The block read last, kept because pieces of an image come one after the other. */
 struct kept_block {
@@ -373,8 +373,8 @@ static sonject_status read_pixels(struct report *report, void *opened, const str
                          image->fault.message);
 }
 
-/* Ends the writing with the lists of places and sizes. Returns false if libtiff wrote the directory
- * anew, which could lose tags. */
+/* Ends the writing with the lists of places and sizes. Returns false if libtiff rewrote the
+ * directory, which could lose tags. */
 static bool flush_lists(TIFF *writer)
 {
     const uint64_t directory = TIFFCurrentDirOffset(writer);

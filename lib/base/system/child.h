@@ -23,10 +23,10 @@ struct child {
     void *process, *job; /* Windows' handles */
 };
 
-/* How a child ended. */
+/* The end of a child. */
 struct child_end {
     bool is_known;   /* false if the host has waited for it; on Windows also if it was ended here */
-    bool has_exited; /* by itself, with status */
+    bool has_exited; /* true if the child ended by itself, with status */
     int status;
     bool is_out_of_time;
     char reason[40]; /* such as " (signal 11)"; "": none */
