@@ -83,7 +83,7 @@ struct folder_names {
 };
 
 /* Lists the names that begin with prefix; none if there is no folder. On success list is for
- * folder_names_clear; on failure nothing is held. Errors: STORAGE, MEMORY (or over a million
+ * folder_names_clear; on failure nothing is held. Errors: STORAGE, MEMORY (also above 2^20
  * names). */
 sonject_status folder_names_read(struct folder_names *list, struct report *report, const char *path,
                                  const char *prefix);

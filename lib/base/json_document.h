@@ -87,9 +87,8 @@ sonject_status file_entry_holds(struct report *report, const json_t *entry, cons
 sonject_status file_list_add(json_t **list, struct report *report, const char *folder,
                              const char *name, bool has_time);
 
-/* Checks that all files of a list are in the folder as listed. *name: the first that is not,
- * borrowed from the list, or "the list of files" if it is empty; NULL: all are. Errors: STORAGE,
- * MEMORY. */
+/* Checks that a list's files are in the folder as listed. *name: the first that is not, borrowed
+ * from the list, or "the list of files" if it is empty; NULL: all are. Errors: STORAGE, MEMORY. */
 sonject_status file_list_check(const json_t *list, struct report *report, const char *folder,
                                bool hashes_all, const char **name);
 

@@ -25,7 +25,7 @@ struct decoder;
 /* Data that a context lends to all its calls. */
 struct report_host {
     void *log_user;
-    struct decoder *decoder; /* reads images and HDF5 files (swath/decoder.h) */
+    struct decoder *decoder; /* the reader of images and HDF5 files (swath/decoder.h) */
     /* The running call's progress function (may be NULL) and what it was last told. */
     sonject_progress_function progress;
     void *progress_user;
@@ -55,7 +55,7 @@ sonject_status report_out_of_memory(struct report *report, const char *what);
 
 /* Returns the status so far of steps that are all taken even if one finds bad input; starts as
  * SONJECT_OK. A step's message is added to lines, which start as "" and become the report's
- * message. "and more" stands for messages without room. No step may follow a status but OK and
+ * message. "and more" replaces messages without room. No step may follow a status but OK and
  * INPUT. */
 sonject_status report_gather(struct report *report, char lines[REPORT_CAPACITY],
                              sonject_status so_far, sonject_status step);

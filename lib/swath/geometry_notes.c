@@ -315,9 +315,8 @@ static bool takes_altitude(const struct scene *scene, const struct wanted *wante
 
 /* Takes geometry and altitude of a recording. A patch's row spacing is the mean of its own pings.
  * The picture of the whole line has the mean of all pings, and the patch's middle lies where that
- * picture has it. A line that ends where it began has no such mean. If no patch is chosen, the
- * altitude is that at the objects' pings: a line's mean, and so every shadow, may be far off
- * there. */
+ * picture has it. A line that ends where it began has no such mean. Without a patch, the altitude
+ * is that at the objects' pings: a line's mean, and so every shadow, may be far off there. */
 static sonject_status take_recording(struct report *report, const struct scene *scene,
                                      const struct recording *recording, struct wanted *wanted)
 {

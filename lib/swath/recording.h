@@ -54,7 +54,7 @@ struct recording_geometry {
     double lowest_altitude_m, highest_altitude_m;
 };
 
-/* Returns whether one altitude cannot stand for all rows: it changes by more than a tenth. */
+/* Returns whether one altitude cannot stand for all rows, as it changes by more than a tenth. */
 bool recording_altitude_varies(const struct recording_geometry *geometry);
 
 /* Returns the geometry of the rows first_row...first_row + count - 1, which must be within the

@@ -41,8 +41,8 @@ struct stored_samples {
 
 /* Moves the samples of part between a file and an image, whose pixels are the region's, row after
  * row. writes: from the image to the file. A stored number that already reads as the given float32
- * keeps its bits; others are rounded to integer types. path: for messages. Errors: INPUT (a sample
- * that the other side cannot hold; says where). */
+ * keeps its bits; others are rounded if the type is an integer. path: for messages. Errors: INPUT
+ * (a sample that the other side cannot hold; says where). */
 sonject_status samples_exchange(struct report *report, const char *path,
                                 const struct raster_layout *layout,
                                 const struct stored_samples *stored, const struct region *part,
@@ -151,7 +151,7 @@ sonject_status channel_list_check(struct report *report, const char *path,
                                   const struct channel_list *list);
 
 /* Appends a ping, whose samples begin at place, as the image's next row. A ping without samples is
- * noted as empty and makes no row. Errors: INPUT (not the range cells of other rows), MEMORY. */
+ * noted as empty and makes no row. Errors: INPUT (range cells unlike earlier rows), MEMORY. */
 sonject_status recording_add(struct report *report, struct swath_file *file,
                              const struct recorded_ping *ping, uint64_t place, uint64_t samples);
 

@@ -11,7 +11,7 @@
 #include "base/system/windows_text.h"
 
 #define SHARES_ALL      (FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE)
-#define EPOCH_S         INT64_C(11644473600) /* seconds of 1970 on Windows' clock */
+#define EPOCH_S         INT64_C(11644473600) /* 1970 on Windows' clock, s */
 #define REPLACE_TRIES   20
 #define REPLACE_WAIT_MS 50
 

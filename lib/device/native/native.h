@@ -14,8 +14,7 @@ void threads_retain(void);
 void threads_release(void);
 
 /* Runs work-items on the calling thread and on up to most - 1 others, and waits for all. Any
- * threads may call this at once and then share the process's threads. A forked child starts its
- * own. */
+ * threads may call this at once and share the process's threads. A forked child starts its own. */
 void threads_run(uint32_t most, native_function *run, const struct kernel_argument *arguments,
                  const size_t global[3]);
 

@@ -21,7 +21,7 @@ struct job {
     size_t total;
     size_t begun;    /* work-items begun; atomic */
     uint32_t most;   /* threads at once, with the caller */
-    uint32_t inside; /* threads of the pool that run its work-items now */
+    uint32_t inside; /* threads of the pool that run the job now */
 };
 
 static struct {

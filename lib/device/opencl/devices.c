@@ -106,8 +106,7 @@ void driver_leave(void)
     pthread_mutex_unlock(&one_at_a_time);
 }
 
-/* Reports why there is no device. Memory may be short: drivers that cannot be loaded are
- * skipped. */
+/* Reports why there is no device. Memory may be short: drivers that do not load are skipped. */
 static sonject_status explain_no_device(struct report *report, cl_int error)
 {
     if (error == CL_OUT_OF_HOST_MEMORY || memory_is_short())
