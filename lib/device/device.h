@@ -65,8 +65,8 @@ sonject_status device_slot_open(struct report *report, struct device_slot *slot,
                                 struct device **device);
 void device_slot_close(struct device_slot *slot);
 
-/* Refuses in a child forked from a process that used OpenCL's driver: the driver's threads are not
- * in the child, whose calls would wait for them for ever. Errors: DEVICE. */
+/* Claims OpenCL's driver. Refuses in a child forked from a process that used the driver: the child
+ * lacks the driver's threads, so its calls would wait for them for ever. Errors: DEVICE. */
 sonject_status driver_claim(struct report *report);
 
 /* Makes a buffer of bytes (at least 1), filled from contents, or with zeros if contents is NULL.
