@@ -1,4 +1,4 @@
-/* The aspects of a synthetic aperture: each ray goes out squinted from broadside, and lies so that
+/* The aspects of a synthetic aperture. Each ray goes out squinted from broadside, and lies so that
  * its echo from the seabed focuses in the ray's own strip (kernels/MATH.md, "Aspects"). */
 #ifndef SONJECT_KERNELS_ASPECTS_H
 #define SONJECT_KERNELS_ASPECTS_H
@@ -6,30 +6,30 @@
 #include "fan.h"
 #include "random.h"
 
-/* A ray of a fan turned out of its strip's plane about an axis across the track: from broadside it
- * looks as it did, so ranges as the image has them stay. */
+/* A ray of a fan, turned out of its strip's plane about an axis across the track. Seen from
+ * broadside it looks unchanged, so ranges stay as the image has them. */
 struct aspect_ray {
-    struct vector3 start;     /* at distance 0 of the fan's ray */
+    struct vector3 start;     /* place at distance 0 of the fan's ray */
     struct vector3 direction; /* unit */
-    vfloat sine, cosine;      /* of the angle off broadside; a distance along the fan's ray is
-                               cosine times that along this one */
-    vfloat weight;            /* of the aspect: 1 on the mean; within a beam: see there */
+    vfloat sine, cosine; /* angle off broadside; a distance along the fan's ray is the cosine times
+                            that along this one */
+    vfloat weight;       /* weight of the aspect, 1 on average; within a beam see beam_ray_of */
 };
 
-/* Whether the launch's rays have aspects of a synthetic aperture. */
+/* Returns whether the launch's rays have aspects of a synthetic aperture. */
 FUNCTION int has_aspects(const struct fan_record *fan)
 {
     return fan->aspects.sine > 0.0f;
 }
 
-/* Whether they go out within the beam of a real one. */
+/* Returns whether the launch's rays go out within the beam of a real aperture. */
 FUNCTION int has_beam(const struct fan_record *fan)
 {
     return fan->beam.reach > 0.0f;
 }
 
-/* The share 0...1 of the aperture that a ray looks from: the lattice of the plastic number, even
- * over any few neighbours among rays and strips, each point moved within an eighth. */
+/* Returns the share 0...1 of the aperture that a ray looks from: the lattice of the plastic number,
+ * each point moved within an eighth. Shares are even over any few neighbouring rays and strips. */
 FUNCTION vfloat aspect_share(const struct fan_record *fan, RECORD_WORD track_strip, word ray,
                              vfloat jitter)
 {
@@ -38,15 +38,15 @@ FUNCTION vfloat aspect_share(const struct fan_record *fan, RECORD_WORD track_str
     return SELECT(MASK_OF(share >= 1.0f), share - 1.0f, share);
 }
 
-/* Energy weight of an aspect, `offset` of the aperture's width from its middle: the square of the
- * response's window. */
+/* Returns the energy weight of an aspect: the square of the response's window. offset: from the
+ * middle of the aperture, as a share of its width. */
 FUNCTION vfloat aspect_weight(const struct fan_record *fan, vfloat offset)
 {
     if (fan->aspects.terms == 0)
         return SPLAT(1.0f);
     vfloat sine, cosine;
     sine_cosine_of_cycles(offset, &sine, &cosine);
-    /* cosines of multiples by Chebyshev's recursion */
+    /* Chebyshev's recursion gives the cosines of multiples. */
     vfloat before = SPLAT(1.0f);
     vfloat now = cosine;
     vfloat amplitude = SPLAT(1.0f);
@@ -59,8 +59,8 @@ FUNCTION vfloat aspect_weight(const struct fan_record *fan, vfloat offset)
     return amplitude * amplitude * fan->aspects.scale;
 }
 
-/* Power pattern of one side of the array at a direction cosine along it: sinc^2 one way, squared
- * for there and back. */
+/* Returns the two-way power pattern of one side of the array at a direction cosine along it: sinc^2
+ * one way, squared for there and back. */
 FUNCTION vfloat two_way_pattern(float wavelengths, vfloat cosine)
 {
     const vfloat amplitude = sinc_of_cycles(0.5f * wavelengths * cosine);
@@ -68,23 +68,23 @@ FUNCTION vfloat two_way_pattern(float wavelengths, vfloat cosine)
     return one_way * one_way;
 }
 
-#define STEEPEST_SINE 0.95f /* off broadside; a beam's rays go no further */
+#define STEEPEST_SINE 0.95f /* the largest sine off broadside of a beam's rays */
 
-/* A ray within the beam, from the middle of its ping. weight: the two-way pattern times the range
- * of sines that the ray stands for with its kind, which takes the place of a strip's width over
- * range. share: 0...1. */
+/* Returns a ray within the beam, from the middle of its ping. share: 0...1. The ray's weight is the
+ * two-way pattern times the range of sines that the ray stands for. This range takes the place of a
+ * strip's width over range. */
 FUNCTION struct aspect_ray beam_ray_of(const struct fan_record *fan, const struct fan_ray *ray,
                                        vfloat share)
 {
     const struct beam_record *beam = &fan->beam;
     struct aspect_ray squinted;
-    /* the middle: where the way is square to the long side */
+    /* The beam's middle is where the way is square to the array's long side. */
     const vfloat slope =
         -(ray->direction.y * beam->along[1] + ray->direction.z * beam->along[2]) / beam->along[0];
     const vfloat square = 1.0f + slope * slope;
     const vfloat middle = slope / SQUARE_ROOT(square);
     const vfloat reach = beam->reach / (beam->along[0] * square);
-    /* a cubic puts most rays where the pattern is high */
+    /* A cubic puts most rays where the pattern is high. */
     const vfloat side = 2.0f * share - 1.0f;
     const vfloat sine = middle + reach * side * (0.3f + 0.7f * side * side);
     const vfloat range = 2.0f * reach * (0.3f + 2.1f * side * side);
@@ -107,7 +107,7 @@ FUNCTION struct aspect_ray beam_ray_of(const struct fan_record *fan, const struc
     return squinted;
 }
 
-/* The ray of the fan itself. */
+/* Returns the fan's ray itself, at broadside. */
 FUNCTION struct aspect_ray broadside_aspect(const struct fan_ray *ray)
 {
     struct aspect_ray broadside;
@@ -119,8 +119,8 @@ FUNCTION struct aspect_ray broadside_aspect(const struct fan_ray *ray)
     return broadside;
 }
 
-/* The ray of the fan itself where the launch has one aspect only. track_strip: the ray's strip,
- * counted over the whole track; jitter: uniform in 0...1. */
+/* Returns the squinted ray, or the fan's ray itself if the launch has one aspect only. track_strip:
+ * the ray's strip, counted over the whole track; jitter: uniform in 0...1. */
 FUNCTION struct aspect_ray aspect_ray_of(const struct fan_record *fan, const struct fan_ray *ray,
                                          RECORD_WORD track_strip, word number, vfloat jitter)
 {
@@ -134,7 +134,7 @@ FUNCTION struct aspect_ray aspect_ray_of(const struct fan_record *fan, const str
     squinted.sine = 2.0f * fan->aspects.sine * offset;
     squinted.cosine = SQUARE_ROOT(1.0f - squinted.sine * squinted.sine);
     squinted.weight = aspect_weight(fan, offset);
-    /* across its strip where it meets the mean seabed, or where the patch ends */
+    /* The ray crosses its strip where it meets the mean seabed, or where the patch ends. */
     const vfloat anchor = smaller(plane_distance(fan, ray->closest, ray->direction),
                                   fan->aspects.end - ray->range_at_closest);
     squinted.start.x = ray->closest.x - anchor * (squinted.sine / squinted.cosine);
@@ -144,8 +144,8 @@ FUNCTION struct aspect_ray aspect_ray_of(const struct fan_record *fan, const str
     return squinted;
 }
 
-/* What a beam's ray at a broadside range (less the reference range) is over one that stands for a
- * strip: dA across the ray is range^2 d(sine) d(elevation), the range being the whole one. */
+/* Returns the wavefront area of a beam's ray over that of a strip's ray: range^2 d(sine)
+ * d(elevation), with the whole range. broadside_range: less the reference range. */
 FUNCTION vfloat beam_spread(const struct fan_record *fan, const struct aspect_ray *squinted,
                             vfloat broadside_range)
 {
@@ -153,7 +153,7 @@ FUNCTION vfloat beam_spread(const struct fan_record *fan, const struct aspect_ra
            (squinted->cosine * squinted->cosine * squinted->cosine * fan->strip_width);
 }
 
-/* The whole range of a broadside range, each less the reference range. */
+/* Returns the whole range of a broadside range. Both are less the reference range. */
 FUNCTION vfloat whole_range(const struct fan_record *fan, const struct aspect_ray *squinted,
                             vfloat broadside_range)
 {
@@ -161,7 +161,7 @@ FUNCTION vfloat whole_range(const struct fan_record *fan, const struct aspect_ra
     return (broadside_range + fan->reference_range * lack) / squinted->cosine;
 }
 
-/* The strip of the whole track that a position along it lies in. */
+/* Returns the strip of the whole track that holds a position along it. */
 FUNCTION vint track_strip_at(const struct fan_record *fan, vfloat x)
 {
     const vfloat coordinate = (x - fan->first_strip_x) / fan->strip_width + 0.5f;

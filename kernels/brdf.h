@@ -1,12 +1,12 @@
-/* Directions of the rough part: generalised Lambert's law and the specular cone. Directions are
- * unit vectors away from the surface. */
+/* Directions of the rough part: the generalised Lambert's law and the cone about the specular
+ * direction. Directions are unit vectors away from the surface. */
 #ifndef SONJECT_KERNELS_BRDF_H
 #define SONJECT_KERNELS_BRDF_H
 
 #include "elementary.h"
 #include "vector3.h"
 
-/* cosine^exponent for a cosine in (0, 1]; exponent >= 0. */
+/* Returns cosine^exponent for a cosine in (0, 1] and an exponent >= 0. */
 FUNCTION vfloat cosine_power(vfloat cosine, float exponent)
 {
     if (exponent == 0.0f)
@@ -17,7 +17,7 @@ FUNCTION vfloat cosine_power(vfloat cosine, float exponent)
     return exponential_of_negative(smaller(exponent * natural_logarithm(positive), SPLAT(0.0f)));
 }
 
-/* (n + 1)/2 (cos cos)^(n - 1), over which mu stands for Lambert's law at n = 1. */
+/* Returns (n + 1)/2 (cos cos)^(n - 1), the factor of mu for an exponent n; n = 1 is Lambert's. */
 FUNCTION vfloat diffuse_shape(vfloat cosine_one, vfloat cosine_other, float exponent)
 {
     if (exponent == 1.0f)
@@ -25,7 +25,7 @@ FUNCTION vfloat diffuse_shape(vfloat cosine_one, vfloat cosine_other, float expo
     return 0.5f * (exponent + 1.0f) * cosine_power(cosine_one * cosine_other, exponent - 1.0f);
 }
 
-/* Density (n + 1)/(2 pi) cos^n, 1/sr; 0 below the surface. */
+/* Returns the density (n + 1)/(2 pi) cos^n of sample_diffuse, 1/sr; 0 below the surface. */
 FUNCTION vfloat diffuse_density(vfloat cosine, float exponent)
 {
     const mask is_above = MASK_OF(cosine > 0.0f);
@@ -33,7 +33,7 @@ FUNCTION vfloat diffuse_density(vfloat cosine, float exponent)
     return SELECT(is_above, 0.15915494309f * (exponent + 1.0f) * shape, SPLAT(0.0f));
 }
 
-/* A direction about the normal: cosine and turn (cycles) from it. */
+/* Returns the direction with a given cosine to the normal and turn about it, in cycles. */
 FUNCTION struct vector3 direction_about(struct vector3 normal, vfloat cosine, vfloat sine,
                                         vfloat turn)
 {
@@ -46,7 +46,7 @@ FUNCTION struct vector3 direction_about(struct vector3 normal, vfloat cosine, vf
 
 FUNCTION struct vector3 sample_diffuse(struct vector3 normal, float exponent, vfloat u, vfloat v)
 {
-    /* 1 - cos^2 = u at n = 1: no difference of nearly equal numbers */
+    /* At n = 1, 1 - cos^2 = u: no difference of nearly equal numbers. */
     vfloat square_sine = u;
     if (exponent != 1.0f) {
         const vfloat cosine =
@@ -56,9 +56,10 @@ FUNCTION struct vector3 sample_diffuse(struct vector3 normal, float exponent, vf
     return direction_about(normal, SQUARE_ROOT(1.0f - square_sine), SQUARE_ROOT(square_sine), v);
 }
 
-/* Facets whose slopes are normally distributed (P. Beckmann, A. Spizzichino, "The Scattering of
- * Electromagnetic Waves from Rough Surfaces"): area of facets per area of surface and solid angle
- * of their normals, 1/sr, whose integral times the cosine is 1. slope: rms, over both axes. */
+/* Returns the density of facets with normally distributed slopes (P. Beckmann, A. Spizzichino, "The
+ * Scattering of Electromagnetic Waves from Rough Surfaces"): the area of facets per area of surface
+ * and solid angle of their normals, 1/sr. Its integral times the cosine is 1. slope: rms, both
+ * axes. */
 FUNCTION vfloat facet_density(vfloat cosine, float slope)
 {
     const mask is_above = MASK_OF(cosine > 1.0e-4f);
@@ -75,8 +76,8 @@ struct microfacet {
     vfloat half_angle; /* cosine between its normal and either direction */
 };
 
-/* The sum of the directions is twice that cosine long: near grazing their product with the normal
- * would cancel. */
+/* Finds the facet between two directions. The half angle's cosine is half the length of their sum:
+ * near grazing a scalar product with the normal would cancel. */
 FUNCTION struct microfacet facet_between(struct vector3 one, struct vector3 other)
 {
     struct microfacet facet;
@@ -92,9 +93,9 @@ FUNCTION struct microfacet facet_between(struct vector3 one, struct vector3 othe
     return facet;
 }
 
-/* Scattering of the cone over cos cos, both directions above the surface: facets reflect, and shade
- * each other as in V-shaped grooves, min(1, 2 nh no/oh, 2 nh ni/oh) (K. E. Torrance, E. M. Sparrow,
- * J. Opt. Soc. Am. 57, 1967). It returns no more than comes, since grooves do not either. */
+/* Returns the cone's scattering over both cosines, for directions above the surface. Facets reflect
+ * and shade each other as V-shaped grooves do: min(1, 2 nh no/oh, 2 nh ni/oh) (K. E. Torrance, E.
+ * M. Sparrow, J. Opt. Soc. Am. 57, 1967). The cone never returns more than comes in. */
 FUNCTION vfloat cone_scattering(struct vector3 normal, struct vector3 one, struct vector3 other,
                                 float slope)
 {
@@ -102,7 +103,7 @@ FUNCTION vfloat cone_scattering(struct vector3 normal, struct vector3 one, struc
     const vfloat cosine_one = dot3(normal, one);
     const vfloat cosine_other = dot3(normal, other);
     const vfloat tilt = dot3(normal, facet.normal);
-    /* the shading is divided by both cosines here, and so is never a quotient of zeros */
+    /* The shading is divided by both cosines here, so it is never a quotient of zeros. */
     const vfloat least = smaller(cosine_one, cosine_other);
     const vfloat most = larger(larger(cosine_one, cosine_other), SPLAT(1.0e-6f));
     const vfloat shading =
@@ -110,7 +111,7 @@ FUNCTION vfloat cone_scattering(struct vector3 normal, struct vector3 one, struc
     return facet_density(tilt, slope) * 0.25f * shading / most;
 }
 
-/* Density of the cone's directions, 1/sr, as sample_cone finds them. */
+/* Returns the density of the directions of sample_cone, 1/sr. */
 FUNCTION vfloat cone_density(struct vector3 normal, struct vector3 back, struct vector3 direction,
                              float slope)
 {
@@ -119,8 +120,8 @@ FUNCTION vfloat cone_density(struct vector3 normal, struct vector3 back, struct 
     return facet_density(tilt, slope) * tilt / (4.0f * facet.half_angle);
 }
 
-/* The direction into which a random facet reflects sound that came along -back; it may lie below
- * the surface. */
+/* Samples the direction into which a random facet reflects sound that came along -back. The
+ * direction may lie below the surface. */
 FUNCTION struct vector3 sample_cone(struct vector3 normal, struct vector3 back, float slope,
                                     vfloat u, vfloat v)
 {

@@ -6,15 +6,15 @@
 #include "chain_hit.h"
 #include "tally.h"
 
-/* Where the source is as seen from a hit. */
+/* The way from a hit to the source. */
 struct source_path {
     struct vector3 direction;
-    vfloat path;      /* to the source, or to where it seems to be if layers bend the ray */
-    vfloat spreading; /* of the energy on the way, 1/m^2 */
-    vfloat range;     /* of half the whole path, less the reference range */
+    vfloat path;      /* m, to the source, or to where it seems to be if layers bend the ray */
+    vfloat spreading; /* spreading of the energy on the way, 1/m^2 */
+    vfloat range;     /* half the whole path less the reference range, m */
 };
 
-/* The receiver is at -reference_range * central direction of the plane x = ray's x. */
+/* Returns the way from a point to the receiver at -reference_range * central direction and x. */
 FUNCTION struct vector3 to_receiver(const struct fan_record *fan, struct vector3 point, vfloat x)
 {
     struct vector3 way;
@@ -24,8 +24,8 @@ FUNCTION struct vector3 to_receiver(const struct fan_record *fan, struct vector3
     return way;
 }
 
-/* The first leg less the reference range. In focused columns the receiver is not broadside of the
- * first hit: that leg is longer then. */
+/* Returns the first leg less the reference range. In focused columns the receiver is not broadside
+ * of the first hit, and the leg is longer. */
 FUNCTION vfloat first_leg(const struct chain *chain, vfloat receiver_x)
 {
     const vfloat shift = chain->first_x - receiver_x;
@@ -33,13 +33,13 @@ FUNCTION vfloat first_leg(const struct chain *chain, vfloat receiver_x)
     return chain->range + shift * shift / (SQUARE_ROOT(first * first + shift * shift) + first);
 }
 
-/* Along-track, where the receiver is as the echo of a hit is imaged. */
+/* Returns the receiver's along-track position for the echo of a hit. */
 FUNCTION vfloat receiver_of(GLOBAL const struct chain_record *chains, const struct chain *chain)
 {
     return chains->is_focused ? 0.5f * (chain->first_x + chain->hit.point.x) : chain->first_x;
 }
 
-/* A straight path; its range is left to be set. */
+/* Returns a straight way. Its range is left to be set. */
 FUNCTION struct source_path straight_path(struct vector3 to)
 {
     struct source_path way;
@@ -53,10 +53,10 @@ FUNCTION struct source_path straight_path(struct vector3 to)
     return way;
 }
 
-/* The way to the point (aside, up) of the source's rectangle, which spans x and the fan's central
- * upward direction about the receiver at receiver_x. Its length less the reference range R is
- * formed without subtracting ranges: |s - p|^2 - R^2 = |p|^2 - 2 s.p + up^2 (+ x^2), s the source,
- * up across s. */
+/* Returns the way to the point (aside, up) of the source's square, which spans x and the fan's
+ * central upward direction about the receiver at receiver_x. The length less the reference range R
+ * comes without a difference of ranges: |s - p|^2 - R^2 = |p|^2 - 2 s.p + up^2 (+ x^2), with the
+ * source s and up across s. */
 FUNCTION struct source_path path_to_source(const struct fan_record *fan, const struct chain *chain,
                                            vfloat receiver_x, vfloat aside, vfloat up)
 {
@@ -66,8 +66,8 @@ FUNCTION struct source_path path_to_source(const struct fan_record *fan, const s
     to.y += up * fan->sine_depression;
     to.z += up * fan->cosine_depression;
     struct source_path way = straight_path(to);
-    const vfloat height_along =
-        point.y * fan->cosine_depression - point.z * fan->sine_depression; /* of p towards R */
+    const vfloat height_along = point.y * fan->cosine_depression -
+                                point.z * fan->sine_depression; /* p along the central direction */
     const vfloat height_across = point.y * fan->sine_depression + point.z * fan->cosine_depression;
     const vfloat excess = (to.x * to.x + point.y * point.y + point.z * point.z +
                            2.0f * r * height_along - 2.0f * up * height_across + up * up) /
@@ -76,8 +76,8 @@ FUNCTION struct source_path path_to_source(const struct fan_record *fan, const s
     return way;
 }
 
-/* The same through layers: in the upright plane of point and source the ray is looked up, then
- * turned to where that plane stands. */
+/* Works as path_to_source, through layers. The ray is looked up in the upright plane of point and
+ * source, then turned to where that plane stands. */
 FUNCTION struct source_path path_through_layers(const struct fan_record *fan,
                                                 GLOBAL const struct ray_piece_record *pieces,
                                                 const struct chain *chain, vfloat receiver_x,
@@ -90,7 +90,7 @@ FUNCTION struct source_path path_through_layers(const struct fan_record *fan,
     const struct ray_to_point ray =
         find_ray_to(fan->table, pieces, fan->cosine_depression, fan->sine_depression,
                     point.y + off * off / (ground + broadside), point.z);
-    /* the source point lies `up` across the ray, at a distance of the wavefront's radius */
+    /* The source point lies `up` across the ray, at the distance of the wavefront's radius. */
     const vfloat path = SQUARE_ROOT(ray.wavefront * ray.wavefront + up * up);
     const vfloat level =
         (ray.wavefront * ray.directions.away_y + up * ray.directions.away_z) / path;
@@ -105,21 +105,21 @@ FUNCTION struct source_path path_through_layers(const struct fan_record *fan,
     return way;
 }
 
-/* Energies of one group of rays, lane by lane, ready to be tallied. */
+/* The energies of one group of rays, lane by lane, ready to be tallied. */
 struct chain_echo {
-    float energy[WIDTH];                    /* quanta */
-    float chance[WIDTH];                    /* of rounding up */
-    int is_heard[WIDTH];                    /* -1: there is some, in bins that exist; else 0 */
-    int bin[WIDTH];                         /* the first of two */
-    float later[WIDTH];                     /* share of the second */
-    int strip[WIDTH], reverse_strip[WIDTH]; /* of the whole track; reverse -2^30: no such echo */
+    float energy[WIDTH]; /* quanta */
+    float chance[WIDTH]; /* uniform deviate for rounding */
+    int is_heard[WIDTH]; /* -1: there is some, in bins that exist; 0: there is none */
+    int bin[WIDTH];      /* the first of two */
+    float later[WIDTH];  /* share of the second */
+    int strip[WIDTH], reverse_strip[WIDTH]; /* numbers on the whole track; reverse NO_STRIP: none */
 };
 
 #define NO_STRIP (-1073741824)
 
-/* As track_strip_at (aspects.h), to 1/16 of a strip: what lies closer to a strip's edge may count
- * as the next one's. The bits of images depend on it. Limited: the tally drops what is beside it.
- */
+/* Works as track_strip_at (aspects.h), to 1/16 of a strip: a place closer to a strip's edge may
+ * count as the next strip's. The bits of images depend on this. The result is limited, and the
+ * tally drops echoes beside it. */
 FUNCTION vint strip_at(const struct fan_record *fan, vfloat x)
 {
     const vfloat strip = (x - fan->first_strip_x) / fan->strip_width;
@@ -132,7 +132,7 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
                                struct outcome_record *outcome)
 {
     const int plane = order - chains->first_order;
-    /* few lanes are heard, at random: they are listed first, without a branch to be guessed */
+    /* Few lanes are heard, at random. They are listed first, without a branch to be predicted. */
     int heard[WIDTH];
     int count = 0;
     for (int lane = 0; lane < WIDTH; lane++) {
@@ -156,26 +156,25 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
     outcome->impulses += (RECORD_WORD)count;
 }
 
-/* A path that was found one way may also stand for its reverse. What began with a specular bounce
- * does, because nothing finds the reverse: its last hit would be the specular one. In focused
- * columns, where both are seen from the same place, so do the chains that began on the seabed and
- * end on a target: they are led there on purpose, and those found from the target are left out for
- * them. */
+/* The ways in which a path counts. A path that began with a specular bounce also stands for its
+ * reverse: the reverse would end with that bounce, so nothing finds it. Focused columns see path
+ * and reverse from the same place. There a chain from the seabed that ends on a target also stands
+ * for its reverse. It is led to the target on purpose; the chain from the target is left out. */
 struct ways_counted {
     mask is_counted, counts_reverse;
 };
 
-/* Fans do not look at the sea surface, and at seabed for what it sends to targets: so nothing finds
- * the reverse of a path that ends on the sea surface, or on seabed that is lit from there. */
+/* Returns where nothing finds a path's reverse, which would begin on the sea surface or on seabed
+ * that is lit from there. Fans look at neither. */
 FUNCTION mask is_found_one_way(const struct chain *chain)
 {
     return MASK_OF(chain->hit.surface == SEA_SURFACE) |
            (MASK_OF(chain->hit.surface == SEABED) & MASK_OF(chain->surface_before == SEA_SURFACE));
 }
 
-/* The same where chains meet the sea surface. In `paper` columns reverse paths have connections of
- * their own (connect_reverse). Brute force starts from all seabed. Without a target between, sea
- * surface and seabed are what was measured. */
+/* Sets the ways counted if chains meet the sea surface. In `paper` columns reverse paths have
+ * connections of their own (connect_reverse). Brute force starts from all seabed. Paths between sea
+ * surface and seabed without a target are in the measured image already. */
 FUNCTION void count_ways_by_sea_surface(GLOBAL const struct chain_record *chains, int order,
                                         const struct chain *chain, struct ways_counted *ways)
 {
@@ -204,14 +203,14 @@ FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains
         ways.is_counted = ~(~chain->began_smooth & ~began_on_seabed & ends_on_seabed);
         ways.counts_reverse =
             ways.counts_reverse | (~chain->began_smooth & began_on_seabed & ~ends_on_seabed);
-        if (order == 2 && chains->cell_samples > 0) { /* with their share: second_order.h */
+        if (order == 2 && chains->cell_samples > 0) { /* paths have the shares of second_order.h */
             ways.counts_reverse = ways.counts_reverse | ~ways.is_counted;
             ways.is_counted = ~none;
         }
     }
     if (has_sea_surface(chains))
         count_ways_by_sea_surface(chains, order, chain, &ways);
-    /* one object seen by way of the seabed's specular part: trace_rough_images.h */
+    /* One object seen by way of the seabed's specular part belongs to trace_rough_images.h. */
     if (order == 2 && chains->estimator == CHAINS_CONNECT)
         ways.is_counted = ways.is_counted & ~(chain->began_smooth & began_on_seabed);
     return ways;
@@ -228,8 +227,8 @@ FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_
     const vint strip = strip_at(fan, receiver_of(chains, chain));
     vint reverse;
     if (chains->is_focused) {
-        /* a path and its reverse are one echo of twice the amplitude, four times the energy: 4
-         * where this path counts for both, 2 where the reverse is found by itself */
+        /* A path and its reverse are one echo of twice the amplitude and four times the energy. The
+         * factor is 4 if this path counts for both, 2 if the reverse is found too. */
         kept = SELECT(both, kept * 4.0f, kept * 2.0f);
         reverse = none;
     } else {
@@ -237,7 +236,7 @@ FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_
     }
     kept = SELECT(ways.is_counted & chain->is_alive, kept, SPLAT(0.0f));
     const struct bin_pair bins = bins_about(range * fan->bins_per_metre + fan->bin_at_reference);
-    /* what is not a number is heard too, and then reported */
+    /* An energy that is not a number is heard too, and then reported. */
     const mask is_heard =
         ~MASK_OF(kept <= 0.0f) & MASK_OF(bins.bin >= -1) & MASK_OF(bins.bin < fan->bins);
     STORE_VFLOAT(kept, echo->energy);

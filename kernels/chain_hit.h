@@ -1,4 +1,4 @@
-/* Where a chain of sound meets a surface, and what that surface does. */
+/* Hits of chains of sound on surfaces, and what these surfaces do with the sound. */
 #ifndef SONJECT_KERNELS_CHAIN_HIT_H
 #define SONJECT_KERNELS_CHAIN_HIT_H
 
@@ -14,16 +14,16 @@
 
 struct chain_hit {
     struct vector3 point, normal; /* the normal is on the side that the ray came from */
-    struct vector3 back;          /* the way that it came, unit, away from the surface */
+    struct vector3 back;          /* unit, back along the ray, away from the surface */
     vfloat distance;
-    vint surface;     /* object's number, SEABED or SEA_SURFACE */
-    vint left_behind; /* convex object that no way from here meets again, -1: none */
+    vint surface;     /* an object's number, SEABED or SEA_SURFACE */
+    vint left_behind; /* convex object that no way from here meets again; -1: none */
     mask is_hit;
 };
 
-/* The nearest object on each way, but for the one that it leaves behind: where that holds for all
- * ways, as on a single target, the search costs nothing. Where any object up to `limit` will do
- * (is_any), what is found may not be the nearest. */
+/* Returns the nearest object on each way, except the one that the way leaves behind. If all ways
+ * leave one and the same object, as on a single target, the search costs nothing. If is_any, the
+ * result is any object up to `limit`. */
 FUNCTION struct nearest_hit find_nearest_ahead(const struct fan_record *fan,
                                                GLOBAL const struct object_record *objects,
                                                struct vector3 start, struct vector3 direction,
@@ -49,7 +49,7 @@ FUNCTION struct nearest_hit find_nearest_ahead(const struct fan_record *fan,
     return nearest;
 }
 
-/* What a ray meets on the nearest object, or on the seabed if that is nearer. */
+/* Returns the hit on the nearest object, or on the seabed if that is nearer. */
 FUNCTION struct chain_hit hit_of_ray(const struct fan_record *fan,
                                      GLOBAL const struct object_record *objects,
                                      enum wanted_face wanted, struct vector3 start,
@@ -81,7 +81,7 @@ FUNCTION struct chain_hit hit_of_ray(const struct fan_record *fan,
         if (is_convex(&objects[i]))
             hit.left_behind = SELECT(here, hit.surface, hit.left_behind);
     }
-    /* inner sides scatter as outer ones do, but what they scatter meets the object again */
+    /* Inner sides scatter as outer ones do, but their sound meets the object again. */
     const mask is_outer = MASK_OF(dot3(face.normal, hit.back) >= 0.0f);
     hit.normal = choose3(is_outer, face.normal, reversed3(face.normal));
     hit.point = lifted_point(hit.point, &face);
@@ -89,7 +89,7 @@ FUNCTION struct chain_hit hit_of_ray(const struct fan_record *fan,
     return hit;
 }
 
-/* The first surface on a ray; left_behind: of where it starts. */
+/* Returns the first hit of a ray. left_behind: of the surface where the ray starts. */
 FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
                                          GLOBAL const struct object_record *objects,
                                          enum wanted_face wanted, struct vector3 start,
@@ -103,7 +103,7 @@ FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
     return hit_of_ray(fan, objects, wanted, start, direction, &nearest, to_seabed, is_ray);
 }
 
-/* The same where a ray meets its own object, whatever else may hide that. */
+/* Returns the hit of a ray on its own object, whatever else may hide the object. */
 FUNCTION struct chain_hit find_hit_on(const struct fan_record *fan,
                                       GLOBAL const struct object_record *objects,
                                       struct vector3 start, struct vector3 direction, float minimum,
@@ -122,19 +122,19 @@ FUNCTION struct chain_hit find_hit_on(const struct fan_record *fan,
                       is_ray);
 }
 
-/* Whether chains meet the sea surface. */
+/* Returns whether chains meet the sea surface. */
 FUNCTION int has_sea_surface(GLOBAL const struct chain_record *chains)
 {
     return chains->sea_surface_height > 0.0f;
 }
 
-/* The lowest number of a surface that chains meet. */
+/* Returns the lowest number of a surface that chains meet. */
 FUNCTION int first_surface_number(GLOBAL const struct chain_record *chains)
 {
     return has_sea_surface(chains) ? SEA_SURFACE : SEABED;
 }
 
-/* The record of surface number i of a scene. */
+/* Returns the record of surface number i of a scene. */
 FUNCTION GLOBAL const struct surface_record *surface_number(
     GLOBAL const struct chain_record *chains, GLOBAL const struct object_record *objects, int i)
 {
@@ -143,7 +143,7 @@ FUNCTION GLOBAL const struct surface_record *surface_number(
     return i == SEABED ? &chains->seabed : &objects[i].surface;
 }
 
-/* What fouls surface number i makes of scattering at a hit. */
+/* Returns the factor of fouling of surface number i on the scattering at a hit. */
 FUNCTION vfloat fouling_at(GLOBAL const struct object_record *objects, int i,
                            const struct chain_hit *hit, struct vector3 out)
 {
@@ -151,7 +151,7 @@ FUNCTION vfloat fouling_at(GLOBAL const struct object_record *objects, int i,
                  : fouling_factor(&objects[i], hit->point, hit->normal, hit->back, out);
 }
 
-/* Scattering at a hit from one direction into another (rough part), kernels/surface.h. */
+/* Returns the rough part's scattering at a hit, from one direction into another (surface.h). */
 FUNCTION vfloat scattering_at(const struct fan_record *fan, GLOBAL const struct chain_record *chain,
                               GLOBAL const struct object_record *objects,
                               const struct chain_hit *hit, struct vector3 out)
@@ -176,7 +176,7 @@ FUNCTION struct vector3 start_from(const struct chain_hit *hit)
     return along3(hit->point, hit->normal, SPLAT(START_OFF_SURFACE));
 }
 
-/* Whether nothing is between a hit and a point that lies `path` away. */
+/* Returns where nothing is between a hit and a point that lies `path` away. */
 FUNCTION mask is_open_way(const struct fan_record *fan, GLOBAL const struct object_record *objects,
                           const struct chain_hit *hit, struct vector3 direction, vfloat path,
                           mask is_way)
@@ -195,29 +195,30 @@ struct target_choice;
 struct chain {
     struct chain_hit hit;
     struct random_key key;
-    word number;        /* of the ray, for its random numbers */
-    vfloat energy;      /* solid angle of the ray times the weights so far, sr, in quanta of the
-                         hit's order */
-    vfloat chance;      /* of rounding its echoes up */
-    vfloat range;       /* from the receiver to the first hit less the reference range */
-    vfloat length;      /* from the first hit to this one */
-    vfloat first_x;     /* along-track, of the first hit */
-    vfloat first_reach; /* ground range of the first hit that is no level boundary over the cosine
-                         of the grazing angle: without layers the range, by way of the boundaries */
+    word number;    /* number of the ray, for its random numbers */
+    vfloat energy;  /* the ray's solid angle times the weights so far, sr, in quanta of the hit's
+                       order */
+    vfloat chance;  /* uniform deviate for rounding its echoes */
+    vfloat range;   /* range of the first hit less the reference range */
+    vfloat length;  /* path from the first hit to this one, m */
+    vfloat first_x; /* along-track position of the first hit */
+    /* Ground range of the first hit that is no level boundary, over the cosine of the grazing
+     * angle; without layers, the range by way of the boundaries. */
+    vfloat first_reach;
     vint first_surface;
-    vint surface_before;  /* that the sound came from to this hit */
-    vfloat first_density; /* 1/sr, with which the rough part of the first hit chose its direction */
-    mask began_smooth;    /* the first hit was a specular bounce: nothing finds the reverse path */
-    mask only_specular;   /* every hit before this one was a specular bounce */
-    mask only_boundaries; /* all of those on seabed or sea surface */
+    vint surface_before;  /* the surface that the sound came from to this hit */
+    vfloat first_density; /* density of the rough part at the first hit for its direction, 1/sr */
+    mask began_smooth;  /* the first hit was a specular bounce, so nothing finds the reverse path */
+    mask only_specular; /* every hit before this one was a specular bounce */
+    mask only_boundaries; /* all of these bounces were on seabed or sea surface */
     mask met_object;
     mask is_alive;
-    const struct target_choice *choice; /* of targets, where they are many; 0: each ray's own */
+    const struct target_choice *choice; /* choice among many targets; 0: each ray makes its own */
 };
 
-/* Sends out rays from the sonar at x. cell: m rad, the piece of wavefront that a ray stands for,
- * along the track and in elevation. only: objects that alone are looked for, lane by lane; 0: the
- * first surface is. Random numbers are left to be set. */
+/* Sends out rays from the sonar at x. cell: the ray's piece of wavefront, along the track and in
+ * elevation, m rad. only: the one object that each lane looks for, whatever hides it; 0: the first
+ * surface is taken. Random numbers are left to be set. */
 NOINLINE void begin_chain(const struct fan_record *fan,
                           GLOBAL const struct ray_piece_record *pieces,
                           GLOBAL const struct object_record *objects, vfloat x, vfloat elevation,
@@ -240,8 +241,8 @@ NOINLINE void begin_chain(const struct fan_record *fan,
     chain->began_smooth = chain->is_alive & 0;
     chain->only_specular = chain->is_alive;
     chain->only_boundaries = chain->is_alive;
-    /* the strip of wavefront w r de over r^2; through layers r de widens and 1/r^2 is s/(ground r)
-     */
+    /* Energy is that of the strip of wavefront w r de, over r^2. Through layers r de widens, and
+     * 1/r^2 becomes s/(ground r). */
     const vfloat ground =
         fan->table.pieces > 0 ? fan->table.ground_range + chain->hit.point.y : SPLAT(1.0f);
     chain->first_reach =

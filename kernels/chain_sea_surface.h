@@ -1,12 +1,12 @@
 /* The sea surface within chains of sound (kernels/MATH.md, "Chains by way of the sea surface"). The
- * water below it is straight: no layers. Fans look at the patch and never at the surface. */
+ * water below it is straight, without layers. Fans look at the patch and never at the surface. */
 #ifndef SONJECT_KERNELS_CHAIN_SEA_SURFACE_H
 #define SONJECT_KERNELS_CHAIN_SEA_SURFACE_H
 
 #include "chain_echo.h"
 #include "reflectivity_map.h"
 
-/* Puts the hit on the sea surface where a ray meets that first. */
+/* Puts the hit on the sea surface if a ray meets the surface first. */
 FUNCTION void meet_sea_surface(GLOBAL const struct chain_record *chains, struct vector3 start,
                                struct vector3 direction, mask is_ray, struct chain_hit *hit)
 {
@@ -27,9 +27,9 @@ FUNCTION void meet_sea_surface(GLOBAL const struct chain_record *chains, struct 
     hit->is_hit = hit->is_hit | is_first;
 }
 
-/* Ends the chains that cannot be heard any more: whose straight return path comes after the last
- * bin. And those that went from the seabed in view of the sonar to the sea surface: they are found
- * from their other end. order: of the hit before. */
+/* Ends the chains that cannot be heard any more, because their straight return path comes after the
+ * last bin. Also ends those that went from seabed in view of the sonar to the sea surface, since
+ * they are found from their other end. order: of the hit before. */
 FUNCTION void leave_out_unheard(const struct fan_record *fan,
                                 GLOBAL const struct ray_piece_record *pieces,
                                 GLOBAL const struct chain_record *chains, int order,
@@ -45,9 +45,9 @@ FUNCTION void leave_out_unheard(const struct fan_record *fan,
                                               MASK_OF(chain->hit.surface == SEA_SURFACE));
 }
 
-/* The way to the image of the source's point (aside, up) in the sea surface, formed as in
- * path_to_source: |s - p|^2 - R^2 = |p|^2 - 2 s.p + up^2 + 4 H (H - h) (+ x^2), h the height of
- * that point and H that of the surface. */
+/* Returns the way to the image of the source's point (aside, up) in the sea surface, formed as in
+ * path_to_source: |s - p|^2 - R^2 = |p|^2 - 2 s.p + up^2 + 4 H (H - h) (+ x^2), with the height h
+ * of that point and the height H of the surface. */
 FUNCTION struct source_path path_to_image(const struct fan_record *fan,
                                           GLOBAL const struct chain_record *chains,
                                           const struct chain *chain, vfloat receiver_x,
@@ -72,7 +72,7 @@ FUNCTION struct source_path path_to_image(const struct fan_record *fan,
     return way;
 }
 
-/* Whether nothing is between a hit and the image of the source, before the surface and after. */
+/* Returns where nothing is between a hit and the source's image, on either side of the surface. */
 FUNCTION mask is_open_to_image(const struct fan_record *fan,
                                GLOBAL const struct chain_record *chains,
                                GLOBAL const struct object_record *objects,
@@ -92,9 +92,9 @@ FUNCTION mask is_open_to_image(const struct fan_record *fan,
                               is_open & MASK_OF(blocking.distance > left));
 }
 
-/* What the hit returns in lanes that want it, to a receiver broadside of receiver_x: straight, or
- * by way of the sea surface's specular part. Energy f cos / r^2 at the source, normalised by the
- * fourth power of half the path (MATH.md). */
+/* Returns the hit's energy to a receiver broadside of receiver_x, straight or by way of the sea
+ * surface's specular part, in lanes that want it. It is f cos / r^2 at the source, normalised by
+ * the fourth power of half the path (MATH.md). */
 NOINLINE vfloat energy_returned(const struct fan_record *fan,
                                 GLOBAL const struct ray_piece_record *pieces,
                                 GLOBAL const struct chain_record *chains,
@@ -133,8 +133,8 @@ NOINLINE vfloat energy_returned(const struct fan_record *fan,
                   SPLAT(0.0f));
 }
 
-/* Where a path may end on the sea surface's specular part: a single target between boundaries
- * belongs to the pairs of sources (trace_rough_images.h). */
+/* Returns where a path may end on the sea surface's specular part. A single target between
+ * boundaries belongs to the pairs of sources (trace_rough_images.h). */
 FUNCTION mask may_end_on_boundary(int order, const struct chain *chain)
 {
     mask may_end = chain->is_alive & chain->met_object & MASK_OF(chain->hit.surface != SEA_SURFACE);
@@ -143,8 +143,8 @@ FUNCTION mask may_end_on_boundary(int order, const struct chain *chain)
     return may_end;
 }
 
-/* The echo of paths whose last boundary is the sea surface, which the hit is connected through.
- * Nothing finds their reverse. */
+/* Keeps the echo of paths whose last boundary is the sea surface. The hit is connected through it,
+ * and nothing finds the reverse. */
 FUNCTION void connect_to_image(const struct fan_record *fan,
                                GLOBAL const struct ray_piece_record *pieces,
                                GLOBAL const struct chain_record *chains,
@@ -162,9 +162,9 @@ FUNCTION void connect_to_image(const struct fan_record *fan,
     keep_echo(fan, chains, ways, chain, energy, range, SPLAT(chains->finer[order - 1]), echo);
 }
 
-/* In `paper` columns the reverse of a path that nothing finds: the receiver is broadside of its
- * first hit, this one. A scatterer on the sea surface may be far aside of the target, or near the
- * sonar: both legs are taken anew, what the other end does with sound from there is not. */
+/* Keeps, in `paper` columns, the echo of a reverse path that nothing finds. Its receiver is
+ * broadside of its first hit, this one. A scatterer on the sea surface may be far aside of the
+ * target or near the sonar, so both legs are taken anew. The scattering at the other end is not. */
 FUNCTION void connect_reverse(const struct fan_record *fan,
                               GLOBAL const struct ray_piece_record *pieces,
                               GLOBAL const struct chain_record *chains,
@@ -189,7 +189,7 @@ FUNCTION void connect_reverse(const struct fan_record *fan,
         echo->strip[lane] = NO_STRIP;
 }
 
-/* What chains by way of the sea surface return beside what every hit does. order: of the hit. */
+/* Adds the echoes of chains by way of the sea surface to those of every hit. order: of the hit. */
 FUNCTION void connect_by_sea_surface(const struct fan_record *fan,
                                      GLOBAL const struct ray_piece_record *pieces,
                                      GLOBAL const struct chain_record *chains,

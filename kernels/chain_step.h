@@ -1,4 +1,4 @@
-/* How a chain of sound goes on from a hit: by the surface's BRDF, by its specular part, or from
+/* The step of a chain of sound from a hit: by the surface's BRDF, by its specular part, or from
  * seabed and sea surface towards the targets (kernels/MATH.md, "Chains"). */
 #ifndef SONJECT_KERNELS_CHAIN_STEP_H
 #define SONJECT_KERNELS_CHAIN_STEP_H
@@ -8,15 +8,15 @@
 #include "reflectivity_map.h"
 #include "target_sampling.h"
 
-/* How a chain goes on from a hit. */
+/* The step of a chain from a hit. */
 struct chain_step {
     struct vector3 direction;
     vfloat weight;  /* f cos / density, or the specular part's energy over its probability */
-    vfloat density; /* of the rough part's directions, 1/sr */
+    vfloat density; /* density of the rough part's directions, 1/sr */
     mask is_specular;
 };
 
-/* A step by a rough part: what the surface scatters that way over the density of its sampling. */
+/* Returns a step by a rough part: its scattering in the direction over the sampling density. */
 FUNCTION struct chain_step step_in_direction(GLOBAL const struct surface_record *surface,
                                              const struct chain_hit *hit, struct vector3 direction,
                                              vfloat density)
@@ -33,9 +33,9 @@ FUNCTION struct chain_step step_in_direction(GLOBAL const struct surface_record 
     return step;
 }
 
-/* The rough part of seabed or sea surface: towards the targets; where the hit is among them, or the
- * step leads elsewhere too, also all around; only so where no cone is seen, for the point is inside
- * all spheres. */
+/* Returns a step by the rough part of seabed or sea surface, towards the targets. If the hit is
+ * among the targets or the step leads elsewhere too, half of the steps follow the BRDF. All do if
+ * no cone is seen, since the point is inside all spheres. */
 FUNCTION struct chain_step step_among_few(GLOBAL const struct chain_record *chains,
                                           GLOBAL const struct sphere_record *spheres,
                                           GLOBAL const struct surface_record *surface,
@@ -64,9 +64,9 @@ FUNCTION struct chain_step step_among_few(GLOBAL const struct chain_record *chai
     return step_in_direction(surface, hit, direction, density);
 }
 
-/* As step_among_few among many targets. Where the point is inside the sphere chosen, the surface's
- * own BRDF finds the direction. targets: of first hits on the seabed; 0: each hit makes its own
- * choice. */
+/* Works as step_among_few, among many targets. If the point is inside the chosen sphere, the
+ * surface's own BRDF finds the direction. targets: the choice of first hits on the seabed; 0: each
+ * hit makes its own. */
 NOINLINE struct chain_step step_among_many(GLOBAL const struct chain_record *chains,
                                            GLOBAL const struct sphere_record *spheres,
                                            const struct target_choice *targets,
@@ -107,7 +107,7 @@ NOINLINE struct chain_step step_among_many(GLOBAL const struct chain_record *cha
     return step_in_direction(surface, hit, direction, density);
 }
 
-/* The rough part of seabed or sea surface towards targets, few or many. */
+/* Returns a step by the rough part of seabed or sea surface, towards few or many targets. */
 FUNCTION struct chain_step step_to_targets(GLOBAL const struct chain_record *chains,
                                            GLOBAL const struct sphere_record *spheres,
                                            const struct target_choice *targets,
@@ -121,7 +121,7 @@ FUNCTION struct chain_step step_to_targets(GLOBAL const struct chain_record *cha
     return step_among_few(chains, spheres, surface, leads_elsewhere, hit, choice, u, v);
 }
 
-/* The rough part of an object, by its own BRDF. */
+/* Returns a step by the rough part of an object, by its own BRDF. */
 FUNCTION struct chain_step step_from_object(GLOBAL const struct surface_record *surface,
                                             const struct chain_hit *hit, vfloat choice, vfloat u,
                                             vfloat v)
@@ -132,7 +132,7 @@ FUNCTION struct chain_step step_from_object(GLOBAL const struct surface_record *
     return step_in_direction(surface, hit, direction, density);
 }
 
-/* With what probability a specular bounce is taken: near its share of the energy. */
+/* Returns the probability of a specular bounce, near the bounce's share of the energy. */
 FUNCTION vfloat specular_probability(GLOBAL const struct surface_record *surface, vfloat energy)
 {
     if (!has_rough_part(surface))
@@ -141,8 +141,8 @@ FUNCTION vfloat specular_probability(GLOBAL const struct surface_record *surface
     return smaller(larger(energy / (energy + rough), SPLAT(0.1f)), SPLAT(0.9f));
 }
 
-/* Rough or smooth part of one surface. From the seabed in view of the sonar sound is sought that
- * goes to a target; beyond that it may also go to the sea surface, and come from there. */
+/* Returns a step by the rough or smooth part of one surface. Seabed that the sonar sees sends rough
+ * steps to targets. Later hits on seabed or sea surface also send some elsewhere. */
 FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *chains,
                                              GLOBAL const struct sphere_record *spheres,
                                              const struct target_choice *targets,
@@ -181,7 +181,7 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
     return step;
 }
 
-/* The density, 1/sr, with which an object's rough part sends a ray from a hit in a direction. */
+/* Returns the density, 1/sr, with which an object's rough part sends a ray in a direction. */
 FUNCTION vfloat rough_density_at(const struct fan_record *fan,
                                  GLOBAL const struct object_record *objects,
                                  const struct chain_hit *hit, struct vector3 direction)

@@ -1,16 +1,16 @@
-/* How a surface's normal turns from one of its points to the next: by differences of the shapes'
- * own normals, so that every shape has it (kernels/MATH.md, "Multi-bounce specular paths"). */
+/* The turn of a surface's normal from one point to the next, by differences of the shapes' own
+ * normals, so that it exists for every shape (kernels/MATH.md, "Multi-bounce specular paths"). */
 #ifndef SONJECT_KERNELS_CURVATURE_H
 #define SONJECT_KERNELS_CURVATURE_H
 
 #include "chain_hit.h"
 
-/* Of the bounding radius: so small that the square of it does not count, so large that the normals'
- * rounding (6e-8) does not. */
+/* The step of the differences, as a share of the bounding radius. Its square is negligible, and so
+ * is the rounding of the normals (6e-8). */
 #define CURVATURE_STEP 5.0e-4f
 
-/* Change of one object's normal, in its own frame, for a shift on the tangent plane of a point.
- * Beside an edge the two sides differ; the one that bends less is the hit's own face. */
+/* Returns the change of one object's normal, in its own frame, for a shift on a point's tangent
+ * plane. The two sides of an edge differ; the side that bends less is the hit's own face. */
 FUNCTION struct vector3 own_normal_change(GLOBAL const struct object_record *object,
                                           struct vector3 point, struct vector3 normal,
                                           struct vector3 direction, struct vector3 shift)
@@ -28,7 +28,7 @@ FUNCTION struct vector3 own_normal_change(GLOBAL const struct object_record *obj
     const mask is_even = MASK_OF(dot3(unlike, unlike) <= 0.25f * (square_forth + square_back));
     struct vector3 change = choose3(MASK_OF(square_forth < square_back), forth, back);
     change = choose3(is_even, along3(back, unlike, SPLAT(0.5f)), change);
-    /* the hit's normal is on the side that the ray is on, which may be the inner one */
+    /* The hit's normal is on the ray's side, which may be the inner one. */
     const vfloat side = SELECT(MASK_OF(dot3(here, normal) < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
     const vfloat scale = side / step;
     change.x = change.x * scale;
@@ -37,7 +37,7 @@ FUNCTION struct vector3 own_normal_change(GLOBAL const struct object_record *obj
     return change;
 }
 
-/* Change of a hit's normal for a shift on its tangent plane. Seabed and facets are flat. */
+/* Returns the change of a hit's normal for a tangent shift. Seabed and facets are flat. */
 FUNCTION struct vector3 normal_change_at(GLOBAL const struct object_record *objects, int count,
                                          const struct chain_hit *hit, struct vector3 shift)
 {

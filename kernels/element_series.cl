@@ -1,8 +1,8 @@
 /* Entry points of the element level. */
 #include "element_series.h"
 
-/* Global size: segments x pairs of transmitter and hydrophone. Lines: pairs x stride, real parts
- * and imaginary parts apart. */
+/* Global size: segments x pairs of transmitter and hydrophone. Real and imaginary lines are apart,
+ * each pairs x stride. */
 __kernel void hear_elements(__global const struct impulse_grid_record *grid_buffer,
                             __global const struct element_pair_record *pairs,
                             __global const int *starts, __global const int *bins,

@@ -1,22 +1,22 @@
-/* Element level: what a hydrophone hears of impulses, each a point at its track position and range
- * (kernels/MATH.md, "Element level"). A line of fine samples is first filled with echoes as short
- * as it can hold, then goes through the pulse. Every sample is a sum in one fixed order: strips, in
- * a strip ranges, whatever the width and the number of work-items. */
+/* The element level: the sound that a hydrophone hears of impulses, each a point at its track
+ * position and range (kernels/MATH.md, "Element level"). Echoes as short as possible first fill a
+ * line of fine samples, which then goes through the pulse. Every sample is a sum in one fixed
+ * order, by strips and then by ranges, whatever the width and the number of work-items. */
 #ifndef SONJECT_KERNELS_ELEMENT_SERIES_H
 #define SONJECT_KERNELS_ELEMENT_SERIES_H
 
 #include "element_series_records.h"
 #include "elementary.h"
 
-/* From an impulse to one element. */
+/* The way from an impulse to one element. */
 struct element_leg {
     vfloat range;  /* m */
-    vfloat beyond; /* m: range less the processor range */
+    vfloat beyond; /* m; range less the processor range */
     vfloat slope;  /* sine of the aspect */
 };
 
-/* (range - processor range) by the difference of squares: their difference would lose the digits
- * that the phase needs. */
+/* Finds the leg. `beyond` comes from the difference of squares: a difference of ranges would lose
+ * the digits that the phase needs. */
 FUNCTION struct element_leg element_leg_of(float offset, vfloat processor_range)
 {
     struct element_leg leg;
@@ -26,23 +26,23 @@ FUNCTION struct element_leg element_leg_of(float offset, vfloat processor_range)
     return leg;
 }
 
-/* Amplitude pattern of a line of the length that `cycles` stands for. */
+/* Returns the amplitude pattern of a line element. cycles: its length over twice the wavelength. */
 FUNCTION vfloat element_pattern(float cycles, vfloat slope)
 {
     return sinc_of_cycles(magnitude(cycles * slope));
 }
 
-/* m along-track from an element to the middle of a strip; whole strips are subtracted exactly. */
+/* Returns the way along-track from an element to a strip's middle, m. Whole strips are exact. */
 FUNCTION float element_offset(const struct impulse_grid_record *grid, int strip, int element_strip,
                               float element_fraction)
 {
     return ((float)(strip - element_strip) - element_fraction) * grid->strip_width;
 }
 
-/* Echoes of one group of impulses, lane by lane. */
+/* The echoes of one group of impulses, lane by lane. */
 struct element_echo {
     float real_part[WIDTH], imaginary_part[WIDTH];
-    float fraction[WIDTH]; /* of a fine sample beyond `sample` */
+    float fraction[WIDTH]; /* share of a fine sample beyond `sample` */
     int sample[WIDTH];     /* -2: none */
 };
 
@@ -68,7 +68,7 @@ FUNCTION void hear_impulses(const struct impulse_grid_record *grid, struct eleme
                           MASK_OF(position >= -1.0f) & MASK_OF(position < (float)grid->samples) &
                           MASK_OF(limit >= offsets.transmitter * offsets.transmitter) &
                           MASK_OF(limit >= offsets.hydrophone * offsets.hydrophone);
-    /* one more, since truncation is floor on positive numbers only */
+    /* One is added, since truncation is floor on positive numbers only. */
     const vfloat kept = SELECT(is_heard, position + 1.0f, SPLAT(0.0f));
     const vint sample = VINT_OF(kept);
     const vfloat gain = element_pattern(grid->transmitter_cycles, to.slope) *
@@ -86,7 +86,7 @@ FUNCTION void hear_impulses(const struct impulse_grid_record *grid, struct eleme
     STORE_VINT(sample_or_none, echo->sample);
 }
 
-/* Shares an echo between the two fine samples about it, of those from first to end - 1. */
+/* Shares an echo between the two fine samples about it, if they are among first...end - 1. */
 FUNCTION void add_element_echo(GLOBAL float *line_real, GLOBAL float *line_imaginary,
                                const struct element_echo *echo, int lane, int first, int end)
 {
@@ -103,8 +103,8 @@ FUNCTION void add_element_echo(GLOBAL float *line_real, GLOBAL float *line_imagi
     }
 }
 
-/* The bin whose echo from a strip comes at a fine sample: where the ellipse about the two elements
- * meets the strip. Below the shortest way: far before all bins. */
+/* Returns the bin whose echo from a strip comes at a fine sample: the ellipse about the two
+ * elements meets the strip there. Below the shortest way it is far before all bins. */
 FUNCTION float bin_of_sample(const struct impulse_grid_record *grid, struct element_offsets offsets,
                              float sample)
 {
@@ -120,7 +120,7 @@ FUNCTION float bin_of_sample(const struct impulse_grid_record *grid, struct elem
     return bin < -4.0e8f ? -4.0e8f : bin > 4.0e8f ? 4.0e8f : bin;
 }
 
-/* The first of the impulses low...high - 1, in order of their bins, that is not before a bin. */
+/* Returns the first of the impulses low...high - 1, sorted by bins, that is not before a bin. */
 FUNCTION int first_impulse_from(GLOBAL const int *bins, int low, int high, float bin)
 {
     while (low < high) {
@@ -133,7 +133,7 @@ FUNCTION int first_impulse_from(GLOBAL const int *bins, int low, int high, float
     return low;
 }
 
-#define BIN_MARGIN 4.0f /* what rounding moves an impulse by, and the share of its neighbour */
+#define BIN_MARGIN 4.0f /* bins, for rounding and the share of a neighbour */
 
 /* Adds the impulses of one strip to the share [first, end) of a line. */
 FUNCTION void hear_strip(const struct impulse_grid_record *grid, struct element_offsets offsets,
@@ -157,8 +157,8 @@ FUNCTION void hear_strip(const struct impulse_grid_record *grid, struct element_
     }
 }
 
-/* Adds all impulses to the share `segment` of a pair's line. starts: of each strip's impulses, one
- * more than there are strips. Impulses are followed by room for WIDTH more. */
+/* Adds all impulses to the share `segment` of a pair's line. starts: first impulse of each strip,
+ * and the end of the last. Impulses are followed by room for WIDTH more. */
 FUNCTION void hear_grid(const struct impulse_grid_record *grid,
                         const struct element_pair_record *pair, GLOBAL const int *starts,
                         GLOBAL const int *bins, GLOBAL const float *impulses_real,
@@ -184,9 +184,9 @@ FUNCTION void hear_grid(const struct impulse_grid_record *grid,
     }
 }
 
-/* The WIDTH samples from `sample` on of a line's series: sum over taps of
- * line[sample * fine + tap] * pulse[tap], complex. The line is followed by room for WIDTH * fine
- * more; out has room for whole groups of WIDTH. */
+/* Computes the WIDTH samples from `sample` on of a line's series: the complex sum over taps of
+ * line[sample * fine + tap] * pulse[tap]. The line is followed by room for WIDTH * fine more. `out`
+ * has room for whole groups of WIDTH. */
 FUNCTION void pulse_series(GLOBAL const float *line_real, GLOBAL const float *line_imaginary,
                            int fine, GLOBAL const float *pulse_real,
                            GLOBAL const float *pulse_imaginary, int taps, int sample,

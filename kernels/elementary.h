@@ -1,21 +1,21 @@
-/* Elementary functions by + - * / alone, so that every device gives the same bits. Minimax
- * polynomials; the errors stated were measured against double precision over the whole range
+/* Elementary functions from + - * / alone, so that every device gives the same bits. They are
+ * minimax polynomials. Their errors were measured against double precision over the whole range
  * (tests/kernel/test_elementary.c). */
 #ifndef SONJECT_KERNELS_ELEMENTARY_H
 #define SONJECT_KERNELS_ELEMENTARY_H
 
 #include "width.h"
 
-/* The integer nearest to value, |value| < 2^22. */
+/* Returns the integer nearest to value, |value| < 2^22. */
 FUNCTION vfloat nearest_integer(vfloat value)
 {
     const vfloat magic = SPLAT(12582912.0f); /* 1.5 * 2^23: adding it leaves no fraction bits */
     return (value + magic) - magic;
 }
 
-/* Sine and cosine of an angle in cycles, |cycles| < 2^22; error below 1e-7, and the sine's is
- * relative (1.3e-7) near 0. Phase in cycles reduces exactly, where phase in radians would lose
- * digits. */
+/* Computes the sine and cosine of an angle in cycles, |cycles| < 2^22. The error is below 1e-7; the
+ * sine's is relative near 0 (1.3e-7). An angle in cycles is reduced exactly, where one in radians
+ * would lose digits. */
 FUNCTION void sine_cosine_of_cycles(vfloat cycles, vfloat *sine, vfloat *cosine)
 {
     const vfloat turns = cycles - nearest_integer(cycles); /* -1/2...1/2, exact */
@@ -40,7 +40,7 @@ FUNCTION void sine_cosine_of_cycles(vfloat cycles, vfloat *sine, vfloat *cosine)
     *cosine = SELECT(MASK_OF(((quadrant + 1) & 2) != 0), -plain_cosine, plain_cosine);
 }
 
-/* sin(2 pi u) / (2 pi u), 1 at 0; |cycles| < 2^22; error below 2e-7. */
+/* Returns sin(2 pi u) / (2 pi u), and 1 at 0, for |cycles| < 2^22. The error is below 2e-7. */
 FUNCTION vfloat sinc_of_cycles(vfloat cycles)
 {
     vfloat sine, cosine;
@@ -50,12 +50,12 @@ FUNCTION vfloat sinc_of_cycles(vfloat cycles)
                   sine / (SELECT(is_zero, SPLAT(1.0f), cycles) * 6.2831853072f));
 }
 
-/* exp(value) for value <= 0; relative error below 1.3e-7; 0 below -80. */
+/* Returns exp(value) for value <= 0, and 0 below -80. The relative error is below 1.3e-7. */
 FUNCTION vfloat exponential_of_negative(vfloat value)
 {
     const vfloat limited = larger(value, SPLAT(-80.0f));
     const vfloat power = nearest_integer(limited * 1.44269504089f);
-    /* ln 2 in two parts, so that the remainder keeps its digits */
+    /* ln 2 is split in two, so that the remainder keeps its digits. */
     const vfloat rest = (limited - power * 0.693359375f) - power * -2.12194440e-4f;
     const vfloat fraction =
         1.0f +
@@ -67,7 +67,7 @@ FUNCTION vfloat exponential_of_negative(vfloat value)
     return SELECT(MASK_OF(value < -80.0f), SPLAT(0.0f), fraction * scale);
 }
 
-/* Natural logarithm of a normal value > 0; absolute error below 1e-7 + 1.25e-7 |result|. */
+/* Returns ln(value) of a normal value > 0. The absolute error is below 1e-7 + 1.25e-7 |result|. */
 FUNCTION vfloat natural_logarithm(vfloat value)
 {
     const vint bits = AS_VINT(value);
@@ -85,8 +85,8 @@ FUNCTION vfloat natural_logarithm(vfloat value)
     return VFLOAT_OF(exponent) * 0.69314718056f + series;
 }
 
-/* Cube root of a normal value > 0, below 1e30; relative error below 3e-7. A third of the exponent,
- * then two steps of Halley's. */
+/* Returns the cube root of a normal value > 0 and below 1e30. The relative error is below 3e-7. A
+ * third of the exponent is the first guess for two steps of Halley's method. */
 FUNCTION vfloat cube_root(vfloat value)
 {
     vfloat root = AS_VFLOAT(VINT_OF(VFLOAT_OF(AS_VINT(value)) * 0.333333333f) + 709921077);

@@ -9,23 +9,23 @@
 #include "random.h"
 #include "ray_table.h"
 
-/* A ray through the frame's neighbourhood, counted from its point closest to the origin: at 500 m
- * the sonar's own coordinates would eat the digits that the phase needs. */
+/* A ray near the frame's origin. Distances count from the ray's point closest to the origin. At
+ * 500 m the sonar's own coordinates would leave too few digits for the phase. */
 struct fan_ray {
-    struct vector3 closest;   /* point closest to the frame's origin (in the plane of the strip) */
+    struct vector3 closest;   /* point closest to the frame's origin, in the plane of the strip */
     struct vector3 direction; /* unit, away from the sonar */
-    struct vector3 upward;    /* unit, across the ray, towards larger elevation */
-    vfloat range_at_closest;  /* range there less the reference range */
-    vfloat wavefront;         /* m; the wavefront's width per rad of elevation there; it grows by
-                               1 m per m, and without layers it is the range */
-    vfloat spreading;         /* of layers: struct arrival; else of no meaning */
-    vfloat range_per_metre;   /* along it: 1 but in slices */
-    vfloat turn;              /* of its direction per rad of elevation: likewise */
+    struct vector3 upward;    /* unit, across the ray, towards larger elevations */
+    vfloat range_at_closest;  /* range at that point less the reference range */
+    vfloat wavefront; /* width of the wavefront at that point, m per rad of elevation; it grows by 1
+                         m per m, and without layers it is the range */
+    vfloat spreading; /* spreading as in struct arrival; only where layers bend the ray */
+    vfloat range_per_metre; /* range per m along the ray; 1 except in slices */
+    vfloat turn;            /* turn of the direction per rad of elevation; 1 except in slices */
 };
 
-/* x: track position; elevation: rad over the direction from the track to the origin.
- * With d the central direction and u upward of it, the ray's direction is d cos e + u sin e, and it
- * passes the origin at R sin e (u cos e - d sin e), at range R cos e. */
+/* Returns the ray at a track position x and an elevation e, rad over the direction d from the track
+ * to the origin. With u upward across d and R the reference range, the ray runs along d cos e +
+ * u sin e. It passes the origin at R sin e (u cos e - d sin e), at the range R cos e. */
 FUNCTION struct fan_ray fan_ray_at(const struct fan_record *fan,
                                    GLOBAL const struct ray_piece_record *pieces, vfloat x,
                                    vfloat elevation)
@@ -59,14 +59,14 @@ FUNCTION struct fan_ray fan_ray_at(const struct fan_record *fan,
     return ray;
 }
 
-/* Range at a distance along a ray, less the reference range. */
+/* Returns the range at a distance along a ray, less the reference range. */
 FUNCTION vfloat range_along(const struct fan_ray *ray, vfloat distance)
 {
     return ray->range_at_closest + ray->range_per_metre * distance;
 }
 
-/* What layers do to the amplitude of an echo from a point of the ray, over that in isovelocity
- * water: there and back, normalised by the square of the range. */
+/* Returns the gain by layers in the amplitude of an echo from a point of the ray, over isovelocity
+ * water. It counts both ways and is normalised by the square of the range. */
 FUNCTION vfloat refraction_gain(const struct fan_record *fan, const struct fan_ray *ray,
                                 vfloat distance)
 {
@@ -77,17 +77,17 @@ FUNCTION vfloat refraction_gain(const struct fan_record *fan, const struct fan_r
     return ray->spreading * range * range / (ground * (ray->wavefront + distance));
 }
 
-/* The strip of a group. Devices hand groups out in runs, and strips near targets take longest:
- * neighbours in a run are strides apart, so that all runs take about as long. The stride has no
- * factor in common with the number of strips, so every strip gets its turn, in one call of the
- * kernel or in several. */
+/* Returns the strip of a group. Devices hand groups out in runs, and strips near targets take
+ * longest. Neighbours in a run are therefore strides apart, so that all runs take about as long.
+ * The stride and the number of strips have no common factor, so every strip gets its turn, in one
+ * call of the kernel or in several. */
 FUNCTION int strip_of_group(const struct fan_record *fan, int group)
 {
     const PLACE turn = (PLACE)fan->first_turn + group / fan->segments;
     return (int)(turn * fan->strip_stride % fan->strips);
 }
 
-/* The first rays of an item of a group that follows a segment, and how far its next ones are. */
+/* Returns a work-item's first ray in a segment. Its next rays follow in steps of ray_step. */
 FUNCTION RECORD_WORD first_ray_of_item(int segment)
 {
     return (RECORD_WORD)segment * GROUP_WIDTH + GROUP_ITEM * WIDTH;
@@ -98,14 +98,14 @@ FUNCTION RECORD_WORD ray_step(const struct fan_record *fan)
     return (RECORD_WORD)fan->segments * GROUP_WIDTH;
 }
 
-/* The random numbers of a strip of this launch: the same in a window as in the whole patch. */
+/* Returns the key of a strip of this launch. It is the same in a window as in the whole patch. */
 FUNCTION struct random_key key_of_strip(const struct fan_record *fan, int strip)
 {
     return random_key_of(fan->seed_low, fan->seed_high, fan->stream,
                          (RECORD_WORD)(fan->track_strip + fan->first_strip + strip));
 }
 
-/* How many of `most` rays from the first on the fan has. */
+/* Returns how many of `most` rays, from the first on, the fan has. */
 FUNCTION RECORD_WORD rays_from(const struct fan_record *fan, RECORD_WORD first_ray,
                                RECORD_WORD most)
 {
@@ -113,19 +113,19 @@ FUNCTION RECORD_WORD rays_from(const struct fan_record *fan, RECORD_WORD first_r
     return left < most ? left : most;
 }
 
-/* Along-track position of the middle of a strip of this launch. */
+/* Returns the along-track position of the middle of a strip of this launch, m. */
 FUNCTION float strip_position(const struct fan_record *fan, int strip)
 {
     return fan->first_strip_x + (float)(fan->first_strip + strip) * fan->strip_width;
 }
 
-/* The bins between whose middles a bin coordinate lies; far outside -> bins that do not exist. */
+/* The two bins about a bin coordinate. Far outside the grid they are bins that do not exist. */
 struct bin_pair {
-    vint bin;     /* the first */
-    vfloat later; /* 0...1: the share of the second */
+    vint bin;     /* number of the first */
+    vfloat later; /* share of the second, 0...1 */
 };
 
-#define BEFORE_BINS (-9.0f) /* the bin coordinate of what no bin is to hold */
+#define BEFORE_BINS (-9.0f) /* bin coordinate of echoes that no bin takes */
 
 FUNCTION struct bin_pair bins_about(vfloat coordinate)
 {
@@ -136,7 +136,7 @@ FUNCTION struct bin_pair bins_about(vfloat coordinate)
     return pair;
 }
 
-/* Distance from a point to the mean seabed; FAR_AWAY for rays that do not go down. */
+/* Returns the distance from a point to the mean seabed; FAR_AWAY for rays that do not go down. */
 FUNCTION vfloat plane_distance(const struct fan_record *fan, struct vector3 point,
                                struct vector3 direction)
 {

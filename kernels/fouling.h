@@ -1,16 +1,16 @@
-/* What grows on objects: random fields of albedo and of relief over their surface (kernels/MATH.md,
- * "Fouling"). */
+/* The fouling of objects: random fields of albedo and of relief over their surface
+ * (kernels/MATH.md, "Fouling"). */
 #ifndef SONJECT_KERNELS_FOULING_H
 #define SONJECT_KERNELS_FOULING_H
 
 #include "elementary.h"
 #include "vector3.h"
 
-/* The most that a facet's turn to the sound brightens it: beyond, facets would shade each other. */
+/* The largest gain of a facet that turns to the sound: beyond, facets would shade each other. */
 #define FACET_BRIGHTEST 4.0f
 
-/* cos(2 pi cycles), |cycles| < 2^22; error below 5e-5, which no random field shows, in half the
- * time of sine_cosine_of_cycles. */
+/* Returns cos(2 pi cycles) for |cycles| < 2^22. The error is below 5e-5, which no random field
+ * shows, in half the time of sine_cosine_of_cycles. */
 FUNCTION vfloat cosine_nearly(vfloat cycles)
 {
     const vfloat turns = cycles - nearest_integer(cycles);
@@ -26,7 +26,7 @@ FUNCTION vfloat wave_at(GLOBAL const struct fouling_wave *wave, struct vector3 p
                          (wave->z * point.z + wave->phase));
 }
 
-/* Albedo over the material's at a point, counted from the centre in the axes of the frame. */
+/* Returns the albedo over the material's. point: from the centre, in the axes of the frame. */
 FUNCTION vfloat albedo_at(GLOBAL const struct fouling_record *fouling, struct vector3 point)
 {
     vfloat sum = SPLAT((float)-FOULING_WAVES);
@@ -36,7 +36,7 @@ FUNCTION vfloat albedo_at(GLOBAL const struct fouling_record *fouling, struct ve
            exponential_of_negative(smaller(sum * fouling->albedo_gain, SPLAT(0.0f)));
 }
 
-/* Normal to the facet of the relief there, of the length 1 along the surface's own normal. */
+/* Returns a normal to the relief's facet, with the length 1 along the surface's own normal. */
 FUNCTION struct vector3 facet_at(GLOBAL const struct fouling_record *fouling, struct vector3 point,
                                  struct vector3 normal)
 {
@@ -51,9 +51,8 @@ FUNCTION struct vector3 facet_at(GLOBAL const struct fouling_record *fouling, st
     return along3(along3(normal, normal, dot3(slope, normal)), slope, SPLAT(-1.0f));
 }
 
-/* What fouling makes of scattering at a point of the object from one direction into another, both
- * above its surface: the albedo, and as many times more as the facet turns to the middle of both.
- */
+/* Returns the factor of fouling on scattering at a point of the object, between two directions
+ * above its surface: the albedo, times the gain of a facet that turns to the middle of both. */
 FUNCTION vfloat fouling_factor(GLOBAL const struct object_record *object, struct vector3 point,
                                struct vector3 normal, struct vector3 one, struct vector3 other)
 {

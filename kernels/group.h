@@ -1,6 +1,6 @@
-/* Who follows the rays of a strip's segment. On a CPU one work-item does, WIDTH rays at a time. On
- * a GPU the work-items of a group do, which walk in step: rays side by side are given to items side
- * by side, so that they take the same turns. */
+/* Work-items that follow the rays of one segment of a strip. On a CPU that is one work-item, which
+ * takes WIDTH rays at a time. On a GPU it is the work-items of a group, which walk in step.
+ * Neighbouring rays go to neighbouring items, so that the items take the same branches. */
 #ifndef SONJECT_KERNELS_GROUP_H
 #define SONJECT_KERNELS_GROUP_H
 
@@ -11,15 +11,15 @@
 #define GROUP_ITEMS 1
 #endif
 
-/* Rays, or blocks of them, that a group takes at once. */
+/* The number of rays, or blocks of rays, that a group takes at once. */
 #define GROUP_WIDTH (GROUP_ITEMS * WIDTH)
 
 #if GROUP_ITEMS > 1
 #define GROUP_KERNEL __kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1)))
 #define GROUP_NUMBER ((int)get_group_id(0))
 #define GROUP_ITEM   ((RECORD_WORD)get_local_id(0))
-#define GROUP_MEMORY __local                      /* that its items share */
-#define GROUP_WAIT() barrier(CLK_LOCAL_MEM_FENCE) /* all of them must come here */
+#define GROUP_MEMORY __local                      /* shared by the group's items */
+#define GROUP_WAIT() barrier(CLK_LOCAL_MEM_FENCE) /* all items of the group must come here */
 #else
 #define GROUP_KERNEL __kernel
 #define GROUP_NUMBER ((int)get_global_id(0))
@@ -28,7 +28,7 @@
 #define GROUP_WAIT()
 #endif
 
-/* Adds what an item counted to its group's record, which began with zeros. */
+/* Adds the counts of an item to its group's record, which began with zeros. */
 FUNCTION void count_outcome(GLOBAL struct outcome_record *sum, const struct outcome_record *own)
 {
 #if GROUP_ITEMS > 1

@@ -1,7 +1,7 @@
 /* Entry points of image formation. */
 #include "image_formation.h"
 
-/* Amplitudes sqrt(energy) * complex normal deviate. Global size: groups of WIDTH bins x strips. */
+/* Draws sqrt(energy) * complex normal deviates. Global size: groups of WIDTH bins x strips. */
 __kernel void draw_speckle(__global const float *energy, int bins, int first_bin, int first_strip,
                            uint seed_low, uint seed_high, uint stream, __global float *out_real,
                            __global float *out_imaginary)
@@ -23,8 +23,8 @@ __kernel void draw_speckle(__global const float *energy, int bins, int first_bin
     }
 }
 
-/* Of lines one behind the other, from first_line on, each stride * bins_per_pixel long once it is
- * sorted. Global size: groups of WIDTH columns x strips. */
+/* Sorts the bins of lines one behind the other, from first_line on. A sorted line is stride *
+ * bins_per_pixel long. Global size: groups of WIDTH columns x strips. */
 __kernel void sort_bins(__global const float *lines, int first_line, int bins, int first,
                         int bins_per_pixel, int stride, __global float *sorted)
 {

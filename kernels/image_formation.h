@@ -1,6 +1,6 @@
-/* From bins to pixels: speckle, pulse, cross-range response. Fields are two float planes, real and
- * imaginary part (or two energies that are formed side by side). Every output is a sum in one fixed
- * order. */
+/* Image formation, from bins to pixels: speckle, pulse, cross-range response. A field is two float
+ * planes, its real and imaginary part, or two energies that are formed side by side. Every output
+ * is a sum in one fixed order. */
 #ifndef SONJECT_KERNELS_IMAGE_FORMATION_H
 #define SONJECT_KERNELS_IMAGE_FORMATION_H
 
@@ -8,8 +8,8 @@
 #include "layout.h"
 #include "random.h"
 
-/* Complex normal deviates of unit mean square (Box and Muller: -ln u is the exponential intensity,
- * v the phase in cycles). */
+/* Draws complex normal deviates of unit mean square by Box and Muller: -ln u is the exponential
+ * intensity, v the phase in cycles. */
 FUNCTION void complex_normal(struct random_key key, word number, vfloat *real_part,
                              vfloat *imaginary_part)
 {
@@ -22,8 +22,8 @@ FUNCTION void complex_normal(struct random_key key, word number, vfloat *real_pa
     *imaginary_part = amplitude * sine;
 }
 
-/* Sorts a line's bins so that those which neighbouring pixels take one tap from lie side by side:
- * bin k * bins_per_pixel + phase + first comes to sorted[phase * stride + k], for the WIDTH
+/* Sorts a line's bins so that the bins from which neighbouring pixels take one tap lie side by
+ * side. Bin k * bins_per_pixel + phase + first goes to sorted[phase * stride + k], for the WIDTH
  * elements k from `column` on and all phases. Bins outside the line are empty. */
 FUNCTION void sort_bins_of(GLOBAL const float *line, int bins, int first, int bins_per_pixel,
                            int stride, int column, GLOBAL float *sorted)
@@ -39,8 +39,8 @@ FUNCTION void sort_bins_of(GLOBAL const float *line, int bins, int first, int bi
     }
 }
 
-/* The taps that meet these, for WIDTH pixels of which the first begins at `start`: the others would
- * add zeros. */
+/* Returns the first tap that meets filled bins, for WIDTH pixels of which the first begins at
+ * `start`. All taps before it, and those from end_of_taps on, would add zeros. */
 FUNCTION int first_tap_of(int start, struct filled_span filled, int bins_per_pixel)
 {
     const int outside = filled.first - start - (WIDTH - 1) * bins_per_pixel;
@@ -52,10 +52,10 @@ FUNCTION int end_of_taps(int start, struct filled_span filled, int taps)
     return filled.end - start < taps ? filled.end - start : taps;
 }
 
-/* Range compression of the WIDTH pixels from `column` on: pixel j is the sum over taps of
- * line[j * bins_per_pixel + first + tap] * pulse[tap], from the line's sorted bins. Lanes are
- * pixels, so that each sum keeps its order whatever a compiler makes of the loop. `out` must have
- * room for whole groups of WIDTH. */
+/* Compresses the WIDTH pixels from `column` on in range. Pixel j is the sum over taps of line[j *
+ * bins_per_pixel + first + tap] * pulse[tap], from the line's sorted bins. Lanes are pixels, so
+ * that each sum keeps its order whatever a compiler makes of the loop. `out` must have room for
+ * whole groups of WIDTH. */
 FUNCTION void compress_range_of(GLOBAL const float *sorted, int stride, struct filled_span filled,
                                 int first, int bins_per_pixel, GLOBAL const float *pulse, int taps,
                                 int column, GLOBAL float *out)
@@ -74,7 +74,7 @@ FUNCTION void compress_range_of(GLOBAL const float *sorted, int stride, struct f
     STORE_VFLOAT(sum, out + column);
 }
 
-/* The same with a complex pulse, both parts of the line at once. */
+/* Compresses as compress_range_of does, with a complex pulse, both parts of the line at once. */
 FUNCTION void compress_complex_of(GLOBAL const float *sorted_real,
                                   GLOBAL const float *sorted_imaginary, int stride,
                                   struct filled_span filled, int first, int bins_per_pixel,
@@ -97,24 +97,24 @@ FUNCTION void compress_complex_of(GLOBAL const float *sorted_real,
     STORE_VFLOAT(sum_imaginary, out_imaginary + column);
 }
 
-/* Where a row takes its aspects from. */
+/* The strips from which a row takes its aspects. */
 struct aspects {
-    int first_strip, end_strip; /* of the lines, on the track's numbering; to before the end */
+    int first_strip, end_strip; /* strips of the lines, on the track's numbering: first...end - 1 */
     int strips_per_row;
     int reach; /* the response is kept within +-reach strips; 2 reach + 1 taps */
 };
 
-/* Whether WIDTH columns of a line may hold anything but zeros. */
+/* Returns whether WIDTH columns of a line may hold anything but zeros. */
 FUNCTION int is_filled_at(struct filled_span columns, int column)
 {
     return columns.first < column + WIDTH && columns.end > column;
 }
 
-#define FORM_ROWS 8 /* rows a work-item forms, so that a line is read once for all of them */
+#define FORM_ROWS 8 /* rows that a work-item forms, so that a line is read once for all of them */
 
-/* Cross-range response for FORM_ROWS x WIDTH pixels: row n is the sum over strips q of
- * lines[q] * response[n * strips_per_row - q + reach], but for columns that a strip leaves empty.
- * Before and behind the response lie (FORM_ROWS - 1) * strips_per_row zeros. Planes are
+/* Applies the cross-range response to FORM_ROWS x WIDTH pixels. Row n is the sum over strips q of
+ * lines[q] * response[n * strips_per_row - q + reach], except for columns that a strip leaves
+ * empty. Before and behind the response lie (FORM_ROWS - 1) * strips_per_row zeros. Planes are
  * rows_or_strips x stride. */
 FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lines,
                                  GLOBAL const struct filled_span *filled, int stride,
@@ -143,16 +143,16 @@ FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lin
         STORE_VFLOAT(sum[r], out + (PLACE)(first_row + r) * stride + column);
 }
 
-/* Responses of a set of rows and blocks of columns, each with the taps of struct aspects. */
+/* The responses of a set of rows and blocks of columns. Each has the taps of struct aspects. */
 struct response_set {
-    int first_row;         /* that the set begins with */
-    int row_step;          /* floats from a row's taps to the next row's; 0: one for all */
+    int first_row;         /* first row of the set */
+    int row_step;          /* floats from a row's taps to the next row's; 0: all rows share them */
     int columns_per_block; /* a multiple of WIDTH */
     int block_step;        /* floats from a block's taps to the next block's */
 };
 
-/* The same as combine_aspects_of with a complex response that may differ from row to row and from
- * block to block. */
+/* Combines as combine_aspects_of does, with a complex response that may differ from row to row and
+ * from block to block. */
 FUNCTION void combine_varied_of(struct aspects aspects, struct response_set set,
                                 GLOBAL const float *lines_real, GLOBAL const float *lines_imaginary,
                                 GLOBAL const struct filled_span *filled, int stride,

@@ -1,6 +1,6 @@
-/* Paths between an object and two sources, each the sonar or an image of it in level boundaries. A
- * line between source and object is straight in unfolded space; what stands in its way is looked
- * for along the folded line (kernels/MATH.md, "Image sources"). */
+/* Paths between an object and two sources, each the sonar or one of its images in level boundaries.
+ * A line between source and object is straight in unfolded space. Obstacles are looked for along
+ * the folded line (kernels/MATH.md, "Image sources"). */
 #ifndef SONJECT_KERNELS_IMAGE_SOURCES_H
 #define SONJECT_KERNELS_IMAGE_SOURCES_H
 
@@ -16,7 +16,7 @@ struct leg {
         reflection_imaginary; /* product of the boundaries' coherent amplitudes */
 };
 
-/* Cosine of incidence on a boundary of sound that comes to the object with another: Snell's law. */
+/* Returns the cosine of incidence on a boundary, by Snell's law. cosine: at the object. */
 FUNCTION vfloat cosine_at_boundary(GLOBAL const struct boundary_record *boundary, vfloat cosine)
 {
     if (boundary->speed_ratio == 1.0f)
@@ -25,8 +25,8 @@ FUNCTION vfloat cosine_at_boundary(GLOBAL const struct boundary_record *boundary
     return SQUARE_ROOT(larger(1.0f - (1.0f - cosine * cosine) * square, SPLAT(0.0f)));
 }
 
-/* direction: from the hit to the source in unfolded space, unit; length: m. Lanes that are not
- * wanted stay closed. */
+/* Follows a leg from a hit to a source. direction: unit, to the source in unfolded space; length:
+ * m. Lanes that are not wanted stay closed. */
 FUNCTION struct leg follow_leg(const struct fan_record *fan,
                                GLOBAL const struct image_pair_record *pair,
                                GLOBAL const struct source_record *source,
@@ -38,9 +38,9 @@ FUNCTION struct leg follow_leg(const struct fan_record *fan,
     leg.reflection_real = SPLAT(1.0f);
     leg.reflection_imaginary = SPLAT(0.0f);
     const vfloat cosine =
-        magnitude(direction.z); /* the same at every bounce: boundaries are level */
+        magnitude(direction.z); /* equal at every bounce, since boundaries are level */
     const int is_bent = source->table.pieces > 0;
-    int is_seen = 1; /* through layers, only what is in the water around the object */
+    int is_seen = 1; /* through layers, only obstacles in the water around the object are seen */
     int kind = source->last_boundary;
     for (int bounce = 0; bounce < source->bounces && ANY(leg.is_open); bounce++) {
         GLOBAL const struct boundary_record *boundary = &pair->boundaries[kind];
@@ -78,9 +78,9 @@ FUNCTION struct leg follow_leg(const struct fan_record *fan,
 /* The line from a source to a hit. */
 struct line_from_source {
     struct vector3 direction; /* unit, towards the hit */
-    vfloat wavefront;         /* width per rad of elevation at the hit: without layers its length */
-    vfloat excess;            /* range less the source's range, formed without subtracting */
-    vfloat spreading;         /* of layers: struct arrival */
+    vfloat wavefront; /* width per rad of elevation at the hit; without layers, the line's length */
+    vfloat excess;    /* range less the source's range, formed without a difference of ranges */
+    vfloat spreading; /* spreading of layers, as in struct arrival (lib/medium/water.h) */
 };
 
 FUNCTION struct line_from_source line_through_layers(GLOBAL const struct source_record *source,
@@ -118,7 +118,7 @@ FUNCTION struct line_from_source line_from_source(GLOBAL const struct source_rec
     return line;
 }
 
-/* Distance along a fan's rays from which on they are past their last boundary. */
+/* Returns the distance along a fan's rays at which they are past their last boundary. */
 FUNCTION vfloat distance_past_boundaries(const struct fan_record *fan,
                                          GLOBAL const struct image_pair_record *pair,
                                          const struct fan_ray *ray)
@@ -134,14 +134,13 @@ FUNCTION vfloat distance_past_boundaries(const struct fan_record *fan,
                   SPLAT(FAR_AWAY));
 }
 
-/* Where a fan's rays meet the object, past their boundaries and above the seabed. */
+/* The hit of a fan's rays on the object, past their boundaries and above the seabed. */
 struct image_hit {
     mask is_hit;
     struct vector3 point, normal;
-    struct vector3
-        start;     /* where rays that test visibility start, but for a step off the surface */
-    vfloat range;  /* from the outgoing source less the reference range */
-    vfloat cosine; /* of the angle of incidence */
+    struct vector3 start; /* start of rays that test visibility, but for a step off the surface */
+    vfloat range;         /* m, from the outgoing source, less the reference range */
+    vfloat cosine;        /* cosine of the angle of incidence */
 };
 
 FUNCTION struct image_hit find_image_hit(const struct fan_record *fan,
@@ -166,24 +165,24 @@ FUNCTION struct image_hit find_image_hit(const struct fan_record *fan,
     hit.start = lifted_point(hit.point, &face);
     hit.range = ray->range_at_closest + safe;
     hit.cosine = -dot3(hit.normal, ray->direction);
-    /* from inside: the boundary's point is buried in the object */
+    /* A hit from inside means that the boundary's point is buried in the object. */
     hit.is_hit = hit.is_hit & MASK_OF(hit.cosine > 0.0f);
     return hit;
 }
 
-/* The path from the outgoing source by way of a hit back to the other. */
+/* The path from the outgoing source by way of a hit to the returning source. */
 struct image_path {
     mask is_open;
-    struct line_from_source back; /* from the returning source to the hit */
+    struct line_from_source back; /* line from the returning source to the hit */
     vfloat wavefront_out;         /* width per rad of the fan's elevation at the hit */
     vfloat range;                 /* half the path less that by way of the frame's origin */
     vfloat spreading;             /* square of half the path over the product of both legs */
-    vfloat cosine_back;           /* between the normal and the return path */
-    vfloat reflection_real, reflection_imaginary; /* of all boundaries */
+    vfloat cosine_back;           /* cosine between the normal and the return path */
+    vfloat reflection_real, reflection_imaginary; /* product of all boundaries */
 };
 
-/* Square root of both legs' intensities, normalised by the square of half the path. A leg that no
- * layer bends has the spreading cos(grazing angle). */
+/* Returns the square root of both legs' intensities, normalised by the square of half the path. A
+ * leg that no layer bends has the spreading cos(grazing angle). */
 FUNCTION vfloat spreading_through_layers(const struct fan_record *fan,
                                          GLOBAL const struct image_pair_record *pair,
                                          const struct fan_ray *ray, const struct image_hit *hit,

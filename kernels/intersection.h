@@ -1,4 +1,4 @@
-/* Where rays meet objects. */
+/* Intersections of rays with objects. */
 #ifndef SONJECT_KERNELS_INTERSECTION_H
 #define SONJECT_KERNELS_INTERSECTION_H
 
@@ -11,7 +11,7 @@
 #include "mesh_object.h"
 #endif
 
-/* Turns a vector of the launch's frame into the object's own. */
+/* Turns a vector of the launch's frame into the object's own frame. */
 FUNCTION struct vector3 into_object(GLOBAL const struct object_record *object, struct vector3 v)
 {
     struct vector3 turned;
@@ -40,7 +40,7 @@ FUNCTION struct vector3 from_centre(GLOBAL const struct object_record *object, s
 }
 
 #define SHAPE_ONE(NUMBER, name, traits) +1
-/* Of the plainest shapes. */
+/* Returns whether the object has one of the plainest shapes. */
 FUNCTION int is_plain(GLOBAL const struct object_record *object)
 {
     return object->shape < 0 PLAIN_SHAPES(SHAPE_ONE);
@@ -59,7 +59,7 @@ FUNCTION int is_plain(GLOBAL const struct object_record *object)
     case SHAPE_##NUMBER:                                                                           \
         return !((traits)&SHAPE_IS_HOLLOW);
 
-/* Plain shapes, in the object's own frame. */
+/* Returns the interval of a plain shape, in the object's own frame. */
 FUNCTION struct interval plain_interval(GLOBAL const struct object_record *object,
                                         struct vector3 point, struct vector3 direction)
 {
@@ -69,7 +69,7 @@ FUNCTION struct interval plain_interval(GLOBAL const struct object_record *objec
     }
 }
 
-/* Any shape, in the object's own frame. */
+/* Returns the intervals of any shape, in the object's own frame. */
 NOINLINE struct spans shape_spans(GLOBAL const struct object_record *object, struct vector3 point,
                                   struct vector3 direction)
 {
@@ -81,7 +81,7 @@ NOINLINE struct spans shape_spans(GLOBAL const struct object_record *object, str
     }
 }
 
-/* Whether a straight way that leaves the outer side never meets the object again. */
+/* Returns whether a straight way that leaves the outer side never meets the object again. */
 FUNCTION int is_convex(GLOBAL const struct object_record *object)
 {
     switch (object->shape) {
@@ -93,7 +93,7 @@ FUNCTION int is_convex(GLOBAL const struct object_record *object)
     }
 }
 
-/* Plain shapes, in the object's own frame, outward, unit. */
+/* Returns the outward unit normal of a plain shape, in the object's own frame. */
 FUNCTION struct vector3 plain_normal(GLOBAL const struct object_record *object,
                                      struct vector3 point, struct vector3 direction)
 {
@@ -103,7 +103,7 @@ FUNCTION struct vector3 plain_normal(GLOBAL const struct object_record *object,
     }
 }
 
-/* Any shape; on the side that the ray comes from where it has no inside. */
+/* Returns the normal of any shape; without an inside, on the side that the ray comes from. */
 NOINLINE struct vector3 shape_normal(GLOBAL const struct object_record *object,
                                      struct vector3 point, struct vector3 direction)
 {
@@ -115,7 +115,7 @@ NOINLINE struct vector3 shape_normal(GLOBAL const struct object_record *object,
     }
 }
 
-/* The first end of an interval beyond `minimum`; both counted from `start`. */
+/* Returns the first end beyond `minimum` of an interval that counts from `start`, else FAR_AWAY. */
 FUNCTION vfloat first_end_beyond(struct interval inside, vfloat start, vfloat minimum)
 {
     const vfloat entry = start + inside.entry;
@@ -125,9 +125,9 @@ FUNCTION vfloat first_end_beyond(struct interval inside, vfloat start, vfloat mi
     return SELECT(MASK_OF(inside.entry <= inside.exit), first, SPLAT(FAR_AWAY));
 }
 
-/* Distance along the ray to the first surface beyond `minimum`, FAR_AWAY if there is none. The ray
- * is first moved to its closest approach to the object, so that single precision holds the shape
- * and not the range, at 500 m too. */
+/* Returns the distance along the ray to the first surface beyond `minimum`, FAR_AWAY if there is
+ * none. The ray first moves to its closest approach to the object. Single precision then holds the
+ * shape and not the range, even at 500 m. */
 FUNCTION vfloat object_distance(GLOBAL const struct object_record *object, struct vector3 point,
                                 struct vector3 direction, vfloat minimum)
 {
@@ -155,7 +155,7 @@ FUNCTION vfloat object_distance(GLOBAL const struct object_record *object, struc
 }
 
 #if HAS_MESHES
-/* In the object's own frame. */
+/* Returns the surface of a mesh where the ray meets it, in the object's own frame. */
 FUNCTION struct mesh_surface surface_of_mesh(GLOBAL const struct object_record *object,
                                              struct vector3 point, struct vector3 direction,
                                              vfloat distance)
@@ -168,8 +168,8 @@ FUNCTION struct mesh_surface surface_of_mesh(GLOBAL const struct object_record *
 }
 #endif
 
-/* Outward unit normal where the ray meets the object at that distance, which object_distance gave
- * for the same ray. Of a mesh that of the facet: what physical optics integrates over. */
+/* Returns the outward unit normal where the ray meets the object, at the distance that
+ * object_distance gave. A mesh has its facet's normal: physical optics integrates over facets. */
 FUNCTION struct vector3 object_normal(GLOBAL const struct object_record *object,
                                       struct vector3 point, struct vector3 direction,
                                       vfloat distance)
@@ -185,18 +185,18 @@ FUNCTION struct vector3 object_normal(GLOBAL const struct object_record *object,
                                                   : shape_normal(object, hit, step));
 }
 
-/* What is wanted of a hit: where facets stand for a smooth surface the two differ. */
+/* The purpose of a normal. The two differ where facets stand for a smooth surface. */
 enum wanted_face {
     FACE_OF_OPTICS,
     FACE_OF_SCATTERING
 };
 
-/* A surface where a ray meets it. What scatters sees meshes that stand for smooth surfaces as such;
- * all else is as object_normal says. */
+/* A surface where a ray meets it. For scattering, a mesh that stands for a smooth surface has the
+ * smooth normal. All else has the normal of object_normal. */
 struct surface_face {
     struct vector3 normal;
 #if HAS_MESHES
-    struct vector3 lift; /* from the hit to where rays that test visibility start, m */
+    struct vector3 lift; /* way from the hit to the start of rays that test visibility, m */
 #endif
 };
 
@@ -219,7 +219,7 @@ FUNCTION struct surface_face object_face(GLOBAL const struct object_record *obje
     return face;
 }
 
-/* A point of the surface, brought off it so far that its facets throw no shadows. */
+/* Returns a point of the surface, moved off it so far that its facets throw no shadows. */
 FUNCTION struct vector3 lifted_point(struct vector3 point, const struct surface_face *face)
 {
 #if HAS_MESHES
@@ -248,7 +248,7 @@ struct nearest_hit {
 
 #include "object_tree.h"
 
-/* m: more than a hit's rounding, less than anything that throws a shadow. */
+/* The step of rays off a surface, m: more than a hit's rounding, less than what throws shadows. */
 #define START_OFF_SURFACE 2.0e-5f
 
 FUNCTION struct nearest_hit find_nearest_hit(GLOBAL const struct object_record *objects, int count,
@@ -271,7 +271,7 @@ FUNCTION struct nearest_hit find_nearest_hit(GLOBAL const struct object_record *
     return nearest;
 }
 
-/* A distance beyond `path` where nothing is in the way up to there, else one that is not. */
+/* Returns a distance beyond `path` if nothing is in the way up to `path`, else one within it. */
 FUNCTION vfloat find_obstacle(GLOBAL const struct object_record *objects, int count,
                               struct vector3 point, struct vector3 direction, vfloat path)
 {

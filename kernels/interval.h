@@ -6,7 +6,7 @@
 
 #define FAR_AWAY 1.0e30f
 
-/* Distances along the ray; empty if entry > exit. */
+/* A range of distances along a ray. It is empty if entry > exit. */
 struct interval {
     vfloat entry, exit;
 };
@@ -26,7 +26,7 @@ FUNCTION struct interval interval_overlap(struct interval a, struct interval b)
     return interval_where(MASK_OF(entry <= exit), entry, exit);
 }
 
-/* Of two parts of one convex shape. */
+/* Returns the union of two intervals, which are parts of one convex shape. */
 FUNCTION struct interval interval_union(struct interval a, struct interval b)
 {
     struct interval both;
@@ -35,10 +35,10 @@ FUNCTION struct interval interval_union(struct interval a, struct interval b)
     return both;
 }
 
-/* Inside |coordinate| <= extent, where coordinate = start + step * distance. */
+/* Returns where |coordinate| <= extent, with coordinate = start + step * distance. */
 FUNCTION struct interval interval_of_slab(vfloat start, vfloat step, float extent)
 {
-    /* a ray along the slab becomes one that leaves it 10^20 m away */
+    /* A ray parallel to the slab gets a slope by which it leaves 10^20 m away. */
     const vfloat safe = SELECT(MASK_OF(magnitude(step) < 1.0e-20f), SPLAT(1.0e-20f), step);
     const vfloat to_lower = (-extent - start) / safe;
     const vfloat to_upper = (extent - start) / safe;
@@ -48,7 +48,7 @@ FUNCTION struct interval interval_of_slab(vfloat start, vfloat step, float exten
     return inside;
 }
 
-/* Inside a half space: by `depth` where the distance is 0, by `loss` less with each metre. */
+/* Returns where a ray is inside a half space. depth: at distance 0; loss: of depth, per metre. */
 FUNCTION struct interval interval_of_half_space(vfloat depth, vfloat loss)
 {
     const vfloat safe = SELECT(MASK_OF(magnitude(loss) < 1.0e-20f), SPLAT(1.0e-20f), loss);
@@ -60,8 +60,8 @@ FUNCTION struct interval interval_of_half_space(vfloat depth, vfloat loss)
     return inside;
 }
 
-/* What a ray has of any shape: `second` only of those that are not convex or not solid; it lies
- * beyond the first where both are there. */
+/* The intervals of a ray inside any shape. Only shapes that are not convex or not solid have a
+ * second one. If both exist, the second lies beyond the first. */
 struct spans {
     struct interval first, second;
 };

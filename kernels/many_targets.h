@@ -1,28 +1,28 @@
-/* Directions from a point towards one of many targets. A sphere is chosen with a probability that
- * is the same for some neighbouring rays: in proportion to its opening as seen from their middle,
- * so all spheres are gone through once for all of them. The direction is uniform over the chosen
+/* Directions from a point towards one of many targets. A sphere is chosen in proportion to its
+ * opening. Some neighbouring rays share the probabilities, seen from their middle, so that all
+ * spheres are gone through once for all of these rays. The direction is uniform over the chosen
  * sphere's cone as seen from the ray's own point (kernels/MATH.md, "Chains"). */
 #ifndef SONJECT_KERNELS_MANY_TARGETS_H
 #define SONJECT_KERNELS_MANY_TARGETS_H
 
 #include "target_sampling.h"
 
-/* Groups lie behind the sphere_records: those of the spheres, then those of the spheres around
- * groups. What is left of a group has radius 0. */
+/* Returns the groups of spheres, which lie behind the sphere_records. Behind them lie the groups of
+ * the spheres around groups. Unused slots of a group have radius 0. */
 FUNCTION GLOBAL const struct sphere_group *groups_of(GLOBAL const struct chain_record *chains,
                                                      GLOBAL const struct sphere_record *spheres)
 {
     return (GLOBAL const struct sphere_group *)(spheres + chains->spheres);
 }
 
-/* How rays choose their spheres. */
+/* The probabilities by which rays choose their spheres. */
 struct target_choice {
-    float x, y, z;                       /* m: where the openings are seen from */
-    float square_blur;                   /* m^2, that distances from there are blurred by */
-    float before[TARGET_GROUPS_MAX + 1]; /* sum of the openings in the groups before; last: all */
+    float x, y, z;     /* m: point from which the openings are seen */
+    float square_blur; /* m^2: added to squared distances from that point, as a blur */
+    float before[TARGET_GROUPS_MAX + 1]; /* sum of the openings in earlier groups; last: in all */
 };
 
-/* The spheres of a group from some slot on, as seen from a point. */
+/* The spheres of a group from one slot on, as seen from a point. */
 struct seen_spheres {
     struct vector3 way;
     vfloat square_distance, square_radius;
@@ -41,7 +41,7 @@ FUNCTION struct seen_spheres see_spheres(GLOBAL const struct sphere_group *group
     return seen;
 }
 
-/* The weight by which a sphere is chosen: its opening, 1 from inside. */
+/* Returns the weight of a sphere in the choice: its opening, or 1 from inside. */
 FUNCTION vfloat choice_weight(const struct target_choice *choice,
                               GLOBAL const struct sphere_group *group, int slot)
 {
@@ -66,7 +66,7 @@ FUNCTION void weigh_group(const struct target_choice *choice,
     }
 }
 
-/* Sums are formed one after the other whatever the width. */
+/* Sums the openings one after the other, whatever the width. */
 FUNCTION void begin_choice(GLOBAL const struct chain_record *chains,
                            GLOBAL const struct sphere_record *spheres, struct target_choice *choice)
 {
@@ -82,13 +82,13 @@ FUNCTION void begin_choice(GLOBAL const struct chain_record *chains,
     choice->before[chains->groups] = sum;
 }
 
-/* The spheres that lanes choose, and what is left of each lane's uniform number. */
+/* The spheres that lanes choose, and the rest 0...1 of each lane's uniform deviate. */
 struct sampled_spheres {
     struct vector3 centre;
     vfloat radius, rest;
 };
 
-/* The sphere of one lane: the last whose predecessors' weights sum to no more than `wanted`. */
+/* Finds one lane's sphere: the last whose predecessors' weights sum to no more than `wanted`. */
 FUNCTION void sample_sphere(const struct target_choice *choice,
                             GLOBAL const struct sphere_group *groups, int count, float wanted,
                             int *group, int *slot, float *rest)
@@ -117,7 +117,8 @@ FUNCTION void sample_sphere(const struct target_choice *choice,
     *rest = share < 0.9999999f ? share : 0.9999999f;
 }
 
-/* By a choice that all lanes share, or, if that is 0, by their own, which are left in own[lane]. */
+/* Chooses spheres by the choice that all lanes share. If that is 0, each lane chooses for itself
+ * and leaves its choice in own[lane]. */
 FUNCTION struct sampled_spheres sample_spheres(GLOBAL const struct chain_record *chains,
                                                GLOBAL const struct sphere_record *spheres,
                                                const struct target_choice *shared,
@@ -161,13 +162,13 @@ FUNCTION struct sampled_spheres sample_spheres(GLOBAL const struct chain_record 
     return chosen;
 }
 
-/* Densities with which directions are found: by cones, 1/sr, and the share of choices that are left
- * to the surface's own BRDF, for the point is inside the sphere chosen. */
+/* The densities with which directions are found. Cones give by_solid_angle, 1/sr. The surface's own
+ * BRDF gets brdf_share of the choices, where the point is inside the chosen sphere. */
 struct target_density {
     float by_solid_angle, brdf_share;
 };
 
-/* Adds the spheres of a group that hold the direction, or the point. */
+/* Adds the densities of a group's spheres whose cones hold the direction or that hold the point. */
 FUNCTION void add_group_density(const struct target_choice *choice,
                                 GLOBAL const struct sphere_group *group, struct vector3 point,
                                 struct vector3 direction, struct target_density *density)
@@ -202,7 +203,7 @@ FUNCTION void add_group_density(const struct target_choice *choice,
     }
 }
 
-/* Bit i: the ray may meet sphere i of the group, a little larger than it is, or starts inside. */
+/* Returns the spheres, slightly enlarged, that the ray may meet or starts in: bit i is sphere i. */
 FUNCTION RECORD_WORD groups_ahead(GLOBAL const struct sphere_group *bounds, struct vector3 point,
                                   struct vector3 direction)
 {
@@ -219,7 +220,7 @@ FUNCTION RECORD_WORD groups_ahead(GLOBAL const struct sphere_group *bounds, stru
     return met;
 }
 
-/* Density of one lane's direction. */
+/* Returns the density of one lane's direction. */
 FUNCTION struct target_density single_density(GLOBAL const struct chain_record *chains,
                                               GLOBAL const struct sphere_group *groups,
                                               const struct target_choice *choice,

@@ -1,13 +1,13 @@
-/* Where rays meet a triangle mesh. A packet of WIDTH rays walks the hierarchy together; a part that
- * only few of them reach is walked by each alone. What is found is the nearest triangle, of equally
- * near ones that of the lowest number, so the order of the walk and the packet of a ray change
- * nothing. */
+/* Intersections of rays with a triangle mesh. A packet of WIDTH rays walks the hierarchy together.
+ * Each ray walks alone through a part that only few reach. The nearest triangle is found; of
+ * equally near ones, that of the lowest number. The order of the walk and the packet of a ray
+ * therefore change nothing. */
 #ifndef SONJECT_KERNELS_MESH_H
 #define SONJECT_KERNELS_MESH_H
 
 #include "mesh_beam.h"
 
-/* So many rays or fewer walk alone. A packet of one is alone from the start. */
+/* The largest number of rays that walk alone. A packet of one ray is alone from the start. */
 #define MESH_ALONE (WIDTH * 3 / 8)
 
 FUNCTION struct mesh_view mesh_view_of(GLOBAL const struct mesh_record *mesh,
@@ -28,10 +28,10 @@ struct mesh_hit {
     vint triangle;   /* number, -1: none */
 };
 
-/* What is still to be visited. */
+/* The children still to be visited. */
 struct mesh_stack {
     int child[MESH_STACK];
-    vfloat entry[MESH_STACK]; /* distance to its box, FAR_AWAY for rays that miss it */
+    vfloat entry[MESH_STACK]; /* distance to its box; FAR_AWAY for rays that miss it */
     int count;
 };
 
@@ -44,7 +44,7 @@ FUNCTION struct vector3 splat_point(float x, float y, float z)
     return point;
 }
 
-/* Of a box with the same corners for all rays. */
+/* Returns the distance at which each ray enters a box that is the same for all of them. */
 FUNCTION vfloat packet_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
                              struct vector3 lower, struct vector3 upper, vfloat maximum)
 {
@@ -61,14 +61,14 @@ FUNCTION vfloat packet_entry(const struct mesh_ray *ray, const struct mesh_headi
     return entry_by_faces(ray, first, last, maximum);
 }
 
-/* Of box i of a branch, or of its groups. */
+/* Returns the packet's entry into box i of a branch, or of its groups. */
 #define ENTRY_OF(ray, heading, boxes, i, maximum)                                                  \
     packet_entry(                                                                                  \
         ray, heading, splat_point((boxes)->lower_x[i], (boxes)->lower_y[i], (boxes)->lower_z[i]),  \
         splat_point((boxes)->upper_x[i], (boxes)->upper_y[i], (boxes)->upper_z[i]), maximum)
 
-/* Puts those of the group's children on the stack that some ray may meet, the farthest first. set:
- * bits of the slots to be tested. */
+/* Puts the group's children that some ray may meet on the stack, the farthest first. set: bits of
+ * the slots to be tested. */
 FUNCTION void open_group(const struct mesh_ray *ray, const struct mesh_heading *heading,
                          GLOBAL const struct mesh_branch *branch, int group, RECORD_WORD set,
                          vfloat maximum, struct mesh_stack *stack)
@@ -86,7 +86,7 @@ FUNCTION void open_group(const struct mesh_ray *ray, const struct mesh_heading *
     }
 }
 
-/* The slots of a group that are to be tested: all that are filled, if some ray may meet its box. */
+/* Returns the slots of a group to be tested: all that are filled, if some ray may meet its box. */
 FUNCTION RECORD_WORD group_slots(const struct mesh_ray *ray, const struct mesh_heading *heading,
                                  GLOBAL const struct mesh_branch *branch, int group, vfloat maximum)
 {
@@ -114,7 +114,7 @@ FUNCTION void open_branch(const struct mesh_ray *ray, const struct mesh_heading 
     }
 }
 
-/* Tests one triangle. `is_any`: a ray that met something is done, and needs no distance. */
+/* Tests one triangle. is_any: a ray that meets something is done, and needs no distance. */
 FUNCTION void test_slot(const struct mesh_ray *ray, GLOBAL const struct mesh_leaf *leaf, int slot,
                         int number, int is_any, struct mesh_hit *hit)
 {
@@ -155,7 +155,7 @@ FUNCTION int has_at_most(RECORD_WORD set, int count)
     return set == 0;
 }
 
-/* Visits a child with each ray of the set by itself. */
+/* Visits a child with each ray of the set alone. */
 FUNCTION void walk_each_ray(struct mesh_view mesh, const struct mesh_ray_lanes *lanes, int child,
                             RECORD_WORD set, int is_any, struct mesh_hit *hit)
 {
@@ -214,8 +214,8 @@ FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
     return hit;
 }
 
-/* The nearest triangle beyond `minimum` and not beyond `maximum`, both counted from `point`, which
- * is the rays' closest approach to the frame's origin. direction: unit. */
+/* Returns the nearest triangle beyond `minimum` and not beyond `maximum`. Both count from `point`,
+ * the rays' closest approach to the frame's origin. direction: unit. */
 FUNCTION struct mesh_hit mesh_nearest_hit(struct mesh_view mesh, struct vector3 point,
                                           struct vector3 direction, vfloat minimum, vfloat maximum)
 {
@@ -224,8 +224,8 @@ FUNCTION struct mesh_hit mesh_nearest_hit(struct mesh_view mesh, struct vector3 
     return hit;
 }
 
-/* Whether anything is met beyond `minimum` and not beyond `maximum`. A ray whose maximum is below
- * its minimum is not followed. */
+/* Returns where anything is met beyond `minimum` and not beyond `maximum`. A ray whose maximum is
+ * below its minimum is not followed. */
 FUNCTION mask mesh_is_in_the_way(struct mesh_view mesh, struct vector3 point,
                                  struct vector3 direction, vfloat minimum, vfloat maximum)
 {

@@ -1,17 +1,17 @@
-/* A packet whose rays all run the same way along each axis, taken as one. */
+/* A beam: one set of bounds for a packet whose rays all run the same way along each axis. */
 #ifndef SONJECT_KERNELS_MESH_BEAM_H
 #define SONJECT_KERNELS_MESH_BEAM_H
 
 #include "mesh_single.h"
 
-/* Which way the rays of a packet run. */
+/* The ways in which the rays of a packet run along the axes. */
 struct mesh_heading {
-    int downward[3]; /* the first one's: down x, y, z. Members are then visited from the upper end,
-                        which is only a matter of speed */
+    int downward[3]; /* the first ray runs down x, y, z; members are then visited from the upper
+                        end, which is only a matter of speed */
     int is_common;   /* all rays run as the first does */
 };
 
-/* 0 or 1: the first ray runs down the axis. Clears *is_common unless all do as it. */
+/* Returns 1 if the first ray runs down the axis, else 0. Clears *is_common if some differ. */
 FUNCTION int runs_downward(vfloat inverse, int *is_common)
 {
     const RECORD_WORD all = ((1u << (WIDTH - 1)) - 1u) * 2u + 1u;

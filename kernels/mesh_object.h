@@ -6,9 +6,8 @@
 #include "mesh.h"
 #include "mesh_surface.h"
 
-/* A ray's second walk, for the facet at a distance that is known, looks so far before and behind,
- * in radii of the mesh: the distances of a ray that is moved along itself differ by their
- * rounding. */
+/* The slack of a ray's second walk for the facet at a known distance, before and behind, in radii
+ * of the mesh. The distances of a ray that is moved along itself differ by their rounding. */
 #define MESH_FACET_SLACK 1.0e-6f
 
 FUNCTION GLOBAL const struct mesh_record *mesh_record_of_object(
@@ -18,8 +17,8 @@ FUNCTION GLOBAL const struct mesh_record *mesh_record_of_object(
                                                object->mesh_words);
 }
 
-/* Meshes lie behind the records of all objects: a mesh_record, its branches, its leaves and, of a
- * smooth one, the normals at its corners. */
+/* Returns the object's mesh. Meshes lie behind the records of all objects: a mesh_record, its
+ * branches, its leaves and, if smooth, the normals at its corners. */
 FUNCTION struct mesh_view mesh_of_object(GLOBAL const struct object_record *object)
 {
     GLOBAL const struct mesh_record *mesh = mesh_record_of_object(object);
@@ -31,8 +30,8 @@ FUNCTION struct mesh_view mesh_of_object(GLOBAL const struct object_record *obje
     return mesh_view_of(mesh, branches, leaves, normals);
 }
 
-/* Distance from the ray's closest approach `start`, in the object's own frame, to the first facet
- * beyond `minimum` and not beyond `farthest`; FAR_AWAY if there is none. */
+/* Returns the distance from the ray's closest approach `start`, in the object's own frame, to the
+ * first facet beyond `minimum` and not beyond `farthest`; FAR_AWAY if there is none. */
 NOINLINE vfloat mesh_object_distance(GLOBAL const struct object_record *object,
                                      struct vector3 start, struct vector3 direction, vfloat minimum,
                                      vfloat farthest)
@@ -40,8 +39,8 @@ NOINLINE vfloat mesh_object_distance(GLOBAL const struct object_record *object,
     return mesh_nearest_hit(mesh_of_object(object), start, direction, minimum, farthest).distance;
 }
 
-/* The surface at a distance from the closest approach, in the object's own frame. Normals are
- * outward; those of sheets, which have no inside, on the side that the ray came from. */
+/* Returns the surface at a distance from the closest approach, in the object's own frame. Normals
+ * are outward. Sheets have no inside; their normals are on the side that the ray came from. */
 NOINLINE struct mesh_surface mesh_object_surface(GLOBAL const struct object_record *object,
                                                  struct vector3 start, struct vector3 direction,
                                                  vfloat distance)

@@ -1,5 +1,6 @@
-/* Where rays meet one box and one triangle of a mesh. Ray and triangle both have a value a lane: a
- * packet of rays tests one triangle, or one ray tests several, with the same bits. */
+/* Intersections of rays with one box and one triangle of a mesh. Ray and triangle both have a value
+ * in each lane. A packet of rays against one triangle, and one ray against several, give the same
+ * bits. */
 #ifndef SONJECT_KERNELS_MESH_RAY_H
 #define SONJECT_KERNELS_MESH_RAY_H
 
@@ -12,12 +13,12 @@ struct mesh_ray {
     struct vector3 across, upward;     /* unit, square to direction */
     struct vector3 seen;               /* the point in the axes across, upward, direction */
     vfloat minimum;                    /* distance from the point beyond which hits count */
-    float padding;                     /* of a triangle's own box, half of that of others, m */
+    float padding; /* padding of a triangle's own box, half of that of other boxes, m */
 };
 
 FUNCTION vfloat one_over_component(vfloat component)
 {
-    /* a ray along a box's face becomes one that leaves it 10^20 m away */
+    /* A ray along a box's face gets a slope by which it leaves 10^20 m away. */
     return 1.0f / SELECT(MASK_OF(magnitude(component) < 1.0e-20f), SPLAT(1.0e-20f), component);
 }
 
@@ -46,8 +47,8 @@ FUNCTION struct mesh_ray mesh_ray_of(struct vector3 point, struct vector3 direct
     return ray;
 }
 
-/* Distance at which the ray enters the box, FAR_AWAY if it does not do so between its minimum and
- * `maximum`; by the faces that it meets first each way and those that it meets last. */
+/* Returns the distance at which the ray enters the box, FAR_AWAY if it does not do so between its
+ * minimum and `maximum`. first, last: the faces that it meets first and last along each axis. */
 FUNCTION vfloat entry_by_faces(const struct mesh_ray *ray, struct vector3 first,
                                struct vector3 last, vfloat maximum)
 {
@@ -62,7 +63,7 @@ FUNCTION vfloat entry_by_faces(const struct mesh_ray *ray, struct vector3 first,
     return SELECT(MASK_OF(entry <= exit), entry, SPLAT(FAR_AWAY));
 }
 
-/* Where the ray's line is inside a box, whichever faces are met first. */
+/* Returns where the ray's line is inside a box, whichever faces are met first. */
 FUNCTION struct interval interval_in_box(const struct mesh_ray *ray, struct vector3 lower,
                                          struct vector3 upper)
 {
@@ -80,7 +81,7 @@ FUNCTION struct interval interval_in_box(const struct mesh_ray *ray, struct vect
     return inside;
 }
 
-/* As entry_by_faces, to the bit. */
+/* Returns the same bits as entry_by_faces. */
 FUNCTION vfloat box_entry(const struct mesh_ray *ray, struct vector3 lower, struct vector3 upper,
                           vfloat maximum)
 {
@@ -89,18 +90,18 @@ FUNCTION vfloat box_entry(const struct mesh_ray *ray, struct vector3 lower, stru
     return SELECT(MASK_OF(entry <= smaller(inside.exit, maximum)), entry, SPLAT(FAR_AWAY));
 }
 
-/* Bounds over rays that run the same way along each axis, the same in every lane. What they miss,
- * every ray misses: they are formed from the rays' own numbers by the operations of the exact test,
- * and rounding is monotonic. */
+/* Bounds over rays that run the same way along each axis, equal in every lane. A box that the
+ * bounds miss is missed by every ray: the bounds come from the rays' own numbers by the operations
+ * of the exact test, and rounding is monotonic. */
 struct ray_bounds {
-    struct vector3 to_first, to_last; /* the point that is nearest to a box's first faces each way,
-                                         farthest from its last ones */
-    struct vector3 least, most;       /* of the inverse directions */
+    struct vector3 to_first, to_last; /* the point nearest to a box's first faces and the one
+                                         farthest from its last faces, along each axis */
+    struct vector3 least, most;       /* bounds of the inverse directions */
     vfloat minimum;
     int downward[3]; /* 0 or 1: the rays run down the axis */
 };
 
-/* Bit i: some of the rays may meet box i of `slots` before `reach`. */
+/* Returns the boxes that some of the rays may meet before `reach`: bit i is box i of `slots`. */
 FUNCTION RECORD_WORD boxes_met(const struct ray_bounds *rays, GLOBAL const float *lower_x,
                                GLOBAL const float *lower_y, GLOBAL const float *lower_z,
                                GLOBAL const float *upper_x, GLOBAL const float *upper_y,
@@ -134,7 +135,7 @@ FUNCTION RECORD_WORD boxes_met(const struct ray_bounds *rays, GLOBAL const float
     return met;
 }
 
-/* Of the children of a branch. */
+/* Returns the children of a branch that some of the rays may meet before `reach`, as bits. */
 #define CHILDREN_MET(rays, branch, slots, reach)                                                   \
     boxes_met(rays, (branch)->lower_x, (branch)->lower_y, (branch)->lower_z, (branch)->upper_x,    \
               (branch)->upper_y, (branch)->upper_z, slots, reach)
@@ -152,7 +153,7 @@ FUNCTION struct mesh_corners leaf_corners(GLOBAL const struct mesh_leaf *leaf, i
     return corners;
 }
 
-/* A point as seen along the ray: across, upward and along it. */
+/* Returns a point as seen along the ray: across, upward and along it. */
 FUNCTION struct vector3 seen_along(const struct mesh_ray *ray, struct vector3 point)
 {
     struct vector3 seen;
@@ -162,8 +163,8 @@ FUNCTION struct vector3 seen_along(const struct mesh_ray *ray, struct vector3 po
     return seen;
 }
 
-/* Functions of the edges opposite to a, b and c, for corners as seen along the ray. Divided by
- * their sum they are the corners' shares of the hit. */
+/* Returns the functions of the edges opposite to a, b and c, for corners as seen along the ray.
+ * Divided by their sum they are the corners' shares of the hit. */
 FUNCTION struct vector3 edge_functions(const struct mesh_corners *seen)
 {
     struct vector3 edges;
@@ -173,7 +174,7 @@ FUNCTION struct vector3 edge_functions(const struct mesh_corners *seen)
     return edges;
 }
 
-/* Where the ray's line is inside the triangle's own box, padded. */
+/* Returns where the ray's line is inside the triangle's own box, padded. */
 FUNCTION struct interval corners_interval(const struct mesh_ray *ray,
                                           const struct mesh_corners *corners)
 {
@@ -188,18 +189,17 @@ FUNCTION struct interval corners_interval(const struct mesh_ray *ray,
     return interval_in_box(ray, lower, upper);
 }
 
-/* Distance from the ray's point to the triangle, in *distance where the mask is set. Both sides are
- * met.
+/* Finds the distance from the ray's point to the triangle, in *distance where the mask is set. Both
+ * sides are met.
  *
- * No ray slips between triangles that share an edge. A corner as seen along the ray depends on the
- * two alone, so neighbours agree on it to the bit. The sign of an edge's function is that of the
- * difference of two rounded products: as rounding is monotonic it is right, or the function is 0,
- * and that counts as inside (Woop, Benthin and Wald 2013, without their second look in double). A
- * triangle whose three functions are 0 is seen edge-on: its neighbours are met.
+ * No ray slips between triangles that share an edge. A corner as seen along the ray depends on
+ * these two alone, so neighbours agree on it to the bit. An edge's function is the difference of
+ * two rounded products. Rounding is monotonic, so its sign is right, or the function is 0 and
+ * counts as inside (Woop, Benthin and Wald 2013, without their second look in double). If all three
+ * functions are 0, the triangle is seen edge-on, and its neighbours are met.
  *
- * The hit lies inside the triangle's own box. Seen nearly edge-on, functions that consist of
- * rounding alone could put it elsewhere, and whether a walk found it would depend on what it found
- * before. */
+ * The hit lies inside the triangle's own box. Nearly edge-on, functions that are rounding alone
+ * could put it elsewhere, and then the order of a walk would decide whether it is found. */
 FUNCTION mask meets_triangle(const struct mesh_ray *ray, const struct mesh_corners *corners,
                              vfloat *distance)
 {

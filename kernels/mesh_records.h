@@ -1,10 +1,10 @@
-/* Records of triangle meshes that host and device share. Four-byte members only; the host asserts
- * every size (lib/mesh/hierarchy.c). Coordinates are metres in the mesh's frame: the object's axes
- * about the middle of the mesh's bounding box.
+/* Records of triangle meshes that host and device share. All members have four bytes. The host
+ * asserts every size (lib/mesh/hierarchy.c). Coordinates are metres in the mesh's frame: the
+ * object's axes about the middle of the mesh's bounding box.
  *
  * The hierarchy has branches of up to 16 children and leaves of up to 16 triangles, each in up to
- * four groups of four. A packet of rays tests the groups' boxes and then what is in them; a ray
- * that has lost its packet tests all 16 at once, one in each lane. */
+ * four groups of four. A packet of rays tests the groups' boxes and then their members. A ray that
+ * walks alone tests all 16 at once, one in each lane. */
 #ifndef SONJECT_KERNELS_MESH_RECORDS_H
 #define SONJECT_KERNELS_MESH_RECORDS_H
 
@@ -15,11 +15,11 @@
 #define MESH_SLOTS  16 /* MESH_GROUPS * MESH_GROUP */
 #define MESH_LEVELS 16 /* most branches from the root to a leaf, the root included */
 
-/* Boxes are padded by this fraction of the mesh's radius: more than the rounding of the tests of
- * boxes and of triangles (MATH.md, "Meshes"), so that no order of the walk loses a triangle. */
+/* The padding of boxes, as a share of the mesh's radius. It exceeds the rounding of the tests of
+ * boxes and triangles (MATH.md, "Meshes"), so that no order of the walk loses a triangle. */
 #define MESH_PADDING 3.814697265625e-6f /* 2^-18 */
 
-/* Coordinate of the boxes of slots that are empty: no ray gets there. */
+/* The coordinate of the boxes of empty slots, which no ray reaches. */
 #define MESH_NOWHERE 1.0e30f
 
 struct mesh_group_boxes {
@@ -32,14 +32,14 @@ struct mesh_branch {
     float upper_x[MESH_SLOTS], upper_y[MESH_SLOTS], upper_z[MESH_SLOTS];
     RECORD_INT child[MESH_SLOTS]; /* >= 0: number of a branch; < 0: ~ number of a leaf */
     struct mesh_group_boxes groups;
-    RECORD_INT children[MESH_GROUPS]; /* of each group, in its first slots; 0: no such group */
-    RECORD_INT axes; /* 2 bits each: the axis along which the members of group 0...3 ascend, then
+    RECORD_INT children[MESH_GROUPS]; /* number in each group, in its first slots; 0: no group */
+    RECORD_INT axes; /* 2 bits each: the axis along which the members of groups 0...3 ascend, then
                         that of the groups; 0: x, 1: y, 2: z */
     RECORD_INT unused[3];
 };
 
 /* Corners a, b, c of each triangle, anticlockwise as seen from outside. The triangles fill the
- * first slots; what is left is 0, which no ray meets. */
+ * first slots. The other slots hold zeros, which no ray meets. */
 struct mesh_leaf {
     float a_x[MESH_SLOTS], a_y[MESH_SLOTS], a_z[MESH_SLOTS];
     float b_x[MESH_SLOTS], b_y[MESH_SLOTS], b_z[MESH_SLOTS];
@@ -54,14 +54,14 @@ struct mesh_corner_normals {
     float a[3], b[3], c[3];
 };
 
-/* One mesh among the arrays of all meshes; any number of objects may refer to it. Branch 0 is the
+/* One mesh among the arrays of all meshes. Any number of objects may refer to it. Branch 0 is the
  * root. A triangle's number is that of its leaf times MESH_SLOTS plus its slot. */
 struct mesh_record {
     RECORD_WORD first_branch, branches;
     RECORD_WORD first_leaf, leaves;
     RECORD_WORD first_normals; /* leaves * MESH_SLOTS elements, if the mesh is smooth */
     RECORD_INT is_smooth;
-    float radius;        /* m, about the frame's origin; holds every corner */
+    float radius;        /* m, about the frame's origin; it holds every corner */
     RECORD_INT is_sheet; /* not closed: facets have no inside and reflect on both sides */
 };
 

@@ -11,10 +11,10 @@ struct mesh_view {
     GLOBAL const struct mesh_branch *branches;
     GLOBAL const struct mesh_leaf *leaves;
     GLOBAL const struct mesh_corner_normals *normals; /* 0: flat facets */
-    float padding;                                    /* of a triangle's own box, m */
+    float padding;                                    /* padding of a triangle's own box, m */
 };
 
-/* The values of all lanes of a packet, to be taken one by one. */
+/* The values of all lanes of a packet, to be read one by one. */
 struct mesh_ray_lanes {
     float point[3][WIDTH], direction[3][WIDTH], inverse[3][WIDTH];
     float across[3][WIDTH], upward[3][WIDTH], seen[3][WIDTH];
@@ -34,7 +34,7 @@ FUNCTION void store_mesh_ray(const struct mesh_ray *ray, struct mesh_ray_lanes *
     lanes->padding = ray->padding;
 }
 
-/* The same ray in every lane. */
+/* Broadcasts one lane's ray to all lanes. */
 FUNCTION struct mesh_ray one_mesh_ray(const struct mesh_ray_lanes *lanes, int lane)
 {
     struct mesh_ray ray;
@@ -54,7 +54,7 @@ struct single_hit {
     int triangle; /* -1: none */
 };
 
-/* Children to be visited, with the distances to their boxes. */
+/* The children still to be visited, and the distances to their boxes. */
 struct single_stack {
     int child[MESH_STACK];
     float entry[MESH_STACK];
@@ -107,8 +107,7 @@ FUNCTION void test_leaf_single(const struct mesh_ray *ray, GLOBAL const struct m
     }
 }
 
-/* Visits a child and all below it with the ray of one lane. `is_any`: the first hit found will do.
- */
+/* Visits a child and all below it with the ray of one lane. is_any: the first hit found will do. */
 FUNCTION void walk_single_ray(struct mesh_view mesh, const struct mesh_ray_lanes *lanes, int lane,
                               int child, int is_any, struct single_hit *hit)
 {

@@ -4,22 +4,22 @@
 
 #include "mesh.h"
 
-/* Smallest cosine between the smooth normal and the way back along a ray, unless the facet's own is
- * smaller. */
+/* The smallest cosine between the smooth normal and the way back along a ray, unless the facet's
+ * own is smaller. */
 #define MESH_LEAST_COSINE 0.01f
 
 struct mesh_surface {
-    struct vector3 point;  /* on the facet, in the mesh's frame */
+    struct vector3 point;  /* point on the facet, in the mesh's frame */
     struct vector3 facet;  /* unit normal of the facet, outward */
-    struct vector3 smooth; /* unit normal of the smooth surface, outward; of a mesh without one, the
-                              facet's */
-    struct vector3 lifted; /* the point brought out of the facet onto the smooth surface, on the
-                              side that the ray came from: where rays that test visibility start, so
-                              that a facet's neighbours throw no shadows that the smooth surface
-                              would not */
+    struct vector3 smooth; /* unit normal of the smooth surface, outward; without such a surface,
+                              the facet's */
+    /* The point moved off the facet onto the smooth surface, on the side that the ray came from.
+     * Rays that test visibility start here, so that facets throw no shadows that the smooth surface
+     * would not throw. */
+    struct vector3 lifted;
 };
 
-/* Corners of each lane's triangle; of number -1 those of 0. */
+/* Gathers the corners of each lane's triangle. Number -1 stands for triangle 0. */
 FUNCTION struct mesh_corners gather_corners(struct mesh_view mesh, const int *triangles)
 {
     float a[3][WIDTH], b[3][WIDTH], c[3][WIDTH];
@@ -44,7 +44,7 @@ FUNCTION struct mesh_corners gather_corners(struct mesh_view mesh, const int *tr
     return corners;
 }
 
-/* The smooth surface's normals there. */
+/* Gathers the smooth surface's normals at the corners of each lane's triangle. */
 FUNCTION struct mesh_corners gather_normals(struct mesh_view mesh, const int *triangles)
 {
     float a[3][WIDTH], b[3][WIDTH], c[3][WIDTH];
@@ -64,8 +64,8 @@ FUNCTION struct mesh_corners gather_normals(struct mesh_view mesh, const int *tr
     return corners;
 }
 
-/* Unit vector along v, `otherwise` where v is 0. Divided by its largest component first, so that
- * squares neither vanish nor overflow. */
+/* Returns the unit vector along v, or `otherwise` if v is 0. v is first divided by its largest
+ * component, so that squares neither vanish nor overflow. */
 FUNCTION struct vector3 unit3(struct vector3 v, struct vector3 otherwise)
 {
     const vfloat largest = larger(larger(magnitude(v.x), magnitude(v.y)), magnitude(v.z));
@@ -90,15 +90,15 @@ FUNCTION struct vector3 cross3(struct vector3 a, struct vector3 b)
     return product;
 }
 
-/* How far a point lies below the plane through a corner, square to its normal times side; >= 0. */
+/* Returns a point's depth below the plane through a corner, along its normal times side; >= 0. */
 FUNCTION vfloat depth_below(struct vector3 point, struct vector3 corner, struct vector3 normal,
                             vfloat side)
 {
     return larger(-side * dot3(minus3(point, corner), normal), SPLAT(0.0f));
 }
 
-/* Bends the normal towards the way back along the ray where it would show a side that the ray did
- * not meet. */
+/* Bends the normal towards the way back along the ray if it would show a side that the ray did not
+ * meet. */
 FUNCTION struct vector3 bend_to_ray(struct vector3 normal, struct vector3 facet,
                                     struct vector3 direction, vfloat side)
 {
@@ -108,8 +108,8 @@ FUNCTION struct vector3 bend_to_ray(struct vector3 normal, struct vector3 facet,
     return unit3(along3(normal, direction, -side * lack), facet);
 }
 
-/* Where rays with that closest approach to the frame's origin meet the triangles numbered by `hit`;
- * lanes without a hit hold something finite. direction: unit. */
+/* Returns the surface where rays meet the numbered triangles. point: the rays' closest approach to
+ * the frame's origin; direction: unit. Lanes with the number -1 get some finite values. */
 FUNCTION struct mesh_surface mesh_surface_at(struct mesh_view mesh, struct vector3 point,
                                              struct vector3 direction, vint triangle)
 {
@@ -144,7 +144,7 @@ FUNCTION struct mesh_surface mesh_surface_at(struct mesh_view mesh, struct vecto
     const mask is_outward = MASK_OF(dot3(mixed, surface.facet) > 0.0f);
     surface.smooth =
         bend_to_ray(choose3(is_outward, mixed, surface.facet), surface.facet, direction, side);
-    /* onto the planes that touch the smooth surface at the corners, mixed as the normals are */
+    /* Lifts onto the planes that touch the smooth surface at the corners, mixed by a, b and c. */
     const struct vector3 lift =
         combine3(normals.a, a * depth_below(surface.point, corners.a, normals.a, side), normals.b,
                  b * depth_below(surface.point, corners.b, normals.b, side), normals.c,

@@ -1,6 +1,6 @@
-/* The nearest of many objects. What is found is what a loop over all of them finds, to the bit: the
- * nearest, of equally near ones that of the lowest number, so neither the order of the walk nor the
- * packet of a ray changes anything (kernels/MATH.md, "Many objects"). */
+/* The nearest of many objects, and of equally near ones that of the lowest number. A loop over all
+ * of them finds the same, to the bit. Neither the order of the walk nor the packet of a ray changes
+ * anything (kernels/MATH.md, "Many objects"). */
 #ifndef SONJECT_KERNELS_OBJECT_TREE_H
 #define SONJECT_KERNELS_OBJECT_TREE_H
 
@@ -22,8 +22,8 @@ FUNCTION int has_object_tree(GLOBAL const struct object_record *objects, int cou
     return count > OBJECTS_IN_LOOP && objects->tree_words != 0u;
 }
 
-/* The next number after i of a surface that some lane met, or `count`: loops over few surfaces
- * visit all of them, those over many only what is there. */
+/* Returns the next number after i of a surface that some lane met, or `count`. Loops over few
+ * surfaces visit all of them, loops over many only those that were met. */
 FUNCTION int surface_after(int i, int count, vint surface, mask is_met)
 {
     if (count <= OBJECTS_IN_LOOP)
@@ -32,16 +32,16 @@ FUNCTION int surface_after(int i, int count, vint surface, mask is_met)
     return (int)least_lane(SELECT(is_later, VFLOAT_OF(surface), SPLAT((float)count)));
 }
 
-/* What is looked for on the ways of a packet. */
+/* The search of a packet's rays. */
 struct object_search {
-    vfloat limit;     /* m: what lies beyond does not matter */
+    vfloat limit;     /* m: objects beyond do not matter */
     int is_any;       /* the first object found within the limit will do */
     vint left_behind; /* object that is not tested */
     mask is_ray;
 };
 
-/* One packet on its way through the tree, counted from its rays' closest approaches to the tree's
- * middle. Lane by lane, for a ray that is tested alone. */
+/* One packet on its way through the tree, lane by lane, for rays that are tested alone. Distances
+ * count from the rays' closest approaches to the tree's middle. */
 struct tree_rays {
     float point[3][WIDTH], inverse[3][WIDTH], minimum[WIDTH], reach[WIDTH];
 };
@@ -70,7 +70,7 @@ FUNCTION int bound_axis(vfloat point, vfloat direction, mask is_ray, float first
     return is_downward;
 }
 
-/* Bounds over a packet; 0: its rays run too far apart for them to be of use. */
+/* Finds bounds over a packet. Returns 0 if its rays run too far apart to be bounded. */
 FUNCTION int beam_of_rays(GLOBAL const struct object_tree_record *tree, struct vector3 point,
                           struct vector3 direction, vfloat minimum, mask is_ray,
                           struct ray_bounds *beam)
@@ -94,7 +94,7 @@ FUNCTION int beam_of_rays(GLOBAL const struct object_tree_record *tree, struct v
     return is_common && gap <= tree->grain && turn * tree->radius <= tree->grain;
 }
 
-/* Bit i: the ray of one lane may meet the box of child i. */
+/* Returns the children whose boxes one lane's ray may meet: bit i is child i. */
 FUNCTION RECORD_WORD single_children(const struct tree_rays *rays, int lane,
                                      GLOBAL const struct object_branch *branch)
 {
@@ -114,7 +114,7 @@ FUNCTION RECORD_WORD single_children(const struct tree_rays *rays, int lane,
     return met;
 }
 
-/* What is still to be visited, and by which rays. */
+/* The branches still to be visited, and the rays that visit them. */
 struct tree_stack {
     int branch[OBJECT_TREE_STACK];
     RECORD_WORD rays[OBJECT_TREE_STACK];
@@ -134,7 +134,7 @@ FUNCTION void test_object(GLOBAL const struct object_record *objects, int number
     nearest->object = SELECT(is_nearest, SPLAT_VINT(number), nearest->object);
 }
 
-/* How far along its way a ray still looks. */
+/* Returns how far along its way each ray still looks. */
 FUNCTION vfloat search_bound(const struct object_search *search, const struct nearest_hit *nearest)
 {
     const mask is_found = MASK_OF(nearest->distance <= search->limit);
@@ -142,7 +142,7 @@ FUNCTION vfloat search_bound(const struct object_search *search, const struct ne
     return SELECT(search->is_ray, SELECT(is_found, found, search->limit), SPLAT(-FAR_AWAY));
 }
 
-/* Every object, one after the other. */
+/* Tests all objects, one after the other. */
 FUNCTION void test_all_objects(GLOBAL const struct object_record *objects, int count,
                                struct vector3 point, struct vector3 direction, float minimum,
                                const struct object_search *search, struct nearest_hit *nearest)
@@ -151,8 +151,8 @@ FUNCTION void test_all_objects(GLOBAL const struct object_record *objects, int c
         test_object(objects, i, point, direction, minimum, search, nearest);
 }
 
-/* The nearest object beyond `minimum` of each ray that is wanted; where search->is_any, some object
- * within the limit if there is one. */
+/* Returns the nearest object beyond `minimum` of each ray that is wanted. If search->is_any, that
+ * is some object within the limit, if there is one. */
 NOINLINE struct nearest_hit walk_objects(GLOBAL const struct object_record *objects, int count,
                                          struct vector3 point, struct vector3 direction,
                                          float minimum, const struct object_search *search)
@@ -231,8 +231,8 @@ NOINLINE struct nearest_hit walk_objects(GLOBAL const struct object_record *obje
     return nearest;
 }
 
-/* The same, copied by members: what is called returns through memory, where the hit that its caller
- * looks for among few objects would lie, too. */
+/* Returns what walk_objects finds, copied by members. A called function returns through memory, and
+ * without the copy its caller's hits would lie there too, even among few objects. */
 FUNCTION struct nearest_hit search_objects(GLOBAL const struct object_record *objects, int count,
                                            struct vector3 point, struct vector3 direction,
                                            float minimum, const struct object_search *search)

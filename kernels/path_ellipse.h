@@ -1,4 +1,4 @@
-/* The places of the seabed by which a path from a hit to the receiver has a given length: the
+/* The places of the seabed for which a path from a hit to the receiver has a given length: the
  * section of an ellipsoid with a line across the track (kernels/MATH.md, "Second order"). */
 #ifndef SONJECT_KERNELS_PATH_ELLIPSE_H
 #define SONJECT_KERNELS_PATH_ELLIPSE_H
@@ -6,11 +6,11 @@
 #include "fan.h"
 #include "vector3.h"
 
-/* A line across the track on the mean seabed, along which y counts from a hit: with d from there to
- * the hit and r to the receiver, d^2 = square + y^2 and r^2 - d^2 = difference + 2 ground y. */
+/* A line across the track on the mean seabed, along which y counts from a hit. With the distances d
+ * to the hit and r to the receiver, d^2 = square + y^2 and r^2 - d^2 = difference + 2 ground y. */
 struct seabed_line {
     vfloat square, difference, ground;
-    vfloat direct; /* from the hit to the receiver */
+    vfloat direct; /* distance from the hit to the receiver */
 };
 
 FUNCTION struct seabed_line line_across(const struct fan_record *fan, struct vector3 hit, vfloat x,
@@ -33,7 +33,7 @@ FUNCTION struct seabed_line line_across(const struct fan_record *fan, struct vec
     return line;
 }
 
-/* The two places where d + r has a length: the ellipsoid's section with the line. */
+/* The two places where d + r has a given length: the ellipsoid's section with the line. */
 struct section {
     vfloat nearer, farther, middle;
     mask exists;
@@ -59,21 +59,21 @@ FUNCTION struct section section_of(const struct seabed_line *line, vfloat length
     return section;
 }
 
-/* Places are chosen evenly in y / (|y| + depth), about as the angle that they fill from the hit. */
+/* Returns a place's share, in which places are chosen evenly: about the angle seen from the hit. */
 FUNCTION vfloat share_of_place(vfloat y, vfloat depth)
 {
     return y / (magnitude(y) + depth);
 }
 
-/* Of samples where both sides have places: what the sonar lights of a target rarely faces away. */
+/* The farther side's share, if both have places: parts that the sonar lights rarely face away. */
 #define FARTHER_SHARE 0.15f
 
-/* The places on a line whose echoes are in a cell: an interval on the nearer side, and one on the
+/* The places on a line whose echoes are in a cell: an interval on the nearer side and one on the
  * farther side, in shares. */
 struct places {
     vfloat first, second, first_length;
-    vfloat both;     /* lengths of both, the farther one times FARTHER_SHARE */
-    vfloat boundary; /* y between them */
+    vfloat both;     /* sum of both lengths, the farther one times FARTHER_SHARE */
+    vfloat boundary; /* y between the two */
     vfloat depth;
     mask exist;
 };
@@ -113,7 +113,7 @@ FUNCTION vfloat sample_place(const struct places *places, vfloat uniform)
     return places->depth * share / rest;
 }
 
-/* The length of line that a place stands for; 0: there is none. */
+/* Returns the length of line that a place stands for; 0 if there is none. */
 FUNCTION vfloat length_of_place(const struct places *places, vfloat y)
 {
     const vfloat far = magnitude(y) + places->depth;

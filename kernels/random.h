@@ -1,6 +1,6 @@
-/* Counter-based random numbers: Threefry-2x32 of Salmon, Moraes, Dror and Shaw, "Parallel random
- * numbers: as easy as 1, 2, 3" (SC 2011), 20 rounds. A number depends on its key and counter alone,
- * so neither order, width, chunk nor device can change it. */
+/* Counter-based random numbers: Threefry-2x32 with 20 rounds, by Salmon, Moraes, Dror and Shaw,
+ * "Parallel random numbers: as easy as 1, 2, 3" (SC 2011). A number depends on its key and counter
+ * alone. Neither order, width, chunk nor device can change it. */
 #ifndef SONJECT_KERNELS_RANDOM_H
 #define SONJECT_KERNELS_RANDOM_H
 
@@ -37,7 +37,7 @@
 FUNCTION void threefry(RECORD_WORD key0, RECORD_WORD key1, word *a,
                        word *b){THREEFRY_BODY(RECORD_WORD)}
 
-/* The same on scalars, for keys. */
+/* Turns a counter of scalars into two random words, for keys. */
 FUNCTION void threefry_scalar(RECORD_WORD key0, RECORD_WORD key1, RECORD_WORD *a, RECORD_WORD *b)
 {
     THREEFRY_BODY(RECORD_WORD)
@@ -47,7 +47,7 @@ struct random_key {
     RECORD_WORD first, second;
 };
 
-/* The key of one track strip in one stream. */
+/* Returns the key of one track strip in one stream. */
 FUNCTION struct random_key random_key_of(RECORD_WORD seed_low, RECORD_WORD seed_high,
                                          RECORD_WORD stream, RECORD_WORD strip)
 {
@@ -56,13 +56,13 @@ FUNCTION struct random_key random_key_of(RECORD_WORD seed_low, RECORD_WORD seed_
     return key;
 }
 
-/* The middle of one of 2^23 equal parts of (0, 1), exact: never 0, never 1. */
+/* Returns the middle of one of 2^23 equal parts of (0, 1). It is exact, never 0 and never 1. */
 FUNCTION vfloat uniform_from(word bits)
 {
     return (VFLOAT_OF(bits >> 9) + 0.5f) * 1.1920928955078125e-7f;
 }
 
-/* Two uniform deviates of (0, 1) for ray number `ray`; draw counts interactions and dimensions. */
+/* Draws two uniform deviates of (0, 1) for ray number `ray`. draw: numbers them within the ray. */
 FUNCTION void two_uniforms(struct random_key key, word ray, RECORD_WORD draw, vfloat *first,
                            vfloat *second)
 {
@@ -73,8 +73,8 @@ FUNCTION void two_uniforms(struct random_key key, word ray, RECORD_WORD draw, vf
     *second = uniform_from(b);
 }
 
-/* The same and a coarser third, the middle of one of 2^18 equal parts, from the bits that the
- * others leave over: good enough to choose between a few things. */
+/* Draws two uniform deviates and a third from the bits that they leave over. The third is coarse,
+ * the middle of one of 2^18 equal parts: good enough to choose between a few things. */
 FUNCTION void three_uniforms(struct random_key key, word ray, RECORD_WORD draw, vfloat *first,
                              vfloat *second, vfloat *choice)
 {

@@ -1,5 +1,5 @@
-/* Rays bent by layers of water, as the host has worked them out: for each elevation the straight
- * line that a ray follows in the straight water or a slice (kernels/MATH.md, "Layers"). */
+/* Rays bent by layers of water, from tables of the host: for each elevation the straight line of
+ * the ray in the straight water or in a slice (kernels/MATH.md, "Layers"). */
 #ifndef SONJECT_KERNELS_RAY_TABLE_H
 #define SONJECT_KERNELS_RAY_TABLE_H
 
@@ -9,14 +9,14 @@
 
 /* A ray's line in the plane of its strip. */
 struct table_ray {
-    vfloat offset;    /* of its closest point from the frame's origin, along `upward` */
-    vfloat range;     /* at that point less the reference range */
-    vfloat wavefront; /* width per rad of elevation there; grows by 1 m per m */
-    vfloat spreading; /* struct arrival */
+    vfloat offset;    /* offset of its closest point from the frame's origin, along `upward` */
+    vfloat range;     /* range at that point less the reference range */
+    vfloat wavefront; /* width per rad of elevation at that point; it grows by 1 m per m */
+    vfloat spreading; /* spreading of struct arrival (lib/medium/water.h) */
 };
 
-/* The offset a(e) is a cubic in each piece; the range is its integral, -da, because wavefronts
- * stand at right angles to rays, and the wavefront its derivative. */
+/* Looks up a ray. Its offset a(e) is a cubic in each piece, and its wavefront the derivative of a.
+ * Its range is the integral of -a, because wavefronts stand at right angles to rays. */
 FUNCTION struct table_ray look_up_ray(struct ray_table_record table,
                                       GLOBAL const struct ray_piece_record *pieces,
                                       vfloat elevation)
@@ -48,8 +48,8 @@ FUNCTION struct table_ray look_up_ray(struct ray_table_record table,
     return ray;
 }
 
-/* Directions in the plane of a strip: away from the source, and across it towards larger elevation,
- * which is counted from the direction to the frame's origin. */
+/* A direction away from the source, in the plane of a strip. Its elevation counts from the
+ * direction to the frame's origin. */
 struct ray_directions {
     vfloat away_y, away_z;
 };
@@ -69,8 +69,8 @@ FUNCTION struct ray_directions directions_at(float cosine_depression, float sine
 /* A ray where it is broadside of a point. */
 struct ray_to_point {
     struct ray_directions directions;
-    vfloat beside;    /* how far the point lies to its upper side, m */
-    vfloat range;     /* there less the reference range */
+    vfloat beside;    /* distance of the point to the ray's upper side, m */
+    vfloat range;     /* range there less the reference range */
     vfloat wavefront; /* width per rad of elevation there */
     vfloat spreading;
 };
@@ -94,8 +94,8 @@ FUNCTION struct ray_to_point broadside_ray(struct ray_table_record table,
 #define RAY_SEARCH_STEPS 24
 #define RAY_NEAR_ENOUGH  1.0e-4f /* m beside the point; the range errs by its square over 2 r */
 
-/* The ray through a point (y, z) of the strip's plane: Newton's iteration, guarded by bisection.
- * The larger its elevation, the less is the point to its upper side. */
+/* Finds the ray through a point (y, z) of the strip's plane by Newton's iteration, guarded by
+ * bisection. A larger elevation moves the point towards the ray's lower side. */
 FUNCTION struct ray_to_point find_ray_to(struct ray_table_record table,
                                          GLOBAL const struct ray_piece_record *pieces,
                                          float cosine_depression, float sine_depression, vfloat y,

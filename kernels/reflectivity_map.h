@@ -7,7 +7,7 @@
 #include "seabed.h"
 #include "width.h"
 
-/* Reflectivity over mu0 at the pixel nearest to a row and column; 1 without a map. */
+/* Returns the reflectivity over mu0 at the pixel nearest to a row and column; 1 without a map. */
 FUNCTION float map_value(const struct fan_record *fan, GLOBAL const float *map, float row,
                          float column)
 {
@@ -20,7 +20,7 @@ FUNCTION float map_value(const struct fan_record *fan, GLOBAL const float *map, 
     return map[(PLACE)r * fan->map_columns + c];
 }
 
-/* Slant range of a point from the track less the reference range. */
+/* Returns the slant range of a point from the track, less the reference range. */
 FUNCTION vfloat broadside_range(const struct fan_record *fan,
                                 GLOBAL const struct ray_piece_record *pieces, struct vector3 point)
 {
@@ -36,7 +36,7 @@ FUNCTION vfloat broadside_range(const struct fan_record *fan,
     return square / (SQUARE_ROOT(larger(square + r * r, SPLAT(0.0f))) + r);
 }
 
-/* The same of the mean seabed's point under or over a point: the image shows a level seabed. */
+/* Returns broadside_range of the mean seabed below or above a point: the image shows it level. */
 FUNCTION vfloat range_in_plan(const struct fan_record *fan,
                               GLOBAL const struct ray_piece_record *pieces, struct vector3 point)
 {
@@ -44,7 +44,7 @@ FUNCTION vfloat range_in_plan(const struct fan_record *fan,
     return broadside_range(fan, pieces, point);
 }
 
-/* The map at hits of a chain on the seabed where it rules sound that goes on, else 1. */
+/* Returns the map's value at a chain's hits on the seabed if the map scales scattering, else 1. */
 FUNCTION vfloat map_factor(const struct fan_record *fan,
                            GLOBAL const struct ray_piece_record *pieces,
                            GLOBAL const struct chain_record *chains, GLOBAL const float *map,

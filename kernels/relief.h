@@ -1,4 +1,4 @@
-/* Where rays meet a seabed that is not level, and its normals there. Each lane walks alone
+/* Rays that meet a seabed that is not level, and its normals there. Each lane walks alone
  * (relief_walk.h). */
 #ifndef SONJECT_KERNELS_RELIEF_H
 #define SONJECT_KERNELS_RELIEF_H
@@ -6,10 +6,10 @@
 #include "layout.h"
 #include "relief_walk.h"
 
-/* The smallest cosine of incidence: interpolated normals may turn further away than the facet. */
+/* The smallest cosine of incidence. An interpolated normal may turn further away than the facet. */
 #define RELIEF_LEAST_COSINE 1.0e-3f
 
-/* The relief lies behind the records of all objects. */
+/* Returns the relief, which lies behind the records of all objects. */
 FUNCTION struct relief_view relief_of(const struct fan_record *fan,
                                       GLOBAL const struct object_record *objects)
 {
@@ -22,8 +22,8 @@ FUNCTION struct relief_view relief_of(const struct fan_record *fan,
     return relief;
 }
 
-/* Distance along each ray to the seabed beyond `minimum`, FAR_AWAY if there is none. to_plane: to
- * the mean plane. Lanes that are not wanted keep that. */
+/* Returns the distance along each ray to the seabed beyond `minimum`, FAR_AWAY if there is none.
+ * to_plane: distance to the mean plane, which lanes that are not wanted keep. */
 NOINLINE vfloat relief_distance(const struct fan_record *fan,
                                 GLOBAL const struct object_record *objects, struct vector3 point,
                                 struct vector3 direction, vfloat minimum, vfloat to_plane,
@@ -57,8 +57,8 @@ NOINLINE vfloat relief_distance(const struct fan_record *fan,
     return LOAD_VFLOAT(plane);
 }
 
-/* Slope at a grid coordinate, mixed from those at the cell's corners, so that light does not show
- * the cells; 0 outside the grid. part: 0 along-track, 1 in range. */
+/* Returns the slope at a grid coordinate, 0 outside the grid. It is mixed from the slopes at the
+ * cell's corners, so that scattering does not show the cells. part: 0 along-track, 1 in range. */
 FUNCTION float slope_at(struct relief_view relief, float row, float column, int part)
 {
     const int rows = relief.grid->rows;
@@ -73,7 +73,7 @@ FUNCTION float slope_at(struct relief_view relief, float row, float column, int 
     return mix_corners(corners, row - (float)r, column - (float)c);
 }
 
-/* Unit normal at points of the relief that rays of these directions have met, on their side. */
+/* Returns the unit normals where rays have met the relief, on the side that the rays came from. */
 NOINLINE struct vector3 relief_normal(const struct fan_record *fan,
                                       GLOBAL const struct object_record *objects,
                                       struct vector3 point, struct vector3 direction)

@@ -1,14 +1,14 @@
-/* One ray's way over a height field. Between four grid points heights are bilinear. A ray goes from
- * block to block, and only through the cells of those that reach up to it; its clearance over the
- * surface is carried from cell to cell, so that no ray slips through between two of them
- * (kernels/MATH.md, "Relief"). */
+/* One ray's way over a height field, which is bilinear between four grid points. The ray goes from
+ * block to block. It passes through the cells of a block only if the block reaches up to the ray.
+ * Its clearance over the surface is carried from cell to cell, so that no ray slips between two
+ * cells (kernels/MATH.md, "Relief"). */
 #ifndef SONJECT_KERNELS_RELIEF_WALK_H
 #define SONJECT_KERNELS_RELIEF_WALK_H
 
 #include "interval.h"
 #include "layout.h"
 
-/* A ray that starts so little below the surface started on it (m). */
+/* The depth in m up to which a ray that starts below the surface counts as starting on it. */
 #define RELIEF_SLACK 1.0e-4f
 
 struct relief_view {
@@ -16,18 +16,18 @@ struct relief_view {
     GLOBAL const float *heights, *slopes, *blocks;
 };
 
-/* One coordinate of a ray on the grid. */
+/* One coordinate of a ray, in cells of the grid. */
 struct relief_axis {
-    float start;  /* at distance 0, in cells */
-    float gain;   /* in cells a metre; 0 where it is too small to matter */
-    float metres; /* a cell; of no meaning where gain is 0 */
+    float start;  /* value at distance 0 */
+    float gain;   /* per m; 0 if it is too small to matter */
+    float metres; /* m per cell; without meaning if gain is 0 */
     int way;      /* sign of the gain */
 };
 
 struct relief_ray {
     struct relief_axis row, column;
-    float height; /* over the mean seabed at distance 0, m */
-    float rise;   /* a metre */
+    float height; /* height at distance 0 over the mean seabed, m */
+    float rise;   /* m per m */
 };
 
 FUNCTION struct relief_axis relief_axis_of(float start, float gain)
@@ -41,7 +41,7 @@ FUNCTION struct relief_axis relief_axis_of(float start, float gain)
     return axis;
 }
 
-/* Distance at which a coordinate leaves what lies between two of its values. */
+/* Returns the distance at which a coordinate leaves the range low...high. */
 FUNCTION float distance_out_of(struct relief_axis axis, int low, int high)
 {
     if (axis.way == 0)
@@ -49,7 +49,7 @@ FUNCTION float distance_out_of(struct relief_axis axis, int low, int high)
     return ((float)(axis.way > 0 ? high : low) - axis.start) * axis.metres;
 }
 
-/* Cuts a stretch of distances down to where a coordinate is between low and high. */
+/* Cuts the range begin...end of distances down to where a coordinate is in low...high. */
 FUNCTION void keep_between(float start, float gain, float low, float high, float *begin, float *end)
 {
     if (gain < 1.0e-12f && gain > -1.0e-12f) {
@@ -74,8 +74,8 @@ FUNCTION float unit_limited(float value)
     return value < 0.0f ? 0.0f : value > 1.0f ? 1.0f : value;
 }
 
-/* Corners of a cell: (row, column), (row, column + 1), (row + 1, column), (row + 1, column + 1).
- * along, across: shares of the cell in rows and columns. */
+/* Interpolates between a cell's corners: (row, column), (row, column + 1), (row + 1, column),
+ * (row + 1, column + 1). along, across: shares of the cell in rows and columns. */
 FUNCTION float mix_corners(const float corners[4], float along, float across)
 {
     const float here = corners[0] * (1.0f - across) + corners[1] * across;
@@ -98,16 +98,16 @@ FUNCTION float share_of_cell(struct relief_axis axis, int cell, float distance)
     return unit_limited(axis.start + axis.gain * distance - (float)cell);
 }
 
-/* Where the ray first comes through the surface from above between two distances, with the
- * clearances there; FAR_AWAY if nowhere. In the share s of the way the clearance is
- * clearance + fall s - twist s^2, since heights are bilinear. */
+/* Returns the distance at which the ray first crosses the surface from above between two distances,
+ * FAR_AWAY if it does not. clearance, next: heights over the surface at these distances. Heights
+ * are bilinear, so the height at the share s of the way is clearance + fall s - twist s^2. */
 FUNCTION float crossing_from_above(float clearance, float next, float twist, float begin, float end)
 {
     if (clearance <= 0.0f)
         return next < -RELIEF_SLACK ? begin : FAR_AWAY;
     const float fall = next - clearance + twist;
     const float square = fall * fall + 4.0f * twist * clearance;
-    /* it may dip below and come up again */
+    /* the ray may dip below and come up again */
     if (next > 0.0f && !(twist < 0.0f && fall < 0.0f && fall > 2.0f * twist && square >= 0.0f))
         return FAR_AWAY;
     const float root = ROOT_OF_ONE(square > 0.0f ? square : 0.0f);
@@ -116,12 +116,12 @@ FUNCTION float crossing_from_above(float clearance, float next, float twist, flo
     return begin + unit_limited(share) * (end - begin);
 }
 
-/* A ray on its way over the grid. */
+/* The state of a ray on its way over the grid. */
 struct relief_walk {
-    float at;        /* distance */
-    float clearance; /* there, if it is known */
+    float at;        /* distance along the ray */
+    float clearance; /* height over the surface at that distance, if is_known */
     int is_known;
-    int was_above; /* of what it has just passed: rounding cannot have it below */
+    int was_above; /* the ray passed above the last block, so rounding must not put it below */
 };
 
 FUNCTION int is_level_cell(const float corners[4])
@@ -129,7 +129,7 @@ FUNCTION int is_level_cell(const float corners[4])
     return corners[0] == 0.0f && corners[1] == 0.0f && corners[2] == 0.0f && corners[3] == 0.0f;
 }
 
-/* The clearance where a walk begins, in the cell that holds that place. */
+/* Finds the clearance at which a walk begins, in the cell that holds that point. */
 FUNCTION void begin_walk(const struct relief_ray *ray, const float corners[4], int row, int column,
                          struct relief_walk *walk)
 {
@@ -141,8 +141,8 @@ FUNCTION void begin_walk(const struct relief_ray *ray, const float corners[4], i
     walk->is_known = 1;
 }
 
-/* Walks through the cells of a block as far as a distance. Returns that of the hit, FAR_AWAY if
- * there is none. to_plane: of the ray's hit on the mean seabed, which level cells are at. */
+/* Returns the distance of the ray's hit in a block's cells up to `end`, FAR_AWAY if there is none.
+ * Level cells are hit at to_plane, the distance to the mean seabed. */
 FUNCTION float walk_cells(struct relief_view relief, const struct relief_ray *ray, int first_row,
                           int first_column, float end, float to_plane, struct relief_walk *walk)
 {
@@ -185,7 +185,7 @@ FUNCTION float walk_cells(struct relief_view relief, const struct relief_ray *ra
     return FAR_AWAY;
 }
 
-/* Walks over the blocks from one distance to another. */
+/* Walks over the blocks between two distances. Returns as walk_cells does. */
 FUNCTION float walk_blocks(struct relief_view relief, const struct relief_ray *ray, float begin,
                            float end, float to_plane)
 {
@@ -235,8 +235,8 @@ FUNCTION float walk_blocks(struct relief_view relief, const struct relief_ray *r
     return FAR_AWAY;
 }
 
-/* One ray's distance to the seabed beyond `minimum`. Outside the grid, and where nothing of the
- * relief is met, it is that to the mean plane, to_plane. */
+/* Returns one ray's distance to the seabed beyond `minimum`. If the ray meets no relief, or only
+ * outside the grid, that is to_plane, the distance to the mean plane. */
 FUNCTION float relief_distance_of_one(struct relief_view relief, const struct relief_ray *ray,
                                       float to_plane, float minimum)
 {

@@ -17,8 +17,8 @@ FUNCTION int has_relief(const struct fan_record *fan)
 #endif
 }
 
-/* Distance to the seabed beyond `minimum` (a plane has but one), FAR_AWAY if there is none; for
- * lanes that are not wanted, to the plane. */
+/* Returns the distance to the seabed beyond `minimum`, FAR_AWAY if there is none. A plane is met
+ * once, whatever the minimum. Lanes that are not wanted get the distance to the plane. */
 FUNCTION vfloat seabed_distance(const struct fan_record *fan,
                                 GLOBAL const struct object_record *objects, struct vector3 point,
                                 struct vector3 direction, vfloat minimum, mask is_wanted)
@@ -34,7 +34,7 @@ FUNCTION vfloat seabed_distance(const struct fan_record *fan,
     return to_plane;
 }
 
-/* Upward unit normal where rays have met the seabed. */
+/* Returns the upward unit normal where rays have met the seabed. */
 FUNCTION struct vector3 seabed_normal(const struct fan_record *fan,
                                       GLOBAL const struct object_record *objects,
                                       struct vector3 point, struct vector3 direction)
@@ -54,7 +54,7 @@ FUNCTION struct vector3 seabed_normal(const struct fan_record *fan,
     return up;
 }
 
-/* Whether no relief is between two points. Over the plane nothing is: both are above it. */
+/* Returns where no relief lies between two points. Both points are above the mean plane. */
 FUNCTION mask is_clear_of_relief(const struct fan_record *fan,
                                  GLOBAL const struct object_record *objects, struct vector3 point,
                                  struct vector3 direction, vfloat length, mask is_wanted)

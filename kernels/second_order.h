@@ -1,6 +1,6 @@
-/* Paths of two interactions, between a target and the seabed. Each range cell of the output has as
- * many samples as any other: a point of a target is chosen first, then one of the seabed from which
- * the echo comes in that cell. Rays that targets scatter to the seabed find the same paths; both
+/* Second-order paths: two interactions, one on a target and one on the seabed. Each range cell of
+ * the output has equally many samples: a point of a target, then a place of the seabed from which
+ * the echo comes in that cell. Rays that targets scatter to the seabed find the same paths. Both
  * count with the shares of multiple importance sampling (kernels/MATH.md, "Second order"). */
 #ifndef SONJECT_KERNELS_SECOND_ORDER_H
 #define SONJECT_KERNELS_SECOND_ORDER_H
@@ -9,7 +9,7 @@
 #include "chain_step.h"
 #include "path_ellipse.h"
 
-/* Parts of targets, behind the spheres and their groups. */
+/* Returns the records of targets' parts, which lie behind the spheres and their groups. */
 FUNCTION GLOBAL const struct target_record *targets_of(GLOBAL const struct chain_record *chains,
                                                        GLOBAL const struct sphere_record *spheres)
 {
@@ -17,14 +17,14 @@ FUNCTION GLOBAL const struct target_record *targets_of(GLOBAL const struct chain
                                                  chains->target_words);
 }
 
-/* Where the echoes of a group of samples end. Ranges are those of half the path, less the reference
- * range. */
+/* The cell in which a group of samples' echoes end. Ranges are those of half the path, less the
+ * reference range. */
 struct echo_cell {
     vfloat receiver_x;
     vfloat near_range, far_range;
 };
 
-/* A cell of the output. */
+/* Returns a cell of the output. */
 FUNCTION struct echo_cell cell_number(const struct fan_record *fan,
                                       GLOBAL const struct chain_record *chains, vfloat number,
                                       vfloat receiver_x)
@@ -39,9 +39,9 @@ FUNCTION struct echo_cell cell_number(const struct fan_record *fan,
     return cell;
 }
 
-/* About what a part brings to a cell by way of the seabed, over what the seabed returns there by
- * itself: the way between the two is no shorter than the detour, and meets the seabed the flatter
- * the longer it is. */
+/* Estimates a part's echo by way of the seabed in a cell, over the seabed's own echo. The way
+ * between part and seabed is no shorter than the detour. The longer it is, the flatter it meets the
+ * seabed. */
 FUNCTION vfloat weight_of_target(GLOBAL const struct target_record *target,
                                  const struct echo_cell *cell)
 {
@@ -55,7 +55,7 @@ FUNCTION vfloat weight_of_target(GLOBAL const struct target_record *target,
                   weight, SPLAT(0.0f));
 }
 
-/* What the parts of an object bring to a cell. Cells that little comes to have some of their
+/* The weights of an object's parts in a cell. A cell that gets little follows only some of its
  * samples. */
 struct target_weights {
     vfloat sum, share; /* share: of the samples that are followed */
@@ -72,16 +72,16 @@ FUNCTION struct target_weights weigh_targets(GLOBAL const struct target_record *
     return weights;
 }
 
-/* The part that a sample begins on, and the window of the wavefront that it fills. */
+/* The part on which a sample begins, and the window of the wavefront that it fills. */
 struct sampled_target {
     vfloat first_x, width, first_elevation, elevations;
-    vfloat least_y; /* of seabed that it exchanges sound with */
-    vfloat rays;    /* per m rad: of the part's own fan */
+    vfloat least_y; /* least y of the seabed that exchanges sound with it */
+    vfloat rays;    /* rays per m rad of the part's own fan */
     vfloat weight;  /* 0: the sample is left out */
     vint part;
 };
 
-/* chosen: a uniform deviate. */
+/* Chooses the part of each sample. chosen: a uniform deviate. */
 FUNCTION struct sampled_target sample_target(GLOBAL const struct target_record *targets, int count,
                                              const struct echo_cell *cell,
                                              const struct target_weights *weights, vfloat chosen,
@@ -111,9 +111,9 @@ FUNCTION struct sampled_target sample_target(GLOBAL const struct target_record *
     return sampled;
 }
 
-/* Samples of a cell per m rad of a part's window and m^2 of the seabed's plan. length: of the line
- * across the track that a sample's place stands for; along it the seabed's x moves twice as fast as
- * the echo's. */
+/* Returns the samples of a cell per m rad of a part's window and m^2 of the seabed's plan. length:
+ * of the line across the track that a sample's place stands for. Along this line the seabed's x
+ * moves twice as fast as the echo's. */
 FUNCTION vfloat density_of_samples(const struct fan_record *fan,
                                    GLOBAL const struct chain_record *chains, vfloat weight,
                                    const struct target_weights *weights, vfloat window,
@@ -127,7 +127,7 @@ FUNCTION vfloat density_of_samples(const struct fan_record *fan,
                   SPLAT(0.0f));
 }
 
-/* The seabed under a point of the plan. */
+/* Returns the seabed under a point of the plan. */
 FUNCTION struct chain_hit seabed_below(const struct fan_record *fan,
                                        GLOBAL const struct object_record *objects, vfloat x,
                                        vfloat y, mask is_wanted)
@@ -137,7 +137,7 @@ FUNCTION struct chain_hit seabed_below(const struct fan_record *fan,
     hit.point.y = y;
     hit.point.z = SPLAT(fan->seabed_height);
 #if HAS_RELIEF
-    if (has_relief(fan)) { /* from little above it, so that its height keeps its digits */
+    if (has_relief(fan)) { /* rays start little above it, so that heights keep their digits */
         struct vector3 above = hit.point;
         struct vector3 down;
         above.z = above.z + (relief_of(fan, objects).grid->highest + 0.01f);
@@ -153,14 +153,14 @@ FUNCTION struct chain_hit seabed_below(const struct fan_record *fan,
     return hit;
 }
 
-/* A square metre of the plan as seen from a hit, sr. spreading: 1 over the square of the way. */
+/* Returns the solid angle of a square metre of the plan at a hit, sr. spreading: 1 / way^2. */
 FUNCTION vfloat opening_of_plan(const struct chain_hit *seabed, vfloat spreading)
 {
     return dot3(seabed->normal, seabed->back) * spreading /
            larger(seabed->normal.z, SPLAT(1.0e-3f));
 }
 
-/* The places on a line from which the echo of a chain's hit is in a cell. */
+/* Returns the places on a line from which the echo of a chain's hit is in a cell. */
 FUNCTION struct places places_of_cell(const struct fan_record *fan, const struct chain *chain,
                                       const struct seabed_line *line, const struct echo_cell *cell,
                                       vfloat least_y)
@@ -170,8 +170,8 @@ FUNCTION struct places places_of_cell(const struct fan_record *fan, const struct
                           least_y);
 }
 
-/* The share of an echo that a ray from a target counts, having met the seabed; the samples count
- * the rest. */
+/* Returns the share of an echo that counts for a ray from a target that met the seabed. Samples
+ * count for the rest. */
 NOINLINE vfloat share_of_ray(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
                              GLOBAL const struct sphere_record *spheres, const struct chain *chain)
 {

@@ -1,7 +1,7 @@
-/* Tracing the samples of second_order.h. Of a cell far from the targets few samples are followed,
- * and most of those begin where a target turns away from their seabed. So samples are gathered
- * until every lane has one: first those that are followed, then those that face their seabed, of
- * which alone it is asked what hides them. */
+/* The tracing of the samples of second_order.h. Few samples of a cell far from the targets are
+ * followed, and most of these begin where a target turns away from their place on the seabed.
+ * Samples are therefore gathered until every lane has one: first those that are followed, then
+ * those that face their seabed. Obstacles are looked for only for the latter. */
 #ifndef SONJECT_KERNELS_SECOND_ORDER_SAMPLES_H
 #define SONJECT_KERNELS_SECOND_ORDER_SAMPLES_H
 
@@ -11,7 +11,7 @@
 struct way_to_seabed {
     struct chain_hit to;
     struct source_path way;
-    vfloat leaving; /* cosine, of the way and the target's normal */
+    vfloat leaving; /* cosine between the way and the target's normal */
     mask is_facing;
 };
 
@@ -26,7 +26,7 @@ FUNCTION struct way_to_seabed way_to_seabed(const struct fan_record *fan,
     *to = seabed_below(fan, objects, x, y, chain->is_alive);
     to->normal =
         seabed_normal(fan, objects, to->point, straight_path(minus3(to->point, start)).direction);
-    /* to as little over the seabed as rays start there, so that it does not hide itself */
+    /* The way ends as far over the seabed as rays start, so that the place does not hide itself. */
     found.way = straight_path(minus3(start_from(to), start));
     to->back = reversed3(found.way.direction);
     to->distance = found.way.path;
@@ -37,7 +37,7 @@ FUNCTION struct way_to_seabed way_to_seabed(const struct fan_record *fan,
 }
 
 /* Takes a chain from its hit on a target to a place of the seabed. samples: per m rad and m^2 of
- * the plan; rays: of the target's fan, per m rad, which may find the path, too. */
+ * the plan; rays: of the target's fan, per m rad, which may also find the path. */
 FUNCTION void step_to_seabed(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
                              GLOBAL const struct object_record *objects,
                              const struct way_to_seabed *found, vfloat samples, vfloat rays,
@@ -63,12 +63,12 @@ FUNCTION void step_to_seabed(const struct fan_record *fan, GLOBAL const struct c
     chain->is_alive = is_open;
 }
 
-/* Samples of a strip, one in each lane: where their echoes end, and what comes there. */
+/* The samples of a strip, one in each lane: their cells, and the weights of targets there. */
 struct samples {
     word number;
     struct echo_cell cell;
     struct target_weights weights;
-    vfloat chosen; /* a uniform deviate, for the target's part */
+    vfloat chosen; /* uniform deviate for the target's part */
     mask is_followed;
 };
 
@@ -90,7 +90,7 @@ FUNCTION struct samples aim_samples(const struct fan_record *fan,
     return samples;
 }
 
-/* What a strip's samples are traced with. */
+/* The arguments by which a strip's samples are traced. */
 struct sample_trace {
     const struct fan_record *fan;
     GLOBAL const struct ray_piece_record *pieces;
@@ -101,14 +101,14 @@ struct sample_trace {
     int strip;
 };
 
-/* A path from the sonar by a target to the seabed. */
+/* A path from the sonar by way of a target to the seabed. */
 struct second_order_path {
-    struct chain chain; /* at the target */
+    struct chain chain; /* chain at the target */
     struct way_to_seabed onward;
-    vfloat samples, rays; /* that find it, as step_to_seabed takes them */
+    vfloat samples, rays; /* densities that find the path (step_to_seabed) */
 };
 
-/* is_alone: whether a target is hidden is not asked yet. */
+/* Finds the paths of samples. is_alone: the target is found whatever hides it. */
 NOINLINE void path_of_samples(const struct sample_trace *trace, word sample, mask is_sample,
                               int is_alone, struct second_order_path *path)
 {
@@ -146,7 +146,7 @@ NOINLINE void path_of_samples(const struct sample_trace *trace, word sample, mas
     path->onward = way_to_seabed(fan, trace->objects, x, chain->hit.point.y + y, chain);
 }
 
-/* Samples that wait until every lane has one. */
+/* The samples that wait until every lane has one. */
 struct waiting_samples {
     int numbers[2 * WIDTH];
     int count;
@@ -158,7 +158,7 @@ FUNCTION void add_waiting(const int numbers[WIDTH], mask is_wanted, struct waiti
         waiting->numbers[waiting->count++] = numbers[lowest_bit(left)];
 }
 
-/* Takes the last of them, fewer than WIDTH if no more wait. */
+/* Takes the last of the waiting samples, fewer than WIDTH if no more wait. */
 FUNCTION mask take_waiting(struct waiting_samples *waiting, int numbers[WIDTH])
 {
     const int taken = waiting->count < WIDTH ? waiting->count : WIDTH;
@@ -168,7 +168,7 @@ FUNCTION mask take_waiting(struct waiting_samples *waiting, int numbers[WIDTH])
     return MASK_OF(LANE_NUMBERS < (RECORD_WORD)taken);
 }
 
-/* Of some samples that are followed finds those whose target faces the place on the seabed. */
+/* Takes samples that are followed, and keeps those whose target faces the place on the seabed. */
 FUNCTION void find_facing(const struct sample_trace *trace, struct waiting_samples *followed,
                           struct waiting_samples *facing, struct outcome_record *outcome)
 {
@@ -181,7 +181,7 @@ FUNCTION void find_facing(const struct sample_trace *trace, struct waiting_sampl
     add_waiting(numbers, path.onward.is_facing, facing);
 }
 
-/* Traces some of them. */
+/* Traces some of the samples that face their seabed. */
 FUNCTION void trace_facing(const struct sample_trace *trace, GLOBAL const float *map,
                            GLOBAL TALLY *tallies, struct waiting_samples *facing,
                            struct outcome_record *outcome)
@@ -209,8 +209,7 @@ FUNCTION void trace_facing(const struct sample_trace *trace, GLOBAL const float 
     tally_chain_echo(trace->fan, trace->chains, tallies, 2, &echo, outcome);
 }
 
-/* Traces the share `segment` of a strip's samples, of which the fan tells the number as its rays.
- */
+/* Traces the share `segment` of a strip's samples. fan->rays tells their number. */
 NOINLINE void trace_second_order_strip(const struct fan_record *fan,
                                        GLOBAL const struct ray_piece_record *pieces,
                                        GLOBAL const struct chain_record *chains,
@@ -237,7 +236,7 @@ NOINLINE void trace_second_order_strip(const struct fan_record *fan,
                             .is_followed,
                         &followed);
         }
-        const int least = is_over ? 1 : WIDTH; /* at the end those that are left */
+        const int least = is_over ? 1 : WIDTH; /* the last samples may be fewer */
         while (followed.count >= least)
             find_facing(&trace, &followed, &facing, outcome);
         while (facing.count >= least)

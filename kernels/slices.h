@@ -1,5 +1,5 @@
-/* Targets that reach into layers of water which bend rays. In each layer, a slice, a ray is a line;
- * at its planes the line of one slice meets that of the next (kernels/MATH.md, "Layers"). */
+/* Targets that reach into layers of water which bend rays. In each layer, a slice, a ray is a line.
+ * At a plane between slices two lines meet (kernels/MATH.md, "Layers"). */
 #ifndef SONJECT_KERNELS_SLICES_H
 #define SONJECT_KERNELS_SLICES_H
 
@@ -7,9 +7,9 @@
 #include "fan.h"
 #include "intersection.h"
 
-#define SLICE_OVERLAP 1.0e-5f /* m along a ray: no hit falls between two slices */
+#define SLICE_OVERLAP 1.0e-5f /* m along a ray, so that no hit falls between two slices */
 
-/* A slice over the straight water: slice >= 1. */
+/* Returns a slice over the straight water. slice: >= 1. */
 FUNCTION GLOBAL const struct ray_piece_record *slice_of_table(
     const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces, int slice)
 {
@@ -22,7 +22,7 @@ FUNCTION float bottom_of_slice(GLOBAL const struct ray_piece_record *slice)
     return slice->offset[0];
 }
 
-/* The upward part of the direction there of a ray of the straight water. */
+/* Returns the upward component of a straight water ray's direction in the slice. */
 FUNCTION vfloat slope_in_slice(GLOBAL const struct ray_piece_record *slice,
                                const struct fan_ray *straight)
 {
@@ -30,7 +30,7 @@ FUNCTION vfloat slope_in_slice(GLOBAL const struct ray_piece_record *slice,
     return -SQUARE_ROOT(larger(1.0f - level * level, SPLAT(1.0e-6f)));
 }
 
-/* The line in a slice of a ray of the straight water. */
+/* Returns the line that a ray of the straight water follows in a slice. */
 FUNCTION struct fan_ray ray_in_slice(const struct fan_record *fan,
                                      GLOBAL const struct ray_piece_record *slice,
                                      const struct fan_ray *straight, vfloat elevation)
@@ -58,13 +58,13 @@ FUNCTION struct fan_ray ray_in_slice(const struct fan_record *fan,
     return ray;
 }
 
-/* Distance along a fan's ray to a level plane. */
+/* Returns the distance along a fan's ray to a level plane. */
 FUNCTION vfloat distance_to_height(const struct fan_ray *ray, float height)
 {
     return (height - ray->closest.z) / ray->direction.z;
 }
 
-/* The first object that a ray meets, and the ray as it is there. */
+/* The first object that a ray meets, and the ray in the object's slice. */
 struct sliced_hit {
     struct nearest_hit nearest;
     struct fan_ray ray;
@@ -72,7 +72,7 @@ struct sliced_hit {
     mask is_over_straight_water;
 };
 
-/* Whether anything may be met between two heights. */
+/* Returns whether anything may be met between two heights. */
 FUNCTION int is_reached(GLOBAL const struct object_record *objects, int count, float bottom,
                         float top)
 {
@@ -85,8 +85,8 @@ FUNCTION int is_reached(GLOBAL const struct object_record *objects, int count, f
     return 0;
 }
 
-/* What a ray meets in its slice, into the lanes that meet something. top: of the slice, the bottom
- * of the next one; NULL: it is the highest. to_bottom: along the fan's ray. */
+/* Finds what rays meet in their slice, and sets the lanes that meet something. top: the next slice,
+ * NULL for the highest one; to_bottom: along the fan's ray. */
 FUNCTION void meet_in_slice(const struct fan_record *fan,
                             GLOBAL const struct object_record *objects, const struct fan_ray *ray,
                             const struct aspect_ray *squinted,
@@ -118,8 +118,8 @@ FUNCTION void meet_in_slice(const struct fan_record *fan,
     hit->squinted.direction = choose3(is_met, squinted->direction, hit->squinted.direction);
 }
 
-/* From the straight water, where the ray and its aspect are known, upwards: what is met in a higher
- * slice is met before. */
+/* Finds the first object on each ray, from the straight water upwards. Ray and aspect are known in
+ * the straight water; a hit in a higher slice comes earlier on the ray. */
 FUNCTION struct sliced_hit find_sliced_hit(const struct fan_record *fan,
                                            GLOBAL const struct ray_piece_record *pieces,
                                            GLOBAL const struct object_record *objects,
@@ -138,7 +138,7 @@ FUNCTION struct sliced_hit find_sliced_hit(const struct fan_record *fan,
     struct aspect_ray aspect = *squinted;
     const vfloat aside = aspect.sine / aspect.cosine;
     float bottom = bottom_of_slice(slice_of_table(fan, pieces, 1));
-    vfloat x = aspect.start.x + distance_to_height(straight, bottom) * aside; /* at the bottom */
+    vfloat x = aspect.start.x + distance_to_height(straight, bottom) * aside; /* x at the bottom */
     hit.nearest.distance = SPLAT(FAR_AWAY);
     hit.nearest.object = VINT_OF(SPLAT(-1.0f));
     meet_in_slice(fan, objects, straight, &aspect, slice_of_table(fan, pieces, 1), SPLAT(FAR_AWAY),

@@ -1,5 +1,5 @@
-/* What a surface returns: the split of its energy between smooth and rough part, and the rough
- * part's directions. Directions are unit vectors away from the surface; the normal is on the side
+/* The energy that a surface returns: its split into a smooth and a rough part, and the directions
+ * of the rough part. Directions are unit vectors away from the surface. The normal is on the side
  * that the sound is on. */
 #ifndef SONJECT_KERNELS_SURFACE_H
 #define SONJECT_KERNELS_SURFACE_H
@@ -10,8 +10,8 @@
 #include "vector3.h"
 #include "width.h"
 
-/* Reflection at a fluid half-space: L. M. Brekhovskikh, Yu. P. Lysanov, "Fundamentals of Ocean
- * Acoustics", section 3.1 (Rayleigh's coefficient). At the cosine of the angle of incidence,
+/* Computes Rayleigh's reflection coefficient of a fluid half-space (L. M. Brekhovskikh, Yu. P.
+ * Lysanov, "Fundamentals of Ocean Acoustics", section 3.1) at the cosine of the angle of incidence:
  *     R = (m cos - s) / (m cos + s),   s = sqrt(n^2 - sin^2),   Im s >= 0,
  * m the density ratio, n the complex refractive index k2/k. */
 FUNCTION void fluid_reflection(GLOBAL const struct surface_record *surface, vfloat cosine,
@@ -21,7 +21,7 @@ FUNCTION void fluid_reflection(GLOBAL const struct surface_record *surface, vflo
     const vfloat square_imaginary = SPLAT(surface->index_imaginary);
     const vfloat modulus =
         SQUARE_ROOT(square_real * square_real + square_imaginary * square_imaginary);
-    /* the larger part of the root first: it does not cancel */
+    /* The larger part of the root comes first, since it does not cancel. */
     const vfloat greater = SQUARE_ROOT(0.5f * (modulus + magnitude(square_real)));
     const vfloat lesser = 0.5f * square_imaginary / larger(greater, SPLAT(1.0e-18f));
     const mask is_propagating = MASK_OF(square_real >= 0.0f);
@@ -46,7 +46,7 @@ FUNCTION int has_rough_part(GLOBAL const struct surface_record *surface)
     return takes_some && (surface->lambert > 0.0f || surface->glossy_albedo > 0.0f);
 }
 
-/* R at the cosine of the angle of incidence, a complex number. */
+/* Computes the complex reflection coefficient R at the cosine of the angle of incidence. */
 FUNCTION void plane_reflection(GLOBAL const struct surface_record *surface, vfloat cosine,
                                vfloat *real_part, vfloat *imaginary_part)
 {
@@ -58,7 +58,7 @@ FUNCTION void plane_reflection(GLOBAL const struct surface_record *surface, vflo
     *imaginary_part = SPLAT(0.0f);
 }
 
-/* Amplitude of the specular part, R exp(-P^2 / 2), P = 2 k eta cos(angle). */
+/* Computes the amplitude of the specular part, R exp(-P^2 / 2), with P = 2 k eta cos(angle). */
 FUNCTION void smooth_reflection(GLOBAL const struct surface_record *surface, vfloat cosine,
                                 vfloat *real_part, vfloat *imaginary_part)
 {
@@ -69,13 +69,13 @@ FUNCTION void smooth_reflection(GLOBAL const struct surface_record *surface, vfl
     *imaginary_part = *imaginary_part * kept;
 }
 
-/* The most that the rough part may return of what comes, pi mu + g. */
+/* Returns the largest share of incident energy that the rough part may return, pi mu + g. */
 FUNCTION float rough_albedo(GLOBAL const struct surface_record *surface)
 {
     return 3.14159265359f * surface->lambert + surface->glossy_albedo;
 }
 
-/* Energy of the specular part, |R|^2 exp(-P^2). */
+/* Returns the energy of the specular part, |R|^2 exp(-P^2). */
 FUNCTION vfloat specular_energy(GLOBAL const struct surface_record *surface, vfloat cosine)
 {
     vfloat real_part, imaginary_part;
@@ -86,8 +86,8 @@ FUNCTION vfloat specular_energy(GLOBAL const struct surface_record *surface, vfl
     return energy;
 }
 
-/* What roughness takes out of the specular direction of a smooth surface, 1 - exp(-P^2); of a
- * fluid's, whose reflection depends on the angle, |R|^2 of it. */
+/* Returns the share of energy that roughness takes out of the specular direction, 1 - exp(-P^2). A
+ * fluid's reflection depends on the angle, so its share is multiplied by |R|^2. */
 FUNCTION vfloat scattered_fraction(GLOBAL const struct surface_record *surface, vfloat cosine)
 {
     const vfloat phase = surface->roughness_phase * cosine;
@@ -99,8 +99,8 @@ FUNCTION vfloat scattered_fraction(GLOBAL const struct surface_record *surface, 
     return fraction * (real_part * real_part + imaginary_part * imaginary_part);
 }
 
-/* Scattering per area and solid angle over cos cos (the f of kernels/MATH.md) from one direction
- * into the other; the same both ways. 0 where a direction is not above the surface. */
+/* Returns the f of kernels/MATH.md from one direction into the other: scattering per area and solid
+ * angle, over both cosines. It is the same both ways, and 0 if a direction is below the surface. */
 FUNCTION vfloat rough_scattering(GLOBAL const struct surface_record *surface, struct vector3 normal,
                                  struct vector3 one, struct vector3 other)
 {
@@ -118,15 +118,15 @@ FUNCTION vfloat rough_scattering(GLOBAL const struct surface_record *surface, st
     return SELECT(is_above, scattering, SPLAT(0.0f));
 }
 
-/* Share of the cone in the directions that are sampled. */
+/* Returns the share of sampled directions that the cone gets. */
 FUNCTION float cone_share(GLOBAL const struct surface_record *surface)
 {
     const float all = rough_albedo(surface);
     return all > 0.0f ? surface->glossy_albedo / all : 0.0f;
 }
 
-/* A direction of the rough part for sound that came along -back, by three uniform deviates. It may
- * lie below the surface: then its scattering is 0. */
+/* Samples a direction of the rough part for sound that came along -back. The direction may lie
+ * below the surface, where its scattering is 0. choice, u, v: uniform deviates. */
 FUNCTION struct vector3 sample_rough_direction(GLOBAL const struct surface_record *surface,
                                                struct vector3 normal, struct vector3 back,
                                                vfloat choice, vfloat u, vfloat v)
@@ -141,7 +141,7 @@ FUNCTION struct vector3 sample_rough_direction(GLOBAL const struct surface_recor
                    sample_diffuse(normal, surface->lambert_exponent, u, v));
 }
 
-/* Density of these directions, 1/sr; 0 below the surface. */
+/* Returns the density of sampled directions, 1/sr; 0 below the surface. */
 FUNCTION vfloat rough_direction_density(GLOBAL const struct surface_record *surface,
                                         struct vector3 normal, struct vector3 back,
                                         struct vector3 direction)

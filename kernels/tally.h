@@ -1,5 +1,4 @@
-/* Tallies in 64-bit fixed point: integer sums do not depend on their order, so neither do images.
- */
+/* Tallies in 64-bit fixed point. Integer sums, and so images, do not depend on the order. */
 #ifndef SONJECT_KERNELS_TALLY_H
 #define SONJECT_KERNELS_TALLY_H
 
@@ -14,10 +13,10 @@
 #define ATOMIC_ADD(tally, count) __atomic_fetch_add(tally, count, __ATOMIC_RELAXED)
 #endif
 
-/* A value this large is a fault of scaling: 2^12 of them would still fit. */
-#define QUANTA_LIMIT 2251799813685248.0f /* 2^51 */
+/* The largest value that is no fault of scaling, 2^51. A tally has room for 2^12 of them. */
+#define QUANTA_LIMIT 2251799813685248.0f
 
-/* Whether quanta can be counted; reports what cannot. */
+/* Returns whether quanta can be counted, and reports a fault if they cannot. */
 FUNCTION int is_countable(float quanta, RECORD_WORD *faults)
 {
     if (quanta != quanta)
@@ -29,17 +28,17 @@ FUNCTION int is_countable(float quanta, RECORD_WORD *faults)
     return 0;
 }
 
-/* Whole quanta, those below or above by chance, so that the mean of what is counted is exact
- * however little each path brings. chance: uniform in 0...1, of the path's own. */
+/* Rounds quanta to a whole number, up or down by chance. The mean of all counts is then exact,
+ * however little each path brings. chance: a uniform deviate in 0...1 of the path's own. */
 FUNCTION TALLY whole_quanta(float quanta, float chance)
 {
-    const TALLY count = (TALLY)quanta; /* towards zero */
+    const TALLY count = (TALLY)quanta; /* rounded towards zero */
     const float rest = quanta - (float)count;
     return count + (chance < rest) - (chance < -rest);
 }
 
-/* Adds quanta to a tally; is_shared: other work-items may add to it at the same time, which those
- * of a group may to any. */
+/* Adds quanta to a tally. is_shared: other work-items may add to it at the same time. The items of
+ * a group may always do so. */
 FUNCTION void tally_add(GLOBAL TALLY *tally, int is_shared, float quanta, float chance,
                         RECORD_WORD *faults)
 {
@@ -51,8 +50,8 @@ FUNCTION void tally_add(GLOBAL TALLY *tally, int is_shared, float quanta, float 
         *tally += whole_quanta(quanta, chance);
 }
 
-/* Shares an echo between two neighbours of a line of bins, `later` being the share of the second:
- * its energy and mean range are kept. Those of them that the line has not got get nothing. */
+/* Shares an echo between two neighbouring bins of a line. Its energy and mean range stay the same.
+ * Bins outside the line get nothing. later: the share of the second bin. */
 FUNCTION void tally_shares(GLOBAL TALLY *line, int bins, int is_shared, int bin, float later,
                            float quanta, float chance, RECORD_WORD *faults)
 {

@@ -1,5 +1,5 @@
-/* Directions from a point towards the targets: uniform over the cones of the spheres that hold
- * them, so that sound between seabed and target is looked for where it can be. */
+/* Directions from a point towards the targets: uniform over the cones of the targets' spheres, so
+ * that sound between seabed and target is looked for where it can be. */
 #ifndef SONJECT_KERNELS_TARGET_SAMPLING_H
 #define SONJECT_KERNELS_TARGET_SAMPLING_H
 
@@ -7,12 +7,12 @@
 #include "layout.h"
 #include "vector3.h"
 
-/* The cones of all spheres as seen from a point. An opening is 1 - cosine of the cone's half angle;
- * 0 where the point is inside the sphere, which then is all around. */
+/* The cones of all spheres as seen from a point. An opening is 1 - cosine of the cone's half angle.
+ * It is 0 if the point is inside the sphere, which is then all around. */
 struct target_sampling {
     vfloat openings[FEW_SPHERES_MAX];
     vfloat sum;
-    mask is_inside; /* of some sphere */
+    mask is_inside; /* inside some sphere */
 };
 
 FUNCTION struct vector3 to_sphere(GLOBAL const struct sphere_record *sphere, struct vector3 point)
@@ -24,11 +24,11 @@ FUNCTION struct vector3 to_sphere(GLOBAL const struct sphere_record *sphere, str
     return way;
 }
 
-/* Opening of a sphere at a distance; 0 where that is not outside. */
+/* Returns the opening of a sphere at a distance, 0 if that is not outside. */
 FUNCTION vfloat opening_at(vfloat square_distance, vfloat square_radius, mask *is_outside)
 {
     *is_outside = MASK_OF(square_distance > square_radius * 1.0001f);
-    /* 1 - sqrt(1 - r^2/d^2) without a difference of nearly equal numbers, and one division */
+    /* 1 - sqrt(1 - r^2/d^2) without a difference of nearly equal numbers, and with one division. */
     const vfloat square_tangent_length = square_distance - square_radius;
     const vfloat divisor =
         square_distance +
@@ -36,7 +36,7 @@ FUNCTION vfloat opening_at(vfloat square_distance, vfloat square_radius, mask *i
     return SELECT(*is_outside, square_radius / divisor, SPLAT(0.0f));
 }
 
-/* Sum of the openings of any number of spheres as seen from a point. */
+/* Returns the sum of any number of spheres' openings as seen from a point. */
 FUNCTION vfloat sum_of_openings(GLOBAL const struct sphere_record *spheres, int count,
                                 struct vector3 point, mask *is_inside)
 {
@@ -52,7 +52,7 @@ FUNCTION vfloat sum_of_openings(GLOBAL const struct sphere_record *spheres, int 
     return sum;
 }
 
-/* count: FEW_SPHERES_MAX at most. */
+/* Finds the cones of the targets' spheres. count: FEW_SPHERES_MAX at most. */
 FUNCTION void view_targets(GLOBAL const struct sphere_record *spheres, int count,
                            struct vector3 point, struct target_sampling *cones)
 {
@@ -68,7 +68,7 @@ FUNCTION void view_targets(GLOBAL const struct sphere_record *spheres, int count
     }
 }
 
-/* A direction in a cone, uniform over its solid angle; way: to the middle of its sphere. */
+/* Returns a direction in a cone, uniform over its solid angle. way: to the middle of its sphere. */
 FUNCTION struct vector3 direction_in_cone(struct vector3 way, vfloat opening, vfloat u, vfloat v)
 {
     const vfloat inverse = 1.0f / SQUARE_ROOT(dot3(way, way));
@@ -85,7 +85,7 @@ FUNCTION struct vector3 direction_in_cone(struct vector3 way, vfloat opening, vf
     return combine3(axis, 1.0f - fall, first, sine * cosine_about, second, sine * sine_about);
 }
 
-/* A direction in the cone of one sphere, chosen in proportion to the cones' solid angles. */
+/* Returns a direction in one sphere's cone, chosen in proportion to the cones' solid angles. */
 FUNCTION struct vector3 sample_target_direction(GLOBAL const struct sphere_record *spheres,
                                                 int count, struct vector3 point,
                                                 const struct target_sampling *cones, vfloat choice,
@@ -107,8 +107,8 @@ FUNCTION struct vector3 sample_target_direction(GLOBAL const struct sphere_recor
     return direction_in_cone(way, opening, u, v);
 }
 
-/* Density of these directions, 1/sr: the number of cones that hold the direction over the sum of
- * their solid angles. */
+/* Returns the density of sample_target_direction, 1/sr: the number of cones that hold the direction
+ * over the sum of their solid angles. */
 FUNCTION vfloat target_direction_density(GLOBAL const struct sphere_record *spheres, int count,
                                          struct vector3 point, const struct target_sampling *cones,
                                          struct vector3 direction)
@@ -117,7 +117,7 @@ FUNCTION vfloat target_direction_density(GLOBAL const struct sphere_record *sphe
     for (int i = 0; i < count; i++) {
         const struct vector3 way = to_sphere(&spheres[i], point);
         const vfloat along = dot3(way, direction);
-        /* not the difference of two squares: a far sphere is smaller than their rounding */
+        /* A difference of two squares would not do: a far sphere is smaller than their rounding. */
         const struct vector3 miss = along3(way, direction, -along);
         const mask is_in_cone = MASK_OF(cones->openings[i] > 0.0f) & MASK_OF(along > 0.0f) &
                                 MASK_OF(dot3(miss, miss) <= spheres[i].radius * spheres[i].radius);

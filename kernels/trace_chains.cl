@@ -1,5 +1,5 @@
-/* Entry point: one group follows one segment of one strip. Echoes of chains end in other strips
- * too, so all groups share the tallies. */
+/* Entry point: one group follows one segment of one strip. All groups share the tallies, since
+ * chains' echoes end in other strips too. */
 #include "trace_chains.h"
 
 GROUP_KERNEL void trace_chains(__global const struct fan_record *fan_buffer,

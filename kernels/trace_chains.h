@@ -1,6 +1,6 @@
 /* The incoherent part beyond the first interaction: chains of sound between seabed and targets
- * (kernels/MATH.md, "Chains"). A ray is followed from the receiver; at every rough hit the path is
- * closed to the source. */
+ * (kernels/MATH.md, "Chains"). A chain is a path that is followed backwards from the receiver. At
+ * every rough hit it is connected to the source, as in next-event estimation. */
 #ifndef SONJECT_KERNELS_TRACE_CHAINS_H
 #define SONJECT_KERNELS_TRACE_CHAINS_H
 
@@ -8,7 +8,7 @@
 #include "chain_step.h"
 #include "second_order_samples.h"
 
-/* Connects the hit to the source and gives the echo. */
+/* Connects the hit to the source and returns the echo in *echo. */
 FUNCTION void connect_chain(const struct fan_record *fan,
                             GLOBAL const struct ray_piece_record *pieces,
                             GLOBAL const struct chain_record *chains,
@@ -27,15 +27,15 @@ FUNCTION void connect_chain(const struct fan_record *fan,
     keep_echo(fan, chains, count_ways(chains, order, chain), chain, energy, range, share, echo);
 }
 
-/* Where a ray crosses the source's rectangle: the echo of brute force, which counts what happens to
- * arrive. Per unit of the source's strength a rectangle of area A seen under the angle theta stands
- * for 1 / (A cos theta). */
+/* Finds the echo of brute force, which counts rays that happen to cross the source's square. Per
+ * unit of the source's strength, a square of area A seen under the angle theta stands for 1 / (A
+ * cos theta). */
 FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
                             int order, const struct chain *chain, const struct chain_step *step,
                             vfloat to_next_hit, struct chain_echo *echo)
 {
     const struct vector3 to = to_receiver(fan, chain->hit.point, chain->first_x);
-    /* the rectangle's normal is the central direction, across it lies `up` */
+    /* The square's normal is the central direction, and across it lies `up`. */
     const vfloat cosine =
         -(step->direction.y * fan->cosine_depression - step->direction.z * fan->sine_depression);
     const vfloat distance_across = -(to.y * fan->cosine_depression - to.z * fan->sine_depression);
@@ -45,7 +45,7 @@ FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct ch
     const vfloat off_up = (step->direction.y * path - to.y) * fan->sine_depression +
                           (step->direction.z * path - to.z) * fan->cosine_depression;
     const float half_side = 0.5f * fan->source_side;
-    /* what specular bounces alone bring is the coherent part's */
+    /* Specular bounces alone belong to the coherent part. */
     const mask met_rough = ~(chain->only_specular & step->is_specular);
     const mask arrives = is_towards & met_rough & MASK_OF(path > 0.0f) &
                          MASK_OF(path < to_next_hit) & MASK_OF(magnitude(off_x) < half_side) &
@@ -61,9 +61,9 @@ FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct ch
               echo);
 }
 
-#define THIN_BLOCK 64u /* rays that are followed, or not, together; whatever the width */
+#define THIN_BLOCK 64u /* rays that are followed, or not, together; the same at any width */
 
-/* The ray in the middle of each of WIDTH blocks. */
+/* Returns the ray in the middle of each of WIDTH blocks. */
 FUNCTION struct fan_ray middle_ray(const struct fan_record *fan,
                                    GLOBAL const struct ray_piece_record *pieces, int strip,
                                    word block)
@@ -73,8 +73,8 @@ FUNCTION struct fan_ray middle_ray(const struct fan_record *fan,
                       fan->first_elevation + rays * fan->elevation_step);
 }
 
-/* Whether rays of a block may meet a target: its middle ray passes a sphere of one at no more than
- * the radius and what the block's corners lie off that ray (a tenth more, for rays fan out). */
+/* Returns where rays of a block may meet a target: its middle ray passes a target's sphere within
+ * the radius plus the distance of the block's corners (a tenth more: rays fan out). */
 FUNCTION mask may_meet_target(const struct fan_record *fan,
                               GLOBAL const struct chain_record *chains,
                               GLOBAL const struct sphere_record *spheres,
@@ -93,7 +93,7 @@ FUNCTION mask may_meet_target(const struct fan_record *fan,
     return may_meet;
 }
 
-/* The same of rays that the seabed reflects at a point. */
+/* Returns where rays of a block that the seabed reflects at a point may meet a target. */
 FUNCTION mask may_be_reflected_to_target(const struct fan_record *fan,
                                          GLOBAL const struct chain_record *chains,
                                          GLOBAL const struct sphere_record *spheres,
@@ -105,10 +105,10 @@ FUNCTION mask may_be_reflected_to_target(const struct fan_record *fan,
     return may_meet_target(fan, chains, spheres, &reflected);
 }
 
-/* The throughput of a ray of each of WIDTH blocks, 0: not followed. Seabed far from the targets
- * exchanges little sound with them unless it reflects, so of its rays only some blocks are followed
- * and stand for the others. Of an object's own rays those blocks are left out that cannot meet it.
- */
+/* Returns the throughput of each of WIDTH blocks, 0 if its rays are not followed. Seabed far from
+ * the targets exchanges little sound with them unless it reflects. Only some blocks of such rays
+ * are followed and stand for the others. An object's own rays are left out in blocks that cannot
+ * meet a target. */
 FUNCTION vfloat russian_roulette(const struct fan_record *fan,
                                  GLOBAL const struct ray_piece_record *pieces,
                                  GLOBAL const struct chain_record *chains,
@@ -167,8 +167,8 @@ FUNCTION void begin_fan_chain(const struct fan_record *fan,
     chain->only_boundaries = chain->is_alive;
 }
 
-/* Behind level boundaries sound spreads from the sonar's image: the ray's strip of the wavefront
- * grows with the whole way, and its energy falls. Before the chain goes `distance` further. */
+/* Lets the energy fall before the chain goes `distance` further. Behind level boundaries sound
+ * spreads from the sonar's image, so the ray's strip of the wavefront grows with the whole way. */
 FUNCTION void spread_from_image(struct chain *chain, const struct chain_step *step, vfloat distance)
 {
     chain->only_boundaries =
@@ -181,8 +181,8 @@ FUNCTION void spread_from_image(struct chain *chain, const struct chain_step *st
     chain->first_reach = reach;
 }
 
-/* The lowest order of the fan's rays that counts: paths of two interactions that begin on the
- * seabed may be sampled by themselves. */
+/* Returns the lowest order of the fan's rays that counts. Paths of two interactions that begin on
+ * the seabed may have samples of their own. */
 FUNCTION int first_order_of_fan(const struct fan_record *fan,
                                 GLOBAL const struct chain_record *chains)
 {
@@ -205,7 +205,7 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
     const int first_order = first_order_of_fan(fan, chains);
     begin_fan_chain(fan, pieces, objects, strip, key, first_ray, throughput, choice, &chain);
     for (int order = 1; order <= chains->interactions && ANY(chain.is_alive); order++) {
-        /* an interaction's four draws: 0 and 1 of its step, 2 and 3 of its connections */
+        /* An interaction has four draws: 0 and 1 for its step, 2 and 3 for its connections. */
         const RECORD_WORD draw = 4u * (RECORD_WORD)order;
         if (is_connected && order >= first_order) {
             connect_chain(fan, pieces, chains, objects, spheres, map, order, &chain, draw + 2,
@@ -232,7 +232,7 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
             count_arrival(fan, chains, order, &chain, &step, clear, &echo);
             tally_chain_echo(fan, chains, tallies, order, &echo, outcome);
         }
-        /* sound from one slope of the relief to another is left out */
+        /* Sound from one slope of the relief to another is left out. */
         const mask is_between_slopes =
             has_relief(fan) ? MASK_OF(chain.hit.surface == -1) & MASK_OF(next.surface == -1)
                             : chain.is_alive & 0;
@@ -254,10 +254,10 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
     }
 }
 
-#define CHOICE_RAYS 16u /* that choose their targets alike; a multiple of any width */
+#define CHOICE_RAYS 16u /* rays that share a choice of targets; a multiple of any width */
 
-/* How the rays from first_ray on choose: as their middle sees the targets from the seabed, blurred
- * by as much as they lie apart. */
+/* Aims the choice of the rays from first_ray on: the targets as the middle ray sees them from the
+ * seabed, blurred by the rays' distance from each other. */
 FUNCTION void aim_choice(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
                          GLOBAL const struct chain_record *chains,
                          GLOBAL const struct sphere_record *spheres, int strip,
@@ -308,9 +308,8 @@ FUNCTION void trace_chain_block(const struct fan_record *fan,
     }
 }
 
-/* Traces the share `segment` of a strip's fan, or of a target's paths of second order. tallies:
- * orders x tally_strips x bins; throughputs: room for GROUP_WIDTH, which the group's items share.
- */
+/* Traces the share `segment` of a strip's fan, or of a target's second-order paths. tallies: orders
+ * x tally_strips x bins; throughputs: room for GROUP_WIDTH, shared by the group's items. */
 FUNCTION struct outcome_record trace_chains_strip(
     const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
     GLOBAL const struct chain_record *chains, GLOBAL const struct object_record *objects,
@@ -335,7 +334,7 @@ FUNCTION struct outcome_record trace_chains_strip(
         GROUP_WAIT();
         for (RECORD_WORD i = 0; i < GROUP_WIDTH && some + i * stride < blocks; i++) {
             const RECORD_WORD first_ray = (some + i * stride) * THIN_BLOCK;
-            /* rays that are known to miss their object are traced by that */
+            /* Rays that are known to miss their object count as traced. */
             if (GROUP_ITEM == 0 && (throughputs[i] > 0.0f || fan->only_object >= 0)) {
                 outcome.rays += rays_from(fan, first_ray, THIN_BLOCK);
                 outcome.queries += rays_from(fan, first_ray, THIN_BLOCK);

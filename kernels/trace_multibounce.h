@@ -1,6 +1,6 @@
 /* The coherent part of several smooth faces one after the other: specular bounces, and physical
- * optics at the last hit (kernels/MATH.md, "Multi-bounce specular paths"). The fan goes out from
- * one source of a pair, the echo returns to the other; both may be the sonar itself. */
+ * optics at the last hit (kernels/MATH.md, "Multi-bounce specular paths"). The fan leaves one
+ * source of a pair, and the echo returns to the other. Both may be the sonar itself. */
 #ifndef SONJECT_KERNELS_TRACE_MULTIBOUNCE_H
 #define SONJECT_KERNELS_TRACE_MULTIBOUNCE_H
 
@@ -10,16 +10,15 @@
 #include "trace_smooth.h"
 #include "tube.h"
 
-/* The return path from the last hit, to a source that stands beside it along-track
- * (kernels/MATH.md, "Multi-bounce specular paths"). */
+/* The return path from the last hit to a source that stands beside the hit along-track. */
 struct return_path {
     struct vector3 direction; /* unit, from the hit to the source in unfolded space */
     vfloat length;            /* m */
-    vfloat excess;            /* range less the source's, formed without subtracting */
-    vfloat spreading;         /* of the amplitude, 1/m */
+    vfloat excess;    /* m: range less the source's range, formed without a difference of ranges */
+    vfloat spreading; /* spreading of the amplitude, 1/m */
 };
 
-/* off: from the hit to the source along-track. As path_through_layers in chain_echo.h. */
+/* Works as path_through_layers in chain_echo.h. off: from the hit to the source along-track, m. */
 FUNCTION struct return_path return_through_layers(GLOBAL const struct source_record *source,
                                                   GLOBAL const struct ray_piece_record *pieces,
                                                   struct vector3 hit, vfloat off)
@@ -62,17 +61,17 @@ FUNCTION struct return_path return_path(GLOBAL const struct source_record *sourc
 struct multibounce_path {
     struct chain_hit hit;
     struct tube tube;
-    vfloat range;           /* from the outgoing source to the first hit less the source's range */
-    vfloat length;          /* from the first hit to this one */
-    vfloat first_x;         /* along-track, of the first hit */
-    vfloat first_reach;     /* as struct chain has it */
+    vfloat range;           /* range of the first hit less the outgoing source's range, m */
+    vfloat length;          /* path from the first hit to this one, m */
+    vfloat first_x;         /* along-track position of the first hit, m */
+    vfloat first_reach;     /* reach as in struct chain (chain_hit.h) */
     vfloat first_wavefront; /* width per rad of elevation at the first hit */
-    vfloat first_spreading; /* of the amplitude on the way there, 1/m */
-    vfloat reflection_real, reflection_imaginary; /* of all bounces and boundaries so far */
+    vfloat first_spreading; /* amplitude spreading up to the first hit, 1/m */
+    vfloat reflection_real, reflection_imaginary; /* product over all bounces and boundaries */
     mask is_alive;
 };
 
-/* Echoes of one group and the strips of the whole track that they belong to. */
+/* The echoes of one group, and their strips on the whole track. */
 struct multibounce_echo {
     struct smooth_echo echo;
     int strip[WIDTH];
@@ -121,8 +120,8 @@ FUNCTION void begin_multibounce(const struct fan_record *fan,
     path->tube.across.turn.z = ray->upward.z * inverse;
 }
 
-/* Coherent reflection of the surfaces that the paths are at; paths whose surface has no smooth part
- * end there. */
+/* Finds the coherent reflection of the surfaces where the paths are. Paths end on a surface without
+ * a smooth part. */
 FUNCTION void reflection_of_hit(const struct fan_record *fan,
                                 GLOBAL const struct multibounce_record *multibounce,
                                 GLOBAL const struct object_record *objects,
@@ -148,7 +147,7 @@ FUNCTION void reflection_of_hit(const struct fan_record *fan,
     *is_alive = is_smooth;
 }
 
-/* The specular bounce at a hit, and the way to the next one. */
+/* Bounces off the hit and follows the way to the next one. */
 FUNCTION void bounce_on(const struct fan_record *fan,
                         GLOBAL const struct multibounce_record *multibounce,
                         GLOBAL const struct object_record *objects, struct multibounce_path *path,
@@ -182,22 +181,21 @@ FUNCTION void bounce_on(const struct fan_record *fan,
     turn_by_caustics(&path->tube, direction, next.distance, &path->reflection_real,
                      &path->reflection_imaginary);
     transfer_tube(&path->tube, next.distance);
-    /* the way begins off the surface, where the wave is so much later */
+    /* The way begins off the surface, where the wave is later by START_OFF_SURFACE * cosine. */
     path->length = path->length + (next.distance + START_OFF_SURFACE * cosine);
     path->hit = next;
     path->is_alive = next.is_hit & is_narrow(&path->tube);
-    /* what has ended stays finite */
+    /* Paths that have ended stay finite. */
     for (int i = 0; i < 2; i++) {
         sides[i]->offset = choose3(path->is_alive, sides[i]->offset, nothing);
         sides[i]->turn = choose3(path->is_alive, sides[i]->turn, nothing);
     }
 }
 
-/* The whole path's gradient along one side of the tube at the last hit, the return path being the
- * way to the source at receiver_x. The source moves along: dx/2 with each of both hits in focused
- * columns, else with the first (kernels/MATH.md, "Multi-bounce specular paths"). first_step: how
- * far the first hit moves along-track.
- */
+/* Returns the whole path's gradient along one side of the tube at the last hit. returned: unit, to
+ * the source at receiver_x; first_step: move of the first hit along-track. In focused columns the
+ * source moves by half the sum of both hits' moves, else with the first hit (kernels/MATH.md,
+ * "Multi-bounce specular paths"). */
 FUNCTION vfloat path_gradient(const struct multibounce_path *path, const struct tube_side *side,
                               struct vector3 returned, vfloat cosine, float first_step,
                               vfloat receiver_x, int is_focused)
@@ -212,7 +210,7 @@ FUNCTION vfloat path_gradient(const struct multibounce_path *path, const struct 
            returned.x * source_step + shift / reach * (first_step - source_step);
 }
 
-/* The echo that the last hit returns by physical optics. */
+/* Keeps the echo that the last hit returns by physical optics. */
 FUNCTION void keep_multibounce_echo(const struct fan_record *fan,
                                     GLOBAL const struct ray_piece_record *pieces,
                                     GLOBAL const struct image_pair_record *pair,
@@ -250,7 +248,7 @@ FUNCTION void keep_multibounce_echo(const struct fan_record *fan,
                                           0.0f, receiver_x, multibounce->is_focused),
                             range, path->first_wavefront));
     const vfloat section =
-        magnitude(tube_section(&path->tube, reversed3(hit->back))); /* of the wavefront's */
+        magnitude(tube_section(&path->tube, reversed3(hit->back))); /* over the wavefront's */
     const vfloat amplitude = phase.amplitude * (0.5f * pair->echoes) *
                              (1.0f + cosine_return / cosine) * SQUARE_ROOT(section) *
                              (half_path * path->first_spreading) * (half_path * returned.spreading);
@@ -268,7 +266,7 @@ FUNCTION void keep_multibounce_echo(const struct fan_record *fan,
     STORE_VINT(strip, kept->strip);
 }
 
-/* Where the next echo goes in a list that all work-items share. */
+/* Returns the place of the next echo in a list that all work-items share. */
 FUNCTION RECORD_WORD next_in_list(GLOBAL RECORD_WORD *listed)
 {
 #ifdef __OPENCL_C_VERSION__
@@ -278,8 +276,8 @@ FUNCTION RECORD_WORD next_in_list(GLOBAL RECORD_WORD *listed)
 #endif
 }
 
-/* Lists what is heard: echoes lie in few places of a large grid, so it is the host that adds them
- * up. As tally_add, it reports what cannot be counted. */
+/* Lists the echoes that are heard. Echoes lie in few places of a large grid, so the host adds them
+ * up. Like tally_add, it reports numbers that cannot be counted. */
 FUNCTION void list_multibounce_echo(GLOBAL struct multibounce_echo_record *echoes,
                                     GLOBAL RECORD_WORD *listed, const struct multibounce_echo *kept,
                                     struct outcome_record *outcome)
@@ -329,7 +327,7 @@ FUNCTION void trace_multibounce_group(
 }
 
 /* Traces the share `segment` of a sub-strip's fan. echoes: room for rays x strata x (interactions -
- * 1) of each sub-strip; listed: how many there are. */
+ * 1) of each sub-strip; listed: number of echoes in the list. */
 FUNCTION struct outcome_record trace_multibounce_strip(
     const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
     GLOBAL const struct image_pair_record *pair,

@@ -1,5 +1,5 @@
 /* The incoherent part at one interaction: seabed and rough surfaces. Each ray carries the energy of
- * the strip of wavefront that it stands for (kernels/MATH.md, "Rough surfaces"). */
+ * its share of the wavefront, a strip wide (kernels/MATH.md, "Rough surfaces"). */
 #ifndef SONJECT_KERNELS_TRACE_ROUGH_H
 #define SONJECT_KERNELS_TRACE_ROUGH_H
 
@@ -14,17 +14,17 @@
 #include "surface.h"
 #include "tally.h"
 
-/* A hit as seen by the source: where its echo lies and whether it gets there. */
+/* The way from a hit to the source, and whether it is open. */
 struct connection {
     vfloat range;             /* half the path less the reference range */
-    vfloat cosine;            /* of the angle between normal and the way to the source */
-    struct vector3 direction; /* from the hit */
+    vfloat cosine;            /* cosine of the angle between the normal and the way to the source */
+    struct vector3 direction; /* unit, to the source */
     mask is_open;
 };
 
-/* Connects a hit to a random point of the source's rectangle, which spans x and the fan's upward
- * direction about the receiver, and tests whether anything is in between. distance: along the fan's
- * ray. The image knows where source and receiver are, and focuses their echo at the hit. */
+/* Connects a hit to a random point of the source's square about the receiver, spanned by x and the
+ * fan's upward direction, and tests whether the way is open. distance: along the fan's ray. The
+ * image knows source and receiver, and focuses their echo at the hit. */
 FUNCTION struct connection connect_to_source(const struct fan_record *fan,
                                              GLOBAL const struct object_record *objects,
                                              const struct fan_ray *ray,
@@ -32,8 +32,8 @@ FUNCTION struct connection connect_to_source(const struct fan_record *fan,
                                              struct vector3 normal, vfloat distance, vfloat along,
                                              vfloat across)
 {
-    /* from the hit back to the receiver (to where it seems to be, if layers bend the ray) is
-     * -direction * r; the source point lies an offset beside */
+    /* The way from the hit back to the receiver is -direction * r. If layers bend the ray, the
+     * receiver only seems to be there. The source point lies an offset beside it. */
     const vfloat r = (ray->wavefront + distance) / squinted->cosine;
     const vfloat range = ray->range_at_closest + distance;
     const vfloat offset_x = (along - 0.5f) * fan->source_side;
@@ -55,18 +55,18 @@ FUNCTION struct connection connect_to_source(const struct fan_record *fan,
     return connection;
 }
 
-/* Energies of one group of rays, lane by lane, ready to be tallied. */
+/* The energies of one group of rays, lane by lane, ready to be tallied. */
 struct rough_echo {
     float seabed[WIDTH], target[WIDTH];             /* quanta; 0: none */
-    int seabed_strip[WIDTH], target_strip[WIDTH];   /* of the whole track, where they focus */
+    int seabed_strip[WIDTH], target_strip[WIDTH];   /* numbers on the whole track, in focus */
     int seabed_bin[WIDTH], target_bin[WIDTH];       /* the first of two */
     float seabed_later[WIDTH], target_later[WIDTH]; /* share of the second */
     int object[WIDTH];
-    float row[WIDTH], column[WIDTH]; /* of the reflectivity map */
-    float chance[WIDTH];             /* of rounding up */
+    float row[WIDTH], column[WIDTH]; /* place in the reflectivity map */
+    float chance[WIDTH];             /* uniform deviate for rounding */
 };
 
-/* A strip of an object's tile, from its first bin on; 0: there is none. */
+/* Returns a strip of a plane of an object's tile, from its first bin on; 0 if there is none. */
 FUNCTION GLOBAL TALLY *tile_line(GLOBAL const struct object_record *object, GLOBAL TALLY *tiles,
                                  int plane, int strip)
 {
@@ -77,15 +77,15 @@ FUNCTION GLOBAL TALLY *tile_line(GLOBAL const struct object_record *object, GLOB
            ((PLACE)plane * object->tile_strips + row) * object->tile_bins;
 }
 
-/* Where a ray of a strip tallies. */
+/* The tallies of one strip's rays. */
 struct rough_tallies {
     GLOBAL TALLY *seabed, *tiles;
-    int first_strip, strips; /* of the seabed's tallies, in the whole track */
-    int has_objects;         /* the strip's rays tally what objects return */
-    int is_shared;           /* other strips' rays do so in the same places */
+    int first_strip, strips; /* strips of the seabed's tallies, in the whole track */
+    int has_objects;         /* the strip's rays tally objects' echoes */
+    int is_shared;           /* rays of other strips tally in the same places */
 };
 
-/* Those of a launch's strip. */
+/* Returns the tallies of a launch's strip. */
 FUNCTION struct rough_tallies rough_tallies_of(const struct fan_record *fan, int strip,
                                                GLOBAL TALLY *seabed, GLOBAL TALLY *tiles)
 {
@@ -100,7 +100,7 @@ FUNCTION struct rough_tallies rough_tallies_of(const struct fan_record *fan, int
     return tallies;
 }
 
-/* What an object hides of the seabed's energy. */
+/* Tallies the seabed energy that an object hides. */
 FUNCTION void tally_lost_seabed(const struct fan_record *fan,
                                 GLOBAL const struct object_record *object,
                                 const struct rough_tallies *tallies, const struct rough_echo *echo,
@@ -117,7 +117,7 @@ FUNCTION void tally_lost_seabed(const struct fan_record *fan,
         outcome->faults |= FAULT_OUTSIDE_TILE;
 }
 
-/* The seabed's energy, and again where an object hides it. */
+/* Tallies the seabed's energy, and again if an object hides it. */
 FUNCTION void tally_rough_seabed(const struct fan_record *fan,
                                  GLOBAL const struct object_record *objects,
                                  GLOBAL const float *map, const struct rough_tallies *tallies,
@@ -163,7 +163,7 @@ FUNCTION void tally_rough_echo(const struct fan_record *fan,
     outcome->impulses += echo->target[lane] > 0.0f;
 }
 
-/* What the objects that rays meet send on to the source, f cos, and the range of these echoes. */
+/* Returns f cos of the objects that rays meet, towards the source, and their echoes' range. */
 FUNCTION vfloat scattering_of_targets(const struct fan_record *fan,
                                       GLOBAL const struct object_record *objects,
                                       const struct fan_ray *ray, const struct aspect_ray *squinted,
@@ -205,15 +205,15 @@ FUNCTION vfloat scattering_of_targets(const struct fan_record *fan,
     return scattering;
 }
 
-/* What the seabed returns where a ray meets it, had no object stood before it. */
+/* The seabed's return where a ray meets it, as if no object stood before it. */
 struct seabed_return {
     struct vector3 point;
-    vfloat energy, range, straight_range; /* quanta; range: by way of the source's point */
+    vfloat energy, range, straight_range; /* energy in quanta; range by way of the source's point */
     mask is_open;
 };
 
-/* strip_of_cell: times wavefront, the area across the ray that it stands for; on_object: rays that
- * meet an object first, whose way to the source that may hide. */
+/* Returns the seabed's return. strip_of_cell: times wavefront, the area across the ray. on_object:
+ * rays that meet an object first, which may hide the seabed's way to the source. */
 FUNCTION struct seabed_return seabed_return_of(const struct fan_record *fan,
                                                GLOBAL const struct object_record *objects,
                                                const struct fan_ray *ray,
@@ -249,8 +249,8 @@ FUNCTION struct seabed_return seabed_return_of(const struct fan_record *fan,
     return bed;
 }
 
-/* Traces one group of WIDTH rays of a strip. Ray i lies between the elevations edges[i] and
- * edges[i + 1]. */
+/* Traces one group of WIDTH rays of a strip. Ray i lies between edges[i] and edges[i + 1],
+ * elevations in rad. */
 FUNCTION void trace_rough_group(const struct fan_record *fan,
                                 GLOBAL const struct ray_piece_record *pieces,
                                 GLOBAL const struct object_record *objects,
@@ -268,7 +268,7 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     const float spread = has_beam(fan) ? 0.0f : fan->strip_width; /* pings are points */
     const vfloat x = strip_position(fan, strip) + (along - 0.5f) * spread;
     const struct fan_ray ray = fan_ray_at(fan, pieces, x, lower + across * step);
-    /* distances along the squinted ray times its cosine are those along the fan's */
+    /* Distances along the squinted ray times its cosine are distances along the fan's ray. */
     const struct aspect_ray squinted =
         aspect_ray_of(fan, &ray, (RECORD_WORD)(fan->track_strip + own_strip), number, chance);
     const vfloat strip_of_cell = fan->strip_width * step * squinted.cosine;
@@ -279,7 +279,7 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     const struct nearest_hit nearest = target.nearest;
     const mask on_object =
         is_ray & (target.is_over_straight_water | MASK_OF(nearest.distance < to_seabed));
-    /* a point source at the receiver sees what its rays meet: nothing is to be tested */
+    /* A point source at the receiver sees all that its rays meet, so nothing is tested. */
     vfloat source_along = SPLAT(0.5f), source_across = SPLAT(0.5f);
     if (fan->source_side > 0.0f)
         two_uniforms(key, number, 1, &source_along, &source_across);
@@ -357,7 +357,7 @@ FUNCTION struct outcome_record trace_rough_strip(const struct fan_record *fan,
         for (int lane = 0; lane < WIDTH; lane++)
             tally_rough_echo(fan, objects, map, &tallies, &echo, lane, &outcome);
     }
-    /* strips that another chunk's launch traces for itself are not counted here */
+    /* Strips that another chunk's launch traces for itself are not counted here. */
     outcome.rays = tallies.has_objects ? outcome.rays : 0;
     outcome.queries = tallies.has_objects ? outcome.queries + outcome.rays : 0;
     return outcome;

@@ -1,4 +1,4 @@
-/* The incoherent part by image sources: the fan goes out from one source, every hit of the rough
+/* The incoherent part by image sources. The fan leaves one source, and every hit on the rough
  * object connects to the other (kernels/MATH.md, "Image sources"). Both sources are points. */
 #ifndef SONJECT_KERNELS_TRACE_ROUGH_IMAGES_H
 #define SONJECT_KERNELS_TRACE_ROUGH_IMAGES_H
@@ -6,10 +6,10 @@
 #include "image_sources.h"
 #include "trace_rough.h"
 
-/* Energies of one group of rays, lane by lane, ready to be tallied. */
+/* The energies of one group of rays, lane by lane, ready to be tallied. */
 struct image_echo {
     float energy[WIDTH]; /* quanta; 0: none */
-    float chance[WIDTH]; /* of rounding up */
+    float chance[WIDTH]; /* uniform deviate for rounding */
     int bin[WIDTH];      /* the first of two */
     float later[WIDTH];  /* share of the second */
 };

@@ -1,5 +1,5 @@
 /* The coherent part at one interaction: physical optics on smooth surfaces. Each ray stands for a
- * cell of the wavefront, along-track stratum times elevation step; the phase is integrated over the
+ * cell of the wavefront, along-track stratum times elevation step. The phase is integrated over the
  * cell on the tangent plane and counted at its middle (kernels/MATH.md, "Smooth surfaces"). */
 #ifndef SONJECT_KERNELS_TRACE_SMOOTH_H
 #define SONJECT_KERNELS_TRACE_SMOOTH_H
@@ -12,27 +12,27 @@
 #include "surface.h"
 #include "tally.h"
 
-/* Echoes of one group of rays, lane by lane. */
+/* The echoes of one group of rays, lane by lane. */
 struct smooth_echo {
     float real_part[WIDTH], imaginary_part[WIDTH]; /* quanta */
-    float fraction[WIDTH];                         /* of a bin beyond `bin` */
-    float chance[WIDTH];                           /* of rounding up */
+    float fraction[WIDTH];                         /* share of a bin beyond `bin` */
+    float chance[WIDTH];                           /* uniform deviate for rounding */
     int bin[WIDTH];                                /* -1: no echo */
 };
 
-/* A ray and the cell of wavefront that it stands for. */
+/* A ray and its cell of the wavefront. */
 struct wavefront_cell {
     struct fan_ray ray;
     vfloat elevation;
     mask is_ray;
     float width_along;                    /* m */
-    vfloat offset_along, fraction_across; /* where the ray met it: m off its middle; 0...1 */
-    vfloat chance;                        /* of rounding its echo up */
+    vfloat offset_along, fraction_across; /* place of the hit: m off the middle; 0...1 */
+    vfloat chance;                        /* uniform deviate for rounding the echo */
 };
 
-/* Where a stratum's cells begin across the ray, -0.5...0.5 of their width from the fan's own: even
- * over any few neighbours. Else the steps in which cells follow an edge would keep time with its
- * echo's phase from strip to strip, and shine. */
+/* Returns the shift of a stratum's cells across the ray, -0.5...0.5 of their width, even over any
+ * few neighbours. Without it the steps of cells along an edge would keep time with the echo's phase
+ * from strip to strip, and the edge would shine. */
 FUNCTION float cell_shift_of(const struct fan_record *fan, int strip, int stratum)
 {
     const RECORD_WORD turn =
@@ -41,7 +41,7 @@ FUNCTION float cell_shift_of(const struct fan_record *fan, int strip, int stratu
     return (float)((turn * 0x9E3779B9u) >> 9) * 1.1920928955078125e-7f - 0.5f;
 }
 
-/* shift: of the cells across the ray, in their widths. */
+/* Returns the cells of one group of rays. shift: of the cells across the ray, in their widths. */
 FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
                                                  GLOBAL const struct ray_piece_record *pieces,
                                                  int strip, int stratum, float shift,
@@ -62,18 +62,17 @@ FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
     return cell;
 }
 
-/* Half the path by way of the cell's middle (less the reference range), and the amplitude of the
- * cell over its reflection coefficient, in quanta; whole_cell puts the integral across the ray in.
- */
+/* A cell's echo before the integral across the ray (whole_cell). range: half the path by way of the
+ * cell's middle, less the reference range; amplitude: over the reflection coefficient, quanta. */
 struct cell_phase {
     vfloat range;
     vfloat amplitude;
-    vfloat across; /* by how many wavelengths half the path changes across the cell */
-    vfloat chance; /* of rounding it up */
+    vfloat across; /* wavelengths by which half the path changes across the cell */
+    vfloat chance; /* uniform deviate for rounding */
 };
 
-/* gradient: of the whole path, along-track and across the ray. range: half the path by way of the
- * hit; wavefront: its width per rad of elevation at the hit. */
+/* Integrates a cell's phase along the track. gradient: of the whole path, along-track and across
+ * the ray; range: half the path by way of the hit; wavefront: width per rad of elevation there. */
 FUNCTION struct cell_phase integrate_cell(const struct fan_record *fan,
                                           const struct wavefront_cell *cell, vfloat gradient_along,
                                           vfloat gradient_across, vfloat range, vfloat wavefront)
@@ -95,9 +94,9 @@ FUNCTION struct cell_phase integrate_cell(const struct fan_record *fan,
     return phase;
 }
 
-/* The cell as one echo. A cell at an edge counts all or nothing, as its ray does, and at its
- * middle: in the mean an edge then returns sinc^2 of what it should, which is made up where asked.
- */
+/* Returns the cell as one echo. A cell at an edge counts all or nothing, as its ray does, and at
+ * its middle. An edge then returns on average sinc^2 of its echo, which is made up for where asked
+ * (edge_across). */
 FUNCTION struct cell_phase whole_cell(const struct fan_record *fan, struct cell_phase phase)
 {
     const vfloat integral = sinc_of_cycles(magnitude(phase.across));
@@ -106,16 +105,16 @@ FUNCTION struct cell_phase whole_cell(const struct fan_record *fan, struct cell_
     return phase;
 }
 
-/* Cells of a face that is seen so flat that the whole path changes by a wavelength from each to the
- * next would add up as a mirror's do. So a cell is cut across the ray into parts, between which it
- * changes by no more than 0.8, as long as eight are enough. */
+/* The most parts of a cell. Cells of a face seen so flat that the path changes by a wavelength from
+ * one to the next would add up like a mirror's. A cell is therefore cut across the ray into parts
+ * with a change of 0.8 wavelengths at most, if this many parts are enough. */
 #define CELL_PARTS_MAX 8
 FUNCTION vint parts_of_cell(struct cell_phase phase)
 {
     return VINT_OF(1.0f + smaller(2.5f * magnitude(phase.across), SPLAT(CELL_PARTS_MAX - 1.0f)));
 }
 
-/* One of so many parts, at its own middle. */
+/* Returns one of `parts` parts of a cell, at its own middle. */
 FUNCTION struct cell_phase part_of_cell(const struct fan_record *fan, struct cell_phase phase,
                                         int part, vint parts)
 {
@@ -127,7 +126,7 @@ FUNCTION struct cell_phase part_of_cell(const struct fan_record *fan, struct cel
     return whole_cell(fan, phase);
 }
 
-/* -i times amplitude times reflection, at the phase and in the bin of a half path. */
+/* Puts -i times amplitude times reflection at the phase and in the bin of half a path. */
 FUNCTION void put_smooth_echo(const struct fan_record *fan, mask is_hit, struct cell_phase phase,
                               vfloat reflection_real, vfloat reflection_imaginary,
                               struct smooth_echo *echo)
@@ -154,7 +153,7 @@ FUNCTION void put_smooth_echo(const struct fan_record *fan, mask is_hit, struct 
     STORE_VINT(bin_or_none, echo->bin);
 }
 
-/* What a group of rays meets. */
+/* The cells of a group of rays that meet the object. */
 struct smooth_cells {
     mask is_hit;
     struct cell_phase phase;
@@ -184,8 +183,8 @@ FUNCTION struct smooth_cells trace_smooth_group(const struct fan_record *fan,
     const struct vector3 normal = object_normal(object, ray.closest, ray.direction, distance);
     const vfloat cosine = larger(-dot3(normal, ray.direction), SPLAT(1.0e-6f));
     const vfloat range = range_along(&ray, distance);
-    /* the path's gradient along a direction q across the ray is -2 n.q/(n.d), in ranges that count
-     * wavelengths */
+    /* Along a direction q across the ray, the gradient of the path is -2 n.q/(n.d), in ranges that
+     * count wavelengths. */
     const vfloat gradient = 2.0f * ray.range_per_metre;
     cells.phase = integrate_cell(fan, &cell, gradient * normal.x / cosine,
                                  gradient * dot3(normal, ray.upward) / cosine, range,
@@ -197,8 +196,8 @@ FUNCTION struct smooth_cells trace_smooth_group(const struct fan_record *fan,
     return cells;
 }
 
-/* Shares an echo between the two bins about it: linear in range, so that the pulse's envelope moves
- * by the exact delay (its error is that of linear interpolation between bins). */
+/* Shares an echo between the two bins about it, linearly in range. The pulse's envelope then moves
+ * by the exact delay, with the error of linear interpolation between bins. */
 FUNCTION void tally_smooth_echo(GLOBAL TALLY *tally, const struct smooth_echo *echo, int lane,
                                 struct outcome_record *outcome)
 {
@@ -227,7 +226,7 @@ FUNCTION void tally_smooth_echoes(const struct fan_record *fan, const struct smo
         tally_smooth_echo(line, &echo, lane, outcome);
 }
 
-/* Counts the echoes of a group's cells, all of their parts; most have but one. */
+/* Counts the echoes of a group's cells with all their parts. Most cells have one part. */
 FUNCTION void tally_smooth_cells(const struct fan_record *fan, const struct smooth_cells *cells,
                                  GLOBAL TALLY *line, struct outcome_record *outcome)
 {
@@ -246,7 +245,7 @@ FUNCTION void tally_smooth_cells(const struct fan_record *fan, const struct smoo
     }
 }
 
-/* Traces the share `segment` of a sub-strip's fan; tally: strips x bins x (real, imaginary). */
+/* Traces the share `segment` of a sub-strip's fan. tally: strips x bins x (real, imaginary). */
 FUNCTION struct outcome_record trace_smooth_strip(const struct fan_record *fan,
                                                   GLOBAL const struct ray_piece_record *pieces,
                                                   GLOBAL const struct object_record *objects,

@@ -1,4 +1,4 @@
-/* Entry point beside trace_smooth.cl's, in a program of its own, since compiling it takes long and
+/* Entry point like that of trace_smooth.cl, in a program of its own: compiling it takes long, and
  * few scenes have boundaries. */
 #include "trace_smooth_images.h"
 

@@ -1,5 +1,5 @@
-/* The coherent part by image sources: the fan goes out from one source, physical optics takes the
- * sound from a smooth object to the other (kernels/MATH.md, "Image sources"). */
+/* The coherent part by image sources. The fan leaves one source, and physical optics takes the
+ * sound from a smooth object to the other source (kernels/MATH.md, "Image sources"). */
 #ifndef SONJECT_KERNELS_TRACE_SMOOTH_IMAGES_H
 #define SONJECT_KERNELS_TRACE_SMOOTH_IMAGES_H
 
@@ -42,7 +42,7 @@ FUNCTION struct smooth_cells trace_smooth_images_group(const struct fan_record *
     return cells;
 }
 
-/* As trace_smooth_strip. */
+/* Traces the share `segment` of a sub-strip's fan. tally: strips x bins x (real, imaginary). */
 FUNCTION struct outcome_record trace_smooth_images_strip(
     const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
     GLOBAL const struct image_pair_record *pair, GLOBAL const struct object_record *objects,

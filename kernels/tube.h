@@ -1,12 +1,12 @@
-/* A thin tube of rays about one ray: how far, and at what angle, the rays beside it run that left
- * the wavefront at its first hit a unit away along-track or across (kernels/MATH.md, "Multi-bounce
- * specular paths"). */
+/* A thin tube of rays about one ray. It holds the distance and the angle to neighbouring rays,
+ * which left the wavefront at the first hit a unit away, along-track or across (kernels/MATH.md,
+ * "Multi-bounce specular paths"). */
 #ifndef SONJECT_KERNELS_TUBE_H
 #define SONJECT_KERNELS_TUBE_H
 
 #include "vector3.h"
 
-/* Both across the ray. */
+/* A neighbouring ray relative to the middle ray. Both vectors are across the middle ray. */
 struct tube_side {
     struct vector3 offset; /* m per m */
     struct vector3 turn;   /* change of the direction, rad per m */
@@ -16,15 +16,15 @@ struct tube {
     struct tube_side along, across;
 };
 
-/* (a x b) . c */
+/* Returns (a x b) . c. */
 FUNCTION vfloat triple3(struct vector3 a, struct vector3 b, struct vector3 c)
 {
     return (a.y * b.z - a.z * b.y) * c.x + (a.z * b.x - a.x * b.z) * c.y +
            (a.x * b.y - a.y * b.x) * c.z;
 }
 
-/* Where the ray beside meets the tangent plane of a surface that the middle ray meets at the
- * angle of that cosine. */
+/* Returns where the neighbouring ray meets the tangent plane of a surface, relative to the middle
+ * ray's hit. cosine: of the middle ray's angle of incidence. */
 FUNCTION struct vector3 offset_on_surface(const struct tube_side *side, struct vector3 direction,
                                           struct vector3 normal, vfloat cosine)
 {
@@ -42,8 +42,8 @@ FUNCTION void transfer_tube(struct tube *tube, vfloat distance)
     transfer_side(&tube->across, distance);
 }
 
-/* d' = d - 2 (d.n) n, varied in d and n. direction: of the ray that comes; cosine: -(d.n);
- * normal_change: of the surface where the ray beside meets it. */
+/* Reflects a side by d' = d - 2 (d.n) n, varied in d and n. direction: of the incoming ray; cosine:
+ * -(d.n); normal_change: of the surface where the neighbouring ray meets it. */
 FUNCTION void reflect_side(struct tube_side *side, struct vector3 direction, struct vector3 normal,
                            vfloat cosine, struct vector3 normal_change)
 {
@@ -53,17 +53,17 @@ FUNCTION void reflect_side(struct tube_side *side, struct vector3 direction, str
                         -2.0f * dot3(direction, normal_change));
 }
 
-/* The tube's cross-section over that of the wavefront at the first hit; its sign is the hand that
- * the sides make with the ray. */
+/* Returns the tube's cross-section over that of the wavefront at the first hit. The sign tells the
+ * handedness of the sides and the ray. */
 FUNCTION vfloat tube_section(const struct tube *tube, struct vector3 direction)
 {
     return triple3(tube->along.offset, tube->across.offset, direction);
 }
 
-/* Turns (real_part, imaginary_part) by -pi/2 for every point within the distance where the tube has
- * no cross-section. A + B s + C s^2 has real roots always, since a wavefront's curvatures are real:
- * one between ends of unlike sign; two where the ends' signs are alike and the turning point, which
- * lies between them, is no longer of that sign (but for rounding: both roots may be one). */
+/* Turns (real_part, imaginary_part) by -pi/2 for every caustic within the distance, where the tube
+ * has no cross-section. A + B s + C s^2 always has real roots, since a wavefront's curvatures are
+ * real. Ends of unlike sign have one root between them. Ends of like sign have two if the turning
+ * point lies between them with the other sign (nearly so: both roots may be one). */
 FUNCTION void turn_by_caustics(const struct tube *tube, struct vector3 direction, vfloat distance,
                                vfloat *real_part, vfloat *imaginary_part)
 {
@@ -84,7 +84,7 @@ FUNCTION void turn_by_caustics(const struct tube *tube, struct vector3 direction
     *imaginary_part = SELECT(is_one, -was_real, SELECT(is_two, -was_imaginary, was_imaginary));
 }
 
-#define TUBE_LIMIT 1.0e4f /* a tube that has grown so much is no part of any echo */
+#define TUBE_LIMIT 1.0e4f /* a wider tube is no part of any echo */
 
 FUNCTION mask is_narrow_side(const struct tube_side *side)
 {

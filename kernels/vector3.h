@@ -13,7 +13,7 @@ FUNCTION vfloat dot3(struct vector3 a, struct vector3 b)
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/* a + b * t */
+/* Returns a + b * t. */
 FUNCTION struct vector3 along3(struct vector3 a, struct vector3 b, vfloat t)
 {
     struct vector3 sum;
@@ -51,9 +51,9 @@ FUNCTION struct vector3 choose3(mask m, struct vector3 yes, struct vector3 no)
     return chosen;
 }
 
-/* Two unit vectors that make a right-handed frame with a unit normal. Formed without a branch that
- * would jump near the axes (Frisvad's frame, mirrored for normals that point down so that the
- * divisor stays above 1). */
+/* Finds two unit vectors that make a right-handed frame with a unit normal. The frame is Frisvad's,
+ * mirrored for normals that point down so that the divisor stays above 1. Near the axes it has no
+ * branch that would jump. */
 FUNCTION void tangents3(struct vector3 normal, struct vector3 *first, struct vector3 *second)
 {
     const mask is_upward = MASK_OF(normal.z >= 0.0f);
@@ -68,7 +68,7 @@ FUNCTION void tangents3(struct vector3 normal, struct vector3 *first, struct vec
     second->z = -normal.y;
 }
 
-/* first * a + second * b + third * c */
+/* Returns first * a + second * b + third * c. */
 FUNCTION struct vector3 combine3(struct vector3 first, vfloat a, struct vector3 second, vfloat b,
                                  struct vector3 third, vfloat c)
 {
@@ -79,7 +79,7 @@ FUNCTION struct vector3 combine3(struct vector3 first, vfloat a, struct vector3 
     return sum;
 }
 
-/* The vectors of all lanes, to be taken one by one. */
+/* Stores the vectors of all lanes, to be read one by one. */
 FUNCTION void store_vector3(struct vector3 v, float lanes[3][WIDTH])
 {
     STORE_VFLOAT(v.x, lanes[0]);
@@ -87,7 +87,7 @@ FUNCTION void store_vector3(struct vector3 v, float lanes[3][WIDTH])
     STORE_VFLOAT(v.z, lanes[2]);
 }
 
-/* That of one lane in every lane. */
+/* Broadcasts one lane's vector to all lanes. */
 FUNCTION struct vector3 splat_vector3(const float lanes[3][WIDTH], int lane)
 {
     struct vector3 v;
@@ -106,7 +106,7 @@ FUNCTION struct vector3 load_lanes3(float lanes[3][WIDTH])
     return v;
 }
 
-/* One vector a lane, from elements `slot` on. */
+/* Loads one vector a lane, from the elements `slot` on. */
 FUNCTION struct vector3 load_vector3(GLOBAL const float *x, GLOBAL const float *y,
                                      GLOBAL const float *z, int slot)
 {

@@ -1,7 +1,8 @@
-/* One source, any width: the physics is written on `vfloat`, which holds WIDTH lanes.
- * OpenCL C at WIDTH 1, 4, 8 or 16, and plain C99 at WIDTH 1 or, with the vector extension of gcc
- * and clang, at the same widths (lib/device/native). Every operation used on `vfloat` is exact or
- * correctly rounded lane by lane, so all of them give the same bits. A mask lane is 0 or -1. */
+/* The physics is written once, on `vfloat`, which holds WIDTH lanes. A lane is one ray of a packet,
+ * or one box, triangle or pixel. The code is OpenCL C at WIDTH 1, 4, 8 or 16. It is also plain C99
+ * at WIDTH 1, or at the same widths with the vector extension of gcc and clang (lib/device/native).
+ * All operations on `vfloat` are exact or correctly rounded in each lane, so all widths give the
+ * same bits. A lane of a mask is 0 or -1. */
 #ifndef SONJECT_KERNELS_WIDTH_H
 #define SONJECT_KERNELS_WIDTH_H
 
@@ -14,8 +15,8 @@
 #ifdef __OPENCL_C_VERSION__
 
 #pragma OPENCL FP_CONTRACT OFF
-#define FUNCTION    static inline __attribute__((always_inline)) /* vectors travel badly by call */
-#define NOINLINE    static __attribute__((noinline)) /* what is rare and large is called instead */
+#define FUNCTION    static inline __attribute__((always_inline)) /* vectors are slow to pass */
+#define NOINLINE    static __attribute__((noinline))             /* rare and large code is called */
 #define GLOBAL      __global
 #define UNROLLED    _Pragma("unroll") /* keeps sums of a loop in registers */
 #define JOIN_(a, b) a##b
@@ -75,7 +76,7 @@ typedef JOIN(int, WIDTH) mask;
 #define ANY(m)   any(m)
 #define UNION(m) ((RECORD_WORD)(m))
 #else
-/* What all lanes hold together; by halves, since PoCL's any() and loops over lanes take longer. */
+/* Joins the bits of all lanes by or, in halves: PoCL's any() and loops over lanes take longer. */
 FUNCTION RECORD_WORD UNION(mask m)
 {
 #if WIDTH == 16
@@ -98,7 +99,7 @@ FUNCTION RECORD_WORD UNION(mask m)
 #include <stdint.h>
 #include <string.h>
 
-#ifdef NATIVE_KERNELS /* else compiled in a fraction of the time, for tests */
+#ifdef NATIVE_KERNELS /* without it, tests compile in a fraction of the time */
 #define FUNCTION static inline __attribute__((always_inline))
 #else
 #define FUNCTION static inline
@@ -205,8 +206,7 @@ FUNCTION uint32_t UNION(mask m)
 
 #endif
 
-/* A value that is used as scratch in several lanes must be named: STORE_* takes its address in C.
- */
+/* STORE_* takes the address of its value in C, so the value must be a named variable. */
 
 FUNCTION vfloat smaller(vfloat a, vfloat b)
 {
@@ -223,7 +223,7 @@ FUNCTION vfloat magnitude(vfloat value)
     return AS_VFLOAT(AS_VINT(value) & 0x7fffffff);
 }
 
-/* How many lanes of the mask are set. */
+/* Counts the lanes of the mask that are set. */
 FUNCTION RECORD_WORD count_lanes(mask m)
 {
     int lanes[WIDTH];
@@ -234,19 +234,19 @@ FUNCTION RECORD_WORD count_lanes(mask m)
     return count;
 }
 
-/* Bit i is lane i of the mask. */
+/* Returns the mask as bits: bit i is lane i. */
 FUNCTION RECORD_WORD lane_bits(mask m)
 {
     return UNION(m & LANE_FLAGS);
 }
 
-/* Number of the lowest bit that is set; bits: not 0. */
+/* Returns the number of the lowest bit that is set. bits: not 0. */
 FUNCTION int lowest_bit(RECORD_WORD bits)
 {
     return LOWEST_BIT(bits);
 }
 
-/* The least value of all lanes. */
+/* Returns the least value of all lanes. */
 FUNCTION float least_lane(vfloat value)
 {
 #if WIDTH == 1

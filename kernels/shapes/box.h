@@ -1,5 +1,5 @@
-/* Box about the origin of its own frame (half_length, half_width, half_height), and the wedge, a
- * box whose top slants down to the nose (slant_across: along x). */
+/* A box about the origin of its own frame (half_length, half_width, half_height), and the wedge, a
+ * box whose top slants down to the nose. The wedge's slant_across is along x. */
 #ifndef SONJECT_KERNELS_SHAPES_BOX_H
 #define SONJECT_KERNELS_SHAPES_BOX_H
 
@@ -21,7 +21,7 @@ FUNCTION struct spans box_spans(GLOBAL const struct object_record *object, struc
     return spans_of_one(box_interval(object, point, direction));
 }
 
-/* The slant is the wedge's top: its unit normal (x and z) and offset. */
+/* The slanted face is the wedge's top, given by its unit normal (x and z) and offset. */
 FUNCTION struct spans wedge_spans(GLOBAL const struct object_record *object, struct vector3 point,
                                   struct vector3 direction)
 {
@@ -32,7 +32,7 @@ FUNCTION struct spans wedge_spans(GLOBAL const struct object_record *object, str
                                          interval_of_half_space(depth, loss)));
 }
 
-/* A face's normal where the point lies further out (or less deep) than all faces before. */
+/* Takes a face's normal where the point lies further out (or less deep) than for earlier faces. */
 FUNCTION void offer_face(vfloat height, struct vector3 candidate, vfloat *highest,
                          struct vector3 *normal)
 {
@@ -41,7 +41,7 @@ FUNCTION void offer_face(vfloat height, struct vector3 candidate, vfloat *highes
     *highest = SELECT(is_higher, height, *highest);
 }
 
-/* Of the face that is nearest. */
+/* Returns the normal of the nearest of the box's faces. */
 FUNCTION struct vector3 normal_of_side(GLOBAL const struct object_record *object,
                                        struct vector3 point, vfloat *highest)
 {

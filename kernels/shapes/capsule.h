@@ -1,11 +1,11 @@
-/* Cylinder along the x axis of its own frame with half spheres as ends. */
+/* A cylinder along the x axis of its own frame, with half spheres as ends. */
 #ifndef SONJECT_KERNELS_SHAPES_CAPSULE_H
 #define SONJECT_KERNELS_SHAPES_CAPSULE_H
 
 #include "shapes/cylinder.h"
 #include "shapes/sphere.h"
 
-/* Its half_length is that of the straight part; radius: of the cylinder and both ends. */
+/* The half_length is that of the straight part, the radius that of the cylinder and both ends. */
 FUNCTION struct interval capsule_interval(GLOBAL const struct object_record *object,
                                           struct vector3 point, struct vector3 direction)
 {

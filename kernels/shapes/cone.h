@@ -1,14 +1,14 @@
-/* Cone or truncated cone about the z axis of its own frame, flat ends: half_height, radius (of its
- * larger end) and the slant. */
+/* A cone or truncated cone about the z axis of its own frame, with flat ends: half_height, radius
+ * (of its larger end) and the slanted face. */
 #ifndef SONJECT_KERNELS_SHAPES_CONE_H
 #define SONJECT_KERNELS_SHAPES_CONE_H
 
 #include "interval.h"
 #include "layout.h"
 
-/* The slant is the side: its unit normal (radial and z) and offset; it is where
- * slant_across * (distance from the axis) = slant_offset - slant_up * z. Both squared make a double
- * cone; its other half lies beyond the ends. */
+/* The slanted face is the side, given by its unit normal (radial and z) and offset: slant_across *
+ * (distance from the axis) = slant_offset - slant_up * z. The square of this equation describes a
+ * double cone, whose other half lies beyond the ends. */
 FUNCTION struct spans cone_spans(GLOBAL const struct object_record *object, struct vector3 point,
                                  struct vector3 direction)
 {
@@ -23,7 +23,7 @@ FUNCTION struct spans cone_spans(GLOBAL const struct object_record *object, stru
     const vfloat a = SELECT(MASK_OF(magnitude(steepness) < 1.0e-14f), SPLAT(1.0e-14f), steepness);
     const vfloat from_here = square_across * (point.x * direction.x + point.y * direction.y) -
                              widening * (object->slant_offset - slant_up * point.z);
-    /* counted from where the ray is deepest within the slab, where nothing cancels */
+    /* Distances count from where the ray is deepest within the slab; nothing cancels there. */
     const vfloat limit = SPLAT(2.0f * (object->radius + object->half_height));
     const vfloat deepest = smaller(larger(-from_here / a, slab.entry), slab.exit);
     const vfloat start = smaller(larger(deepest, -limit), limit);
@@ -40,7 +40,7 @@ FUNCTION struct spans cone_spans(GLOBAL const struct object_record *object, stru
     const vfloat other = start + c / safe;
     const vfloat lower = smaller(one, other);
     const vfloat upper = larger(one, other);
-    /* a ray steeper than the side runs in one half up to its crossing, or from there on */
+    /* A ray steeper than the side runs in one half up to its crossing, or in it from there on. */
     const mask is_steep = MASK_OF(a < 0.0f);
     const mask widens = MASK_OF(widening > 0.0f);
     const vfloat entry = SELECT(is_steep, SELECT(widens, upper, SPLAT(-FAR_AWAY)), lower);
@@ -49,7 +49,7 @@ FUNCTION struct spans cone_spans(GLOBAL const struct object_record *object, stru
         interval_overlap(interval_where(is_steep | MASK_OF(square > 0.0f), entry, exit), slab));
 }
 
-/* Of the end where the point is nearer to an end than to the side. */
+/* Returns the normal of the end if the point is nearer to an end than to the side. */
 FUNCTION struct vector3 cone_normal(GLOBAL const struct object_record *object, struct vector3 point,
                                     struct vector3 direction)
 {

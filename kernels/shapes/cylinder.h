@@ -1,18 +1,18 @@
-/* Cylinder along the x axis of its own frame, flat ends: half_length, radius. */
+/* A cylinder along the x axis of its own frame, with flat ends: half_length, radius. */
 #ifndef SONJECT_KERNELS_SHAPES_CYLINDER_H
 #define SONJECT_KERNELS_SHAPES_CYLINDER_H
 
 #include "interval.h"
 #include "layout.h"
 
-/* Inside the infinite cylinder about the x axis. The discriminant is formed at the closest approach
- * to the axis, where nothing cancels. */
+/* Returns where a ray is inside the infinite cylinder about the x axis. The discriminant is formed
+ * at the closest approach to the axis, where nothing cancels. */
 FUNCTION struct interval tube_interval(struct vector3 point, struct vector3 direction, float radius)
 {
     const vfloat across = direction.y * direction.y + direction.z * direction.z;
     const mask is_parallel = MASK_OF(across < 1.0e-14f);
     const vfloat safe = SELECT(is_parallel, SPLAT(1.0e-14f), across);
-    /* a ray along the axis stays where it is */
+    /* a ray along the axis keeps its distance from it */
     const vfloat middle =
         SELECT(is_parallel, SPLAT(0.0f), -(point.y * direction.y + point.z * direction.z) / safe);
     const vfloat y = point.y + direction.y * middle;
@@ -29,7 +29,7 @@ FUNCTION struct interval cylinder_interval(GLOBAL const struct object_record *ob
                             interval_of_slab(point.x, direction.x, object->half_length));
 }
 
-/* Of the end where the point is nearer to an end than to the side. */
+/* Returns the normal of the end if the point is nearer to an end than to the side. */
 FUNCTION struct vector3 cylinder_normal(GLOBAL const struct object_record *object,
                                         struct vector3 point, struct vector3 direction)
 {

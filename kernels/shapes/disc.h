@@ -1,5 +1,5 @@
-/* Disc in the x-y plane of its own frame, of that radius; both sides reflect, with the plane's
- * normal. */
+/* A disc in the x-y plane of its own frame, of the given radius. Both sides reflect, with the
+ * plane's normal. */
 #ifndef SONJECT_KERNELS_SHAPES_DISC_H
 #define SONJECT_KERNELS_SHAPES_DISC_H
 

@@ -1,5 +1,5 @@
-/* Ellipsoid about the origin of its own frame, its semi-axes along x, y and z: half_length,
- * half_width, half_height. */
+/* An ellipsoid about the origin of its own frame. Its semi-axes along x, y and z are half_length,
+ * half_width and half_height. */
 #ifndef SONJECT_KERNELS_SHAPES_ELLIPSOID_H
 #define SONJECT_KERNELS_SHAPES_ELLIPSOID_H
 
@@ -15,7 +15,7 @@ FUNCTION struct vector3 in_semi_axes(GLOBAL const struct object_record *object, 
     return scaled;
 }
 
-/* Counted in semi-axes it is the unit sphere; distances along the ray stay what they are. */
+/* Scales the semi-axes to 1, which gives a unit sphere. Distances along the ray do not change. */
 FUNCTION struct spans ellipsoid_spans(GLOBAL const struct object_record *object,
                                       struct vector3 point, struct vector3 direction)
 {
@@ -33,7 +33,7 @@ FUNCTION struct vector3 ellipsoid_normal(GLOBAL const struct object_record *obje
                                          struct vector3 point, struct vector3 direction)
 {
     (void)direction;
-    /* times the shortest semi-axis, so that no square leaves single precision */
+    /* The shortest semi-axis as a factor keeps all squares within single precision. */
     float shortest =
         object->half_length < object->half_width ? object->half_length : object->half_width;
     shortest = object->half_height < shortest ? object->half_height : shortest;

@@ -1,15 +1,15 @@
-/* Cylinder along the x axis of its own frame whose ends are each flat, open, or a part of a sphere.
- * With an open end it is a thin wall, seen from both sides; else it is solid. Its sizes: radius and
- * ends. */
+/* A cylinder along the x axis of its own frame. Each of its ends is flat, open, or a part of a
+ * sphere. With an open end it is a thin wall, seen from both sides; otherwise it is solid. Its
+ * sizes are the radius and the ends. */
 #ifndef SONJECT_KERNELS_SHAPES_ENDED_CYLINDER_H
 #define SONJECT_KERNELS_SHAPES_ENDED_CYLINDER_H
 
 #include "layout.h"
 #include "shapes/cylinder.h"
 
-/* Inside the end's sphere and beyond its joint. The sphere is written from its pole,
- * curvature/2 |q|^2 + q_x <= 0, so that nearly flat ends lose no digits. outward: 1 nose, -1 tail.
- */
+/* Returns where a ray is inside the end's sphere and beyond its joint. The sphere is written from
+ * its pole, curvature/2 |q|^2 + q_x <= 0, so that nearly flat ends lose no digits. outward: 1 nose,
+ * -1 tail. */
 FUNCTION struct interval round_end_interval(struct vector3 point, struct vector3 direction,
                                             GLOBAL const struct end_record *end, float outward)
 {
@@ -39,7 +39,7 @@ FUNCTION struct interval straight_part_slab(struct vector3 point, struct vector3
     return interval_of_slab(point.x - middle, direction.x, half_length);
 }
 
-/* As if it were solid; open ends are flat. */
+/* Treats the cylinder as solid, with flat ends in place of open ones. */
 FUNCTION struct interval ended_cylinder_interval(GLOBAL const struct object_record *object,
                                                  struct vector3 point, struct vector3 direction)
 {
@@ -59,8 +59,8 @@ FUNCTION struct spans ended_cylinder_spans(GLOBAL const struct object_record *ob
     return spans_of_one(ended_cylinder_interval(object, point, direction));
 }
 
-/* Where the ray crosses the wall, on the way in and on the way out; each crossing is an interval of
- * no length. Crossings of an open end do not count. */
+/* Returns where the ray crosses the wall, on the way in and on the way out, as intervals of no
+ * length. Crossings of an open end do not count. */
 FUNCTION struct spans open_cylinder_spans(GLOBAL const struct object_record *object,
                                           struct vector3 point, struct vector3 direction)
 {
@@ -82,7 +82,7 @@ FUNCTION struct spans open_cylinder_spans(GLOBAL const struct object_record *obj
     return spans;
 }
 
-/* Outward. Of a flat end where the point is nearer to that than to the side. */
+/* Returns the outward normal, a flat end's if the point is nearer to the end than to the side. */
 FUNCTION struct vector3 ended_cylinder_normal(GLOBAL const struct object_record *object,
                                               struct vector3 point, struct vector3 direction)
 {
@@ -110,7 +110,7 @@ FUNCTION struct vector3 ended_cylinder_normal(GLOBAL const struct object_record 
     return normal;
 }
 
-/* On the side that the ray comes from. */
+/* Returns the normal on the side that the ray comes from. */
 FUNCTION struct vector3 open_cylinder_normal(GLOBAL const struct object_record *object,
                                              struct vector3 point, struct vector3 direction)
 {

@@ -1,4 +1,4 @@
-/* Rectangle in the x-y plane of its own frame (half_length, half_width); both sides reflect. */
+/* A rectangle in the x-y plane of its own frame (half_length, half_width). Both sides reflect. */
 #ifndef SONJECT_KERNELS_SHAPES_PLANE_H
 #define SONJECT_KERNELS_SHAPES_PLANE_H
 
@@ -16,7 +16,7 @@ FUNCTION struct interval plane_interval(GLOBAL const struct object_record *objec
     return interval_where(is_hit, distance, distance);
 }
 
-/* On the side that the ray comes from. */
+/* Returns the normal on the side that the ray comes from. */
 FUNCTION struct vector3 plane_normal(GLOBAL const struct object_record *object,
                                      struct vector3 point, struct vector3 direction)
 {

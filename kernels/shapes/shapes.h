@@ -1,16 +1,16 @@
-/* Every shape, once. From these rows come its number, its place in the kernels' choice of shapes,
- * its word in scene files, its row of the host (lib/scene/shapes, whose file has its name) and its
+/* The list of all shapes. A row gives a shape its number, its case in the kernels and its word in
+ * scene files. It also gives its row of the host (lib/scene/shapes has a file of its name) and its
  * turn in the tests. */
 #ifndef SONJECT_KERNELS_SHAPES_H
 #define SONJECT_KERNELS_SHAPES_H
 
 enum shape_trait {
-    SHAPE_IS_HOLLOW = 1, /* a straight way that leaves the outer side may meet the object again;
-                            of what is flat or convex none does */
+    SHAPE_IS_HOLLOW = 1, /* a straight way from the outer side may meet the object again; never of a
+                            flat or convex shape */
 };
 
-/* ROW(number: SHAPE_ and this, name, traits). The plainest shapes, of one interval, are in
- * line, for most scenes hold no others. */
+/* ROW(number: SHAPE_ and this, name, traits). The plainest shapes have one interval. Their code is
+ * inlined, since most scenes hold no others. */
 #define PLAIN_SHAPES(ROW)                                                                          \
     ROW(PLANE, plane, 0)                                                                           \
     ROW(SPHERE, sphere, 0)                                                                         \
@@ -25,12 +25,12 @@ enum shape_trait {
     ROW(CONE, cone, 0)                                                                             \
     ROW(TORUS, torus, SHAPE_IS_HOLLOW)
 
-/* What scenes call a shape, and kernels another one or treat apart. */
+/* Shapes of scenes that kernels know by another name or treat apart. */
 #define SCENE_SHAPES(ROW)                                                                          \
     ROW(TRUNCATED_CONE, truncated_cone, 0)                                                         \
     ROW(MESH, mesh, SHAPE_IS_HOLLOW)
 
-/* Cylinders that have other ends than flat ones. */
+/* Cylinders with ends other than flat ones. */
 #define ENDED_CYLINDERS(ROW)                                                                       \
     ROW(ENDED_CYLINDER, ended_cylinder, 0) /* solid: each end is flat or a part of a sphere */     \
     ROW(OPEN_CYLINDER, open_cylinder, SHAPE_IS_HOLLOW) /* thin wall */
@@ -39,15 +39,15 @@ enum shape_trait {
 
 #define SHAPE_NUMBER(NUMBER, name, traits) SHAPE_##NUMBER,
 enum shape_kind {
-    ALL_SHAPES(SHAPE_NUMBER) SHAPE_PARTS, /* scenes' objects of several */
+    ALL_SHAPES(SHAPE_NUMBER) SHAPE_PARTS, /* objects of several parts, in scenes */
     ENDED_CYLINDERS(SHAPE_NUMBER)
 };
 
 #endif
 
-/* For who defines SHAPE_FILES, kernels but not the host: of the object in its own frame,
- * NAME_interval of a plain shape or NAME_spans of another, and NAME_normal: outward, unit; of a
- * sheet on the side that the ray comes from. */
+/* The files of the shapes, for kernels, which define SHAPE_FILES; the host does not. Each has
+ * NAME_interval for a plain shape or NAME_spans for another, and NAME_normal, in the object's own
+ * frame. Normals are outward and unit; those of sheets are on the side that the ray comes from. */
 #if defined(SHAPE_FILES) && !defined(SONJECT_KERNELS_SHAPE_FILES)
 #define SONJECT_KERNELS_SHAPE_FILES
 

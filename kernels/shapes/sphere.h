@@ -1,11 +1,11 @@
-/* Sphere about the origin of its own frame, of that radius. */
+/* A sphere about the origin of its own frame, of the given radius. */
 #ifndef SONJECT_KERNELS_SHAPES_SPHERE_H
 #define SONJECT_KERNELS_SHAPES_SPHERE_H
 
 #include "interval.h"
 #include "layout.h"
 
-/* point: of the ray, near the centre; direction: unit. */
+/* point: a point of the ray near the centre; direction: unit. */
 FUNCTION struct interval sphere_interval(GLOBAL const struct object_record *object,
                                          struct vector3 point, struct vector3 direction)
 {

@@ -1,10 +1,10 @@
-/* Torus about the z axis of its own frame: a circle of ring_radius that goes round at `radius`.
+/* A torus about the z axis of its own frame: a circle of ring_radius that goes round at `radius`.
  *
- * Along a ray, F = (rho - R)^2 + z^2 - b^2 with the distance rho from the axis is negative inside.
- * rho is convex and F'' = 2 - 2 R rho'' changes sign at most twice, at known places: between them F
- * is concave, outside convex. So F falls to a first valley, rises to a crest, falls to a second
- * valley and rises; each stretch holds at most one crossing, which a guarded Newton iteration finds
- * (no quartic is expanded, whose coefficients would cancel in single precision). */
+ * Along a ray, F = (rho - R)^2 + z^2 - b^2 is negative inside, with rho the distance from the axis,
+ * R = radius and b = ring_radius. rho is convex, so F'' = 2 - 2 R rho'' changes sign at most twice,
+ * at known places. F is concave between them and convex outside. So F falls to a valley, rises to a
+ * crest, falls to a second valley and rises. Each stretch has at most one crossing, which a guarded
+ * Newton iteration finds. A quartic's coefficients would cancel in single precision. */
 #ifndef SONJECT_KERNELS_SHAPES_TORUS_H
 #define SONJECT_KERNELS_SHAPES_TORUS_H
 
@@ -15,8 +15,8 @@
 struct torus_ray {
     struct vector3 point, direction;
     float radius, ring_radius;
-    vfloat across;  /* square of the direction's part across the axis */
-    vfloat curving; /* rho'' rho^3: across times the square of the least distance from the axis */
+    vfloat across;  /* square of the direction's component across the axis */
+    vfloat curving; /* rho'' rho^3: across times the squared least distance from the axis */
 };
 
 FUNCTION vfloat distance_from_axis(struct vector3 p)
@@ -24,7 +24,7 @@ FUNCTION vfloat distance_from_axis(struct vector3 p)
     return larger(SQUARE_ROOT(p.x * p.x + p.y * p.y), SPLAT(1.0e-12f));
 }
 
-/* F/2 and its slope. */
+/* Computes F/2 and its slope. */
 FUNCTION void torus_depth(const struct torus_ray *ray, vfloat distance, vfloat *value,
                           vfloat *slope)
 {
@@ -36,7 +36,7 @@ FUNCTION void torus_depth(const struct torus_ray *ray, vfloat distance, vfloat *
     *slope = outward * rho_slope + p.z * ray->direction.z;
 }
 
-/* The slope of F/2 and its own slope. */
+/* Computes the slope of F/2 and the slope of that slope. */
 FUNCTION void torus_slope(const struct torus_ray *ray, vfloat distance, vfloat *slope, vfloat *bend)
 {
     const struct vector3 p = along3(ray->point, ray->direction, distance);
@@ -47,10 +47,10 @@ FUNCTION void torus_slope(const struct torus_ray *ray, vfloat distance, vfloat *
     *bend = square - ray->radius * (ray->curving / (rho * rho * rho));
 }
 
-/* Where F/2 (is_slope: its slope) times `sense` falls through 0 between lower and upper: lower or
- * upper itself where it does not change sign. Newton's step where it stays between the bounds and
- * halves the one before, else the middle. A lane that has arrived rests, so that no lane depends on
- * others. */
+/* Finds where F/2, or its slope if is_slope, times `sense` falls through 0 between lower and upper.
+ * Without a change of sign the result is lower or upper. A Newton step is taken if it stays between
+ * the bounds and is at most half the step before, else the middle. A lane that has arrived rests,
+ * so that no lane depends on others. */
 FUNCTION vfloat torus_crossing(const struct torus_ray *ray, int is_slope, vfloat sense,
                                vfloat lower, vfloat upper, vfloat tolerance)
 {
@@ -81,7 +81,7 @@ FUNCTION vfloat torus_crossing(const struct torus_ray *ray, int is_slope, vfloat
     return distance;
 }
 
-/* The bounds of the valley-crest-valley order: where F's slope may turn. */
+/* The places where F's slope may turn: first valley, crest and second valley along a ray. */
 struct torus_order {
     vfloat first, one, crest, other, last; /* distances, never falling */
     mask is_near;                          /* the ray comes near the torus at all */
@@ -109,7 +109,7 @@ FUNCTION struct torus_order torus_order_along(struct torus_ray *ray)
     const struct vector3 nearest = along3(ray->point, d, axis_at);
     const vfloat square_of_least = nearest.x * nearest.x + nearest.y * nearest.y;
     ray->curving = ray->across * square_of_least;
-    /* F'' = 0: rho^3 = R * curving */
+    /* F'' = 0 where rho^3 = R * curving. */
     const vfloat turning = cube_root(larger(ray->radius * ray->curving, SPLAT(1.0e-30f)));
     const vfloat concave =
         SQUARE_ROOT(larger(turning * turning - square_of_least, SPLAT(0.0f)) / safe);

@@ -1,4 +1,4 @@
-/* Campaigns as the public interface has them: read, described, made image by image. */
+/* Campaigns of the public interface: read, described, made image by image. */
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@
 #include "schema/scene_file.h"
 #include "schema/yaml_tree.h"
 
-/* A campaign's file and what is set of it, which stay the caller's. */
+/* Takes a campaign's file and overrides, which stay the caller's. */
 static sonject_status take_source(struct report *report, const char *path,
                                   const sonject_scene_read_params *params,
                                   struct campaign_source *source)

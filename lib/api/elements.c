@@ -24,7 +24,7 @@ sonject_status sonject_elements_describe(sonject_context *context, const sonject
     memset(&input, 0, sizeof input);
     input.rows = (size_t)(is_own ? own.rows : rows);
     input.columns = (size_t)(is_own ? own.columns : columns);
-    input.is_complex = true; /* whatever the pixels are, the geometry is the same */
+    input.is_complex = true; /* the kind of pixels does not change the geometry */
     sonject_element_layout made;
     memset(&made, 0, sizeof made);
     CHECK(element_echoes_describe(report, scene, &input, &made));

@@ -1,4 +1,4 @@
-/* What the opaque handles of the public interface hold. */
+/* The structures behind the opaque handles of the public interface. */
 #ifndef SONJECT_API_HANDLES_H
 #define SONJECT_API_HANDLES_H
 
@@ -17,91 +17,89 @@
 #include "swath/decoder.h"
 
 struct sonject_context {
-    struct report report; /* its host is the next member */
+    struct report report; /* report.host is the next member */
     struct report_host host;
     struct decoder decoder;
-    struct device_slot device; /* the strings of its parameters are owned */
+    struct device_slot device; /* owns the strings of its parameters */
 };
 
 struct sonject_scene {
     struct report *report; /* the context's */
     struct scene_source source;
-    struct scene scene; /* what the source says, while is_read */
+    struct scene scene; /* read from the source, valid while is_read */
     bool is_read;
-    struct mesh_store meshes; /* of the scene before, while the source is read again */
+    struct mesh_store meshes; /* meshes of the scene before, while the source is read again */
 };
 
 struct sonject_result {
     struct report *report;
     struct injection_result result;
-    void *stored; /* the image as a file would store it; owned; NULL: it is the result's, linear */
+    void *stored; /* owned; the image as a file would store it; NULL: the result's, linear */
     enum pixel_type stored_type;
 };
 
-/* Forgets the last message: every public call that can fail begins with it. Errors: ARGUMENT
- * (NULL).
- */
+/* Forgets the last message; begins every public call that can fail. Errors: ARGUMENT (NULL). */
 sonject_status context_begin_call(struct sonject_context *context);
 
-/* Has the caller's progress function asked while the call waits for a child process, too: it and
- * its user become ones that pass on what they are told. */
+/* Replaces *progress and *user by a function that passes progress on and keeps it. The caller's
+ * function can then be asked during waits for a child process, too. */
 void context_watch(struct sonject_context *context, sonject_progress_function *progress,
                    void **user);
 
-/* At the end of such a call: tells that all is done, where it is. Returns status. */
+/* Ends such a call: on success tells that all is done, unless that was told. Returns status. */
 sonject_status context_finish(struct sonject_context *context, sonject_status status);
 
-/* What a scene's text says, read if something was set since. NULL is refused. Errors: as
- * sonject_scene_read. */
+/* Gives a handle's scene, and reads its text if something was set since. NULL is refused. Errors:
+ * those of sonject_scene_read. */
 sonject_status scene_use(struct report *report, const sonject_scene *handle,
                          const struct scene **scene);
 
-/* What a caller says of reading; all 0 where it says nothing. path: of the file, NULL where there
+/* Takes a caller's parameters for reading; all 0 if params is NULL. path: the file, NULL if there
  * is a text. Errors: ARGUMENT. */
 sonject_status scene_read_params_take(struct report *report, const char *path,
                                       const sonject_scene_read_params *params,
                                       sonject_scene_read_params *taken);
 
-/* That neither the path nor one of count overrides is NULL. Errors: ARGUMENT. */
+/* Checks that neither path nor any of count overrides is NULL. Errors: ARGUMENT. */
 sonject_status check_overrides(struct report *report, const char *path,
                                const char *const *overrides, size_t count);
 
-/* What is said of an image file, in the values of a scene's input.channel, transfer and geometry;
- * each may be NULL. array: borrowed. Errors: INPUT, MEMORY. */
+/* Takes a caller's options for an image file, as values of a scene's input.channel, transfer and
+ * geometry; each may be NULL. array: borrowed. Errors: INPUT, MEMORY. */
 sonject_status image_options_take(struct report *report, const char *channel, const char *array,
                                   const char *transfer, const char *geometry,
                                   struct image_options *options);
 
-/* Copies a caller's parameter structure (which starts with its size) to `to`, the rest of which
- * becomes 0, so that programs built against older headers go on working, a longer one must be 0
- * beyond what this library knows. smallest: the size of the first released version. name: for the
+/* Copies a caller's parameter structure, which starts with its size, to `to`. The rest of `to`
+ * becomes 0, so that programs built against older headers go on working. A longer structure must be
+ * 0 beyond what this library knows. smallest: the size of the first released version. name: for the
  * message. Errors: ARGUMENT. */
 sonject_status params_take(struct report *report, void *to, size_t to_size, const void *from,
                            size_t smallest, const char *name);
 
-/* The same in the other direction, for structures that the library fills. */
+/* Copies from a structure that the library fills to a caller's, in the same way. */
 sonject_status params_give(struct report *report, void *to, const void *from, size_t from_size,
                            size_t smallest, const char *name);
 
-/* A caller's patch; pixels NULL: the uniform or synthetic patch that the scene makes. To be given
- * to swath_close, also on failure. Errors: ARGUMENT, INPUT, MEMORY. */
+/* Takes a caller's patch; pixels NULL: the uniform or synthetic patch that the scene makes. For
+ * swath_close, also on failure. Errors: ARGUMENT, INPUT, MEMORY. */
 sonject_status find_input(struct report *report, const struct scene *scene,
                           const sonject_pixels *pixels, struct swath *swath);
 
-/* A caller's pixels, linear; those of a transfer function as they are stored, too. To be given to
- * swath_close, also on failure. Errors: ARGUMENT, INPUT, MEMORY. */
+/* Takes a caller's pixels, linear; those with a transfer function also as stored. For swath_close,
+ * also on failure. Errors: ARGUMENT, INPUT, MEMORY. */
 sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
                            struct swath *swath);
 
-/* A caller's pixels as they are stored, of no transfer function; for swath_close, also on failure.
+/* Takes a caller's pixels as stored, without a transfer function. For swath_close, also on failure.
  * Errors: ARGUMENT, INPUT, MEMORY. */
 sonject_status take_stored(struct report *report, const sonject_pixels *pixels,
                            struct swath *swath);
 
-/* report_failure(ARGUMENT, "... must not be NULL") */
+/* Reports "... must not be NULL". Returns ARGUMENT. */
 sonject_status null_argument(struct report *report, const char *name);
 
-/* Begins a call that makes *made, which is NULL where the call fails, also without a context. */
+/* Begins a call that makes *made, which is NULL if the call fails, also without a context. */
 #define BEGIN_MAKING(context, made)                                                                \
     do {                                                                                           \
         if (made)                                                                                  \

@@ -1,4 +1,4 @@
-/* What images and contacts measure. */
+/* Measurements of images and contacts, and calibration. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,8 +13,8 @@
 #define FIND_MOST     100
 #define FIND_CONTRAST 12.0 /* dB */
 
-/* A float for each of a swath's pixels: its number, of complex ones the magnitude. numbers: the
- * swath's stored ones, or its linear ones. */
+/* Makes a float for each of a swath's pixels: its number, or the magnitude of a complex one.
+ * numbers: the swath's stored pixels or its linear ones. */
 static sonject_status find_magnitudes(struct report *report, const struct swath *swath,
                                       enum pixel_type type, const void *numbers, float **made)
 {
@@ -34,7 +34,7 @@ static sonject_status find_magnitudes(struct report *report, const struct swath 
     return SONJECT_OK;
 }
 
-/* Amplitudes of a caller's pixels. */
+/* Takes the amplitudes of a caller's pixels. */
 static sonject_status take_amplitudes(struct report *report, const sonject_pixels *pixels,
                                       struct measured *measured)
 {
@@ -74,7 +74,7 @@ static sonject_status measure_pixels(struct report *report, const sonject_measur
     return status;
 }
 
-/* The image and what is said of it. */
+/* Takes the image and its options. */
 static sonject_status take_image(struct report *report, const sonject_measure_params *params,
                                  sonject_measure_params *taken, struct image_options *options)
 {
@@ -120,7 +120,7 @@ sonject_status sonject_measure_contact(sonject_context *context, const sonject_p
     return status;
 }
 
-/* Fills in what 0 stands for. */
+/* Checks the parameters and fills in the defaults for 0. */
 static sonject_status check_contacts(struct report *report, sonject_measure_params *params)
 {
     if (params->find_most == 0)

@@ -10,7 +10,7 @@ static const enum pixel_type types[] = {[SONJECT_PIXELS_AMPLITUDE] = PIXEL_FLOAT
                                         [SONJECT_PIXELS_UINT8] = PIXEL_UINT8,
                                         [SONJECT_PIXELS_UINT16] = PIXEL_UINT16};
 
-/* Copies the caller's structure, and its rows, packed, to swath->stored. */
+/* Copies the caller's structure to *taken, and its rows, packed, to swath->stored. */
 static sonject_status pack_pixels(struct report *report, const sonject_pixels *pixels,
                                   sonject_pixels *taken, struct swath *swath)
 {
@@ -46,7 +46,7 @@ static sonject_status pack_pixels(struct report *report, const sonject_pixels *p
     return SONJECT_OK;
 }
 
-/* What an image of this kind says by its transfer function, NULL: it is linear. */
+/* Reads the transfer function of an image of this kind. text: NULL if the image is linear. */
 static sonject_status read_transfer(struct report *report, uint32_t kind, const char *text,
                                     sonject_transfer_params *transfer)
 {

@@ -8,7 +8,7 @@
 #include "dataset/run.h"
 #include "inject/injection.h"
 
-/* The image as the caller stores it. */
+/* Makes the image as the caller stores it. */
 static sonject_status store_image(struct report *report, const struct swath *swath,
                                   sonject_result *made)
 {
@@ -83,7 +83,7 @@ sonject_status sonject_result_size(const sonject_result *result, uint64_t *rows,
     return SONJECT_OK;
 }
 
-/* Whether a buffer is as large as a layer. what: is said of the layer. */
+/* Checks that a buffer is as large as a layer. what: the layer, for messages. */
 static sonject_status check_buffer(const sonject_result *result, const char *what,
                                    size_t pixel_bytes, size_t bytes)
 {
@@ -104,7 +104,7 @@ sonject_status sonject_result_layer(const sonject_result *result, sonject_layer 
     const struct injection_result *made = &result->result;
     const struct {
         size_t pixel_bytes;
-        const void *data; /* NULL: a plane */
+        const void *data; /* NULL: see plane */
         enum injected_plane plane;
     } layers[] = {
         [SONJECT_LAYER_IMAGE] = {result->stored ? pixel_bytes(result->stored_type)

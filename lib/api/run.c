@@ -9,7 +9,7 @@
 #include "api/handles.h"
 #include "dataset/run.h"
 
-/* A call that works on files, and what is told of it. */
+/* Begins a call that works on files and tells its progress. */
 static sonject_status begin(sonject_context *context, struct run_request *request,
                             sonject_progress_function progress, void *user, int *was_finished)
 {
@@ -23,7 +23,7 @@ static sonject_status begin(sonject_context *context, struct run_request *reques
     return SONJECT_OK;
 }
 
-/* The folder of the results, and which labels there are to be. */
+/* Takes the folder of the results, and the labels to be made. */
 static sonject_status take_folder(struct report *report, struct run_request *request,
                                   const char *folder, uint32_t labels)
 {
@@ -59,7 +59,7 @@ static sonject_status check_shard(struct report *report, const sonject_run_param
     return SONJECT_OK;
 }
 
-/* Runs the scene; one that asks for a calibration with that. */
+/* Runs the scene, with a calibration first if the scene asks for one. */
 static sonject_status run_calibrated(sonject_context *context, const sonject_scene *handle,
                                      const struct run_request *asked, int *was_finished)
 {
@@ -111,7 +111,7 @@ sonject_status sonject_merge(sonject_context *context, const sonject_scene *scen
     CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "merge parameters"));
     CHECK(take_folder(report, &request, taken.folder, taken.labels));
     request.merges = true;
-    request.overwrites = true; /* the shards were asked whether they may */
+    request.overwrites = true; /* the shards' runs have checked that they may */
     if (!scene)
         return context_finish(context,
                               merge_folder(report, &context->device, &request, was_finished));

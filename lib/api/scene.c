@@ -47,7 +47,7 @@ sonject_status check_overrides(struct report *report, const char *path,
     return SONJECT_OK;
 }
 
-/* Text and overrides of a scene, from its file where no text is given. */
+/* Takes a scene's text and overrides. The text is the file's if none is given. */
 static sonject_status take_source(struct report *report, const char *path,
                                   const sonject_scene_read_params *params,
                                   struct scene_source *source)
@@ -113,11 +113,11 @@ sonject_status sonject_scene_bands(sonject_context *context, const char *path,
 sonject_status scene_use(struct report *report, const sonject_scene *handle,
                          const struct scene **scene)
 {
-    struct sonject_scene *used = (struct sonject_scene *)handle; /* what it says stays the same */
+    struct sonject_scene *used = (struct sonject_scene *)handle; /* its contents stay the same */
     if (!used)
         return null_argument(report, "scene");
     if (!used->is_read) {
-        scene_clear(&used->scene); /* of the scene before, whose meshes go to its store */
+        scene_clear(&used->scene); /* the scene before, whose meshes go to the store */
         used->scene.mesh_store = &used->meshes;
         CHECK(scene_source_read(&used->source, report, &used->scene));
         mesh_store_clear(&used->meshes);
@@ -127,7 +127,7 @@ sonject_status scene_use(struct report *report, const sonject_scene *handle,
     return SONJECT_OK;
 }
 
-/* Whether there is a text that can be read and changed. arguments: what must not be NULL. */
+/* Checks that there is a text to read and change. arguments: names of what must not be NULL. */
 static sonject_status begin_text(sonject_scene *scene, bool has_arguments, const char *arguments)
 {
     scene->report->message[0] = '\0';
@@ -205,7 +205,7 @@ sonject_status sonject_scene_object_count(const sonject_scene *scene, uint32_t *
     return SONJECT_OK;
 }
 
-/* A scene that has them is made, so that they mean what they do there. */
+/* Makes a scene that has the options, so that they mean what they mean in scenes. */
 sonject_status image_options_take(struct report *report, const char *channel, const char *array,
                                   const char *transfer, const char *geometry,
                                   struct image_options *options)

@@ -9,7 +9,7 @@
 
 #include "base/system/process.h"
 
-#define NAMES_MAX ((size_t)1 << 20) /* in a folder */
+#define NAMES_MAX ((size_t)1 << 20) /* limit for a folder */
 
 sonject_status input_failure(struct report *report, const char *path, const char *format, ...)
 {
@@ -56,7 +56,7 @@ sonject_status file_check_disk(struct report *report, const char *path, sonject_
                : status;
 }
 
-/* The last character that divides a path into parts; NULL: there is none. */
+/* Returns the last character that divides a path into parts; NULL if there is none. */
 static const char *last_divider(const char *path)
 {
     const char *last = NULL;
@@ -65,7 +65,7 @@ static const char *last_divider(const char *path)
     return last;
 }
 
-/* From a '.' inside the last component to the end; "" if there is none. */
+/* Returns the end of the last component, from its last '.' on; "" if there is none. */
 static const char *extension_of(const char *path)
 {
     const char *name = path_name(path);
@@ -84,7 +84,7 @@ char *file_part_name(const char *path)
     return part;
 }
 
-/* Whether that is a part's name, of a process of this place that is no more. */
+/* Returns whether a name is that of a part, left by an ended process of this place. */
 static bool is_orphan(const char *name)
 {
     for (const char *dot = strchr(name, '.'); dot; dot = strchr(dot + 1, '.')) {
@@ -245,8 +245,7 @@ bool paths_are_same(const char *a, const char *b)
            one.device == other.device && one.number == other.number;
 }
 
-/* What stands between a folder and a name in it: nothing, where the name stands alone or the folder
- * ends with it. */
+/* Returns the divider between a folder and a name: "" if the folder is "" or ends with one. */
 static const char *divider_behind(const char *folder)
 {
     const char *divider = last_divider(folder);
@@ -330,7 +329,7 @@ static int compare_names(const void *a, const void *b)
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* A folder's names as they are heard. */
+/* A folder's names while they are listed. */
 struct names_heard {
     struct folder_names *list;
     const char *prefix;

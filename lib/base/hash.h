@@ -9,14 +9,14 @@
 
 struct hash;
 
-/* NULL when memory is out. */
+/* Returns NULL if out of memory. */
 struct hash *hash_begin(void);
 void hash_add(struct hash *hash, const void *bytes, size_t count);
 
 /* Adds a text with its terminator, so that "ab","c" differs from "a","bc"; NULL adds nothing. */
 void hash_add_text(struct hash *hash, const char *text);
 
-/* Writes the digits and begins anew. */
+/* Writes the digits and starts again. */
 void hash_restart(struct hash *hash, char text[HASH_TEXT_CAPACITY]);
 
 /* Writes the digits and frees the hash. */

@@ -7,7 +7,7 @@
 
 #define TEXT_BYTES_MAX ((size_t)65535)
 
-/* Most builds of HDF5 may be used by one thread at a time. */
+/* A lock, because most builds of HDF5 allow only one thread at a time. */
 static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
 static bool is_begun;
 
@@ -50,7 +50,7 @@ static bool write_scalar(hid_t object, const char *name, hid_t stored, hid_t nat
     return is_done;
 }
 
-/* Texts of `bytes` bytes, their terminator among them. */
+/* Returns the type of texts of `bytes` bytes with their terminator; negative on failure. */
 static hid_t text_type(size_t bytes)
 {
     const hid_t type = H5Tcopy(H5T_C_S1);

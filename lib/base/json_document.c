@@ -12,7 +12,7 @@
 
 #define DOCUMENT_BYTES_MAX ((size_t)64 << 20)
 #define HASH_STEP          ((size_t)1 << 20)
-#define TRUSTED_BYTES      ((json_int_t)16 << 20) /* from which on an unchanged time is believed */
+#define TRUSTED_BYTES      ((json_int_t)16 << 20) /* size from which an unchanged time is trusted */
 #define NS_PER_S           INT64_C(1000000000)
 
 json_t *json_number(double value)
@@ -128,8 +128,8 @@ sonject_status json_document_write(struct report *report, json_t *document, size
     return status;
 }
 
-/* Where memory is out jansson may find fault with the text, or leave out a byte of it and tell
- * nothing: it is asked twice, and memory is. */
+/* Loads JSON. If memory is out, jansson may blame the text, or silently drop a byte of it. So
+ * jansson is asked twice, and memory is tested. */
 static json_t *load_json(const char *text, size_t bytes, json_error_t *error, bool *lacks_memory)
 {
     json_t *document = json_loadb(text, bytes, 0, error);
@@ -258,14 +258,14 @@ sonject_status file_list_add(json_t **list, struct report *report, const char *f
     return status != SONJECT_OK || *list ? status : report_out_of_memory(report, "a list of files");
 }
 
-/* Whether an entry names a file, and none out of the folder. */
+/* Returns whether an entry names a file that is not outside the folder. */
 static bool names_file(const json_t *entry)
 {
     const char *name = json_string_value(json_object_get(entry, "name"));
     return name && *name && *name != '/' && !strstr(name, "..");
 }
 
-/* The path of an entry's file, for free(); NULL where it names none, or memory is out. */
+/* Returns the path of an entry's file, for free(); NULL if there is none or memory is out. */
 static char *entry_path(const json_t *entry, const char *folder)
 {
     return names_file(entry) ? path_join(folder, json_string_value(json_object_get(entry, "name")))

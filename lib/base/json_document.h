@@ -1,4 +1,4 @@
-/* JSON files, and the files that a document names, with what tells them from others later. */
+/* JSON files, and lists of files in documents, by which a changed file is recognised later. */
 #ifndef SONJECT_BASE_JSON_DOCUMENT_H
 #define SONJECT_BASE_JSON_DOCUMENT_H
 
@@ -10,29 +10,28 @@
 #include "base/hash.h"
 #include "base/report.h"
 
-/* A number; null for what JSON does not know: NaN and infinity. */
+/* Makes a number; null for NaN and infinity, which JSON lacks. */
 json_t *json_number(double value);
 
 json_t *json_count(uint64_t value);
 
-/* A number of 64 bits; a text where it takes all of them, since JSON's readers take 63. */
+/* Makes a number of 64 bits; a text if all are needed, since JSON's readers take 63. */
 json_t *json_seed(uint64_t seed);
 
-/* A text. One that is not well-formed UTF-8 without control characters, as a file's name may be,
- * has
- * '?' for all of its bytes that are not printable ASCII. */
+/* Makes a text. If it is not well-formed UTF-8 without control characters, as a file's name may be,
+ * '?' replaces all of its bytes that are not printable ASCII. */
 json_t *json_text(const char *text);
 
-/* An object of members, in their order; the values go into it. NULL where memory is out or a value
- * is NULL: what was made of the others is released. */
+/* A member of an object. json_object_of makes an object of members, in order, and takes over their
+ * values. If memory is out or a value is NULL, it releases the others and returns NULL. */
 struct json_member {
-    const char *key; /* NULL: there are no more */
+    const char *key; /* NULL: the list's end */
     json_t *value;
 };
 json_t *json_object_of(const struct json_member *members);
 #define JSON_OBJECT(...) json_object_of((const struct json_member[]){__VA_ARGS__, {NULL, NULL}})
 
-/* Members of JSON that are members of a structure. */
+/* JSON members that are named after members of a structure. */
 #define JSON_NUMBER(structure, member)                                                             \
     {                                                                                              \
 #member, json_number((structure)->member)                                                  \
@@ -42,60 +41,58 @@ json_t *json_object_of(const struct json_member *members);
 #member, json_count((structure)->member)                                                   \
     }
 
-/* An array of numbers. */
+/* Makes an array of numbers. */
 json_t *json_counts(const uint64_t *values, size_t count);
 
-/* Adds a member to an object, or an element to an array; the value goes into it. Where memory is
- * out or the value is NULL, *object or *array is released and becomes NULL, and what is added to
+/* Adds a member to an object, or an element to an array, and takes over the value. If memory is out
+ * or the value is NULL, releases *object or *array and sets it to NULL. A value that is added to
  * NULL is released, so that a document that lacks something is NULL in the end. */
 void json_add(json_t **object, const char *key, json_t *value);
 void json_append(json_t **array, json_t *value);
 
-/* The document's text, by the flags of json_dumps, for free(); NULL where memory is out, which
- * json_dumps overlooks among keys, or where the document is NULL. */
+/* Returns the document's text with the flags of json_dumps, for free(). NULL if the document is
+ * NULL or memory is out, which json_dumps overlooks among keys. */
 char *json_document_text(const json_t *document, size_t flags);
 
-/* Digest of the document's text by those flags. Errors: MEMORY (also where the document is NULL).
- */
+/* Hashes the document's text with those flags. Errors: MEMORY (also if the document is NULL). */
 sonject_status json_document_hash(struct report *report, const json_t *document, size_t flags,
                                   char text[HASH_TEXT_CAPACITY]);
 
-/* The text of a member, "" if there is none. */
+/* Returns the text of a member, "" if there is none. */
 const char *member_text(const json_t *object, const char *key);
 
-/* Writes the document, indented, numbers with so many digits, whole or not at all, and releases it.
- * Errors: STORAGE, MEMORY (also where the document is NULL). */
+/* Writes the document whole or not at all, indented, numbers with so many digits, and releases it.
+ * Errors: STORAGE, MEMORY (also if the document is NULL). */
 sonject_status json_document_write(struct report *report, json_t *document, size_t digits,
                                    const char *path);
 
 /* Reads a JSON object of at most 64 MB. Errors: STORAGE, INPUT, MEMORY. */
 sonject_status json_document_read(struct report *report, const char *path, json_t **document);
 
-/* Digest of a regular file's bytes. Errors: STORAGE, MEMORY. */
+/* Hashes a regular file's bytes. Errors: STORAGE, MEMORY. */
 sonject_status file_hash(struct report *report, const char *path, char text[HASH_TEXT_CAPACITY]);
 
-/* A file under a name: {"name", "bytes", "xxh3"}, and "changed_ns" (since 1970) if it is to have
- * the time of its last change. For json_decref. Errors: STORAGE, MEMORY. */
+/* Makes a file's entry: {"name", "bytes", "xxh3"}, and with has_time "changed_ns", the time of the
+ * last change since 1970. For json_decref. Errors: STORAGE, MEMORY. */
 sonject_status file_entry(struct report *report, const char *path, const char *name, bool has_time,
                           json_t **entry);
 
-/* Whether the file is as an entry says: of the size, and of the hash; that of a file of 16 MB or
- * more counts as the same where the time is, unless all are hashed. A file that is not there is
- * not. Errors: STORAGE (it cannot be read), MEMORY. */
+/* Sets *holds to whether the file has the entry's size and hash. Files of 16 MB or more are not
+ * hashed if their time of change is the entry's, unless hashes_all. A missing file does not hold.
+ * Errors: STORAGE (the file cannot be read), MEMORY. */
 sonject_status file_entry_holds(struct report *report, const json_t *entry, const char *path,
                                 bool hashes_all, bool *holds);
 
-/* Adds the entry of a file of a folder, or of one below it. Errors: STORAGE, MEMORY. */
+/* Adds the entry of a file in a folder or below. Errors: STORAGE, MEMORY. */
 sonject_status file_list_add(json_t **list, struct report *report, const char *folder,
                              const char *name, bool has_time);
 
-/* Whether all files of a list are in the folder as it says; *name is of the first that is not, NULL
- * where all are, and the list's. Errors: STORAGE, MEMORY. */
+/* Checks that a list's files are in the folder as listed. *name: the first that is not, borrowed
+ * from the list, or "the list of files" if it is empty; NULL: all are. Errors: STORAGE, MEMORY. */
 sonject_status file_list_check(const json_t *list, struct report *report, const char *folder,
                                bool hashes_all, const char **name);
 
-/* Removes the files of a list from the folder but for those that another list names, too. Never
- * fails. */
+/* Removes a list's files from the folder, except those that `kept` lists, too. Never fails. */
 void file_list_discard(const json_t *list, const json_t *kept, const char *folder);
 
 #endif

@@ -32,7 +32,7 @@ void *grow_doubling(void *list, size_t count, size_t size)
 
 bool memory_is_short(void)
 {
-    void *volatile much = allocate_array(1, (size_t)512 << 20); /* volatile: that it is tried */
+    void *volatile much = allocate_array(1, (size_t)512 << 20); /* volatile: not optimised away */
     const bool is_short = !much;
     free(much);
     return is_short;

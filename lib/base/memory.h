@@ -7,39 +7,39 @@
 
 #include "base/report.h"
 
-/* Elements of an array. */
+/* The number of an array's elements. */
 #define COUNT(list) (sizeof(list) / sizeof(list)[0])
 
-/* *product = a * b; false if that overflows (then *product is unchanged). */
+/* Sets *product = a * b. Returns false, with *product unchanged, if that overflows. */
 bool size_multiply(size_t a, size_t b, size_t *product);
 
-/* Zeroed memory for count elements of size bytes, to be given to free(). NULL if count * size
- * overflows or memory is out. count or size of 0 gives a valid pointer. */
+/* Returns zeroed memory for count elements of size bytes, for free(). NULL if count * size
+ * overflows or memory is out. If count or size is 0, the pointer is valid. */
 void *allocate_array(size_t count, size_t size);
 
-/* Room for one more element of size bytes behind count ones of a list that has grown by this alone:
- * room doubles when it is full. NULL where memory is out: then the list stays as it was. */
+/* Makes room for one more element of size bytes behind count elements of a list that only this
+ * function grows: room doubles when full. NULL if out of memory; the list then stays as it was. */
 void *grow_doubling(void *list, size_t count, size_t size);
 
-/* Whether less than half a gigabyte is to be had, which large libraries may need to be loaded. */
+/* Returns whether less than half a gigabyte is left, which loading a large library may need. */
 bool memory_is_short(void);
 
-/* A copy of the terminated text, to be given to free(); NULL when memory is out. */
+/* Returns a copy of the terminated text, for free(); NULL if out of memory. */
 char *copy_text(const char *text);
 
-/* A text that grows; starts as all zeros. */
+/* A text that grows. All zeros at the start. */
 struct growing_text {
     char *characters; /* for free(); NULL while nothing is written */
     size_t length, capacity;
-    bool failed; /* memory was out: the rest is not written */
+    bool failed; /* memory was out; the rest is missing */
 };
 
 void growing_text_add(struct growing_text *text, const char *format, ...) REPORT_FORMAT(2);
 
-/* The text, for free(); NULL where memory was out. */
+/* Returns the text, for free(); NULL if memory was out. */
 char *growing_text_end(struct growing_text *text);
 
-/* For qsort: the smallest first. */
+/* Compares for qsort, the smallest first. */
 int compare_doubles(const void *a, const void *b);
 
 #endif

@@ -106,7 +106,7 @@ void check_relation(struct check *check, const char *key, const char *others, co
     va_end(arguments);
 }
 
-/* NaN fails every comparison, so ranges are asked for, never violations. */
+/* Asks for values in range, never for violations, because NaN fails every comparison. */
 void check_within(struct check *check, const char *key, double value, double minimum,
                   double maximum, const char *unit)
 {

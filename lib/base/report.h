@@ -17,16 +17,16 @@
     TEXT_OF(SONJECT_VERSION_MAJOR)                                                                 \
     "." TEXT_OF(SONJECT_VERSION_MINOR) "." TEXT_OF(SONJECT_VERSION_PATCH)
 
-#define REPORT_LINE     1024 /* bytes of one */
+#define REPORT_LINE     1024 /* bytes of a line */
 #define REPORT_CAPACITY 8192
 
 struct decoder;
 
-/* What a context lends to all its calls. */
+/* Data that a context lends to all its calls. */
 struct report_host {
     void *log_user;
-    struct decoder *decoder; /* who reads its images and HDF5 files (swath/decoder.h) */
-    /* What the caller of the call under way gave it, and was last told; progress may be NULL. */
+    struct decoder *decoder; /* the reader of images and HDF5 files (swath/decoder.h) */
+    /* The running call's progress function (may be NULL) and what it was last told. */
     sonject_progress_function progress;
     void *progress_user;
     double fraction;
@@ -34,9 +34,9 @@ struct report_host {
 };
 
 struct report {
-    char message[REPORT_CAPACITY];  /* "" while nothing failed; one line, or one for each mistake */
+    char message[REPORT_CAPACITY];  /* "" if nothing failed; one line, or a line for each mistake */
     sonject_log_function log;       /* may be NULL */
-    const struct report_host *host; /* NULL: no log, and a decoder of its own for each file */
+    const struct report_host *host; /* NULL: no progress, and a decoder for each file */
 };
 
 #if defined(__GNUC__)
@@ -50,16 +50,17 @@ struct report {
 sonject_status report_failure(struct report *report, sonject_status status, const char *format, ...)
     REPORT_FORMAT(3);
 
-/* The message for an allocation that failed; returns SONJECT_ERROR_MEMORY. what: "histogram". */
+/* Reports an allocation that failed. Returns SONJECT_ERROR_MEMORY. what: such as "histogram". */
 sonject_status report_out_of_memory(struct report *report, const char *what);
 
-/* The status so far of steps that are all taken though one finds bad input: starts as SONJECT_OK. A
- * step's message is added to lines, which start as "", and these become the report's; "and more"
- * stands for what there is no room for. No step follows a status that is neither OK nor INPUT. */
+/* Returns the status so far of steps that are all taken even if one finds bad input; starts as
+ * SONJECT_OK. A step's message is added to lines, which start as "" and become the report's
+ * message. "and more" replaces messages without room. No step may follow a status but OK and
+ * INPUT. */
 sonject_status report_gather(struct report *report, char lines[REPORT_CAPACITY],
                              sonject_status so_far, sonject_status step);
 
-/* Returns from the function where expression, a sonject_status, is a failure. */
+/* Returns from the function if expression, a sonject_status, is a failure. */
 #define CHECK(expression)                                                                          \
     do {                                                                                           \
         const sonject_status checked_status = (expression);                                        \
@@ -67,28 +68,28 @@ sonject_status report_gather(struct report *report, char lines[REPORT_CAPACITY],
             return checked_status;                                                                 \
     } while (0)
 
-/* The same for memory that is to be there; what: as of report_out_of_memory. */
+/* Returns from the function if memory is not there. what: see report_out_of_memory. */
 #define CHECK_MEMORY(report, is_there, what)                                                       \
     do {                                                                                           \
         if (!(is_there))                                                                           \
             return report_out_of_memory(report, what);                                             \
     } while (0)
 
-/* The next step of a function that releases something at its end: taken while status, a variable,
- * is SONJECT_OK, which becomes the step's. */
+/* Takes the next step of a function that releases something at its end, if status, a variable, is
+ * SONJECT_OK. status becomes the step's. */
 #define THEN(status, expression)                                                                   \
     do {                                                                                           \
         if ((status) == SONJECT_OK)                                                                \
             (status) = (expression);                                                               \
     } while (0)
 
-/* Whether the caller wants the call under way to end, for those who wait. stage: what for; NULL:
- * that which was told last. */
+/* Returns whether the caller wants to end the running call; asked during waits. stage: the wait's
+ * purpose; NULL: the stage that was told last. */
 bool report_is_cancelled(const struct report *report, const char *stage);
 
 /* ---- Progress of a part of a call as a share of the whole call's. */
 
-/* The part's fractions 0 to 1 become first to first + share. */
+/* A part of a call's progress: the part's fractions 0...1 become first...first + share. */
 struct progress_share {
     sonject_progress_function progress; /* the whole call's; may be NULL */
     void *user;
@@ -100,40 +101,39 @@ int progress_share_tell(void *user, double fraction, const char *stage);
 
 /* ---- The log. */
 
-/* Send a line to the log, if there is one: news, a note, or a line of a level that is known. */
+/* Sends a line to the log, if there is one: news, a note, or a line of a given level. */
 void report_log(struct report *report, const char *format, ...) REPORT_FORMAT(2);
 void report_note(struct report *report, const char *format, ...) REPORT_FORMAT(2);
 void report_line(struct report *report, uint32_t level, const char *line);
 
-/* Of lengths that a sonar can meet. */
+/* The range of lengths that a sonar can meet. */
 #define LENGTH_MIN_M 1e-6
 #define LENGTH_MAX_M 1e6
 
-/* Is told of every failure of a check, for what is to tell them all. Keys are the names of values
- * as scene files write them, borrowed. others: keys, separated by blanks, without whose being right
- * the failure says nothing. */
+/* A listener that hears every failure of a check, to report all of them. Keys are the names of
+ * values in scene files, borrowed. others: keys, separated by blanks, whose values must be right
+ * for the failure to mean anything. */
 struct check_listener {
     void (*hear)(struct check_listener *listener, const char *key, const char *others,
                  const char *what);
 };
 
-/* A check that goes on. The report keeps the first failure. Either may be NULL. */
+/* A check of several values. report keeps the first failure. report and listener may be NULL. */
 struct check {
     struct report *report;
     struct check_listener *listener;
     sonject_status status;
 };
 
-/* The message "<key> <what>"; check->status becomes INPUT. others: as hear is told, "" for
- * none. */
+/* Reports "<key> <what>"; check->status becomes INPUT. others: see check_listener; "": none. */
 void check_relation(struct check *check, const char *key, const char *others, const char *format,
                     ...) REPORT_FORMAT(4);
 
-/* unit: as it stands behind a number, " m"; "" for none. */
+/* Checks a range. unit: the text behind a number, such as " m"; "" for none. */
 void check_within(struct check *check, const char *key, double value, double minimum,
                   double maximum, const char *unit);
 
-/* Lengths in m: above 0, from 0, and of any sign. */
+/* Checks a length in m: above 0, from 0, or of any sign. */
 void check_positive_length(struct check *check, const char *key, double value_m);
 void check_length(struct check *check, const char *key, double value_m);
 void check_coordinate(struct check *check, const char *key, double value_m);

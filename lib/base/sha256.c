@@ -12,11 +12,11 @@
 struct sha256 {
     uint32_t state[8];
     uint8_t block[BLOCK];
-    size_t filled; /* of the block */
+    size_t filled; /* bytes of the block in use */
     uint64_t bytes;
 };
 
-/* The first 32 bits of the fractions of the cube roots of the first 64 primes. */
+/* The first 32 bits of the fractional parts of the cube roots of the first 64 primes. */
 static const uint32_t constants[64] = {
     0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
     0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
@@ -69,7 +69,7 @@ static void add_bytes(struct sha256 *sha, const uint8_t *bytes, size_t count)
     }
 }
 
-/* One bit, zeros up to the end of a block, of which the last eight bytes are the number of bits. */
+/* Adds a 1 bit, zeros, and in the last eight bytes of a block the number of bits. */
 static void write_digest(struct sha256 *sha, char text[SHA256_TEXT_CAPACITY])
 {
     const uint64_t bits = 8 * sha->bytes;

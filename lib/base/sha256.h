@@ -6,7 +6,7 @@
 
 #define SHA256_TEXT_CAPACITY 65 /* 64 hexadecimal digits and the terminator */
 
-/* Errors: STORAGE. */
+/* Writes the digest of a file. Errors: STORAGE. */
 sonject_status file_sha256(struct report *report, const char *path,
                            char text[SHA256_TEXT_CAPACITY]);
 

@@ -6,11 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A double halfway between two others has at most 767 significant digits: of digits beyond these
- * only matters whether one is not zero. */
+/* A number halfway between two doubles has at most 767 significant digits. Of further digits it
+ * only matters whether any is not 0. */
 #define DIGITS_KEPT 780
 
-/* Far beyond any exponent that matters, and far from overflow when lengths of texts are added. */
+/* A limit far beyond any exponent that matters, and far from overflow when lengths are added. */
 #define EXPONENT_LIMIT INT64_C(1000000000000000)
 
 static bool is_digit(char c)
@@ -18,8 +18,8 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/* Digits with at most one '.', copied without it and without leading zeros; *exponent gets the
- * power of ten of the last one. Returns what follows; NULL if there is no digit. */
+/* Copies digits with at most one '.', but without the '.' and leading zeros. *exponent gets the
+ * power of ten of the last digit. Returns what follows; NULL if there is no digit. */
 static const char *take_digits(const char *text, char digits[DIGITS_KEPT + 2], int64_t *exponent)
 {
     size_t count = 0;
@@ -46,7 +46,7 @@ static const char *take_digits(const char *text, char digits[DIGITS_KEPT + 2], i
     return has_digit ? text : NULL;
 }
 
-/* Adds a written exponent, if there is one. Returns what follows. */
+/* Adds a written exponent, if there is one. Returns the text that follows. */
 static const char *take_exponent(const char *text, int64_t *exponent)
 {
     const char *digit = text + 1;
@@ -116,7 +116,7 @@ const char *text_of_number(char *text, size_t capacity, double number, int digit
     for (const char *from = text; *from; from++) {
         if (is_digit(*from) || strchr("+-e", *from))
             text[length++] = *from;
-        else if (length == 0 || text[length - 1] != '.') /* however long the locale's is */
+        else if (length == 0 || text[length - 1] != '.') /* a locale's may be several bytes */
             text[length++] = '.';
     }
     text[length] = 0;
@@ -152,8 +152,8 @@ bool contains_ignoring_case(const char *text, const char *needle)
     return needle[0] == '\0';
 }
 
-/* Bytes of the well-formed UTF-8 character that text starts with, 0 if it is not one (or the end).
- * Shortest form only, no surrogates, nothing above U+10FFFF. */
+/* Returns the bytes of the well-formed UTF-8 character at the start of text; 0 if there is none.
+ * Well-formed: in the shortest form, no surrogate, not above U+10FFFF. */
 static size_t character_length(const unsigned char *text)
 {
     const unsigned char first = text[0];
@@ -181,8 +181,8 @@ static size_t character_length(const unsigned char *text)
     return length;
 }
 
-/* Of a well-formed character: controls (C0, DEL, C1), ends of lines and paragraphs, and what
- * changes the direction of the text after it, which can make a line read as another. */
+/* Returns whether a well-formed character is a control (C0, DEL, C1), ends a line or paragraph, or
+ * changes the direction of later text. Such changes can make a line read as another. */
 static bool is_control(const unsigned char *byte)
 {
     if (byte[0] < 0x20 || byte[0] == 0x7F)
@@ -243,15 +243,15 @@ const char *text_excerpt(char *excerpt, size_t capacity, const char *text)
 
 /* ---- "Did you mean". */
 
-#define WORD_MAX 64 /* letters; longer words are near to none */
+#define WORD_MAX 64 /* letters; longer words are near to nothing */
 
 static size_t least(size_t a, size_t b)
 {
     return a < b ? a : b;
 }
 
-/* Insertions, deletions, replacements and swaps of neighbours that turn a into b: the optimal
- * string alignment distance. */
+/* Returns the optimal string alignment distance: the insertions, deletions, replacements and swaps
+ * of neighbours that turn a into b. */
 static size_t edit_distance(const char *a, const char *b)
 {
     size_t rows[3][WORD_MAX + 1];
@@ -283,7 +283,7 @@ void nearest_begin(struct nearest *nearest, const char *word)
 {
     nearest->word = word;
     nearest->best = NULL;
-    nearest->distance = strlen(word) / 3 + 2; /* what is near is nearer than this */
+    nearest->distance = strlen(word) / 3 + 2; /* near words are nearer than this */
 }
 
 void nearest_consider(struct nearest *nearest, const char *candidate)

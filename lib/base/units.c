@@ -12,7 +12,7 @@
 
 struct unit {
     const char *name;
-    int power_of_ten; /* to the quantity's first unit */
+    int power_of_ten; /* relative to the quantity's first unit */
 };
 
 struct units {
@@ -61,7 +61,7 @@ static bool unknown_unit(const struct units *units, const char *unit, char *prob
     return false;
 }
 
-/* What the number in a unit means in SI; only called for the quantity's own units. */
+/* Converts a number to SI after its power of ten. unit: one of the quantity's, or NULL. */
 static double to_si(enum quantity quantity, const struct unit *unit, double number)
 {
     if (quantity == QUANTITY_ANGLE && !(unit && strcmp(unit->name, "rad") == 0))

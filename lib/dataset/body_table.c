@@ -1,5 +1,4 @@
-/* Tables of bodies in campaigns: files whose columns are keys of objects and whose rows are bodies
- * that were measured, of which one is drawn whole. */
+/* Tables of measured bodies, which are drawn as whole rows. Columns are keys of objects. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,15 +12,15 @@
 #define ROWS_MAX  10000
 #define BYTES_MAX (4 * 1024 * 1024)
 
-/* A table on its way from its file. */
+/* A table while it is read. */
 struct body_reader {
     struct report *report;
-    struct tree file; /* empty: says where mistakes are */
+    struct tree file; /* empty; gives the places of mistakes */
     struct distribution *distribution;
-    const char *weight; /* column; NULL: rows are alike */
+    const char *weight; /* column of weights; NULL: all rows weigh the same */
     size_t weight_place;
-    size_t place[TABLE_FIELDS_MAX]; /* of each key among the fields */
-    char *units[TABLE_FIELDS_MAX];  /* of each key's numbers, NULL: none; owned */
+    size_t place[TABLE_FIELDS_MAX]; /* each key's place among the fields */
+    char *units[TABLE_FIELDS_MAX];  /* unit of each key's numbers; NULL: none; owned */
 };
 
 static size_t column_of(const struct table_row *row, size_t field)
@@ -29,7 +28,7 @@ static size_t column_of(const struct table_row *row, size_t field)
     return (size_t)(row->fields[field] - row->start) + 1;
 }
 
-/* "length [m]": the key and, where it has one, the unit. */
+/* Reads a column's name, "length [m]": the key and, if there is one, the unit. */
 static sonject_status read_name(struct body_reader *reader, const struct table_row *row,
                                 size_t field)
 {
@@ -37,7 +36,7 @@ static sonject_status read_name(struct body_reader *reader, const struct table_r
     const struct tree_place place = {NULL, row->line, column_of(row, field)};
     char *name = row->fields[field];
     char *unit = strchr(name, '[');
-    /* a key's index, as of parts[0].length, is no unit */
+    /* an index within a key, as in parts[0].length, is no unit */
     while (unit && unit > name && unit[-1] != ' ')
         unit = strchr(unit + 1, '[');
     const size_t length = strlen(name);
@@ -81,7 +80,7 @@ static sonject_status read_names(struct body_reader *reader, const struct table_
     return status;
 }
 
-/* A number without a unit gets the column's. */
+/* Returns the field with the column's unit, for free(); NULL where memory is out. */
 static char *make_cell(const char *field, const char *unit)
 {
     struct growing_text text = {NULL, 0, 0, false};
@@ -133,7 +132,7 @@ static sonject_status read_row(void *user, const struct table_row *row)
     return row->has_names ? read_names(user, row) : read_body(user, row);
 }
 
-/* Weights become shares that add up to 1. */
+/* Turns weights into running sums of shares that add up to 1. */
 static sonject_status finish_table(struct body_reader *reader)
 {
     struct distribution *distribution = reader->distribution;
@@ -165,7 +164,7 @@ static sonject_status read_file_name(struct reader *reader, const struct tree_no
 }
 
 static const struct field table_fields[] = {
-    {"file", "of the table", .kind = FIELD_SPECIAL, .read = read_file_name, REQUIRED},
+    {"file", "file of the table", .kind = FIELD_SPECIAL, .read = read_file_name, REQUIRED},
     {"weight", "column of the rows' weights", .kind = FIELD_SPECIAL, .read = read_weight_name},
 };
 static const struct section table_section = {ROWS(table_fields)};

@@ -1,4 +1,5 @@
-/* Whether all that a campaign may draw can be made, and the hash of what its images depend on. */
+/* The check that all scenes of a campaign can be made, and the hash of all that images depend on. A
+ * trial is a scene at one end of all distributions, read but not injected. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,15 +16,15 @@
 #include "swath/geometry_notes.h"
 #include "swath/quicklook.h"
 
-#define TRIALS_MAX 20000 /* scenes, about as many milliseconds at the most */
+#define TRIALS_MAX 20000 /* scenes, at about 1 ms each */
 
-/* What a scene that a plan describes is read for. */
+/* A plan, and the scene that is read for the trial. */
 struct trial {
     struct image_plan plan;
     struct scene scene;
 };
 
-/* trial: for trial_clear, also on failure. are_relations: as of campaign_read_scene. */
+/* Reads a trial, for trial_clear, also on failure. are_relations: see campaign_read_scene. */
 static sonject_status trial_read(struct trial *trial, struct sonject_campaign *campaign,
                                  uint32_t swath, uint32_t category, uint32_t item, uint32_t step,
                                  uint32_t attempt, bool *are_relations)
@@ -41,18 +42,18 @@ static void trial_clear(struct trial *trial)
     image_plan_clear(&trial->plan);
 }
 
-/* Measures an opened swath, with the altitude at each row. */
+/* Measures an opened swath with the sonar's altitude at each row. */
 static sonject_status measure_rows(struct sonject_campaign *campaign, uint32_t number,
                                    const struct scene *scene, const struct swath_file *file)
 {
     const struct swath_plan *swath = &campaign->campaign.swaths[number];
     const size_t rows = (size_t)swath->layout.rows;
-    /* as check_water_column */
+    /* the condition of check_water_column */
     const bool may_show_water = scene->water_layer_count == 0 && scene->relief.count == 0;
     sonject_geometry_params geometry = scene->geometry;
     struct noted_geometry noted;
     geometry_notes_read(file, &noted);
-    if (scene->has_files_geometry) /* of all rows, as in the file's picture */
+    if (scene->has_files_geometry) /* take the geometry of all rows, as the file's picture does */
         (void)geometry_notes_tell(&noted, &geometry);
     double *altitudes = allocate_array(rows, sizeof *altitudes);
     CHECK_MEMORY(campaign->report, altitudes, "the altitudes");
@@ -63,7 +64,7 @@ static sonject_status measure_rows(struct sonject_campaign *campaign, uint32_t n
     return status;
 }
 
-/* The side of a picture of both; 0 of one without a nadir column. */
+/* Returns the side that is taken of a picture of both sides; 0 without a nadir column. */
 static uint32_t side_of_nadir(const sonject_geometry_params *geometry)
 {
     if (!(geometry->nadir_column > 0.0))
@@ -78,7 +79,7 @@ const char *swath_side_word(const struct swath_plan *swath)
     return words[swath->side];
 }
 
-/* Size and room of a swath, whose scene tells its geometry. */
+/* Finds size and room of a swath. The swath's scene gives the geometry. */
 static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t number)
 {
     struct swath_plan *swath = &campaign->campaign.swaths[number];
@@ -148,8 +149,8 @@ static sonject_status try_scene(struct sonject_campaign *campaign, struct hash *
     return status;
 }
 
-/* Where the ends do not go together, values between them may: such draws are made anew. *is_made:
- * whether some do. */
+/* Tries a step. If the ends do not fit each other, values between the ends are tried. *is_made: set
+ * if a scene could be made. */
 static sonject_status try_step(struct sonject_campaign *campaign, struct hash *hash,
                                uint32_t category, uint32_t item, uint32_t step, bool *is_made)
 {
@@ -164,7 +165,7 @@ static sonject_status try_step(struct sonject_campaign *campaign, struct hash *h
     return status == SONJECT_ERROR_INPUT && are_relations ? SONJECT_OK : status;
 }
 
-/* Each step of what is drawn of an item, or of the scene alone. */
+/* Tries each step of an item's draws, or of the scene's alone. *trials: grows by the steps. */
 static sonject_status try_steps(struct sonject_campaign *campaign, struct hash *hash,
                                 uint32_t category, uint32_t number, const struct item *item,
                                 uint64_t *trials)
@@ -181,12 +182,12 @@ static sonject_status try_steps(struct sonject_campaign *campaign, struct hash *
         CHECK(try_step(campaign, hash, category, number, step, &is_made));
     if (is_made)
         return SONJECT_OK;
-    /* says again why */
+    /* fails again, with the message that says why */
     return try_scene(campaign, hash, 0, category, number, 0, 0, NULL);
 }
 
-/* Tries each swath, and each object with the ends and all choices of what is drawn of it. Files
- * that objects name are read, so that the content of all that may be drawn is in the hash. */
+/* Tries each swath, and each object with the ends and all choices of its draws. The files that
+ * objects name are read, so that the hash covers the content of all that may be drawn. */
 static sonject_status try_scenes(struct sonject_campaign *campaign, struct hash *hash)
 {
     const struct campaign *plan = &campaign->campaign;
@@ -201,7 +202,7 @@ static sonject_status try_scenes(struct sonject_campaign *campaign, struct hash 
     return SONJECT_OK;
 }
 
-/* A key of the campaign's file with its value: a number, or a digest of its text. */
+/* Adds a key of the campaign's file to the inputs, as a number or as a digest of its text. */
 static void add_key(struct sonject_campaign *campaign, struct hash *hash,
                     const struct tree_entry *entry)
 {
@@ -333,7 +334,7 @@ void campaign_close(struct sonject_campaign **campaign)
 {
     if (!*campaign)
         return;
-    campaign_forget_calibrations(*campaign); /* which the swaths number */
+    campaign_forget_calibrations(*campaign); /* uses swath_count, which is reset next */
     campaign_clear(&(*campaign)->campaign);
     swath_store_close(&(*campaign)->store);
     mesh_store_clear(&(*campaign)->meshes);

@@ -1,4 +1,4 @@
-/* Campaign files: the tables of their keys. */
+/* The tables of keys of campaign files. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,7 +23,7 @@ sonject_status grow_list(struct report *report, void *list, size_t count, size_t
     return SONJECT_OK;
 }
 
-/* Keys that the campaign itself gives values. */
+/* Returns whether the campaign itself sets a key. */
 static bool is_taken(const char *key, bool is_object)
 {
     static const char *const taken[] = {"sonject", "input.path", "patch", "objects", "elements"};
@@ -101,8 +101,8 @@ static sonject_status read_draw(struct reader *reader, struct campaign *campaign
     return status;
 }
 
-/* What is drawn of an item, or, where that is NULL, of the scene: draws of "objects[].heading" and
- * the like are those of all objects. */
+/* Reads the draws of an item, or of the scene if item is NULL. In the scene's draws,
+ * "objects[].heading" and the like hold for all objects. */
 static sonject_status read_draws(struct reader *reader, const struct tree_node *node,
                                  struct campaign *campaign, struct item *item)
 {
@@ -121,7 +121,7 @@ static sonject_status read_draws(struct reader *reader, const struct tree_node *
                                : is_of_all ? &campaign->object_draws
                                            : &campaign->draws);
         if (is_table && status != SONJECT_OK)
-            return status; /* others may be ratios of its columns */
+            return status; /* other draws may be ratios of the table's columns */
     }
     return status;
 }
@@ -163,17 +163,18 @@ static sonject_status finish_item(struct reader *reader, const struct tree_node 
 
 #define STRUCTURE struct item
 static const struct field item_fields[] = {
-    {"class", "label for training", LABEL(class_name), REQUIRED},
-    {"weight", "how often, beside the others", QUANTITY(weight, NUMBER), WITHIN(0.0, 1e9),
-     .preset = 1.0},
-    {"object", "keys of an object that are not drawn", SPECIAL(read_object, "section"), REQUIRED},
-    {"draw", "what other keys of the object are drawn from; table: rows of a file",
+    {"class", "class of the object in labels, for training", LABEL(class_name), REQUIRED},
+    {"weight", "how often the entry is drawn, relative to the weights of the other entries",
+     QUANTITY(weight, NUMBER), WITHIN(0.0, 1e9), .preset = 1.0},
+    {"object", "keys of the object that are fixed, not drawn", SPECIAL(read_object, "section"),
+     REQUIRED},
+    {"draw", "other keys of the object, with their distributions; table: rows of a file",
      SPECIAL(read_item_draws, "section")},
 };
 static const struct section item_section = {ROWS(item_fields), .finish = finish_item};
 #undef STRUCTURE
 
-/* Whole numbers: fixed, or a choice of such. */
+/* Reads whole numbers: a fixed one, or a choice of several. */
 static sonject_status read_number(struct reader *reader, const struct tree_node *node,
                                   struct campaign *campaign, uint64_t least, uint64_t most,
                                   struct distribution *number)
@@ -283,12 +284,12 @@ static sonject_status read_columns(struct reader *reader, const struct tree_node
     return read_side(reader, node, &campaign->chip_columns);
 }
 
-/* Of enum output, from the first that a user chooses on; labels begin with yolo. */
+/* The words of enum output, from the first that a user chooses on. Labels begin with yolo. */
 static const char *const output_words[] = {"highlight", "shadow", "masks", "influence",
                                            "energy",    "field",  "yolo",  "voc"};
 #define LABEL_WORDS 2
 
-/* One of the list `outputs` or `labels`, as the path says. */
+/* Reads an entry of the list `outputs` or `labels`, as the reader's path says. */
 static sonject_status read_output(struct reader *reader, const struct tree_node *node,
                                   void *structure)
 {
@@ -322,7 +323,7 @@ static sonject_status read_outputs(struct reader *reader, const struct tree_node
     return read_list(reader, node, &words, campaign);
 }
 
-/* Items of which something may be drawn. */
+/* Checks that the items' weights are not all 0. */
 static sonject_status check_items(struct reader *reader, const struct tree_node *node,
                                   const char *key, const struct item *items, uint32_t count)
 {
@@ -338,25 +339,24 @@ static sonject_status check_items(struct reader *reader, const struct tree_node 
 #define STRUCTURE  struct campaign
 #define SIDE_RANGE TEXT_OF(CAMPAIGN_CHIP_MIN) "..." TEXT_OF(CAMPAIGN_CHIP_MAX) " pixels, or all"
 static const struct field chip_fields[] = {
-    {"rows", "of each image; all: those of its swath", SPECIAL(read_rows, "whole number, or all"),
-     .range = SIDE_RANGE, REQUIRED},
-    {"columns", "of each image; all: those of its swath",
+    {"rows", "rows of each image; all: as many as its swath has",
+     SPECIAL(read_rows, "whole number, or all"), .range = SIDE_RANGE, REQUIRED},
+    {"columns", "columns of each image; all: as many as its swath has",
      SPECIAL(read_columns, "whole number, or all"), .range = SIDE_RANGE, REQUIRED},
-    {"edge", "pixels that images stay away from swaths' edges", COUNT32(edge, 0, UINT32_MAX / 4),
-     .per = " pixels"},
+    {"edge", "pixels that images keep away from the edges of swaths",
+     COUNT32(edge, 0, UINT32_MAX / 4), .per = " pixels"},
     {"clearance",
-     "pixels that images stay away from contacts to avoid; objects' middles, where rows or columns "
-     "are all",
+     "pixels that images (if rows or columns is all: objects' middles) keep away from contacts to "
+     "avoid",
      COUNT32(clearance, 0, UINT32_MAX / 4), .per = " pixels"},
-    {"spread", "part of the sides in which objects lie, about the middle", QUANTITY(spread, NUMBER),
-     WITHIN(0.0, 1.0), .preset = 0.5},
-    {"slant_range", "[nearest, farthest] of images' middles, or of objects where columns: all",
+    {"spread", "share of each image side, about its middle, in which objects lie",
+     QUANTITY(spread, NUMBER), WITHIN(0.0, 1.0), .preset = 0.5},
+    {"slant_range",
+     "[nearest, farthest] slant range of images' middles, or of objects if columns is all",
      SPECIAL(read_range, "list of two lengths")},
     {"range_over_altitude",
-     "[least, most] of the slant range there over the sonar's altitude; images may then begin in "
-     "the "
-     "water "
-     "column",
+     "[least, most] slant range over altitude at images' middles (objects if columns is all); "
+     "water column allowed",
      SPECIAL(read_ratio, "list of two numbers"), .range = "1..." TEXT_OF(RATIO_MAX)},
 };
 static const struct section chip_section = {ROWS(chip_fields)};
@@ -371,11 +371,14 @@ static sonject_status finish_visible(struct reader *reader, const struct tree_no
 }
 
 static const struct field visible_fields[] = {
-    {"highlight", "least visibility of targets' highlights, as truth tells it",
+    {"highlight", "least visibility of targets' highlights, highlight_visibility_db in truth",
      QUANTITY(visible_highlight_db, DECIBEL), WITHIN(-100.0, 100.0), NONE_IF_NAN},
-    {"shadow", "most that of their shadows may be", QUANTITY(visible_shadow_db, DECIBEL),
-     WITHIN(-100.0, 100.0), NONE_IF_NAN},
-    {"otherwise", "what becomes of a target that is seen less",
+    {"shadow",
+     "greatest visibility of targets' shadows, shadow_visibility_db in truth; dark ones are "
+     "negative",
+     QUANTITY(visible_shadow_db, DECIBEL), WITHIN(-100.0, 100.0), NONE_IF_NAN},
+    {"otherwise",
+     "treatment of a target that is less visible: draw it again, or label it as difficult",
      WORD(faint) = {[FAINT_REDRAW] = "redraw", [FAINT_DIFFICULT] = "difficult"}},
 };
 static const struct section visible_section = {ROWS(visible_fields), .finish = finish_visible};
@@ -389,14 +392,14 @@ static sonject_status finish_clutter(struct reader *reader, const struct tree_no
 }
 
 static const struct field clutter_fields[] = {
-    {"objects", "list of what clutter may be, as targets are",
+    {"objects", "list of kinds of clutter, written like targets",
      ENTRIES(clutter, clutter_count, "object", item_section), REQUIRED},
-    {"number", "of clutter objects in an image, by default 1; where they are alone one at least",
+    {"number", "clutter objects in an image, by default 1; at least 1 where clutter is alone",
      SPECIAL(read_clutter_number, "whole number, or a choice"),
      .range = "0..." TEXT_OF(CAMPAIGN_CLUTTER_MAX)},
     {"alone", "fraction of images with clutter and no target", QUANTITY(clutter_alone, NUMBER),
      WITHIN(0.0, 1.0)},
-    {"labelled", "in COCO, YOLO and VOC; else detectors learn clutter as background",
+    {"labelled", "label clutter in COCO, YOLO and VOC; else detectors learn it as background",
      FLAG(clutter_labelled), .preset = 1},
 };
 static const struct section clutter_section = {ROWS(clutter_fields), .finish = finish_clutter};
@@ -421,39 +424,40 @@ static sonject_status finish_campaign(struct reader *reader, const struct tree_n
 static const struct field campaign_fields[] = {
     {"sonject_campaign", "version of the format, 1", SPECIAL(read_version, "whole number"),
      REQUIRED},
-    {"scene", "scene file with all that is not drawn", SPECIAL(read_scene_name, "file name"),
-     REQUIRED},
+    {"scene", "scene file with all values that are not drawn",
+     SPECIAL(read_scene_name, "file name"), REQUIRED},
     {"images", "number of images", COUNT64(images, 1, CAMPAIGN_IMAGES_MAX), REQUIRED},
-    {"seed", "of all that is drawn", COUNT64(seed, 0, 0), .preset = 1.0},
-    {"design", "how values are drawn",
+    {"seed", "seed of all random draws", COUNT64(seed, 0, 0), .preset = 1.0},
+    {"design", "method of drawing values: random, in equal strata, or on a grid",
      WORD(design) =
          {[DESIGN_RANDOM] = "random", [DESIGN_STRATIFIED] = "stratified", [DESIGN_GRID] = "grid"},
      .preset = DESIGN_STRATIFIED},
-    {"chip", "size of images, and where in swaths they lie", SAME(chip_section), REQUIRED},
+    {"chip", "size of images, and their places in the swaths", SAME(chip_section), REQUIRED},
     {"outputs",
-     "written beside image and truth, by default the first three: highlight, shadow, masks, "
-     "influence, energy, field",
+     "files beside image and truth: highlight, shadow, masks (by default these three), influence, "
+     "energy, field",
      SPECIAL(read_outputs, "list of words")},
-    {"format", "of images; as_input: JPEG where the swath is one, coded as that is",
+    {"format", "format of image files; as_input: a JPEG, coded alike, where the swath is a JPEG",
      WORD(format) = {[FORMAT_LOSSLESS] = "lossless", [FORMAT_AS_INPUT] = "as_input"}},
     {"grey",
-     "[black, white] of images of 8 bit, for detectors; levels over full scale, as --db of "
-     "sonject convert; by default images have the swath's own numbers",
+     "[black, white] of 8 bit images for detectors: levels over full scale, as convert --db; "
+     "default: swath's numbers",
      SPECIAL(read_grey, "list of two levels")},
-    {"labels", "beside COCO: yolo, voc", SPECIAL(read_outputs, "list of words")},
+    {"labels", "label formats besides COCO: yolo, voc", SPECIAL(read_outputs, "list of words")},
     {"empty", "fraction of images without any object", QUANTITY(empty, NUMBER), WITHIN(0.0, 1.0)},
-    {"visible", "how well targets must be seen", SAME(visible_section)},
-    {"splits", "names and fractions, such as {train: 0.8, test: 0.2}; by default {all: 1}",
+    {"visible", "how visible targets must be", SAME(visible_section)},
+    {"splits", "split names and fractions, such as {train: 0.8, test: 0.2}; by default {all: 1}",
      SPECIAL(campaign_read_splits, "section"), .range = "fractions above 0 that add up to 1"},
     {"swaths", "list of the images that objects are put into",
      SPECIAL(campaign_read_swaths, "list"), .is_list = true, .section = &campaign_swath_section,
      REQUIRED},
-    {"draw", "what keys of the scene are drawn from", SPECIAL(read_campaign_draws, "section")},
-    {"targets", "list of what is to be found",
+    {"draw", "keys of the scene that are drawn, with their distributions",
+     SPECIAL(read_campaign_draws, "section")},
+    {"targets", "list of kinds of targets, the objects to be found",
      ENTRIES(targets, target_count, "target", item_section)},
-    {"clutter", "what else lies there", SAME(clutter_section)},
+    {"clutter", "objects that lie in images besides targets", SAME(clutter_section)},
     {"targets_per_image",
-     "where there are any, by default 1; all but the first are drawn by weight",
+     "targets in an image that has any, by default 1; all but the first are drawn by weight",
      SPECIAL(read_target_number, "whole number, or a choice"),
      .range = "1..." TEXT_OF(CAMPAIGN_TARGETS_MAX)},
 };

@@ -1,4 +1,4 @@
-/* One image of a campaign: its scene, drawn and calibrated, and what is made of it. */
+/* One image of a campaign: its scene, drawn and calibrated, and the injection into its swath. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,7 +20,7 @@ void campaign_image_clear(struct campaign_image *image)
     image_plan_clear(&image->plan);
 }
 
-/* The message of what failed, with the image's number before it. */
+/* Puts the image's number before the message of a failure. */
 static sonject_status name_image(struct report *report, uint64_t id, sonject_status status)
 {
     char message[REPORT_CAPACITY];
@@ -30,14 +30,14 @@ static sonject_status name_image(struct report *report, uint64_t id, sonject_sta
     return report_failure(report, status, "image %llu: %s", (unsigned long long)id, message);
 }
 
-/* What is said of "--set KEY: what" is the campaign file's where that drew the key. */
+/* Reports "--set KEY: what" where the campaign's file or table gave the key; false: neither did. */
 static bool place_line(struct tree *tree, const struct image_plan *plan, const char *line)
 {
     static const char start[] = "--set ";
     if (strncmp(line, start, strlen(start)) != 0)
         return false;
     line += strlen(start);
-    for (size_t i = plan->key_count; i-- > 0;) { /* what is drawn of an object comes behind it */
+    for (size_t i = plan->key_count; i-- > 0;) { /* an object's draws come behind the object */
         const char *text = plan->keys[i].text;
         const size_t length = strcspn(text, "=");
         if (plan->keys[i].place.line == 0 || strncmp(line, text, length) != 0 || !line[length] ||
@@ -69,7 +69,7 @@ static void place_message(struct sonject_campaign *campaign, const struct image_
         next = line + strcspn(line, "\n");
         next += *next ? (*next = 0, 1) : 0;
         const char *key_end = strncmp(line, "--set ", 6) == 0 ? strstr(line, ": ") : NULL;
-        const char *what = key_end ? key_end + 2 : line; /* nobody wrote that --set */
+        const char *what = key_end ? key_end + 2 : line; /* the user wrote no --set */
         if (!place_line(tree, plan, line))
             mistakes_add(&mistakes, tree, &behind, what, what);
     }
@@ -115,7 +115,7 @@ sonject_status campaign_read_scene(struct sonject_campaign *campaign, const stru
     return status;
 }
 
-/* Keeps the first reason's first line; what goes on has not failed. */
+/* Keeps the first line of the first reason, and clears the message, since the call goes on. */
 static void keep_reason(struct report *report, const char *why, char reason[REASON_CAPACITY])
 {
     if (!*reason)
@@ -184,7 +184,7 @@ sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t i
     }
 }
 
-/* Calibrations are kept in a campaign's folder, which images in memory lack. */
+/* Refuses scenes of images in memory that ask for a calibration, which only a folder can keep. */
 static sonject_status check_calibrated(const struct sonject_campaign *campaign,
                                        const struct campaign_image *image)
 {
@@ -200,7 +200,7 @@ static sonject_status check_calibrated(const struct sonject_campaign *campaign,
         "input.calibration");
 }
 
-/* *is_drawn: whether it failed for what was drawn. */
+/* Injects the drawn scene. *is_drawn: true where the drawn values make the injection fail. */
 static sonject_status make_attempt(struct device *device, struct sonject_campaign *campaign,
                                    sonject_progress_function progress, void *user,
                                    struct campaign_image *image, bool *is_drawn)
@@ -235,8 +235,8 @@ static const char *visibility_text(double decibels, char text[16])
     return text;
 }
 
-/* Finds the targets that are seen less than they are to be; false: there are none. next: of several
- * targets those alone are drawn anew, and all others keep their places. */
+/* Finds the targets that are less visible than the campaign asks; false: none. next: of several
+ * targets, only the faint ones are drawn again, and all other objects keep their places. */
 static bool find_faint(const struct sonject_campaign *campaign, struct campaign_image *image,
                        struct attempts *next, char why[REASON_CAPACITY])
 {
@@ -270,7 +270,7 @@ sonject_status campaign_image_make(struct device *device, struct sonject_campaig
                                    struct campaign_image *image)
 {
     struct attempts attempts = {0};
-    uint32_t redrawn = 0; /* for targets alone */
+    uint32_t redrawn = 0; /* draws of single targets */
     char reason[REASON_CAPACITY] = "";
     for (;;) {
         bool is_drawn = false;
@@ -306,7 +306,7 @@ sonject_status campaign_image_round(struct report *report, struct campaign_image
     const struct swath *swath = &image->swath;
     struct injection_result *result = &image->result;
     size_t bad = 0;
-    uint64_t at_full_scale = 0; /* the input's are counted already */
+    uint64_t at_full_scale = 0; /* pixels of the input at full scale are counted already */
     if (swath->is_complex)
         return SONJECT_OK;
     void *stored = swath_stored_result(swath, result, &result->statistics.output_clipped);

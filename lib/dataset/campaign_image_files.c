@@ -1,5 +1,5 @@
-/* The files of one image of a campaign, and whether they are as they were written: what a record
- * says is believed where its own hash holds. */
+/* The files of one image of a campaign, and the check that they are as they were written. A record
+ * is trusted if its own hash holds. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -36,7 +36,7 @@ const char *image_file_name(uint64_t id, enum output output, const char *extensi
     return name;
 }
 
-/* Rows of the track become those of the image. */
+/* Moves the track's rows so that they count from the image's first row. */
 static void shift_track(struct track *track, uint64_t first_row)
 {
     const uint64_t shift = first_row < track->rows ? first_row : track->rows;
@@ -48,8 +48,8 @@ static void shift_track(struct track *track, uint64_t first_row)
                 (size_t)track->rows * sizeof *track->headings_deg);
 }
 
-/* The image as one by itself: its own pixel (0, 0) is where its geometry begins, and its track.
- * What the two hold is the image's. */
+/* Makes scene and swath of the image by itself: its geometry and its track begin at its own pixel
+ * (0, 0). What scene and swath hold stays owned by the image. */
 static void take_alone(struct campaign_image *image, struct scene *scene, struct swath *swath)
 {
     const struct region *chip = &image->plan.chip;
@@ -64,7 +64,7 @@ static void take_alone(struct campaign_image *image, struct scene *scene, struct
     swath->layout.rows = chip->rows;
     swath->layout.columns = chip->columns;
     swath->patch = all;
-    swath->skipped.count = 0; /* they are the recording's */
+    swath->skipped.count = 0; /* skipped pings belong to the whole recording */
 }
 
 static bool is_grey(const struct sonject_campaign *campaign)
@@ -100,13 +100,13 @@ static sonject_status write_pixels(struct sonject_campaign *campaign, const stru
     return status;
 }
 
-/* What images, truth and labels are made of. */
+/* The parts that images, truth and labels are made of. */
 struct image_parts {
     struct scene scene;
     struct swath swath;
     struct image_labels labels;
-    char folder[PATH_CAPACITY]; /* of the split */
-    const char *extension;      /* of pixels */
+    char folder[PATH_CAPACITY]; /* folder of the split */
+    const char *extension;      /* extension of the image file */
 };
 
 static json_t *record_of(const struct sonject_campaign *campaign,
@@ -243,7 +243,7 @@ sonject_status campaign_image_write(struct sonject_campaign *campaign, struct ca
     return status;
 }
 
-/* Errors: INPUT (it was changed, or is another image's), MEMORY. */
+/* Checks a record. Errors: INPUT (the record was changed, or is another image's), MEMORY. */
 static sonject_status check_record(const struct data_set *set, size_t split, uint64_t id,
                                    json_t *record, const char *path)
 {
@@ -289,7 +289,7 @@ sonject_status data_set_has_image(const struct data_set *set, size_t split, uint
     char folder[PATH_CAPACITY], path[PATH_CAPACITY];
     char record_name[IMAGE_NAME_CAPACITY];
     json_t *record;
-    const char *name = NULL; /* of the first file that is not as it was written */
+    const char *name = NULL; /* first file that is not as it was written */
     *has = false;
     CHECK(path_in(set->report, folder, set->folder, "%s", set->split_names[split]));
     CHECK(path_in(set->report, path, folder, "%s",

@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "dataset/campaign.h"
 
-#define JPEG_BLOCK 8 /* rows, columns that are coded together */
+#define JPEG_BLOCK 8 /* rows and columns of a block that is coded as one */
 
 static int compare_starts(const void *a, const void *b)
 {
@@ -21,13 +21,13 @@ static uint64_t clip(uint64_t value, uint64_t low, uint64_t high)
     return value < low ? low : value > high ? high : value;
 }
 
-/* How many first columns a chip may have in a row; *column becomes the wanted-th of them, if there
- * is one. */
+/* Returns the number of first columns that a chip may have in a row. *column: gets the wanted-th of
+ * these columns, if there is one. */
 static uint64_t free_columns(const struct crop_places *room, uint64_t row, uint64_t wanted,
                              uint64_t *column)
 {
     const uint64_t end = room->chips.first_column + room->chips.columns;
-    uint64_t next = room->chips.first_column; /* that may be free */
+    uint64_t next = room->chips.first_column; /* next column that may be free */
     uint64_t count = 0;
     for (size_t i = 0; i <= room->box_count; i++) {
         const struct region *box = &room->boxes[i];
@@ -43,7 +43,7 @@ static uint64_t free_columns(const struct crop_places *room, uint64_t row, uint6
     return count;
 }
 
-/* The first row behind `row` in which other boxes lie, or that no chip has. */
+/* Returns the first row behind `row` in which the set of boxes changes, or that no chip has. */
 static uint64_t band_end(const struct crop_places *room, uint64_t row)
 {
     uint64_t end = room->chips.first_row + room->chips.rows;
@@ -93,18 +93,18 @@ void crop_sample(const struct crop_places *room, double along_track, double rang
     *column -= *column % room->block_columns;
 }
 
-/* What limits where images lie: the swath's geometry and the sonar's altitude over it. */
+/* The limits on places of images: the swath's geometry, and the sonar's altitude over the swath. */
 struct limits {
     const struct campaign *campaign;
     const sonject_geometry_params *geometry;
-    const double *altitudes_m; /* of each row */
+    const double *altitudes_m; /* altitude at each row */
     double lowest_m, highest_m;
     struct ratio_limits ratio;
     bool shows_water; /* images may begin in the water column */
 };
 
-/* Narrows low...high to the first columns of what has its middle at slant ranges from near to far.
- */
+/* Narrows low...high to first columns of chips whose middle is at slant ranges from near to far.
+ * half: from a chip's first column to its middle; 0: objects instead of chips. */
 static void limit_columns(const struct limits *limits, double half, double near_m, double far_m,
                           double *low, double *high)
 {
@@ -114,7 +114,7 @@ static void limit_columns(const struct limits *limits, double half, double near_
     *high = near_m <= far_m ? fmin(*high, floor(fmax(near, far) + 1e-9)) : -1.0;
 }
 
-/* The same to the first columns of what lies beyond the first return of an altitude. */
+/* Narrows low...high to first columns of chips or objects beyond an altitude's first return. */
 static void leave_out_water(const struct limits *limits, double half, double altitude_m,
                             double *low, double *high)
 {
@@ -127,9 +127,8 @@ static void leave_out_water(const struct limits *limits, double half, double alt
         *low = fmax(*low, floor(bottom) + 1.0);
 }
 
-/* First columns of chips within the limits wherever the altitude is lowest. An image that has all
- * columns begins where the swath does: there the limits are those of its objects. False where
- * nothing is left. */
+/* Limits the first columns of chips at the lowest altitude. An image of all columns begins where
+ * the swath does, so its objects are limited instead. Returns false where none is left. */
 static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, struct region *chips)
 {
     const struct campaign *campaign = limits->campaign;
@@ -157,9 +156,9 @@ static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, s
     return low <= high;
 }
 
-#define ALTITUDE_BLOCKS 64 /* of rows, over each of which altitudes are from least to most */
+#define ALTITUDE_BLOCKS 64 /* blocks of rows, each with one range of altitudes */
 
-/* Blocks of first rows of chips are whole blocks of a JPEG. */
+/* Returns the number of JPEG blocks, of which altitude blocks are made, over chips' first rows. */
 static uint64_t jpeg_blocks(const struct crop_places *room)
 {
     return (room->chips.rows + room->block_rows - 1) / room->block_rows;
@@ -187,8 +186,8 @@ struct object_columns objects_of_chip(const struct swath_plan *plan, uint64_t fi
     return plan->block_objects[((unit + 1) * altitude_blocks(room) - 1) / jpeg_blocks(room)];
 }
 
-/* Narrows columns, of objects or of chips' first pixels, to those that the altitudes allow in chips
- * that begin in a block of rows. */
+/* Narrows columns, of objects or of chips' first pixels, to those that the altitudes allow. The
+ * altitudes are at the rows of chips that begin in a block of rows. */
 static void limit_block(const struct limits *limits, const struct swath_plan *plan, uint64_t block,
                         double half, struct object_columns *columns)
 {
@@ -213,7 +212,7 @@ static void forbid_block(struct crop_places *room, uint64_t block, uint64_t colu
 }
 
 /* Forbids first pixels of chips that the altitudes do not allow: two boxes for each block of rows,
- * behind the room's others. */
+ * behind the room's other boxes. */
 static void limit_chips(const struct limits *limits, struct swath_plan *plan)
 {
     struct crop_places *room = &plan->room;
@@ -233,7 +232,7 @@ static void limit_chips(const struct limits *limits, struct swath_plan *plan)
     }
 }
 
-/* The same of objects, where images have all columns; forbids chips in which they have none. */
+/* Limits objects in images of all columns by altitude. Forbids chips that leave them no column. */
 static sonject_status limit_objects(struct report *report, const struct limits *limits,
                                     struct swath_plan *plan)
 {
@@ -257,8 +256,8 @@ static sonject_status limit_objects(struct report *report, const struct limits *
     return SONJECT_OK;
 }
 
-/* First pixels, along one axis, of chips that would touch a box, or, set back to a block's first,
- * might. */
+/* Finds the first pixels, along one axis, of chips that would touch a box, or would do so once they
+ * are set back to a block's first pixel. */
 static void forbid(const struct campaign *campaign, uint64_t block, uint64_t chip, uint64_t first,
                    uint64_t count, uint64_t *first_forbidden, uint64_t *forbidden)
 {
@@ -267,7 +266,7 @@ static void forbid(const struct campaign *campaign, uint64_t block, uint64_t chi
     *forbidden = first + count + campaign->clearance + block - 1 - *first_forbidden;
 }
 
-/* Leaves out what lies before a block of which the first pixel beyond the edge is the first. */
+/* Shortens an interval at its start, so that the first pixel beyond the edge begins a block. */
 static void begin_at_block(uint64_t block, uint32_t edge, uint64_t *first, uint64_t *count)
 {
     const uint64_t left_out = (block - (*first + edge) % block) % block;
@@ -275,8 +274,8 @@ static void begin_at_block(uint64_t block, uint32_t edge, uint64_t *first, uint6
     *count -= left_out < *count ? left_out : *count;
 }
 
-/* First pixels, along one axis, of chips in which a box takes all places that objects may have:
- * they keep away from it by themselves where images show it. low, high: where objects lie in a
+/* Finds the first pixels, along one axis, of chips in which a box takes all places of objects. In
+ * other chips, objects keep away from the box by themselves. low, high: where objects lie in a
  * chip. */
 static void forbid_covered(const struct campaign *campaign, uint64_t block, double low, double high,
                            uint64_t first, uint64_t count, uint64_t *first_forbidden,
@@ -290,7 +289,7 @@ static void forbid_covered(const struct campaign *campaign, uint64_t block, doub
     *forbidden = end > from ? (uint64_t)(end - from) + block - 1 : 0;
 }
 
-/* The pixels of an interval of which some are in the image. False: none is. */
+/* Finds the pixels of an interval that are in the image. Returns false if there are none. */
 static bool pixels_of(double from, double to, uint64_t image, uint64_t *first, uint64_t *count)
 {
     const double low = fmax(0.0, floor(fmin(from, to)));
@@ -300,7 +299,7 @@ static bool pixels_of(double from, double to, uint64_t image, uint64_t *first, u
     return *count > 0;
 }
 
-/* Finds the pixels of a box that is told in metres. */
+/* Finds the pixels of a box that is given in metres, and checks a box that is given in pixels. */
 static sonject_status find_box(const struct campaign *campaign, const struct swath_plan *plan,
                                const sonject_geometry_params *geometry, struct avoided_box *box)
 {
@@ -328,7 +327,7 @@ static sonject_status find_box(const struct campaign *campaign, const struct swa
                         plan->written, along_m[0], along_m[1], range_m[0], range_m[1]);
 }
 
-/* The first pixels that a box to avoid leaves to no chip. */
+/* Returns the first pixels that a box to avoid forbids to chips. */
 static struct region forbid_box(const struct campaign *campaign, const struct swath_plan *plan,
                                 const struct region *box)
 {
@@ -364,7 +363,7 @@ static uint64_t side_of(uint32_t asked, uint64_t pixels, uint32_t edge)
     return asked > 0 ? asked : CAMPAIGN_CHIP_MIN + (pixels > taken ? pixels - taken : 0);
 }
 
-/* Tells all that is asked of images, or of objects in them, where no place is left. */
+/* Fails and tells all that is asked of images, or of objects in images, as no place is left. */
 static sonject_status refuse_swath(const struct limits *limits, const struct swath_plan *plan)
 {
     const struct campaign *campaign = limits->campaign;
@@ -399,7 +398,7 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
                             .altitudes_m = altitudes_m,
                             .lowest_m = HUGE_VAL,
                             .ratio = plan->ratio.least > 0.0 ? plan->ratio : campaign->ratio};
-    /* where images have all columns it is objects that have a ratio */
+    /* an image of all columns may show water: the ratio limits its objects alone */
     limits.shows_water =
         limits.ratio.least > 0.0 && (may_show_water || campaign->chip_columns == 0);
     for (uint64_t row = 0; row < plan->layout.rows; row++) {
@@ -412,7 +411,7 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
                             "nadir_column %g leaves none of the %llu columns of %s to the side",
                             geometry->nadir_column, (unsigned long long)plan->layout.columns,
                             plan->written);
-    /* chips of a JPEG begin where blocks do, so that what was coded once is coded alike again */
+    /* chips of a JPEG begin where a block does, so that blocks coded once are coded alike again */
     const uint64_t block = plan->jpeg_quality > 0 ? JPEG_BLOCK : 1;
     const uint64_t block_rows = campaign->chip_rows > 0 ? block : 1;
     const uint64_t block_columns = campaign->chip_columns > 0 ? block : 1;

@@ -10,7 +10,7 @@
 #include "base/system/process.h"
 #include "dataset/data_set.h"
 
-/* A run over images, and how far it is. */
+/* A run over images, and its progress. */
 struct sweep {
     struct device_slot *slot;
     struct sonject_campaign *campaign;
@@ -18,14 +18,14 @@ struct sweep {
     sonject_progress_function progress;
     void *user;
     uint64_t made;  /* images of this run; atomic */
-    double begin_s; /* of the call; start_s: of the first image */
+    double begin_s; /* time of the call; start_s: of the first image */
     double start_s;
-    struct data_set set; /* the folder's */
-    uint32_t *missing;   /* ids of images that were so when the call began; owned */
+    struct data_set set; /* data set in the folder */
+    uint32_t *missing;   /* ids of images that were missing when the call began; owned */
     uint64_t missing_count;
 };
 
-/* Within images, too, so that the run can be cancelled there. */
+/* Tells progress, also within images, so that the run can be cancelled there. */
 static int tell_images(void *user, double done, const char *stage)
 {
     struct sweep *sweep = user;
@@ -41,7 +41,7 @@ static int tell_images(void *user, double done, const char *stage)
                            images_per_s > 0.0 ? rate : stage);
 }
 
-/* Another process may be at the same campaign: what it made meanwhile is not made again. */
+/* Makes a missing image, unless another process has made it meanwhile. */
 static sonject_status make_missing(void *user, const struct image_maker *maker, uint64_t index)
 {
     struct sweep *sweep = user;
@@ -69,7 +69,7 @@ static sonject_status make_missing(void *user, const struct image_maker *maker, 
     return status;
 }
 
-/* Ids of this run: the shard's, in rising order. */
+/* Returns the first id of this run. The shard's ids come in rising order. */
 static uint64_t first_id(const sonject_campaign_run_params *params)
 {
     return params->only_one ? params->only : params->shard_index - 1;
@@ -81,7 +81,7 @@ static uint64_t next_id(const struct sweep *sweep, uint64_t id)
                                    : id + sweep->params->shard_count;
 }
 
-/* Images that are not there, or not as they were written. */
+/* Finds the images that are not there, or not as they were written. */
 static sonject_status find_missing(struct sweep *sweep)
 {
     const struct campaign *plan = &sweep->campaign->campaign;
@@ -99,7 +99,7 @@ static sonject_status find_missing(struct sweep *sweep)
     return status;
 }
 
-/* Times are the only thing that differs from run to run, and so in a file of their own. */
+/* Writes the times to a file of their own, since only times differ from run to run. */
 static sonject_status write_times(const struct sweep *sweep)
 {
     const double elapsed = clock_seconds() - sweep->start_s;
@@ -111,7 +111,7 @@ static sonject_status write_times(const struct sweep *sweep)
     return json_document_write(sweep->campaign->report, document, 9, path);
 }
 
-/* The documents of the whole; *is_finished: they were there. */
+/* Writes the documents of the whole. *is_finished: they were there before. */
 static sonject_status finish_whole(struct sweep *sweep, bool *is_finished)
 {
     sweep->set.progress = sweep->progress;

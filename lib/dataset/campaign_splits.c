@@ -1,23 +1,23 @@
-/* The swaths of a campaign dealt to its splits. */
+/* The assignment of a campaign's swaths to its splits. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "dataset/campaign.h"
 
-#define SWATH_STREAM 0x30000001u /* beyond those of distributions */
+#define SWATH_STREAM 0x30000001u /* above the streams of distributions */
 #define SPLIT_OPEN   UINT32_MAX
 
-/* Swaths that show the same seabed form a group, which is named after its first: they are of
- * one side of equal files. A side's channels of other frequencies show the same seabed. */
+/* Groups of swaths that show the same seabed: one side of equal files, at any frequency. A group is
+ * named after its first swath. */
 struct groups {
-    uint32_t *group_of; /* of each swath; owned, with the others behind it */
-    uint32_t *split_of; /* of each group, SPLIT_OPEN until it has one */
+    uint32_t *group_of; /* group of each swath; owned, with the arrays below */
+    uint32_t *split_of; /* split of each group; SPLIT_OPEN: none yet */
     uint32_t *open;     /* groups without a split, in random order */
     size_t open_count, count;
 };
 
-/* Splits that swaths ask for. */
+/* Gives groups the splits that their swaths ask for. */
 static sonject_status take_wishes(const struct campaign *campaign, struct groups *groups)
 {
     for (size_t i = 0; i < campaign->swath_count; i++) {
@@ -58,8 +58,8 @@ static sonject_status find_groups(const struct campaign *campaign,
     return SONJECT_OK;
 }
 
-/* Open groups go, in random order, to the split that lacks most of its share; splits without any
- * come first. */
+/* Deals the open groups in random order. Each goes to the split that lacks most of its share, and
+ * splits without any group come first. */
 static sonject_status deal(const struct campaign *campaign, struct groups *groups)
 {
     double held[CAMPAIGN_SPLITS_MAX] = {0};
@@ -91,7 +91,7 @@ static sonject_status deal(const struct campaign *campaign, struct groups *group
     return SONJECT_OK;
 }
 
-/* Exact shares of each kind of image in a split. */
+/* Finds the number of images of each kind in a split. */
 static sonject_status share_kinds(struct report *report, const struct campaign *campaign,
                                   struct split *split)
 {

@@ -1,4 +1,4 @@
-/* Campaign files: swaths with their keys and contacts to avoid, and splits. */
+/* The keys of campaign files on swaths, contacts to avoid, and splits. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,9 +9,9 @@
 
 #define SWATHS_MAX 10000
 #define PIXELS_MAX (UINT64_C(1) << 40)
-#define BOXES_MAX  1000 /* in a swath */
+#define BOXES_MAX  1000 /* boxes in a swath */
 
-/* The name of a file to open, and as it is written. */
+/* Reads a swath's path, and keeps the text as written. */
 static sonject_status read_swath_path(struct reader *reader, const struct tree_node *node,
                                       void *structure)
 {
@@ -70,12 +70,14 @@ static sonject_status read_slant_range(struct reader *reader, const struct tree_
 
 #define STRUCTURE struct avoided_box
 static const struct field box_fields[] = {
-    {"along_track", "from where to where", SPECIAL(read_along_track, "list of two lengths")},
-    {"slant_range", "from where to where", SPECIAL(read_slant_range, "list of two lengths")},
-    {"row", "first row", COUNT64(pixels.first_row, 0, PIXELS_MAX)},
-    {"column", "first column", COUNT64(pixels.first_column, 0, PIXELS_MAX)},
-    {"rows", "number of rows", COUNT64(pixels.rows, 0, PIXELS_MAX)},
-    {"columns", "number of columns", COUNT64(pixels.columns, 0, PIXELS_MAX)},
+    {"along_track", "[from, to] of the box along the track",
+     SPECIAL(read_along_track, "list of two lengths")},
+    {"slant_range", "[from, to] of the box in slant range",
+     SPECIAL(read_slant_range, "list of two lengths")},
+    {"row", "first row of the box", COUNT64(pixels.first_row, 0, PIXELS_MAX)},
+    {"column", "first column of the box", COUNT64(pixels.first_column, 0, PIXELS_MAX)},
+    {"rows", "number of rows of the box", COUNT64(pixels.rows, 0, PIXELS_MAX)},
+    {"columns", "number of columns of the box", COUNT64(pixels.columns, 0, PIXELS_MAX)},
 };
 static const struct section box_section = {
     ROWS(box_fields), .choice = "along_track+slant_range row+column+rows+columns"};
@@ -106,15 +108,17 @@ static sonject_status read_ratio(struct reader *reader, const struct tree_node *
 
 #define STRUCTURE struct swath_plan
 static const struct field swath_fields[] = {
-    {"path", "image file", SPECIAL(read_swath_path, "file name"), REQUIRED},
-    {"split", "that all of its images are in; by default any", TEXT(split)},
+    {"path", "image file of the swath", SPECIAL(read_swath_path, "file name"), REQUIRED},
+    {"split", "split that all images of this swath are in; by default any", TEXT(split)},
     {"set", "keys of the scene for this swath, such as {input.channel: port}",
      SPECIAL(read_swath_keys, "section")},
     {"avoid",
-     "boxes of contacts that no image shows; where chip.rows or chip.columns is all, images show "
-     "them and objects keep away",
+     "boxes of contacts that no image shows; if chip.rows or chip.columns is all, only objects "
+     "keep away from them",
      SPECIAL(read_avoid, "list"), .is_list = true, .section = &box_section},
-    {"range_over_altitude", "of this swath's images, instead of chip.range_over_altitude",
+    {"range_over_altitude",
+     "[least, most] slant range over altitude for this swath's images, instead of "
+     "chip.range_over_altitude",
      SPECIAL(read_ratio, "list of two numbers"), .range = "1..." TEXT_OF(RATIO_MAX)},
 };
 const struct section campaign_swath_section = {ROWS(swath_fields)};

@@ -1,5 +1,4 @@
-/* Sets of labelled contacts: which format a path has, where its images lie, what becomes of a box,
- * and which highlight and which shadow are one contact. */
+/* Sets of labelled contacts: their formats, images and boxes, and pairs of highlight and shadow. */
 #include "dataset/contact_files.h"
 
 #include <math.h>
@@ -13,7 +12,7 @@
 #include "dataset/contact_reader.h"
 
 #define CONTACTS_MAX   100000
-#define PAIRING_ROUNDS 8 /* a chain of boxes that needs more is no labelling of contacts */
+#define PAIRING_ROUNDS 8 /* no labelling has a chain of boxes that needs more */
 
 /* ---- What readers add. */
 
@@ -65,7 +64,7 @@ sonject_status contact_reader_count(struct contact_reader *reader, const char *c
     return SONJECT_OK;
 }
 
-/* "boulder (40), mine (60)", of classes that are not of parts alone; how many these are. */
+/* Lists the classes whose names tell no part, "boulder (40), mine (60)". Returns their number. */
 static size_t list_classes(const struct contact_reader *reader, char *text, size_t capacity)
 {
     const char *name;
@@ -85,7 +84,7 @@ static size_t list_classes(const struct contact_reader *reader, char *text, size
     return count;
 }
 
-/* The path of the file of an image, for free(); NULL: there is none, or memory is out. */
+/* Returns the path of an image's file, for free(); NULL: there is none, or memory is out. */
 static char *find_file(const struct contact_reader *reader, const char *name, bool *has_memory)
 {
     *has_memory = true;
@@ -130,7 +129,7 @@ sonject_status contact_reader_find_image(struct contact_reader *reader, const ch
     return SONJECT_OK;
 }
 
-/* Whole pixels from start to end, of so many; 0: it is not known how many. */
+/* Rounds an interval to whole pixels, one at least, of count; count 0: not known. */
 static void take_pixels(double start, double length, uint64_t count, uint64_t *first,
                         uint64_t *pixels)
 {
@@ -141,7 +140,7 @@ static void take_pixels(double start, double length, uint64_t count, uint64_t *f
     *pixels = (uint64_t)(end - begin);
 }
 
-/* Whether a side is within so many pixels, give or take one. */
+/* Returns whether an interval is within count pixels, give or take one; count 0: not known. */
 static bool is_inside(double start, double length, uint64_t count)
 {
     const double last = count > 0 ? (double)count : (double)IMAGE_PIXELS_MAX;
@@ -202,8 +201,8 @@ static int compare_contacts(const void *one, const void *other)
     return 0;
 }
 
-/* How far a highlight and a shadow are from lying as those of one object do: the shadow begins
- * where the highlight ends, at the same rows. Infinite where they cannot be of one. */
+/* Returns the distance, pixels, from the end of a highlight to the start of a shadow: 0 where the
+ * shadow begins there, at the same rows. Infinite where the two cannot be of one object. */
 static double distance_between(const struct labelled_contact *one,
                                const struct labelled_contact *other)
 {
@@ -221,8 +220,8 @@ static double distance_between(const struct labelled_contact *one,
     return hypot((double)shadow->first_column - highlight_end, shadow_row - highlight_row);
 }
 
-/* The nearest of an image's contacts, which are in the order of their rows, that may be the other
- * part of one; count: none. */
+/* Returns the number of the nearest contact that may be the other part of one; count: none.
+ * contacts: an image's, in the order of rows. */
 static size_t find_nearest(const struct labelled_contact *contacts, size_t count, size_t of)
 {
     const sonject_box *box = &contacts[of].box;
@@ -240,8 +239,8 @@ static size_t find_nearest(const struct labelled_contact *contacts, size_t count
     return nearest;
 }
 
-/* Makes one contact of each highlight and shadow of an image that are nearest to each other, until
- * there are no more. A shadow's box that is in another one now has no rows. */
+/* Joins each highlight and shadow of an image that are nearest to each other, until none are left.
+ * A shadow's box that was joined into another gets 0 rows. */
 static void pair_parts(struct labelled_contact *contacts, size_t count)
 {
     bool goes_on = true;
@@ -293,7 +292,7 @@ static void pair_all(struct contact_set *set)
 
 /* ---- Reading. */
 
-/* "data/labels/train" gives "data/images/train"; NULL: there is no such part, or memory is out. */
+/* Returns "data/images/train" for "data/labels/train"; NULL: there is none, or memory is out. */
 static char *folder_of_images(const char *folder)
 {
     for (size_t at = strlen(folder); at-- > 0;)
@@ -319,7 +318,7 @@ static sonject_status find_folders(struct contact_reader *reader, const char *fo
     return SONJECT_OK;
 }
 
-/* Files of a folder: YOLO's, or VOC's where both are there, since these tell more. */
+/* Reads a folder of labels: YOLO's, or VOC's where both are there, since VOC's tell more. */
 static sonject_status read_folder(struct contact_reader *reader, const char *path)
 {
     struct folder_names names;

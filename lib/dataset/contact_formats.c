@@ -16,10 +16,10 @@
 struct coco {
     struct contact_reader *reader;
     char file[TABLE_FILE_CAPACITY]; /* for messages */
-    json_t *images, *categories;    /* the document's, by their id's text; owned */
+    json_t *images, *categories;    /* entries of the document by the text of their id; owned */
 };
 
-/* An id as a key: the text itself, or the digits of a whole number. NULL: it is neither. */
+/* Returns an id as a key: the text itself, or the digits of a whole number; NULL: it is neither. */
 static const char *id_text(const json_t *id, char digits[24])
 {
     if (!json_is_integer(id))
@@ -28,7 +28,7 @@ static const char *id_text(const json_t *id, char digits[24])
     return digits;
 }
 
-/* Keeps a list's entries, each with the text of that key, by their ids. */
+/* Indexes a list's entries by their ids. Each entry must have a text under the key. */
 static sonject_status index_entries(struct coco *coco, const json_t *document, const char *list,
                                     const char *key, json_t **entries)
 {
@@ -54,7 +54,8 @@ static sonject_status index_entries(struct coco *coco, const json_t *document, c
     return SONJECT_OK;
 }
 
-/* A side of an image in pixels; 0 where it is not told. False for what is no such number. */
+/* Reads a side of an image, pixels; 0 where the entry does not give it. Returns false for a value
+ * that is no number of pixels. */
 static bool read_side(const json_t *image, const char *key, uint64_t *pixels)
 {
     const json_t *value = json_object_get(image, key);
@@ -63,7 +64,7 @@ static bool read_side(const json_t *image, const char *key, uint64_t *pixels)
     return !value || (json_is_integer(value) && number > 0 && (uint64_t)number <= IMAGE_PIXELS_MAX);
 }
 
-/* The class of an annotation. */
+/* Finds the class of an annotation. */
 static sonject_status read_class(struct coco *coco, const char *place, const json_t *annotation,
                                  const char **name)
 {
@@ -159,8 +160,8 @@ enum column {
     COLUMNS
 };
 
-/* Names of columns: of a plain table, and of the library's own, whose row and column are a centre's
- * and whose fields of a box are empty where nothing of a contact is seen. */
+/* Names of columns in a plain table, and in the library's own. In the latter, row and column are
+ * those of a centre, and the fields of a box are empty where nothing of a contact is seen. */
 static const char *const column_names[2][COLUMNS] = {
     {"image", "row", "column", "rows", "columns", "part", "class", "side"},
     {"image", "box_row", "box_column", "box_rows", "box_columns", "part", "class", "side"}};
@@ -169,7 +170,7 @@ struct contact_table {
     struct contact_reader *reader;
     char file[TABLE_FILE_CAPACITY]; /* for messages */
     const char *const *names;
-    size_t fields[COLUMNS]; /* TABLE_FIELDS_MAX: there is none */
+    size_t fields[COLUMNS]; /* field of each column; TABLE_FIELDS_MAX: none */
 };
 
 static sonject_status take_names(struct contact_table *table, const struct table_row *row)
@@ -197,7 +198,7 @@ static sonject_status take_names(struct contact_table *table, const struct table
     return SONJECT_OK;
 }
 
-/* A row's field; "" where there is no such column. */
+/* Returns a row's field; "" where there is no such column. */
 static const char *field_of_column(const struct contact_table *table, const struct table_row *row,
                                    enum column column)
 {
@@ -250,7 +251,7 @@ static sonject_status take_row(void *user, const struct table_row *row)
         return SONJECT_OK;
     const char *name = field_of_column(table, row, COLUMN_IMAGE);
     if (*name == '\'' && name[1] && strchr("=+-@", name[1]))
-        name++; /* it keeps spreadsheets from taking a name for a formula */
+        name++; /* the quote keeps spreadsheets from taking a name for a formula */
     snprintf(place, sizeof place, "%s:%zu", table->file, row->line);
     CHECK(find_part(table, row, &part));
     const char *side = field_of_column(table, row, COLUMN_SIDE);
@@ -277,7 +278,7 @@ sonject_status contacts_of_table(struct contact_reader *reader, const char *path
 
 #define LEVELS_MAX COUNT(((struct extent_quantiles *)0)->levels)
 
-#define LIST      .kind = FIELD_SPECIAL /* lists are read when all are there */
+#define LIST      .kind = FIELD_SPECIAL /* lists are read once all are there */
 #define STRUCTURE struct extent_quantiles
 static const struct field quantile_fields[] = {
     {"highlight_along", "extents of highlights along track", LIST},
@@ -291,7 +292,7 @@ static const struct field quantile_fields[] = {
 #undef STRUCTURE
 #define EXTENTS 4
 
-/* Reads a list of shares, which rise, or of lengths, of which some may be alike. */
+/* Reads a list of rising shares, or of lengths that do not fall. */
 static sonject_status read_rising(struct reader *reader, const struct tree_node *node,
                                   bool are_shares, double *values)
 {
@@ -322,7 +323,7 @@ static sonject_status finish_quantiles(struct reader *reader, const struct tree_
     sonject_status status = SONJECT_OK;
     size_t told = 0;
     if (!is_given(node, quantile_fields[EXTENTS].key))
-        return SONJECT_OK; /* which is told already */
+        return SONJECT_OK; /* the missing key is reported already */
     for (size_t i = EXTENTS + 1; status == SONJECT_OK && i-- > 0;) {
         const struct tree_entry *entry = tree_find(node, quantile_fields[i].key);
         if (!entry)
@@ -343,7 +344,7 @@ static sonject_status finish_quantiles(struct reader *reader, const struct tree_
         told += !is_levels;
         key_path_shorten(&reader->path, before);
     }
-    if (status == SONJECT_OK && told == 0 && node->count <= 2) /* else a key is unknown */
+    if (status == SONJECT_OK && told == 0 && node->count <= 2) /* else one key is unknown */
         return refuse_value(reader, node,
                             "tells no extents: add highlight_along, highlight_range, shadow_along "
                             "or shadow_range");

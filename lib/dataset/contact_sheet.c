@@ -1,4 +1,4 @@
-/* Pictures of images of a data set, drawn to scale, with boxes around their objects. */
+/* Pictures of a data set's images, drawn to scale, with boxes around the objects. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,18 +12,18 @@
 #include "swath/geometry_notes.h"
 
 #define CELLS_ACROSS 8
-#define CELL_SIDE    144 /* pixels that an image may take */
+#define CELL_SIDE    144 /* pixels of a side that an image may take */
 #define CELL_GAP     6
-#define LINE         18 /* of a caption */
+#define LINE         18 /* height of a caption's line, pixels */
 
-/* An image as amplitudes or grey levels, in the pixels that it is drawn with. */
+/* An image as amplitudes or grey levels, in the pixels of the picture. */
 struct thumbnail {
     uint32_t sides[2]; /* rows, columns */
-    double scales[2];  /* of an image's pixel: rows, columns of these */
+    double scales[2];  /* picture's pixels in a pixel of the image: rows, columns */
     float *values;
 };
 
-/* Means of the pixels that a drawn one stands for. */
+/* Fills each pixel of the thumbnail with the mean of the image's pixels that it covers. */
 static void resample(const struct raster_layout *layout, const void *pixels,
                      struct thumbnail *small)
 {
@@ -44,7 +44,7 @@ static void resample(const struct raster_layout *layout, const void *pixels,
         }
 }
 
-/* Grey levels as they are; other pixels in dB, from the 1st to the 99.8th percentile. */
+/* Scales values to 0...1: grey levels as they are, others in dB, 1st to 99.8th percentile. */
 static sonject_status shade(struct report *report, enum pixel_type type, struct thumbnail *small)
 {
     const size_t count = (size_t)small->sides[0] * small->sides[1];
@@ -67,7 +67,7 @@ static sonject_status shade(struct report *report, enum pixel_type type, struct 
     return SONJECT_OK;
 }
 
-/* As the file tells its pixels. */
+/* Chooses the sides of a picture by the pixel spacings that the file gives. */
 static void choose_sides(const struct swath_file *file, uint32_t sides[2])
 {
     struct noted_geometry noted;
@@ -131,7 +131,7 @@ static void draw_thumbnail(struct canvas *canvas, const struct thumbnail *small,
         }
 }
 
-/* The boxes of COCO's annotations; targets are the first objects. */
+/* Draws the boxes of COCO's annotations. Targets are the first objects. */
 static void draw_boxes(struct canvas *canvas, const json_t *record, const double scales[2],
                        int64_t x, int64_t y)
 {
@@ -156,7 +156,7 @@ static void draw_boxes(struct canvas *canvas, const json_t *record, const double
     }
 }
 
-/* How many characters stand in a line: up to where words end, if they are not longer. */
+/* Returns how many characters stand in a line: up to the end of a word, unless it is too long. */
 static size_t line_end(const char *text)
 {
     const size_t most = text_fit(text, CELL_SIDE);
@@ -166,8 +166,8 @@ static size_t line_end(const char *text)
     return end > 0 ? end : most;
 }
 
-/* A number and a name, in as many lines as the whole takes; returns how many. canvas: NULL to count
- * them. */
+/* Draws a number and a name in as many lines as needed, and returns the number of lines. canvas:
+ * NULL to only count the lines. */
 static int64_t draw_caption(struct canvas *canvas, int64_t x, int64_t y, uint64_t id,
                             const char *name)
 {
@@ -184,7 +184,7 @@ static int64_t draw_caption(struct canvas *canvas, int64_t x, int64_t y, uint64_
     return lines;
 }
 
-/* From one row of cells to the next. */
+/* Returns the distance from one row of cells to the next, pixels. */
 static int64_t cell_pitch(const struct data_set *set, uint32_t cell_height)
 {
     int64_t most = 1;

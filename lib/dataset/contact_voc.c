@@ -32,18 +32,18 @@ enum {
 struct voc {
     struct contact_reader *reader;
     XML_Parser parser;
-    sonject_status status; /* of what was read so far */
+    sonject_status status; /* status of the reading so far */
     char file[TABLE_FILE_CAPACITY];
-    /* Names down to the element that is read, "/annotation/object/name"; of what lies deeper than
-     * there is room for the last ones lack. */
+    /* Names down to the element that is read, "/annotation/object/name". Names of deeper elements
+     * are left out once there is no room. */
     char way[WAY_CAPACITY];
     size_t depth, depth_in_way;
-    char text[PATH_CAPACITY]; /* of the element */
+    char text[PATH_CAPACITY]; /* text of the element */
     size_t length;
-    bool reads_objects; /* the second reading, since a file may name its image behind them */
+    bool reads_objects; /* in a second reading: a file may name its image behind them */
     char image_name[PATH_CAPACITY];
-    char class_name[CLASS_CAPACITY]; /* of the object that is read; "": not told yet */
-    double numbers[NUMBERS];         /* NaN: not told */
+    char class_name[CLASS_CAPACITY]; /* class of the object that is read; "": not read yet */
+    double numbers[NUMBERS];         /* NaN: not read */
 };
 
 /* Keeps the first message and ends the parsing. */
@@ -121,7 +121,7 @@ static void end_object(struct voc *voc)
         XML_StopParser(voc->parser, XML_FALSE);
 }
 
-/* The text of an element that the way leads to. */
+/* Takes the text of the element at the end of the way. */
 static void take_text(struct voc *voc, const char *text)
 {
     const char *rest;

@@ -1,5 +1,4 @@
-/* Labels as YOLO has them: a folder of texts, one an image, and the classes' names in another
- * file. */
+/* Labels of YOLO: a folder of texts, one for each image, and the classes' names in another file. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,9 +12,9 @@
 
 struct yolo {
     struct contact_reader *reader;
-    struct folder_names images[IMAGE_FOLDERS]; /* in the reader's folders */
-    json_t *names;                             /* of the classes by their numbers; NULL: none */
-    char *names_file;                          /* where they stand */
+    struct folder_names images[IMAGE_FOLDERS]; /* files in the reader's folders */
+    json_t *names;    /* names of the classes by their numbers; NULL: none */
+    char *names_file; /* file that has the names */
 };
 
 static sonject_status add_name(struct yolo *yolo, const char *number, const char *name)
@@ -27,7 +26,7 @@ static sonject_status add_name(struct yolo *yolo, const char *number, const char
                : report_out_of_memory(yolo->reader->report, "contacts");
 }
 
-/* Names one a line, the first of class 0. */
+/* Reads names, one in each line, the first of class 0. */
 static sonject_status read_name_lines(struct yolo *yolo, char *text)
 {
     char number[24];
@@ -43,7 +42,7 @@ static sonject_status read_name_lines(struct yolo *yolo, char *text)
     return SONJECT_OK;
 }
 
-/* The list, or numbers and names, of "names" in YAML. */
+/* Reads "names" in YAML: a list, or numbers with names. */
 static sonject_status read_name_keys(struct yolo *yolo, const char *text, size_t bytes)
 {
     struct tree tree;
@@ -62,8 +61,8 @@ static sonject_status read_name_keys(struct yolo *yolo, const char *text, size_t
     return status;
 }
 
-/* Reads the classes' names from the first file that there is of them, beside the labels or above
- * them. */
+/* Reads the classes' names from the first of their files that is there, beside or above the labels.
+ */
 static sonject_status read_names(struct yolo *yolo, const char *folder)
 {
     static const char *const files[] = {"classes.txt", "../classes.txt", "data.yaml",
@@ -101,13 +100,13 @@ static bool is_label(const char *name)
     return false;
 }
 
-/* Opens the image that has the name of its labels before its extension, for its size. place: of
- * the labels. */
+/* Opens the image whose name before the extension is that of its labels, for its size. place: of
+ * the labels, for messages. */
 static sonject_status find_image(struct yolo *yolo, const char *place, const char *label,
                                  struct labelled_image *image)
 {
     struct contact_reader *reader = yolo->reader;
-    const size_t length = strlen(label) - strlen("txt"); /* with the dot */
+    const size_t length = strlen(label) - strlen("txt"); /* the name with its dot */
     sonject_status status = SONJECT_OK;
     for (size_t k = 0; k < IMAGE_FOLDERS; k++) {
         const struct folder_names *list = &yolo->images[k];
@@ -130,7 +129,7 @@ static sonject_status find_image(struct yolo *yolo, const char *place, const cha
             status = swath_file_open_array(reader->report, path, SONJECT_CHANNEL_ONLY, NULL, &file);
             free(path);
             if (status == SONJECT_ERROR_INPUT || status == SONJECT_ERROR_UNSUPPORTED)
-                continue; /* it is no image, or told where no other file is */
+                continue; /* not an image; the message counts if no other file is one */
             CHECK(status);
             reader->report->message[0] = 0;
             swath_file_layout(file, &layout);

@@ -1,6 +1,6 @@
-/* The documents of a whole data set: campaign.json, which says what it is, written by whoever
- * begins it and checked by all others; COCO documents of splits, put together image by image; and
- * dataset.json, the last, so that a folder that has it is complete. */
+/* The documents of a whole data set. campaign.json says what the set is; the process that begins
+ * the set writes it, and all others check it. COCO documents of splits are put together image by
+ * image. dataset.json comes last, so that a folder that has it is complete. */
 #include "dataset/data_set.h"
 
 #include <errno.h>
@@ -21,8 +21,8 @@
 
 #define DOCUMENTS 5
 
-/* The names of the documents of the whole, besides campaign.json and the last, croissant.json
- * behind those that it lists; returns how many. */
+/* Lists the documents of the whole besides campaign.json and dataset.json, and returns their
+ * number. croissant.json comes behind the documents that it lists. */
 static size_t name_documents(uint32_t outputs, const char *names[DOCUMENTS])
 {
     size_t count = 0;
@@ -35,7 +35,7 @@ static size_t name_documents(uint32_t outputs, const char *names[DOCUMENTS])
     return count;
 }
 
-/* Calls on each folder of a split. */
+/* Calls a function for each folder of a split. */
 static sonject_status each_folder(struct report *report, const char *folder, const char *split,
                                   uint32_t outputs,
                                   sonject_status (*call)(struct report *report, const char *path))
@@ -49,9 +49,7 @@ static sonject_status each_folder(struct report *report, const char *folder, con
     return SONJECT_OK;
 }
 
-/* Files that numbers name, as those of images, chips and calibrations, and the folder where that is
- * all.
- */
+/* Removes numbered files, such as images, chips and calibrations, and the folder if it is empty. */
 static sonject_status remove_numbered(struct report *report, const char *path)
 {
     struct folder_names list;
@@ -152,7 +150,7 @@ static json_t *head_of(const struct sonject_campaign *campaign)
         {"splits", splits}, {"classes", classes}, {"outputs", outputs}, {"swaths", swaths});
 }
 
-/* Pictures of the swaths that have something to avoid, for the report: who merges has no swaths. */
+/* Draws the swaths that have something to avoid, for the report: a merge has no swaths to draw. */
 static sonject_status draw_swaths(struct sonject_campaign *campaign, const char *folder)
 {
     struct report *report = campaign->report;
@@ -169,7 +167,7 @@ static sonject_status draw_swaths(struct sonject_campaign *campaign, const char 
     return SONJECT_OK;
 }
 
-/* Whose images the folder holds; those of another campaign are removed where they may be. */
+/* Checks whose images the folder holds. overwrites: another campaign's are removed. */
 static sonject_status check_head(struct sonject_campaign *campaign, const char *folder,
                                  bool overwrites, bool *is_same)
 {
@@ -205,14 +203,14 @@ sonject_status data_set_begin(struct data_set *set, struct sonject_campaign *cam
     return status;
 }
 
-/* Whether a member is a text that may stand in documents and on terminals, and is not empty. */
+/* Returns whether a member is a text, not empty, that may stand in documents and on terminals. */
 static bool has_plain(const json_t *object, const char *key)
 {
     const char *text = member_text(object, key);
     return *text && text_is_printable(text);
 }
 
-/* Names and numbers of images, one split after the other. */
+/* Takes the splits' names and numbers of images, one split after the other. */
 static bool take_splits(struct data_set *set, const json_t *splits)
 {
     set->split_count = json_array_size(splits);
@@ -260,7 +258,7 @@ static bool is_side(const json_t *head, const char *key)
            strcmp(member_text(head, key), "all") == 0;
 }
 
-/* True if what documents need of the head is as it should be. */
+/* Reads the head. Returns false if a member that documents need is not as it should be. */
 static bool read_head(struct data_set *set)
 {
     size_t i;
@@ -325,7 +323,7 @@ sonject_status data_set_is_finished(const struct data_set *set, bool *is_finishe
     return status;
 }
 
-#define MISSING_TOLD 24 /* by their numbers */
+#define MISSING_TOLD 24 /* missing images that are named by number */
 
 static sonject_status check_complete(const struct data_set *set)
 {
@@ -355,12 +353,12 @@ static sonject_status check_complete(const struct data_set *set)
     return status;
 }
 
-/* A COCO document in the making, list after list. */
+/* A COCO document while it is written, list after list. */
 struct coco_file {
     const struct data_set *set;
     size_t split;
     FILE *file;
-    uint64_t entries; /* of the list */
+    uint64_t entries; /* entries of the list so far */
 };
 
 static sonject_status add_text(struct coco_file *coco, const char *text)
@@ -370,14 +368,14 @@ static sonject_status add_text(struct coco_file *coco, const char *text)
                : SONJECT_OK;
 }
 
-/* Begins a list; ends the one before. */
+/* Begins a list. The text also ends the list before. */
 static sonject_status begin_list(struct coco_file *coco, const char *text)
 {
     coco->entries = 0;
     return add_text(coco, text);
 }
 
-/* Adds a list's next entry, which is given up. */
+/* Adds the next entry of a list, and releases the entry. */
 static sonject_status add_entry(struct coco_file *coco, json_t *entry)
 {
     char *text = json_document_text(entry, JSON_COMPACT | JSON_REAL_PRECISION(9));
@@ -394,7 +392,7 @@ static uint64_t side_told(const json_t *record, const char *key)
     return (uint64_t)json_integer_value(json_object_get(json_object_get(record, "swath"), key));
 }
 
-/* The image's entry, or its annotations, numbered over the split. */
+/* Adds an image's entry, or the image's annotations, which are numbered over the split. */
 static sonject_status add_image(struct coco_file *coco, uint64_t id, bool has_annotations)
 {
     json_t *record;
@@ -439,7 +437,7 @@ static sonject_status add_images(struct coco_file *coco, bool has_annotations)
     return SONJECT_OK;
 }
 
-/* Records are read twice, since annotations follow when all images are told. */
+/* Writes a split's document. Records are read twice, since annotations come behind all images. */
 static sonject_status write_split(struct coco_file *coco)
 {
     size_t i;
@@ -478,7 +476,7 @@ static sonject_status write_coco(const struct data_set *set, size_t split)
     return status;
 }
 
-/* YOLO numbers classes by their lines in here. */
+/* Writes classes.txt. YOLO numbers classes by their lines in this file. */
 static sonject_status write_classes(const struct data_set *set)
 {
     size_t i;
@@ -493,7 +491,8 @@ static sonject_status write_classes(const struct data_set *set)
     return growing_text_write(set->report, &text, path);
 }
 
-/* What the whole is, with size and hash of the documents of splits and of the whole. */
+/* Writes dataset.json: a description of the whole, with size and hash of the documents of splits
+ * and of the whole. */
 static sonject_status write_last(const struct data_set *set)
 {
     static const char *const kept[] = {"sonject", "hash",    "images",  "rows",  "columns",

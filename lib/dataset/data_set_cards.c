@@ -1,4 +1,4 @@
-/* What other programs read first of a data set: data.yaml of YOLO's trainers, and croissant.json, a
+/* The files that other programs read first: data.yaml of YOLO's trainers, and croissant.json, a
  * description in MLCommons' Croissant 1.0. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include "base/sha256.h"
 #include "dataset/data_set.h"
 
-/* The number of the first split that has one of the names; split_count: none has. */
+/* Returns the number of the first split that has one of two names; split_count: there is none. */
 static size_t split_named(const struct data_set *set, const char *name, const char *other)
 {
     size_t i = 0;
@@ -19,7 +19,7 @@ static size_t split_named(const struct data_set *set, const char *name, const ch
     return i;
 }
 
-/* The first or last split that is none of two; split_count: all are. */
+/* Returns the first or last split that is neither of two; split_count: there is none. */
 static size_t split_but(const struct data_set *set, size_t one, size_t other, bool is_last)
 {
     size_t found = set->split_count;
@@ -29,9 +29,9 @@ static size_t split_but(const struct data_set *set, size_t one, size_t other, bo
     return found;
 }
 
-/* Trainers want splits called train and val: where none is called so these are the first and the
- * last that have no other use, val else that of tests. Names of folders are meant from the file's
- * own. */
+/* Names the splits train and val for trainers. Where none is called so, train is the first split
+ * without other use, and val the last one, or else the test split. Folders are relative to
+ * data.yaml. */
 sonject_status write_yolo_card(const struct data_set *set)
 {
     struct growing_text text = {NULL, 0, 0, false};
@@ -44,7 +44,7 @@ sonject_status write_yolo_card(const struct data_set *set)
     size_t train = split_named(set, "train", "training");
     if (train == count)
         train = split_but(set, test, val, false);
-    if (train == count) /* there is nothing else */
+    if (train == count) /* no other split is left */
         train = val < count ? val : test;
     if (val == count)
         val = split_but(set, test, train, true);
@@ -75,7 +75,7 @@ sonject_status write_yolo_card(const struct data_set *set)
 
 /* ---- Croissant. */
 
-/* Of version 1.0, word for word as the standard has it. */
+/* The context of version 1.0, word for word as the standard has it. */
 static const char context[] =
     "{\"@language\": \"en\", \"@vocab\": \"https://schema.org/\", \"citeAs\": \"cr:citeAs\", "
     "\"column\": \"cr:column\", \"conformsTo\": \"dct:conformsTo\", "
@@ -95,7 +95,7 @@ static const char context[] =
     "\"sc\": \"https://schema.org/\", \"separator\": \"cr:separator\", \"source\": \"cr:source\", "
     "\"subField\": \"cr:subField\", \"transform\": \"cr:transform\"}";
 
-/* A media type by a file's name. */
+/* Returns the media type for a file's name. */
 static const char *format_of(const char *name)
 {
     static const char *const types[][2] = {
@@ -126,7 +126,7 @@ static sonject_status add_file(json_t **list, const struct data_set *set, const 
     return SONJECT_OK;
 }
 
-/* The folders of a split; images are of the type of its first. */
+/* Adds the folders of a split. All images are taken to be of the type of the first one. */
 static sonject_status add_folders(json_t **list, const struct data_set *set, size_t split)
 {
     json_t *record = NULL;
@@ -150,8 +150,8 @@ static sonject_status add_folders(json_t **list, const struct data_set *set, siz
     return SONJECT_OK;
 }
 
-/* A field "split/set/name" of records that come from a file or a folder; step: how it is extracted,
- * a key and its value. */
+/* Returns a field "split/set/name" of records that come from a file or a folder. step, how: the key
+ * and value that say how the field is extracted. */
 static json_t *card_field(const char *record_set, const char *name, const char *type,
                           const char *source, const char *source_id, const char *step,
                           const char *how)
@@ -174,7 +174,7 @@ static json_t *record_set_of(const char *name, json_t *fields)
                        {"name", json_string(name)}, {"field", fields});
 }
 
-/* A split's images, and the objects that COCO's document tells. */
+/* Adds the records of a split: images, and the objects in the COCO document. */
 static void add_records(json_t **list, const char *split)
 {
     static const char *const columns[][3] = {

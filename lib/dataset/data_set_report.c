@@ -1,4 +1,4 @@
-/* The page of a data set: counts, histograms of what was drawn and what came of it, and images. */
+/* The page of a data set: counts, histograms of drawn values and of results, and images. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,20 +9,20 @@
 #include "dataset/data_set.h"
 #include "dataset/run.h"
 
-#define SERIES_MAX 64    /* of more names, the later ones are left out of the page */
-#define IMAGES_MAX 20000 /* that are shown; of more, every second, third, ... is taken */
+#define SERIES_MAX 64    /* names; the page leaves out later ones */
+#define IMAGES_MAX 20000 /* images shown; of more, every second, third, ... is taken */
 #define DIGITS     6
-#define CHIPS_MAX  (64 * SHEET_CELLS) /* drawn for the page, where browsers do not show images */
-#define CUT_MANY   0.25               /* of the images, from which on that is noted */
+#define CHIPS_MAX  (64 * SHEET_CELLS) /* images drawn because browsers cannot show them */
+#define CUT_MANY   0.25               /* share of cut images above which a note tells */
 
-/* Values under one name, in one unit. */
+/* Values of one name, in one unit. */
 struct series {
     char name[80], unit[16];
     double *values; /* owned */
     size_t count;
 };
 
-/* Numbers that images were made with, and where they may come from; as truth names both. */
+/* Numbers that images were made with, and their possible sources, both as truth names them. */
 static const char *const number_names[] = {"transfer", "noise_floor_db", "looks", "altitude_m",
                                            "seabed_lambert_db"};
 static const uint32_t sources[] = {SONJECT_SOURCE_SCENE,    SONJECT_SOURCE_CALIBRATION,
@@ -33,20 +33,20 @@ struct statistics_page {
     const struct data_set *set;
     struct series series[SERIES_MAX];
     size_t series_count;
-    uint64_t (*counts)[CLASSES_MAX]; /* of objects: splits x classes; owned */
+    uint64_t (*counts)[CLASSES_MAX]; /* numbers of objects, splits x classes; owned */
     uint64_t empty[CAMPAIGN_SPLITS_MAX], clutter_alone[CAMPAIGN_SPLITS_MAX];
-    json_t *classes; /* those of labels first; owned */
-    uint64_t every;  /* image that is taken */
+    json_t *classes; /* all classes, those in labels first; owned */
+    uint64_t every;  /* the every-th image is taken */
     uint64_t drawn_anew, difficult, clipped, unseen, cut;
-    uint64_t sources[COUNT(number_names)][COUNT(sources)]; /* images */
-    json_t *rows;                                          /* of the images that are taken; owned */
-    json_t *sheet;                                         /* owned */
+    uint64_t sources[COUNT(number_names)][COUNT(sources)]; /* numbers of images */
+    json_t *rows;  /* rows of the images that are taken; owned */
+    json_t *sheet; /* owned */
     uint32_t cell_height;
-    uint64_t chips[CHIPS_MAX]; /* images */
+    uint64_t chips[CHIPS_MAX]; /* images drawn for the page */
     uint32_t chip_count;
 };
 
-/* How often values come in each part of their range. */
+/* Returns a histogram of a series. */
 static json_t *histogram_document(const struct series *series)
 {
     double low = series->values[0];
@@ -82,8 +82,8 @@ static sonject_status add_value(struct statistics_page *page, const char *name, 
     return SONJECT_OK;
 }
 
-/* A value that was set, if it is a number with a unit: "objects[0].heading=35 deg". Those of all
- * objects count together; where a chip lies and its seed say nothing of what it shows. */
+/* Adds a value that was set, if it is a number: "objects[0].heading=35 deg". Values of all objects
+ * count together. The chip's place and seed are left out, since they tell nothing of the image. */
 static sonject_status add_set_value(struct statistics_page *page, const char *text)
 {
     char key[80];
@@ -124,7 +124,7 @@ static sonject_status add_object(struct statistics_page *page, size_t split, con
     while (i < json_array_size(page->classes) &&
            strcmp(json_string_value(json_array_get(page->classes, i)), name) != 0)
         i++;
-    if (i == json_array_size(page->classes) && i < CLASSES_MAX) /* of no label */
+    if (i == json_array_size(page->classes) && i < CLASSES_MAX) /* a class without labels */
         json_append(&page->classes, json_text(name));
     if (i < CLASSES_MAX)
         page->counts[split][i]++;
@@ -138,9 +138,9 @@ static sonject_status add_object(struct statistics_page *page, size_t split, con
     return SONJECT_OK;
 }
 
-/* What the page tells of each object, and of which member of its truth. */
+/* The members of an object's truth that the page shows. */
 static const struct {
-    const char *of, *key; /* of: "" for its own */
+    const char *of, *key; /* of: section of the truth; "": the object's own member */
 } row_members[] = {{"", "class"},
                    {"", "shape"},
                    {"", "visible"},
@@ -165,8 +165,8 @@ static json_t *object_row(const json_t *object)
     return row;
 }
 
-/* An image's row: its number, split, and the ending of its file; why its first draw was given up;
- * its objects; height and width to draw it with. */
+/* Adds an image's row: number, split, ending of the file; why the first draw was given up; the
+ * objects; height and width to draw the image with. */
 static sonject_status add_row(struct statistics_page *page, size_t split, uint64_t id,
                               const json_t *record, const json_t *objects)
 {
@@ -248,7 +248,7 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
     return status;
 }
 
-/* Each split with its images, and its objects of each class. */
+/* Returns each split with its images, and its objects of each class. */
 static json_t *splits_document(const struct statistics_page *page)
 {
     const struct data_set *set = page->set;
@@ -263,7 +263,7 @@ static json_t *splits_document(const struct statistics_page *page)
     return splits;
 }
 
-/* Of each number, how many images have it from each source. */
+/* Returns for each number how many images have it from each source. */
 static json_t *numbers_document(const struct statistics_page *page)
 {
     json_t *numbers = json_object();
@@ -276,7 +276,7 @@ static json_t *numbers_document(const struct statistics_page *page)
     return numbers;
 }
 
-/* Takes the rows and the sheet. */
+/* Returns the page's data. Takes over page->rows and page->sheet. */
 static json_t *page_document(struct statistics_page *page)
 {
     static const char *const kept[] = {"sonject", "hash", "swaths", "empty", "clutter_alone"};
@@ -299,7 +299,7 @@ static json_t *page_document(struct statistics_page *page)
     return document;
 }
 
-/* Chips that browsers show, sheet after sheet. */
+/* Draws chips that browsers can show, sheet after sheet. */
 static sonject_status write_chips(const struct statistics_page *page)
 {
     const struct data_set *set = page->set;

@@ -1,5 +1,5 @@
-/* What values are drawn from: counted random numbers, permutations, shares of whole things, and
- * distributions as campaign files write them. */
+/* The sources of drawn values: counter-based random numbers, permutations, shares of whole things,
+ * and distributions as campaign files write them. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@
 #define STEPS_MAX      1000000
 #define ROOT_HALF      0.70710678118654752440
 
-/* Streams of what a permutation needs beside those of callers, which are below this. */
+/* First streams of a permutation's own numbers, above the streams of callers. */
 #define JITTER_STREAMS 0x40000000u
 #define ROUND_STREAMS  0x80000000u
 
@@ -34,8 +34,8 @@ double uniform_number(uint64_t seed, uint32_t stream, uint64_t index)
     return ((double)(random_bits(seed, stream, index) >> 12) + 0.5) * 0x1p-52;
 }
 
-/* A Feistel network on 2^(2 half_bits) numbers; those beyond count are sent on until they are
- * below it, fewer than four times in the mean. */
+/* Runs a Feistel network on 2^(2 half_bits) numbers. Results beyond count are sent through again
+ * until they are below count, fewer than four times on average. */
 uint64_t permuted_index(uint64_t seed, uint32_t stream, uint64_t index, uint64_t count)
 {
     unsigned half_bits = 1;
@@ -74,7 +74,7 @@ void share_out(uint64_t total, const double *weights, size_t count, uint64_t *sh
         shares[i] = (uint64_t)floor((double)total * (weights[i] / sum));
         given += shares[i];
     }
-    /* rounding may have given one too many of very large totals */
+    /* for very large totals, rounding may have given one too many */
     for (size_t i = 0; given > total && i < count; i++)
         if (shares[i] > 0) {
             shares[i]--;
@@ -95,8 +95,8 @@ void share_out(uint64_t total, const double *weights, size_t count, uint64_t *sh
     }
 }
 
-/* Mass of the standard normal distribution between low and high. Tails are measured from their own
- * side, where they have their digits. */
+/* Returns the mass of the standard normal distribution between low and high. Tails are measured
+ * from their own side, where they have their digits. */
 static double mass_between(double low, double high)
 {
     if (low > 0.0)
@@ -104,7 +104,7 @@ static double mass_between(double low, double high)
     return 0.5 * (erfc(-high * ROOT_HALF) - erfc(-low * ROOT_HALF));
 }
 
-/* By bisection, to the last digits that are written. */
+/* Finds a quantile of the cut normal distribution by bisection, to the last written digits. */
 static double normal_quantile(double low, double high, double u)
 {
     const double mass = u * mass_between(low, high);
@@ -135,8 +135,8 @@ double distribution_number(const struct distribution *distribution, double u)
     return fmin(fmax(number, low), high);
 }
 
-/* Nine digits hide what the last bits of a machine's functions make of it. Rounded, a number may
- * lie beyond the limits by a billionth of it; then it is written in full. */
+/* Writes a number with nine digits, which hide differences in the last bits between machines. A
+ * rounded number may lie beyond the limits by a billionth; then it is written in full. */
 static const char *write_number(const struct distribution *distribution, double number,
                                 char text[DISTRIBUTION_TEXT_CAPACITY])
 {
@@ -185,7 +185,7 @@ const char *distribution_step(const struct distribution *distribution, uint32_t 
     return write_number(distribution, distribution_number(distribution, u), text);
 }
 
-/* A number with the unit behind it, which all numbers of a distribution share. */
+/* Reads a number with its unit, which all numbers of a distribution share. */
 static sonject_status read_number(struct reader *reader, const struct tree_node *node,
                                   struct distribution *distribution, bool is_first, double *number)
 {
@@ -234,16 +234,16 @@ static sonject_status read_limits(struct reader *reader, const struct tree_node 
     return check_limits(reader, node, distribution);
 }
 
-#define LATER .kind = FIELD_SPECIAL /* read when all are there, since they share a unit */
+#define LATER .kind = FIELD_SPECIAL /* read once all are there, since all share a unit */
 static const struct field normal_fields[] = {
-    {"mean", "of the normal distribution before it is cut off", LATER, REQUIRED},
-    {"deviation", "its standard deviation", LATER, REQUIRED},
-    {"minimum", "nothing is drawn below it", LATER},
-    {"maximum", "nothing is drawn above it", LATER},
+    {"mean", "mean of the normal distribution before it is cut off", LATER, REQUIRED},
+    {"deviation", "standard deviation of the normal distribution", LATER, REQUIRED},
+    {"minimum", "least value that is drawn", LATER},
+    {"maximum", "greatest value that is drawn", LATER},
 };
 static const struct section normal_section = {ROWS(normal_fields)};
 
-/* Without limits of its own a normal distribution ends ten deviations from its mean. */
+/* Reads a normal distribution. Without given limits, it ends ten deviations from its mean. */
 static sonject_status read_normal(struct reader *reader, const struct tree_node *node,
                                   struct distribution *distribution)
 {
@@ -366,7 +366,7 @@ static sonject_status read_of(struct reader *reader, const struct tree_node *nod
 typedef sonject_status read_function(struct reader *reader, const struct tree_node *node,
                                      struct distribution *distribution);
 
-/* How each kind is written, and what may stand beside it. */
+/* The word and reader of each kind, and of the key that may stand beside it. */
 static const struct {
     const char *word;
     read_function *read;
@@ -399,7 +399,7 @@ static sonject_status refuse_kind(struct reader *reader, const struct tree_node 
                         near ? "'?" : "");
 }
 
-/* Reads the key that names the kind, or all others. */
+/* Reads the key that names the kind, or all other keys. */
 static sonject_status read_keys(struct reader *reader, const struct tree_node *node,
                                 struct distribution *distribution, bool names_kind)
 {

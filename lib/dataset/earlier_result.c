@@ -1,4 +1,4 @@
-/* What a folder holds of an earlier call. */
+/* Results of earlier calls in a folder. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,7 +36,7 @@ bool folder_has_result(const char *folder)
     return has_document(folder, RUN_DOCUMENT);
 }
 
-/* What differs, the first of it by name. */
+/* The number of differences, and the names of the first ones. */
 struct differences {
     size_t count;
     struct growing_text text;
@@ -87,7 +87,7 @@ sonject_status inputs_check(struct report *report, const char *folder, const jso
     return status;
 }
 
-/* Whether a result is of the call's inputs, the image's file among them. */
+/* Compares a result's inputs with the call's, the image's file among them. */
 static sonject_status check_inputs(struct report *report, const struct earlier_request *request,
                                    const json_t *document, bool *is_same)
 {

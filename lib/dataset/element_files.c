@@ -1,4 +1,4 @@
-/* The element level of a scene's own input, as files. */
+/* The files of a scene's hydrophone time series. */
 #include "dataset/run.h"
 
 #include <math.h>
@@ -31,7 +31,7 @@ static json_t *array_document(const sonject_elements_params *elements)
         JSON_NUMBER(elements, hydrophone_length_m), JSON_NUMBER(elements, aspect_limit_rad));
 }
 
-/* Where the scene's image lies, for those who want to see the same. */
+/* Describes the place of the scene's image, for users who want to image the same area. */
 static json_t *image_document(const struct scene *scene, const struct injection_input *input)
 {
     const sonject_geometry_params *geometry = &scene->geometry;
@@ -81,7 +81,7 @@ static json_t *series_document(const struct scene *scene, const struct injection
         {"array", array_document(elements)}, {"image", image_document(scene, input)});
 }
 
-/* The scene's inputs, and what elements.json says of the array and of what is asked of it. */
+/* Finds the scene's inputs, and a digest of what elements.json says of array and series. */
 static sonject_status find_inputs(struct report *report, const struct scene *scene,
                                   const struct swath *swath, const json_t *document,
                                   json_t **inputs)
@@ -93,7 +93,7 @@ static sonject_status find_inputs(struct report *report, const struct scene *sce
     return *inputs ? SONJECT_OK : report_out_of_memory(report, "inputs");
 }
 
-/* elements.json comes last: a folder that has one is complete. Gives up the document. */
+/* Writes the files, elements.json last, so a folder that has it is complete. document: released. */
 static sonject_status write_files(struct report *report, const struct scene *scene,
                                   const sonject_element_layout *layout, json_t *inputs,
                                   json_t *document, const float *series, const char *folder)

@@ -1,5 +1,5 @@
-/* A campaign fitted to contacts: rounds of chips that are made, measured as the real contacts are,
- * and told what to draw next. */
+/* The rounds of a fit. In each round chips are made and measured as the real contacts are, and the
+ * results say how to move the draws. */
 #include "dataset/fit.h"
 
 #include <math.h>
@@ -15,14 +15,14 @@
 #include "base/text.h"
 
 #define CONTACTS_LEAST 10
-#define CLEAR_LEAST    24 /* contacts of a round */
+#define CLEAR_LEAST    24 /* clear contacts of a round */
 #define PAD_MOST       16.0
 #define PAD_CLEAR      0.75   /* pixels */
-#define SHADOW_SEEN_DB (-2.3) /* of visibility: as those who label see shadows */
-#define RATIOS_LEAST   1.05   /* farthest over nearest, for the chips to be limited to them */
+#define SHADOW_SEEN_DB (-2.3) /* visibility up to which labellers see a shadow */
+#define RATIOS_LEAST   1.05   /* farthest over nearest range at least, to limit chips by them */
 
-/* The value below which a share of those that are numbers lies, which are sorted; NaN: there are
- * none. */
+/* Returns the value below which a share of the finite values lies; NaN: no value is finite. Moves
+ * the finite values to the front and sorts them. */
 static double quantile_of(double *values, size_t count, double share)
 {
     size_t n = 0;
@@ -62,8 +62,8 @@ static sonject_status measure_real(struct fit *fit)
     return SONJECT_OK;
 }
 
-/* Nothing is taken from shadows where fewer real contacts show one than an extent needs, or fewer
- * than a third: beside bright points without any, up to a fifth show what is but dark speckle. */
+/* Leaves shadows out where fewer real contacts show one than an extent needs, or fewer than a
+ * third. Up to a fifth of bright points without a shadow have dark speckle that looks like one. */
 static void leave_out_shadows(struct fit *fit)
 {
     static const enum extent of_shadows[] = {EXTENT_SHADOW_ALONG, EXTENT_SHADOW_HEIGHT,
@@ -89,7 +89,7 @@ static void leave_out_shadows(struct fit *fit)
     }
 }
 
-/* A member of what contacts show. extents: count of them, stride bytes apart. values: room. */
+/* Returns a quantile of a member. extents: count of them, stride bytes apart. values: room. */
 static double quantile_of_member(const struct contact_extents *extents, size_t stride, size_t count,
                                  size_t member, double share, double *values)
 {
@@ -98,7 +98,7 @@ static double quantile_of_member(const struct contact_extents *extents, size_t s
     return quantile_of(values, count, share);
 }
 
-/* Leaves real contacts out that are seen less than injected ones will be. */
+/* Leaves real contacts out that are less visible than injected ones will be. */
 static void leave_out_less_seen(struct fit *fit)
 {
     size_t kept = 0;
@@ -109,8 +109,8 @@ static void leave_out_less_seen(struct fit *fit)
     fit->real_count = kept;
 }
 
-/* Between which ranges over altitude contacts of a swath lie; SIZE_MAX: all. Zeros where these are
- * too few or too near each other to tell. values: room for all. */
+/* Returns the limits of range over altitude between which contacts of a swath lie; SIZE_MAX: of all
+ * swaths. Zeros where contacts are too few or too near each other. values: room for all. */
 static struct ratio_limits ratios_of_contacts(const struct fit *fit, size_t swath, double *values)
 {
     size_t n = 0;
@@ -124,9 +124,9 @@ static struct ratio_limits ratios_of_contacts(const struct fit *fit, size_t swat
                : (struct ratio_limits){0.0, 0.0};
 }
 
-/* Where chips may lie, as contacts do, swath by swath, and how well targets are to be seen: as all
- * contacts are but one in fifty. More left out would make what is compared narrower than what a
- * labeller sees. */
+/* Sets the limits of chips to the contacts' ranges, swath by swath, and the visibility of targets
+ * so that all contacts but one in fifty reach it. Leaving out more would make the comparison
+ * narrower than what a labeller sees. */
 static sonject_status take_contacts(struct fit *fit)
 {
     CHECK(measure_real(fit));
@@ -152,7 +152,7 @@ static sonject_status take_contacts(struct fit *fit)
     return quantile_goals(fit->report, fit->real, fit->real_count, fit->goals);
 }
 
-/* Goals of published quantiles. */
+/* Takes goals from published quantiles. */
 static void take_quantiles(struct fit *fit)
 {
     static const enum extent extents[] = {EXTENT_HIGHLIGHT_ALONG, EXTENT_HIGHLIGHT_SLANT,
@@ -177,7 +177,7 @@ static void take_quantiles(struct fit *fit)
 
 /* ---- Rounds. */
 
-/* Opens the campaign as it is to be now, with as many images as a round has, each with a target. */
+/* Opens the campaign with the current draws and a round's number of images, each with a target. */
 static sonject_status open_round(struct fit *fit, uint32_t round, struct sonject_campaign **opened)
 {
     const struct campaign *campaign = &fit->campaign->campaign;
@@ -195,7 +195,7 @@ static sonject_status open_round(struct fit *fit, uint32_t round, struct sonject
     overrides[given] = images;
     overrides[given + 1] = seed;
     overrides[given + 2] = "design=stratified";
-    if (round == 0) /* its levels may be such that none is seen */
+    if (round == 0) /* no target may be seen with the first levels */
         selection.highlight_db = selection.shadow_db = NAN;
     *opened = NULL;
     sonject_status status = fit_draws_text(&fit->draws, fit->report, &selection, "", &text);
@@ -207,7 +207,7 @@ static sonject_status open_round(struct fit *fit, uint32_t round, struct sonject
         source.has_one_target = true;
         status = campaign_open(fit->report, &source, opened);
         if (status == SONJECT_OK) {
-            /* what is faint is left out, not drawn anew: time is limited */
+            /* faint targets are left out, not drawn again, since time is limited */
             (*opened)->campaign.faint = FAINT_DIFFICULT;
             (*opened)->folder = fit->folder;
         }
@@ -217,7 +217,7 @@ static sonject_status open_round(struct fit *fit, uint32_t round, struct sonject
     return status;
 }
 
-/* The campaign's first round, where its swaths reach the contacts' ranges; else without these. */
+/* Opens the first round, without limits on ranges where the swaths do not reach the contacts'. */
 static sonject_status open_first(struct fit *fit, struct sonject_campaign **opened)
 {
     sonject_status status = open_round(fit, 0, opened);
@@ -231,8 +231,8 @@ static sonject_status open_first(struct fit *fit, struct sonject_campaign **open
     return open_round(fit, 0, opened);
 }
 
-/* A height that is not observed stands still: a sphere's would take part of what its highlight's
- * size tells of its diameter. */
+/* Keeps the drawn values of a contact. A height that is not observed is kept constant, so that a
+ * sphere's height takes no part of the diameter that its highlight shows. */
 static void note_drawn(const struct fit *fit, const struct campaign_image *image,
                        struct drawn_contact *contact)
 {
@@ -248,7 +248,7 @@ static void note_drawn(const struct fit *fit, const struct campaign_image *image
     memcpy(contact->now, drawn, sizeof contact->now);
 }
 
-/* A round's images, as they are made side by side. */
+/* A round's images, which are made in parallel. */
 struct fit_round {
     struct fit *fit;
     uint32_t number;
@@ -256,13 +256,13 @@ struct fit_round {
     sonject_progress_function progress;
     void *user;
     struct round_contact {
-        bool is_there; /* there is something to label */
+        bool is_there; /* the image has something to label */
         struct drawn_contact contact;
-        struct contact_chip chip; /* owned; of the last round */
+        struct contact_chip chip; /* owned; kept in the last round */
     } contacts[FIT_CHIPS];
 };
 
-/* Called by several threads: touches what is the image's. */
+/* Makes and measures a contact. Called by several threads; changes only the image's own entry. */
 static sonject_status make_contact(void *user, const struct image_maker *maker, uint64_t id)
 {
     struct fit_round *round = user;
@@ -289,7 +289,7 @@ static sonject_status make_contact(void *user, const struct image_maker *maker, 
     return status;
 }
 
-/* In the order of their images, whichever was made first. */
+/* Takes a round's contacts in the order of their images, not of their making. */
 static void take_round(struct fit *fit, struct fit_round *round)
 {
     for (size_t id = 0; id < FIT_CHIPS; id++) {
@@ -314,7 +314,7 @@ static int tell_round(void *user, double done, const char *stage)
                            round->stage) != 0;
 }
 
-/* What the first round shows becomes the draws that the campaign lacks. */
+/* Makes the draws that the campaign lacks from the results of the first round. */
 static sonject_status learn_from_first(struct fit *fit)
 {
     struct fit_draws *draws = &fit->draws;
@@ -333,7 +333,7 @@ static sonject_status learn_from_first(struct fit *fit)
     return SONJECT_OK;
 }
 
-/* Pixels by which labels are wider than what shows, in the mean. */
+/* Returns the mean of the pixels by which labels are wider than the parts that show. */
 static double mean_pad(const struct contact_extents *extents, size_t stride, size_t count)
 {
     double sum = 0.0;
@@ -349,8 +349,8 @@ static double mean_pad(const struct contact_extents *extents, size_t stride, siz
     return seen > 0.0 ? sum / seen : 0.0;
 }
 
-/* Labels of injected contacts become as wide as those of real ones, where the last round's, from
- * the first-th contact on, were clearly not. */
+/* Makes labels of injected contacts as wide as real ones, where the last round's, from the first-th
+ * contact on, clearly were not. */
 static void widen_labels(struct fit *fit, size_t first)
 {
     const double wider =
@@ -360,7 +360,7 @@ static void widen_labels(struct fit *fit, size_t first)
         fit->pad = (uint64_t)fmin(fmax((double)fit->pad + round(wider), 0.0), PAD_MOST);
 }
 
-/* The middle value of what real contacts show less that of injected ones; 0: it is not compared. */
+/* Returns the median that real contacts show less that of injected ones; 0: not compared. */
 static double middle_difference(const struct fit *fit, size_t extent, double *values)
 {
     const struct quantile_goal *goal = &fit->goals[extent];
@@ -373,7 +373,7 @@ static double middle_difference(const struct fit *fit, size_t extent, double *va
     return 0.0;
 }
 
-/* The first move, of levels alone: while these are far off, highlights tell little of sizes. */
+/* Moves levels alone at first: while levels are far off, highlights tell little of sizes. */
 static sonject_status move_levels(const struct fit *fit, struct draw_move *moves)
 {
     static const struct draw_move none = {0.0, 0.0, 1.0};
@@ -387,7 +387,7 @@ static sonject_status move_levels(const struct fit *fit, struct draw_move *moves
     return SONJECT_OK;
 }
 
-/* Moves the draws, and what all contacts made so far have drawn with them. */
+/* Moves the draws, and applies the same moves to the values that earlier contacts drew. */
 static sonject_status move_draws(struct fit *fit, uint32_t round, struct move_prior *prior)
 {
     struct draw_move moves[FITTED_KINDS];
@@ -395,7 +395,7 @@ static sonject_status move_draws(struct fit *fit, uint32_t round, struct move_pr
               ? move_levels(fit, moves)
               : fit_moves(fit->report, fit->made, fit->made_count, fit->goals, prior, moves));
     for (size_t k = 0; k < FITTED_KINDS; k++) {
-        if (round + 2 == FIT_ROUNDS) { /* half of the last move is chance */
+        if (round + 2 == FIT_ROUNDS) { /* half of the last move would be chance */
             moves[k].shift *= 0.5;
             moves[k].stretch = sqrt(moves[k].stretch);
         }
@@ -408,8 +408,8 @@ static sonject_status move_draws(struct fit *fit, uint32_t round, struct move_pr
     return SONJECT_OK;
 }
 
-/* Leaves faint contacts out, from the first-th on, as labellers do; unless nearly all are: then
- * their draws are far off. */
+/* Leaves faint contacts out, from the first-th on, as labellers do. If nearly all are faint, all
+ * stay, since the draws are still far off. */
 static void leave_out_faint(struct fit *fit, size_t first)
 {
     size_t kept = first;

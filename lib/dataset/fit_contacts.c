@@ -1,4 +1,4 @@
-/* Contacts cut out of their images and measured: real ones where somebody has labelled them, and
+/* The contacts cut out of their images and measured: real ones where they are labelled, and
  * injected ones as they would be labelled. */
 #include <math.h>
 #include <stdio.h>
@@ -16,13 +16,13 @@
 #include "swath/geometry_notes.h"
 #include "swath/recording.h"
 
-#define CHIP_MARGIN  64 /* pixels around a label, of which the seabed's level is taken */
-#define LABEL_MARGIN 2  /* pixels around a label that are searched, too */
+#define CHIP_MARGIN  64 /* pixels around a label, for the seabed's level */
+#define LABEL_MARGIN 2  /* pixels around a label that are also searched */
 #define SHADOW_REACH                                                                               \
     128                /* columns behind a highlight's label in which its shadow is looked for     \
                         */
-#define SHADOW_ROWS 6  /* by which it may be wider */
-#define ECHO_REACH  24 /* columns before a shadow's label in which its highlight lies */
+#define SHADOW_ROWS 6  /* rows by which the shadow may be wider */
+#define ECHO_REACH  24 /* columns before a shadow's label that may have its highlight */
 
 void contact_chip_clear(struct contact_chip *chip)
 {
@@ -30,15 +30,15 @@ void contact_chip_clear(struct contact_chip *chip)
     memset(chip, 0, sizeof *chip);
 }
 
-/* The part of an image of rows x columns around a label. */
+/* Returns the part around a label of an image of rows x columns. */
 static struct window_box chip_window(const sonject_box *label, size_t rows, size_t columns)
 {
     const struct window_box box = window_box_of(label);
     return box_with_margin(&box, CHIP_MARGIN, rows, columns);
 }
 
-/* Intensities of a window of pixels of rows of so many columns, with range growing to the right.
- * first_column: of these pixels in the geometry's image. */
+/* Cuts the intensities of a window out of pixels with `columns` columns a row, so that range grows
+ * to the right. first_column: column of the first pixel in the geometry's image. */
 static sonject_status cut_chip(struct report *report, const float *pixels, bool is_complex,
                                size_t columns, const struct window_box *window,
                                const sonject_box *label, const sonject_geometry_params *geometry,
@@ -70,8 +70,8 @@ static sonject_status cut_chip(struct report *report, const float *pixels, bool 
     return SONJECT_OK;
 }
 
-/* The campaign's swath of that file, whose keys are its image's: of that side, if there is one, and
- * by name where no path is the same. */
+/* Returns the campaign's swath of an image's file, whose keys the image takes. A swath of the
+ * wanted side goes first. Where no path is equal, the file's name alone counts. */
 static const struct swath_plan *swath_of_image(const struct campaign *campaign, const char *image,
                                                uint32_t side)
 {
@@ -90,9 +90,9 @@ static const struct swath_plan *swath_of_image(const struct campaign *campaign, 
     return found;
 }
 
-/* The campaign's scene for an image that nothing is injected into. swath: the campaign's of it, or
- * NULL. side: of a recording that is wanted; 0: as swath or scene say. patch: NULL, all of it, of
- * which the altitude does not count. */
+/* Reads the campaign's scene for an image without injected objects. swath: the campaign's swath of
+ * the image, or NULL. side: wanted side of a recording; 0: as swath or scene say. patch: NULL for
+ * the whole image, where the altitude does not count. */
 static sonject_status read_image_scene(struct sonject_campaign *campaign, const char *image,
                                        const struct swath_plan *swath, uint32_t side,
                                        const struct window_box *patch, bool tells_geometry,
@@ -117,7 +117,7 @@ static sonject_status read_image_scene(struct sonject_campaign *campaign, const 
             side == RECORDED_PORT ? "input.channel=port" : "input.channel=starboard";
     if (!patch)
         source.overrides[source.override_count++] = "sonar.altitude=1 m";
-    else if (tells_altitude && !swath) /* else the campaign's scene tells it, as of injected ones */
+    else if (tells_altitude && !swath) /* a swath's altitude is the scene's, as for injected ones */
         source.overrides[source.override_count++] = "sonar.altitude=from_file";
     if (patch) {
         snprintf(patch_text, sizeof patch_text,
@@ -146,14 +146,14 @@ static sonject_status read_image_scene(struct sonject_campaign *campaign, const 
     return status;
 }
 
-/* The side of a picture of both on which a label lies; 0 where it shows one. */
+/* Returns the side on which a label lies in a picture of both sides; 0 for a picture of one. */
 static uint32_t side_of_label(const sonject_box *label, double nadir_column)
 {
     const double middle = (double)label->first_column + 0.5 * (double)(label->columns - 1);
     return !(nadir_column > 0.0) ? 0 : middle < nadir_column ? RECORDED_PORT : RECORDED_STARBOARD;
 }
 
-/* What an image says of itself. nadir_column: 0 where it shows one side. */
+/* Reads what an image says of itself. nadir_column: 0 where the image shows one side. */
 static sonject_status describe_image(struct sonject_campaign *campaign, const char *image,
                                      uint32_t side, struct raster_layout *layout,
                                      bool *tells_geometry, bool *tells_altitude,
@@ -264,7 +264,7 @@ sonject_status contact_chip_of_image(struct report *report, const struct campaig
     return SONJECT_OK;
 }
 
-/* Where the contact of a label is looked for. */
+/* Returns where the contact of a label is searched for. */
 static struct contact_place place_of_label(const struct contact_chip *chip, uint32_t part)
 {
     const struct window_box label = window_box_of(&chip->label);
@@ -286,7 +286,7 @@ static struct contact_place place_of_label(const struct contact_chip *chip, uint
     return place;
 }
 
-/* The height over a level seabed that hides what lies between these slant ranges. */
+/* Returns the height over a level seabed that hides the seabed between these slant ranges, m. */
 static double height_of_shadow(double altitude_m, double first_m, double end_m)
 {
     const double near = sqrt(first_m * first_m - altitude_m * altitude_m);
@@ -344,7 +344,7 @@ sonject_status contact_chip_measure(struct report *report, const struct contact_
                                chip->row_spacing_m, chip->column_spacing_m, &measures);
     if (status == SONJECT_ERROR_INPUT) {
         report->message[0] = '\0';
-        return SONJECT_OK; /* the seabed about it is black */
+        return SONJECT_OK; /* the seabed about the contact is black */
     }
     if (status != SONJECT_OK)
         return status;

@@ -1,4 +1,4 @@
-/* The numbers of a campaign's file that fit moves, and the file with new ones in their places. */
+/* The numbers of a campaign's file that a fit moves, and the text with new numbers in place. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,8 +17,7 @@
 #define RATIO_KEY  "range_over_altitude"
 #define OF_OBJECTS "objects[]."
 
-/* Sizes of an object that a key sets; 0: none that is moved. item: NULL for draws of all objects.
- */
+/* Returns the kinds of sizes that a key sets; 0: none that is moved. item: NULL for all objects. */
 static uint32_t kinds_of_key(const char *key, const struct draws *draws, const struct item *item)
 {
     static const struct {
@@ -32,7 +31,7 @@ static uint32_t kinds_of_key(const char *key, const struct draws *draws, const s
             return sizes[i].kinds;
     if (strcmp(key, "diameter") != 0 && strcmp(key, "top_diameter") != 0)
         return 0;
-    /* a diameter sets what has no key of its own */
+    /* a diameter sets the sizes that have no key of their own */
     uint32_t kinds = ALL_SIZES;
     for (size_t i = 0; i < 3; i++) {
         char quoted[32];
@@ -59,7 +58,7 @@ static sonject_status add_number(struct fit_draws *draws, struct report *report,
     return SONJECT_OK;
 }
 
-/* The numbers of a list of a distribution, "uniform: [low, high]" and "choice: [...]". */
+/* Adds the numbers of a distribution's list, "uniform: [low, high]" or "choice: [...]". */
 static sonject_status add_list(struct fit_draws *draws, struct report *report,
                                const struct tree_node *list, struct fitted_number *like)
 {
@@ -106,18 +105,18 @@ static sonject_status add_distribution(struct fit_draws *draws, struct report *r
         const size_t before = draws->count;
         CHECK(add_list(draws, report, &alone, like));
         for (size_t i = before; i < draws->count; i++)
-            draws->numbers[i].node = value; /* which stays, and the list does not */
+            draws->numbers[i].node = value; /* the value outlives the list */
     }
     return SONJECT_OK;
 }
 
-/* Without shadows, heights and the noise in them stay. */
+/* Returns the kinds that are observed. Without shadows, heights and the floor are not. */
 static uint32_t observed_kinds(const struct fit_draws *draws)
 {
     return draws->lacks_shadows ? ~(BIT(FITTED_HEIGHT) | BIT(FITTED_FLOOR)) : UINT32_MAX;
 }
 
-/* The draws of a section of the file: an item's, or the campaign's. */
+/* Finds the draws of a section of the file: an item's, or the campaign's. */
 static sonject_status find_in_section(struct fit_draws *draws, struct report *report,
                                       const struct tree_node *section, const char *path,
                                       const struct draws *list, const struct item *item)
@@ -162,7 +161,8 @@ static sonject_status find_in_section(struct fit_draws *draws, struct report *re
     return SONJECT_OK;
 }
 
-/* Sizes of a target that no number moves, those from the first-th on or of all objects. */
+/* Notes sizes of a target that no number moves. The target's numbers are the first of_all ones,
+ * those of all objects, and those from the first-th on. */
 static void note_fixed(struct fit_draws *draws, const struct item *item, size_t of_all,
                        size_t first)
 {
@@ -235,7 +235,7 @@ void fit_draws_clear(struct fit_draws *draws)
 
 /* ---- Moves. */
 
-/* The mean move of several kinds at once. */
+/* Returns the mean of the moves of several kinds. */
 static struct draw_move mean_move(const struct draw_move *moves, uint32_t kinds)
 {
     struct draw_move mean = {0.0, 0.0, 0.0};
@@ -293,7 +293,7 @@ struct splice_list {
     size_t count;
 };
 
-/* Columns count characters, of which a UTF-8 text may have several bytes. */
+/* Returns a place's offset, bytes. Columns count characters, which may have several UTF-8 bytes. */
 static size_t offset_of(const char *text, struct tree_place place)
 {
     size_t at = 0;
@@ -307,7 +307,7 @@ static size_t offset_of(const char *text, struct tree_place place)
     return at;
 }
 
-/* Bytes of a scalar as it is written there. */
+/* Returns the number of bytes of a scalar as it is written in the text. */
 static size_t scalar_length(const char *at, const struct tree_node *node)
 {
     if (!node->is_quoted)
@@ -341,8 +341,8 @@ static sonject_status replace_scalar(struct splice_list *list, struct report *re
     return add_splice(list, report, offset, scalar_length(text + offset, node), value);
 }
 
-/* Adds "key: value" before a section's first key, as that is written: on a line of its own, or
- * between braces; to the file's own section at its end. */
+/* Adds "key: value" before a section's first key, in the same style: on a line of its own, or
+ * between braces. In the file's own section, the pair goes to the end. */
 static sonject_status insert_key(struct splice_list *list, struct report *report,
                                  const struct fit_draws *draws, const struct tree_node *section,
                                  const char *pair)
@@ -368,7 +368,7 @@ static sonject_status insert_key(struct splice_list *list, struct report *report
     return add_splice(list, report, offset, 0, line);
 }
 
-/* A section of the campaign's, or where there is none a line at its end. */
+/* Sets a key in a section of the campaign, or adds a line with the section at the file's end. */
 static sonject_status set_key(struct splice_list *list, const struct fit_draws *draws,
                               struct report *report, const char *name, const char *key,
                               const char *value)
@@ -386,7 +386,7 @@ static sonject_status set_key(struct splice_list *list, const struct fit_draws *
     return insert_key(list, report, draws, root, pair);
 }
 
-/* Three digits that count, and a unit. */
+/* Writes a value with three significant digits and a unit. */
 static const char *write_value(char text[48], double value, const char *unit)
 {
     char digits[32];
@@ -419,7 +419,7 @@ static sonject_status splice_levels(struct splice_list *list, const struct fit_d
     return SONJECT_OK;
 }
 
-/* Limits of a section, in place of those that it has. */
+/* Sets the limits of a section, in place of any that the section has. */
 static sonject_status splice_ratio(struct splice_list *list, const struct fit_draws *draws,
                                    struct report *report, const struct tree_node *section,
                                    const struct ratio_limits *ratio)

@@ -1,5 +1,5 @@
-/* The page of a fit: what real contacts show beside injected ones, before and after, what was moved
- * and what could not be, with example chips. */
+/* The page of a fit: measures of real and injected contacts, before and after, moved numbers,
+ * measures that do not match, and example chips. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,8 +16,8 @@
 #include "measure/contacts.h"
 #include "swath/raster_file.h"
 
-#define DIGITS     6   /* of the page's numbers */
-#define CELL_SIDE  150 /* pixels of the picture, as the gap */
+#define DIGITS     6   /* digits of the page's numbers */
+#define CELL_SIDE  150 /* pixels of the picture, also for the gap */
 #define CELL_GAP   6
 #define ACROSS     10
 #define FAR_ERRORS 3.0 /* standard errors between quantiles that do not agree */
@@ -37,7 +37,7 @@ static const char *const extent_names[EXTENT_KINDS] = {
     [EXTENT_HIGHLIGHT_LEVEL] = "highlight over the seabed, dB",
     [EXTENT_SHADOW_LEVEL] = "shadow over the seabed, dB"};
 
-/* Whose contacts. */
+/* The series of contacts. */
 enum series {
     SERIES_REAL,
     SERIES_BEFORE,
@@ -45,7 +45,7 @@ enum series {
     SERIES_KINDS
 };
 
-/* What contacts of a series show of an extent, in m or dB. values: room for all. */
+/* Lists an extent of a series' contacts, m or dB, and returns how many. values: room for all. */
 static size_t list_values(const struct fit *fit, size_t extent, enum series series, double *values)
 {
     const uint32_t round = series == SERIES_BEFORE ? 0 : FIT_ROUNDS - 1;
@@ -62,8 +62,8 @@ static size_t list_values(const struct fit *fit, size_t extent, enum series seri
     return kept;
 }
 
-/* How often what real and injected contacts show comes in each part of its range; null where all
- * show the same. values: room for all of a series. */
+/* Returns a histogram of an extent over all series; null where all contacts show the same. values:
+ * room for all of a series. */
 static json_t *histogram_document(const struct fit *fit, size_t extent, double *values)
 {
     double low = INFINITY;
@@ -98,8 +98,8 @@ static json_t *histograms_document(const struct fit *fit, double *values)
     return histograms;
 }
 
-/* By how many standard errors quantiles of injected contacts are off those of real ones at most; 0
- * where nobody knows. */
+/* Returns the largest distance of quantiles of injected contacts from real ones, standard errors;
+ * 0: unknown. */
 static double farthest_quantile(const struct fit *fit, size_t extent, double *values)
 {
     const struct quantile_goal *goal = &fit->goals[extent];
@@ -121,7 +121,7 @@ static double farthest_quantile(const struct fit *fit, size_t extent, double *va
     return farthest;
 }
 
-/* Extents whose quantiles injected contacts do not reach. */
+/* Returns the extents whose quantiles injected contacts do not reach. */
 static json_t *unmatched_document(const struct fit *fit, double *values)
 {
     json_t *unmatched = json_object();
@@ -140,7 +140,7 @@ static json_t *quantity(double value, const char *unit)
     return json_string(text);
 }
 
-/* One or two numbers, those that are finite; `otherwise` where the first is not. */
+/* Returns one or two numbers, those that are finite; `otherwise` where the first is not. */
 static json_t *numbers_document(double first, double second, const char *unit,
                                 const char *otherwise)
 {
@@ -154,7 +154,7 @@ static json_t *numbers_document(double first, double second, const char *unit,
     return numbers;
 }
 
-/* A key with what stood there before, and one or two numbers that stand there now, if there are. */
+/* Adds a key with its value before and its one or two numbers now, if the first is finite. */
 static void add_row(json_t **rows, const char *key, json_t *before, double first, double second,
                     const char *unit)
 {
@@ -179,7 +179,7 @@ static void add_ratio(json_t **rows, const char *key, const struct ratio_limits 
                 "");
 }
 
-/* Numbers before and after, in the order in which a key has them. */
+/* Returns the numbers before and after, in the order in which a key has them. */
 static json_t *draws_document(const struct fit *fit)
 {
     const struct fit_draws *draws = &fit->draws;
@@ -250,7 +250,7 @@ static sonject_status write_page(const struct fit *fit, const char *picture, con
 
 /* ---- The picture. */
 
-/* A chip in dB about its median, the same scale for all. */
+/* Draws a chip in dB about its median, on the same scale for all chips. */
 static sonject_status draw_chip(struct report *report, struct canvas *canvas,
                                 const struct contact_chip *chip, int64_t x, int64_t y)
 {

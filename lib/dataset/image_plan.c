@@ -1,5 +1,5 @@
-/* How an image's plan comes about: where it lies, of what kind it is, which objects lie in it, and
- * values drawn one after the other, as "key=value" of its scene. */
+/* The making of an image's plan: swath and place, kind, objects, and values drawn one after the
+ * other, as "key=value" of the scene. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "dataset/campaign.h"
 
-/* Streams of random numbers beyond those of distributions. */
+/* Streams of random numbers, above those of distributions. */
 enum {
     STREAM_KIND = 0x31000000,
     STREAM_GRID = 0x31000001,
@@ -17,28 +17,28 @@ enum {
     STREAM_ITEM = 0x31000003,
     STREAM_OBJECT_ROW = 0x31000004,
     STREAM_OBJECT_COLUMN = 0x31000005,
-    STREAM_CHIP_ROW = 0x32000000,   /* and a swath's number */
-    STREAM_CHIP_COLUMN = 0x33000000 /* likewise */
+    STREAM_CHIP_ROW = 0x32000000,   /* plus a swath's number */
+    STREAM_CHIP_COLUMN = 0x33000000 /* plus a swath's number */
 };
 
 #define NO_TRIAL       UINT32_MAX
-#define ATTEMPT_STRIDE UINT64_C(0xD1342543DE82EF95) /* from a seed to that of the next attempt */
+#define ATTEMPT_STRIDE UINT64_C(0xD1342543DE82EF95) /* step from one attempt's seed to the next */
 
-/* What a plan is drawn with. */
+/* The state of drawing a plan. */
 struct drawing {
     struct report *report;
-    sonject_status status; /* so far */
+    sonject_status status; /* status so far */
     const struct campaign *campaign;
     struct image_plan *plan;
-    uint32_t trial; /* step of a trial */
+    uint32_t trial; /* step of a trial, or NO_TRIAL */
     struct attempts attempts;
-    uint32_t attempt;      /* of what is drawn now; 0: the first */
-    uint64_t index, count; /* of the image among those of its category */
-    uint64_t cell;         /* of the grid, what is left of it */
+    uint32_t attempt;      /* attempt of the values drawn now, from 0 */
+    uint64_t index, count; /* index and number among the images of its category */
+    uint64_t cell;         /* rest of the grid's cell, one axis after the other */
     uint32_t objects;
 };
 
-/* Begins an empty plan, for image_plan_clear. trial: its step, or NO_TRIAL. */
+/* Begins an empty plan, for image_plan_clear. trial: step of a trial, or NO_TRIAL. */
 static void drawing_init(struct drawing *drawing, struct report *report,
                          const struct campaign *campaign, uint32_t trial,
                          const struct attempts *attempts, struct image_plan *plan)
@@ -60,7 +60,7 @@ void attempts_next(struct attempts *attempts)
     memset(&attempts->places, 0, sizeof attempts->places);
 }
 
-/* Before the swath is measured only its scene is of use. */
+/* Sets the swath. Before it is measured, chips have the least sides: only its scene is of use. */
 static void set_swath(struct drawing *drawing, uint32_t number)
 {
     const struct swath_plan *swath = &drawing->campaign->swaths[number];
@@ -70,7 +70,7 @@ static void set_swath(struct drawing *drawing, uint32_t number)
     drawing->plan->chip.columns = is_measured ? swath->chip_columns : CAMPAIGN_CHIP_MIN;
 }
 
-/* What is drawn from here on is of that object. */
+/* Makes later draws those of an object. */
 static void begin_object(struct drawing *drawing, uint32_t number)
 {
     drawing->attempt = drawing->attempts.of_all;
@@ -78,20 +78,19 @@ static void begin_object(struct drawing *drawing, uint32_t number)
         drawing->attempt += drawing->attempts.of_targets[number];
 }
 
-/* A seed for each category, so that they do not draw alike. */
+/* Returns a seed for each category, so that categories do not draw alike. */
 static uint64_t category_seed(const struct campaign *campaign, uint32_t category)
 {
     return campaign->seed ^ (UINT64_C(0x9E3779B97F4A7C15) * (category + 1));
 }
 
-/* Of what is drawn anew the numbers are others. */
+/* Returns the seed of the current attempt. */
 static uint64_t attempt_seed(const struct drawing *drawing, uint64_t seed)
 {
     return seed ^ (ATTEMPT_STRIDE * drawing->attempt);
 }
 
-/* Adds a key to the plan; text is given up, and NULL counts as memory that was out. table: as of
- * plan_key. */
+/* Adds a key to the plan. text: taken over; NULL: memory is out. table: see struct plan_key. */
 static void add_key_of(struct drawing *drawing, struct tree_place place, const char *table,
                        char *text)
 {
@@ -119,7 +118,7 @@ static void add_value(struct drawing *drawing, struct tree_place place, const ch
     add_key(drawing, place, growing_text_end(&text));
 }
 
-/* All that a table's row says. */
+/* Adds all keys of a table's row. */
 static void add_row(struct drawing *drawing, const struct distribution *distribution,
                     const char *prefix, const char *value)
 {
@@ -142,7 +141,7 @@ static const char *trial_value(const struct distribution *distribution, uint32_t
     return distribution_value(distribution, step % 2 == 0 ? 0.0 : 1.0, text);
 }
 
-/* The index-th of count values; random designs count by image instead. */
+/* Draws the index-th of count values. Random designs use the image's id instead. */
 static const char *draw_value(struct drawing *drawing, const struct distribution *distribution,
                               uint64_t seed, uint64_t index, uint64_t count,
                               char text[DISTRIBUTION_TEXT_CAPACITY])
@@ -166,7 +165,7 @@ static const char *draw_value(struct drawing *drawing, const struct distribution
                : distribution_value(distribution, u, text);
 }
 
-/* The value that a ratio stands for: of the key that it is of, in whose unit it comes. */
+/* Returns the value that a ratio stands for, in the unit of the key that the ratio is of. */
 static const char *value_of_ratio(struct drawing *drawing, const char *prefix,
                                   const struct distribution *distribution, const char *ratio,
                                   char text[DISTRIBUTION_TEXT_CAPACITY])
@@ -212,8 +211,8 @@ uint32_t image_split(const struct campaign *campaign, uint64_t id)
     return number;
 }
 
-/* The image's swath and its place there. Images of a split follow its swaths: as many from each,
- * but for one. within: the image's number in its split. */
+/* Chooses the image's swath and its place there. Images of a split go through the split's swaths,
+ * in numbers that differ by one at most. within: the image's number in its split. */
 static void choose_place(struct drawing *drawing, uint64_t within)
 {
     const struct campaign *campaign = drawing->campaign;
@@ -240,7 +239,7 @@ static void choose_place(struct drawing *drawing, uint64_t within)
                 &plan->chip.first_column);
 }
 
-/* The kind of image, in random order; index and count of the image among those of its kind. */
+/* Chooses the image's kind in random order, with index and count of the image in that kind. */
 static void choose_kind(struct drawing *drawing, uint64_t within)
 {
     const struct campaign *campaign = drawing->campaign;
@@ -260,11 +259,11 @@ static void choose_kind(struct drawing *drawing, uint64_t within)
                                    drawing->index, drawing->count);
 }
 
-#define CANDIDATES 16   /* places that are tried for an object beside others */
-#define PLACES_MAX 1000 /* that may be taken */
+#define CANDIDATES 16   /* places tried for an object beside others */
+#define PLACES_MAX 1000 /* tries to find an object a free place */
 
-/* Draws that an object has of its own, and those of all objects that it has not. number: of the
- * object; 0 is the target, if there is one. is_beside: clutter, or another target. */
+/* Draws an object's values: its own draws, and the draws of all objects that it has not. number: of
+ * the object; 0 is the target, if there is one. is_beside: clutter, or another target. */
 static void draw_object(struct drawing *drawing, const struct item *item, uint32_t number,
                         bool is_beside)
 {
@@ -296,7 +295,7 @@ static void draw_object(struct drawing *drawing, const struct item *item, uint32
         }
 }
 
-/* Whether a place in the chip is not one of a contact that objects keep away from. */
+/* Returns whether a place in the chip is free of contacts that objects keep away from. */
 static bool is_free(const struct drawing *drawing, double row, double column)
 {
     const struct campaign *campaign = drawing->campaign;
@@ -315,7 +314,7 @@ static bool is_free(const struct drawing *drawing, double row, double column)
     return true;
 }
 
-/* The distance of a place from the nearest object that has one; infinite where none has. */
+/* Returns the distance of a place from the nearest object that has one; infinite: none has. */
 static double distance_to_others(const struct drawing *drawing, double row, double column)
 {
     const struct object_places *places = &drawing->plan->places;
@@ -326,8 +325,8 @@ static double distance_to_others(const struct drawing *drawing, double row, doub
     return nearest;
 }
 
-/* A place in the middle part of the chip: the first candidate for the first object, for others the
- * one that is farthest from all that have theirs. False: all are taken by contacts. */
+/* Finds a place in the chip's middle part: the first candidate for the first object, for others the
+ * farthest one from all objects that have theirs. False: contacts take all candidates. */
 static bool try_place(struct drawing *drawing, uint64_t seed)
 {
     const struct campaign *campaign = drawing->campaign;
@@ -392,7 +391,7 @@ static void write_object(struct drawing *drawing, const struct item *item,
                      item->object[1] == '}' ? "" : ", ", item->object + 1);
 }
 
-/* A number of objects in an image; 1 where the campaign does not say it. */
+/* Draws a number of objects in an image; 1 where the campaign does not give it. */
 static uint32_t draw_number(const struct drawing *drawing, const struct distribution *number)
 {
     const uint64_t seed = drawing->campaign->seed;
@@ -415,7 +414,7 @@ static uint32_t clutter_objects(struct drawing *drawing)
     return category == CATEGORY_CLUTTER && count == 0 ? 1 : count;
 }
 
-/* One of the items by weight. number: of the object. */
+/* Chooses one of the items by weight. number: of the object. */
 static const struct item *choose_item(const struct drawing *drawing, const struct item *items,
                                       size_t count, uint32_t number)
 {
@@ -430,7 +429,7 @@ static const struct item *choose_item(const struct drawing *drawing, const struc
     return item;
 }
 
-/* All of the image; targets come first, the one of its category before others. */
+/* Chooses the image's objects. Targets come first, and among them the one of the category. */
 static uint32_t choose_objects(struct drawing *drawing, const struct item *trial_clutter,
                                const struct item **items)
 {
@@ -455,7 +454,7 @@ static uint32_t choose_objects(struct drawing *drawing, const struct item *trial
     return count;
 }
 
-/* The objects in one value, and then what is drawn of each. */
+/* Adds all objects in one value, and then the draws of each. */
 static void draw_objects(struct drawing *drawing, const struct item *trial_clutter)
 {
     const struct tree_place nowhere = {NULL, 0, 0};
@@ -468,7 +467,7 @@ static void draw_objects(struct drawing *drawing, const struct item *trial_clutt
     for (uint32_t i = 0; i < count; i++)
         write_object(drawing, items[i], &text);
     growing_text_add(&text, "]");
-    /* those tried before the first image come one by one */
+    /* trials have one object at a time */
     add_key(drawing, count == 1 || trial_clutter ? items[count - 1]->place : nowhere,
             growing_text_end(&text));
     for (uint32_t i = 0; i < count; i++) {
@@ -477,7 +476,7 @@ static void draw_objects(struct drawing *drawing, const struct item *trial_clutt
     }
 }
 
-/* The swath's own keys, the chip and the seed, what is drawn of the scene, and the objects. */
+/* Adds the swath's own keys, chip and seed, the draws of the scene, and the objects. */
 static sonject_status fill_plan(struct drawing *drawing, const struct item *trial_clutter)
 {
     const struct campaign *campaign = drawing->campaign;
@@ -557,7 +556,7 @@ uint32_t image_plan_steps(const struct campaign *campaign, const struct item *it
                 : longest(&campaign->draws, 2);
 }
 
-/* Times the cells of these axes; what is too many stays so. */
+/* Returns cells times the cells of the draws' axes, at most UINT64_MAX. */
 static uint64_t count_cells(const struct draws *draws, const struct draws *but, uint64_t cells)
 {
     for (size_t i = 0; i < draws->count; i++) {

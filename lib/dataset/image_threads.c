@@ -1,6 +1,6 @@
-/* Images of a campaign made side by side. Each thread has a copy of the campaign whose message and
- * stores are its own, and a queue of its own on the device. The caller's thread makes no image: it
- * tells progress and the log's lines, since callbacks belong to it. */
+/* Threads that make a campaign's images in parallel. Each has a queue on the device, and a copy of
+ * the campaign with a message and stores of its own. The caller's thread makes no image: it reports
+ * progress and log lines, since callbacks belong to that thread. */
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,21 +12,21 @@
 #include "swath/decoder.h"
 
 #define THREADS_MAX    16
-#define PIXELS_AT_ONCE (UINT64_C(1) << 24) /* of the images that are made side by side */
+#define PIXELS_AT_ONCE (UINT64_C(1) << 24) /* pixels of all images that are made at once */
 
-/* What all threads share; lock guards what changes. */
+/* The state that all threads share. lock guards all that changes. */
 struct image_pool {
     struct sonject_campaign *campaign;
     const struct image_work *work;
     pthread_mutex_t lock, calibrating;
-    pthread_cond_t changed; /* has_news */
-    uint64_t next, done;    /* images that were begun, that are done */
-    size_t running;         /* threads */
+    pthread_cond_t changed; /* signals has_news */
+    uint64_t next, done;    /* numbers of images begun, and done */
+    size_t running;         /* number of threads */
     bool has_news;          /* there is something to tell, or a thread has ended */
     bool is_cancelled;
-    char stage[64];        /* told last, of any image */
-    sonject_status status; /* of the first image that failed */
-    uint64_t failed;       /* which */
+    char stage[64];        /* last stage of any image */
+    sonject_status status; /* status of the first image that failed */
+    uint64_t failed;       /* index of that image */
     struct growing_text lines;
 };
 
@@ -36,34 +36,34 @@ struct image_thread {
     struct image_maker maker;
     struct sonject_campaign campaign;
     struct report report;
-    struct report_host host; /* whose fraction, of its image, the pool's lock guards */
+    struct report_host host; /* host.fraction, of the image, is guarded by the pool's lock */
     struct decoder decoder;
     struct device_slot slot;
-    struct growing_text lines; /* of its image */
+    struct growing_text lines; /* log lines of its image */
 };
 
-/* With the lock held. */
+/* Wakes the caller's thread. The lock must be held. */
 static void tell_news(struct image_pool *pool)
 {
     pool->has_news = true;
     pthread_cond_signal(&pool->changed);
 }
 
-/* A line of the text has its level before it. */
+/* Keeps a log line, with the level before it. */
 static void keep_line(void *user, uint32_t level, const char *line)
 {
     struct image_thread *thread = user;
     growing_text_add(&thread->lines, "%u%s\n", (unsigned)level, line);
 }
 
-/* Also asked while a thread waits for another process, with the fraction that it told last. */
+/* Notes progress; not 0 cancels. While waiting for a process, called with the last fraction. */
 static int note_fraction(void *user, double fraction, const char *stage)
 {
     struct image_thread *thread = user;
     struct image_pool *pool = thread->pool;
     pthread_mutex_lock(&pool->lock);
     thread->host.fraction = fraction;
-    if (*stage) /* else it is that which was told before */
+    if (*stage) /* otherwise the last stage still holds */
         snprintf(pool->stage, sizeof pool->stage, "%s", stage);
     const bool is_it = pool->is_cancelled;
     tell_news(pool);
@@ -71,8 +71,8 @@ static int note_fraction(void *user, double fraction, const char *stage)
     return is_it;
 }
 
-/* The next image for a thread; false: there is none. Images are begun in rising order, and those
- * that are under way when one fails are finished, so the first to fail is the same in every run. */
+/* Finds the next image for a thread; false: none. Images are begun in rising order, and those under
+ * way when one fails are finished, so the first to fail is the same in every run. */
 static bool begin_image(struct image_thread *thread, uint64_t *index)
 {
     struct image_pool *pool = thread->pool;
@@ -122,8 +122,8 @@ static void *make_images(void *user)
     return NULL;
 }
 
-/* Two a processor, since an image waits for the device and the disk half of its time. Large images
- * keep all processors busy by themselves, and take memory. */
+/* Returns the number of threads: two for each processor, since an image waits for device and disk
+ * half of its time. Large images keep all processors busy by themselves, and take memory. */
 static size_t thread_count(const struct sonject_campaign *campaign, uint64_t images)
 {
     uint64_t largest = 1, count = 2 * (uint64_t)processor_count();
@@ -138,7 +138,7 @@ static size_t thread_count(const struct sonject_campaign *campaign, uint64_t ima
     return (size_t)(count <= fitting ? count : fitting > 1 ? fitting : 1);
 }
 
-/* False: the system has none. */
+/* Starts a thread; false: the system has none. */
 static bool start_thread(struct image_thread *thread, struct image_pool *pool,
                          const struct device_slot *slot)
 {
@@ -186,8 +186,8 @@ static void tell_lines(struct report *report, char *lines)
     }
 }
 
-/* Tells what there is to tell until all threads have ended. Callbacks are called without the lock,
- * so that they keep no thread waiting. */
+/* Reports progress and log lines until all threads have ended. Callbacks are called without the
+ * lock, so that no thread waits for them. */
 static void watch(struct image_pool *pool, const struct image_thread *threads, size_t count)
 {
     pthread_mutex_lock(&pool->lock);

@@ -1,5 +1,4 @@
-/* What labels say of the objects in an image, and files that say it, whatever the process's locale.
- */
+/* The labels of the objects in an image, and their files, which do not depend on the locale. */
 #include "dataset/labels.h"
 
 #include <inttypes.h>
@@ -37,8 +36,8 @@ void class_names_clear(struct class_names *classes)
     memset(classes, 0, sizeof *classes);
 }
 
-/* Boxes around the pixels that carry contacts' numbers, and how many they are, in pixels of the
- * patch. */
+/* Finds the boxes around the pixels that carry contacts' numbers, and counts these pixels. Boxes
+ * count pixels of the patch. */
 static void find_boxes(struct image_labels *labels, const struct injection_result *result)
 {
     for (size_t row = 0; row < result->rows; row++)
@@ -52,18 +51,18 @@ static void find_boxes(struct image_labels *labels, const struct injection_resul
             if (contact->pixels++ == 0)
                 *box = pixel;
             const uint64_t end = box->first_column + box->columns;
-            box->rows = row - box->first_row + 1; /* rows come in order */
+            box->rows = row - box->first_row + 1; /* rows are visited in order */
             box->first_column = column < box->first_column ? column : box->first_column;
             box->columns = (column + 1 > end ? column + 1 : end) - box->first_column;
         }
 }
 
-/* Runs being written: all pixels up to `reached` are told. */
+/* Runs while they are written. All pixels up to `reached` are written. */
 struct run_writer {
-    uint64_t *runs; /* NULL: they are only counted */
+    uint64_t *runs; /* NULL: runs are only counted */
     size_t count;
     uint64_t reached;
-    bool is_inside; /* at `reached` */
+    bool is_inside; /* state at `reached` */
 };
 
 static void end_run(struct run_writer *writer, uint64_t position)
@@ -75,7 +74,8 @@ static void end_run(struct run_writer *writer, uint64_t position)
     writer->is_inside = !writer->is_inside;
 }
 
-/* The runs of the image; the contact's box still counts pixels of the patch. */
+/* Writes a contact's runs over the image, and returns their number. The contact's box still counts
+ * pixels of the patch. */
 static size_t write_runs(const struct contact *contact, const struct label_request *request,
                          uint64_t *runs)
 {
@@ -164,7 +164,7 @@ void image_labels_clear(struct image_labels *labels)
     memset(labels, 0, sizeof *labels);
 }
 
-/* Twelve digits with a point; nothing for NaN and infinity. */
+/* Writes twelve digits with a point; nothing for NaN and infinity. */
 static void add_number(struct growing_text *text, double value)
 {
     char digits[40];
@@ -172,8 +172,8 @@ static void add_number(struct growing_text *text, double value)
         growing_text_add(text, "%s", text_of_number(digits, sizeof digits, value, 12));
 }
 
-/* XML's text: characters that mean something are escaped, those that XML forbids become '?', such
- * as U+FFFE and U+FFFF, which are UTF-8. */
+/* Writes XML text. Characters with a meaning are escaped. Characters that XML forbids become '?',
+ * such as U+FFFE and U+FFFF, which are valid UTF-8. */
 static void add_xml(struct growing_text *text, const char *words)
 {
     static const char *const escapes[] = {"&&amp;", "<&lt;", ">&gt;", "\"&quot;"};
@@ -195,8 +195,8 @@ static void add_xml(struct growing_text *text, const char *words)
     }
 }
 
-/* A field of CSV: in quotes, which are doubled within. One that a spreadsheet would take for a
- * formula (it begins with = + - @, tab or carriage return) has a ' before it. */
+/* Writes a field of CSV in quotes, with quotes within doubled. A field that a spreadsheet would
+ * take for a formula (it begins with = + - @, tab or carriage return) gets a ' before it. */
 static void add_field(struct growing_text *text, const char *words)
 {
     growing_text_add(text, *words && strchr("=+-@\t\r", *words) ? "\"'" : "\"");
@@ -258,7 +258,7 @@ static json_t *coco_document(const struct image_labels *labels, const struct cla
                        {"annotations", coco_annotations(labels)}, {"categories", categories});
 }
 
-/* That an object is there is known: its confidence is 1. */
+/* Adds a contact's row. The confidence is 1, since the object is known to be there. */
 static void add_row(struct growing_text *csv, const struct image_labels *labels,
                     const struct contact *contact)
 {

@@ -1,5 +1,5 @@
-/* The result of all shards of a run, whose scene they keep; of several bands each in a folder of
- * its name. */
+/* The result of all shards of a run, whose scene the shards keep. Each of several bands has a
+ * folder of the band's name. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@
 #include "schema/scene_file.h"
 #include "trace/sums_file.h"
 
-/* How many shards the work in a folder speaks of; 0: there is none. */
+/* Finds the number of shards that the work in a folder names; 0: there is no work. */
 static sonject_status count_shards(struct report *report, const char *folder, uint64_t *shards)
 {
     char *work = checkpoints_folder(folder);
@@ -21,7 +21,7 @@ static sonject_status count_shards(struct report *report, const char *folder, ui
     return status;
 }
 
-/* The scene that the first of the shards keeps. */
+/* Reads the scene that the first shard keeps. */
 static sonject_status read_kept_scene(struct report *report, const struct sums_file *file,
                                       const char *folder, struct scene *scene)
 {
@@ -36,7 +36,7 @@ static sonject_status read_kept_scene(struct report *report, const struct sums_f
                              file_exists(calibration) ? calibration : NULL, scene);
 }
 
-/* A run whose scene its shards keep. */
+/* Merges a run whose scene the shards keep. */
 static sonject_status merge_kept(struct report *report, struct device_slot *slot,
                                  const struct run_request *asked, int *was_finished)
 {
@@ -68,7 +68,7 @@ static sonject_status merge_kept(struct report *report, struct device_slot *slot
     return status;
 }
 
-/* Whether a folder below, which has a band's name, holds shards, or that band's result. */
+/* Finds whether the folder of a band holds shards, or that band's result. */
 static sonject_status find_band(struct report *report, const char *folder, const char *band,
                                 char path[PATH_CAPACITY], bool *is_there)
 {
@@ -83,8 +83,8 @@ static sonject_status find_band(struct report *report, const char *folder, const
     return SONJECT_OK;
 }
 
-/* Whether all bands are there that the result of one of them names. Errors: INPUT (one is not),
- * STORAGE, MEMORY. */
+/* Checks that all bands are there that the result of one band names. Errors: INPUT (one is not
+ * there), STORAGE, MEMORY. */
 static sonject_status check_bands(struct report *report, const char *folder, const char *merged)
 {
     size_t i;

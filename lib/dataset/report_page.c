@@ -1,5 +1,5 @@
-/* report.html: a page to look at, of a run or of a data set. It is one file, which needs no server:
- * what it shows is one JSON document in it, and its script makes tables and pictures of that. */
+/* report.html, the page of a run or of a data set. The page is one file, which needs no server. A
+ * JSON document in the page has the data, and a script makes tables and pictures of the data. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +18,7 @@ sonject_status report_page_write(struct report *report, json_t *data, size_t dig
     json_decref(data);
     CHECK_MEMORY(report, json, path);
     growing_text_add(&text, "%.*s", (int)(place - report_page), report_page);
-    for (const char *from = json; *from;) { /* no name may end the element that it is in */
+    for (const char *from = json; *from;) { /* "<" in a name must not end the script element */
         const size_t length = strcspn(from, "<");
         growing_text_add(&text, "%.*s%s", (int)length, from, from[length] ? "\\u003c" : "");
         from += length + (from[length] != '\0');
@@ -38,7 +38,7 @@ json_t *histogram_counts(const double *values, size_t count, double low, double 
     return json_counts(bins, HISTOGRAM_BINS);
 }
 
-/* The name of a material, or null: it is one of its own numbers. */
+/* Returns the name of a material, or null for one with numbers of its own. */
 static json_t *material_document(const sonject_material_params *material)
 {
     const size_t first = offsetof(sonject_material_params, reflection);

@@ -14,7 +14,7 @@
 #include "inject/scene_hash.h"
 #include "schema/scene_file.h"
 
-/* Shares of a run's progress. */
+/* Fractions of a run's progress at which tracing and writing start. */
 #define TRACE_START 0.1
 #define WRITE_START 0.8
 
@@ -34,7 +34,7 @@ static void tell_noise_floor(struct report *report, const struct scene *scene,
         report_log(report, "noise floor estimated from the patch: %.1f dB over the mean seabed",
                    statistics->noise_floor_db);
     else if (scene->injection
-                 .estimate_noise) /* of calls in memory, which may be many, it is news */
+                 .estimate_noise) /* a call in memory may be one of many, so it only logs */
         (scene->input_path ? report_note : report_log)(
             report,
             "no shadow of the patch tells the noise floor, and %.1f dB under the mean seabed is "
@@ -64,7 +64,7 @@ static void tell_empty(struct report *report, const struct swath *swath)
         report_note(report, "empty rows stay as they are: %s", ping_list_text(&swath->empty, text));
 }
 
-/* Where the model of sediments was not made for the frequency. */
+/* Notes a frequency for which the model of sediments was not made. */
 static void tell_sediment(struct report *report, const struct scene *scene)
 {
     const double frequency_khz = 1e-3 * scene->sonar.centre_frequency_hz;
@@ -93,8 +93,7 @@ void tell_scene(struct report *report, const struct scene *scene)
     tell_calibration_doubts(report, scene);
 }
 
-/* Objects that nobody would find who labels the image, and those of which little but white is left.
- */
+/* Notes objects that no labeller would find, and objects of which little but white is left. */
 static void tell_seen(struct report *report, const struct scene *scene,
                       const struct injection_result *result)
 {
@@ -139,7 +138,7 @@ void tell_result(struct report *report, const struct scene *scene, const struct 
     tell_clipped(report, statistics);
 }
 
-/* Who hears a result's notes. */
+/* The receivers of a result's notes. */
 struct result_notes {
     struct report *report;
     json_t *page; /* NULL where memory is out */
@@ -180,8 +179,8 @@ static sonject_status write_documents(struct report *report, struct run_facts *f
     return write_run(report, facts, path);
 }
 
-/* An earlier result stays whole until this one is there to be written. A folder with run.json is
- * always complete. */
+/* Writes the result's files. An earlier result stays whole until the new one is ready. A folder
+ * with run.json is always complete. */
 static sonject_status write_results(struct report *report, struct run_facts *facts,
                                     struct injection_result *result, const char *folder,
                                     double run_start, sonject_progress_function progress,
@@ -213,7 +212,7 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
     return status;
 }
 
-/* Traces and writes. */
+/* Traces the swath and writes the results. */
 static sonject_status run_swath(struct report *report, struct device_slot *slot,
                                 const struct run_request *request, const struct swath *swath,
                                 struct run_facts *facts, double start)
@@ -245,7 +244,7 @@ static sonject_status run_swath(struct report *report, struct device_slot *slot,
     return status;
 }
 
-/* Whether scene and image are those of the sums, but for what image formation alone depends on.
+/* Checks that scene and image are those of the sums, except for keys of image formation alone.
  * Errors: INPUT, MEMORY. */
 static sonject_status check_traced(struct report *report, const struct run_request *request,
                                    const struct swath *swath)
@@ -272,8 +271,8 @@ static sonject_status check_traced(struct report *report, const struct run_reque
                                     "trace again");
 }
 
-/* The image that the scene's targets go into. Where sums are formed with another response it stays
- * the one that they were traced for, also a made one. */
+/* Opens the image for the scene's targets. Sums may be formed with another response; the image,
+ * also a made one, then stays the one that they were traced for. */
 static sonject_status open_swath(struct report *report, const struct run_request *request,
                                  struct swath *swath)
 {
@@ -289,7 +288,7 @@ static sonject_status open_swath(struct report *report, const struct run_request
     return same;
 }
 
-/* What the result is made of, and whether the folder holds it. facts->inputs is the caller's. */
+/* Finds the inputs of the result, and whether the folder holds it. facts->inputs: the caller's. */
 static sonject_status check_earlier(struct report *report, const struct run_request *request,
                                     const struct swath *swath, struct run_facts *facts,
                                     char hash[HASH_TEXT_CAPACITY], bool *is_finished)
@@ -361,7 +360,7 @@ sonject_status trace_scene(struct report *report, struct device_slot *slot,
     return status;
 }
 
-/* Keys that image formation alone depends on, and where the image lies. */
+/* Keys that only image formation depends on, and the path of the image. */
 static const char *const formed_keys[] = {
     "sonar.bandwidth",         "sonar.pulse",  "sonar.resolution", "sonar.response",
     "sonar.measured_response", "sonar.motion", "input.path"};
@@ -398,7 +397,7 @@ static sonject_status check_overrides(struct report *report, const struct scene 
     return SONJECT_OK;
 }
 
-/* Whether the file holds all that this version would trace. */
+/* Checks that the file holds all that this version would trace. */
 static sonject_status check_sums(struct report *report, const struct sums_file *sums)
 {
     const struct sums_head *head = &sums->head;
@@ -416,7 +415,7 @@ static sonject_status check_sums(struct report *report, const struct sums_file *
                           sums->path);
 }
 
-/* All overrides, the file's first, in one list to be given to free(). */
+/* Returns all overrides, the file's first, in one list for free(). */
 static const char **join_overrides(const struct kept_scene *kept, const sonject_form_params *params)
 {
     const char **all = allocate_array(kept->override_count + params->override_count, sizeof(*all));
@@ -457,7 +456,7 @@ sonject_status read_traced_scene(struct report *report, const struct kept_scene 
     return status;
 }
 
-/* With the scenes that were traced and that are formed, which the caller clears. */
+/* Forms an image from a file of sums. traced, formed: get the scenes; cleared by the caller. */
 static sonject_status form_file(struct report *report, struct device_slot *slot,
                                 const struct sonject_form_params *params,
                                 struct run_request *request, struct scene *traced,

@@ -11,7 +11,7 @@
 #include "base/system/process.h"
 #include "base/units.h"
 
-/* Horizontal range of a level seabed at a slant range; NaN before the first return. */
+/* Returns the horizontal range of level seabed at a slant range, m; NaN before the first return. */
 static double level_ground_range(const struct run_facts *facts, double slant_range_m)
 {
     const double altitude = facts->scene->sonar.altitude_m;
@@ -19,7 +19,7 @@ static double level_ground_range(const struct run_facts *facts, double slant_ran
                                      : NAN;
 }
 
-/* Boxes of truth files count swath pixels, and say where they lie in metres. */
+/* Describes a box of the patch in pixels of the swath and in metres. */
 static json_t *swath_box_document(const struct run_facts *facts, const sonject_box *box)
 {
     if (box->rows == 0)
@@ -42,7 +42,7 @@ static json_t *swath_box_document(const struct run_facts *facts, const sonject_b
         {"ground_width_m", json_number(level_ground_range(facts, near + width) - ground)});
 }
 
-/* How the echo's level came about, and against which seabed. */
+/* Describes how the echo's level was set, and the seabed that it refers to. */
 static json_t *level_document(const sonject_object_params *object,
                               const sonject_object_truth *truth)
 {
@@ -55,7 +55,7 @@ static json_t *level_document(const sonject_object_params *object,
                        JSON_NUMBER(truth, ceiling_over_seabed_db));
 }
 
-/* Which edge a box of the patch touches: "swath", where the swath goes on "patch", or null. */
+/* Returns the edge that a box touches: "swath", "patch" where the swath goes on, or null. */
 static json_t *cut_document(const struct run_facts *facts, bool is_cut, const sonject_box *box)
 {
     const struct region *patch = &facts->swath->patch;
@@ -69,7 +69,7 @@ static json_t *cut_document(const struct run_facts *facts, bool is_cut, const so
     return is_cut ? json_string(goes_on ? "patch" : "swath") : json_null();
 }
 
-/* Where a row and a range of the swath lie on the map; null where the recording does not tell. */
+/* Returns the map position of a row and a ground range; null where the recording gives none. */
 static json_t *position_document(const struct run_facts *facts, double row, double ground_range_m)
 {
     const struct track *track = &facts->swath->track;
@@ -82,7 +82,7 @@ static json_t *position_document(const struct run_facts *facts, double row, doub
         {track->is_geographic ? "latitude_deg" : "northing_m", json_number(place.y)});
 }
 
-/* The size that a key gives, or where the shape has no such key what is left of its extent. */
+/* Returns the size that a key gives, or the extent where the shape has no such key. */
 static json_t *size_document(double given_m, double extent_m)
 {
     return json_number(given_m > 0.0 ? given_m : extent_m);
@@ -134,7 +134,7 @@ static json_t *object_document(const struct run_facts *facts, uint32_t index)
         {"level", level_document(object, truth)});
 }
 
-/* The measured image around the objects, and what was put in with it. */
+/* Describes the measured image around the objects, and the values used to put objects in. */
 static json_t *blending_document(const sonject_statistics *statistics)
 {
     json_t *seabed =
@@ -149,8 +149,7 @@ static json_t *blending_document(const sonject_statistics *statistics)
         JSON_NUMBER(statistics, noise_floor_db), JSON_NUMBER(statistics, saturation_amplitude));
 }
 
-/* Where the patch's corners lie on the map: first row near and far, last row far and near; null
- * where that is not known. */
+/* Returns the patch's corners on the map, or null: first row near, far; last row far, near. */
 static json_t *corners_document(const struct run_facts *facts)
 {
     const sonject_geometry_params *geometry = &facts->scene->geometry;
@@ -229,7 +228,7 @@ static json_t *options_document(const struct scene *scene, const sonject_statist
         {"estimator", json_string(is_brute ? "brute_force" : "connect")});
 }
 
-/* All bands of the scene's file. */
+/* Returns the names of all bands of the scene's file. */
 static json_t *bands_document(const struct scene *scene)
 {
     json_t *names = json_array();

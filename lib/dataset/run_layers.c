@@ -1,4 +1,4 @@
-/* The images, masks and labels of a run. */
+/* The images, masks and label files of a run. */
 #include "dataset/run.h"
 
 #include <math.h>
@@ -26,8 +26,8 @@ static sonject_status write_mask(struct report *report, const struct swath *swat
     return raster_file_write_placed(report, path, &layout, &swath->patch, mask, palette);
 }
 
-/* The numbers of objects, each in a colour of its own: 0 is black; neighbours lie a golden angle
- * apart on the wheel of six sectors of colours. */
+/* Writes the numbers of objects, each in a colour of its own. 0 is black. Neighbouring numbers are
+ * a golden angle apart on a colour wheel of six sectors. */
 static sonject_status write_label_mask(struct report *report, const struct swath *swath,
                                        const uint8_t *labels, const char *path)
 {
@@ -84,7 +84,7 @@ static void amplitude_of(const float *pixels, size_t count, bool is_complex, flo
         amplitude[i] = is_complex ? hypotf(pixels[2 * i], pixels[2 * i + 1]) : pixels[i];
 }
 
-/* What the page needs to show each panel by itself, and to tell what a pixel of it is. */
+/* Returns what the page needs to show each panel by itself, and to locate a pixel of it. */
 static json_t *quicklook_document(const struct plot_frame *frame, const struct region *window,
                                   const struct plot_place *places, uint32_t height, uint32_t width)
 {
@@ -101,7 +101,7 @@ static json_t *quicklook_document(const struct plot_frame *frame, const struct r
                        JSON_NUMBER(frame, column_spacing_m));
 }
 
-/* Widens what an axis changed, in pixels, by a margin; within the patch. */
+/* Widens an interval of pixels by a margin, within the patch. */
 static void widen(uint64_t *first, uint64_t *count, double margin, uint64_t all)
 {
     const double end = fmin((double)all, ceil((double)(*first + *count) + margin));
@@ -109,8 +109,8 @@ static void widen(uint64_t *first, uint64_t *count, double margin, uint64_t all)
     *count = (uint64_t)end - *first;
 }
 
-/* The part of the patch that is changed, with as much around it: targets of a whole line would be
- * specks. All of the patch, where that is not much more, or nothing changed. */
+/* Returns the changed part of the patch, with as much around it, since the targets of a whole line
+ * would be specks. Returns all of the patch where that is not much more, or nothing changed. */
 static struct region changed_part(const struct injection_result *result,
                                   const sonject_geometry_params *geometry)
 {
@@ -135,7 +135,7 @@ static struct region changed_part(const struct injection_result *result,
     return 2 * part.rows * part.columns < all.rows * all.columns ? part : all;
 }
 
-/* Amplitudes before and after, and 20 log10 of their ratio, 0 where nothing changed. */
+/* Draws amplitudes before and after, and 20 log10 of their ratio, 0 where nothing changed. */
 static sonject_status write_quicklook(struct report *report, struct run_facts *facts,
                                       const char *path)
 {
@@ -213,7 +213,7 @@ sonject_status write_layer(struct report *report, const struct run_facts *facts,
     }
 }
 
-/* An order's energy, summed over the patch, and that of its brightest pixel. */
+/* Returns an order's energy summed over the patch, and the energy of its brightest pixel. */
 static json_t *order_document(const struct injection_result *result, uint32_t order)
 {
     const size_t count = result->rows * result->columns;
@@ -230,7 +230,7 @@ static json_t *order_document(const struct injection_result *result, uint32_t or
     return JSON_OBJECT({"sum_m2", json_number(sum)}, {"brightest_m2", json_number(most)});
 }
 
-/* Orders that this result has not may be there from a run before. */
+/* Energies of further orders may be left from a run before, and are removed. */
 sonject_status write_layers(struct report *report, struct run_facts *facts, const char *folder)
 {
     static const char *const names[LAYERS] = {"patch.tif",  "energy.tif", "highlight.png",
@@ -260,7 +260,7 @@ sonject_status write_layers(struct report *report, struct run_facts *facts, cons
 
 static const struct {
     const char *name;
-    uint32_t format; /* that it belongs to; 0: always written */
+    uint32_t format; /* format that the file belongs to; 0: always written */
 } label_files[LABEL_FILES] = {
     {"coco.json", 0},
     {"contacts.csv", 0},

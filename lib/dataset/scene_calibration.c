@@ -1,5 +1,5 @@
-/* Calibrations that scenes ask for by input.calibration: auto, made once and kept; and where the
- * numbers that a run used came from. */
+/* Calibrations that scenes ask for by input.calibration: auto, made once and kept, and the sources
+ * of the numbers that a run used. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,9 +15,9 @@
 #include "schema/keys.h"
 #include "schema/scene_file.h"
 
-#define MADE_FOR "  made_for: " /* the last line, among what was measured */
+#define MADE_FOR "  made_for: " /* the last line, among the measured values */
 
-/* The geometry of the whole swath, from whichever of its patches. Zeros: the file tells it. */
+/* Returns the geometry of the swath, the same for each patch. Zeros: the file gives it. */
 static sonject_geometry_params swath_geometry(const struct scene *scene)
 {
     static const sonject_geometry_params unknown;
@@ -27,7 +27,7 @@ static sonject_geometry_params swath_geometry(const struct scene *scene)
     return scene->has_files_geometry ? unknown : geometry;
 }
 
-/* The line that tells what the calibration of a scene is made for and that its text is as it was
+/* Makes the line that tells what a scene's calibration is made for, and that the text is as it was
  * written. Errors: MEMORY. */
 static sonject_status made_for_line(struct report *report, const struct scene *scene,
                                     const char *swath_hash, const char *text, size_t bytes,
@@ -50,7 +50,7 @@ static sonject_status made_for_line(struct report *report, const struct scene *s
     return SONJECT_OK;
 }
 
-/* Whether the file is there, made for that scene, and not changed. */
+/* Finds whether the file is there, made for that scene, and not changed. */
 static sonject_status is_made_for(struct report *report, const char *path,
                                   const struct scene *scene, const char *swath_hash, bool *is_it)
 {
@@ -179,7 +179,7 @@ void tell_calibration_doubts(struct report *report, const struct scene *scene)
                     share < 1.0 ? "long" : "short");
 }
 
-/* ---- Where numbers came from. */
+/* ---- Sources of numbers. */
 
 const char *source_word(uint32_t source)
 {

@@ -41,7 +41,7 @@ static void add_note(void *user, uint32_t level, const char *line)
     growing_text_add(user, "           note: %s\n", line);
 }
 
-/* Of all pings, where the altitude is told ping by ping: that at the objects may be far off it. */
+/* Describes altitudes that differ from ping to ping: the altitude at the objects may be far off. */
 static sonject_status describe_altitudes(struct growing_text *text, struct report *report,
                                          const struct scene *scene, const struct region *patch)
 {

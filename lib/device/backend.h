@@ -1,13 +1,13 @@
-/* What a kind of devices does; device.c passes on to it what device.h declares. */
+/* The interface of a kind of devices, to which device.c passes on the functions of device.h. */
 #ifndef SONJECT_DEVICE_BACKEND_H
 #define SONJECT_DEVICE_BACKEND_H
 
 #include "device/device.h"
 
-/* Each as the function of device.h that has its name. Buffers and kernels to be released are not
- * NULL. */
+/* The functions of a kind of devices, each as the function of device.h that has its name. Buffers
+ * and kernels to be released are not NULL. */
 struct device_calls {
-    sonject_status (*claim)(struct report *report); /* before a call uses it, in a child perhaps */
+    sonject_status (*claim)(struct report *report); /* before each use, perhaps in a forked child */
     void (*close)(struct device *device);
     sonject_status (*buffer_reserve)(struct report *report, struct device *device, size_t bytes,
                                      device_buffer *buffer);
@@ -32,26 +32,26 @@ struct device_calls {
                                  uint32_t dimensions, const size_t *global);
 };
 
-/* The device native, which is always there. To open fills in a zeroed device, for calls->close also
- * on failure where calls are set. Errors: DEVICE, MEMORY. */
+/* The device native, which always exists. native_open fills in a zeroed device, which is for
+ * calls->close, also on failure, if calls are set. Errors: DEVICE, MEMORY. */
 bool native_is_named(const char *name);
 bool native_has_width(uint32_t width);
 void native_describe(sonject_device_info *info);
 sonject_status native_open(struct report *report, const sonject_context_params *params,
                            struct device *device);
 
-/* Bytes that a buffer of it was asked for. */
+/* Returns the bytes that one of native's buffers was asked for. */
 size_t native_buffer_bytes(device_buffer buffer);
 
-/* Devices of OpenCL, of which there may be none. gpu: the first GPU's place, *count if there is
- * none. Errors: DEVICE, MEMORY. */
+/* Lists OpenCL's devices, of which there may be none. gpu: the first GPU's index, *count if there
+ * is none. Errors: DEVICE, MEMORY. */
 sonject_status opencl_list(struct report *report, sonject_device_info *devices, size_t capacity,
                            size_t *count, size_t *gpu);
 
-/* The first that `name` is part of; NULL: the first GPU, else the first of any kind. */
+/* Opens the first device with `name` in its name; NULL: the first GPU, else the first device. */
 sonject_status opencl_open(struct report *report, const char *name, struct device *device);
 
-/* Sets what a device is called, its lanes and its units. */
+/* Sets a device's names, lanes and units. */
 void device_take_info(struct device *device, const sonject_device_info *info);
 
 #endif

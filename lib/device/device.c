@@ -1,4 +1,4 @@
-/* The device that is asked for, and what it does by its own calls. */
+/* The choice of a device, and its functions, which call those of its kind. */
 #include "device/device.h"
 
 #include <stdlib.h>
@@ -35,7 +35,7 @@ sonject_status device_list(struct report *report, sonject_device_info *devices, 
     return SONJECT_OK;
 }
 
-/* A GPU that cannot be asked for, as in a forked child, is none. */
+/* Returns whether there is a GPU; false if OpenCL cannot be asked, as in a forked child. */
 static bool has_gpu(void)
 {
     struct report ignored = {{0}, NULL, NULL};

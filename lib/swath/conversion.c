@@ -10,7 +10,7 @@
 
 #define COLUMNS_MAX 1e8
 
-/* The image on its way. */
+/* The image during its conversion. */
 struct conversion {
     struct raster_layout layout;
     void *pixels; /* owned */
@@ -18,7 +18,7 @@ struct conversion {
     bool is_resampled;
 };
 
-/* "complex float32" and the like. */
+/* Returns a name such as "complex float32". */
 static const char *type_name(const struct raster_layout *layout)
 {
     return layout->channels == 2          ? "complex float32"
@@ -27,7 +27,7 @@ static const char *type_name(const struct raster_layout *layout)
                                           : "float32";
 }
 
-/* What the file, and before it the parameters, say of where the pixels lie. */
+/* Takes the geometry from the parameters, or else from the file. */
 static sonject_status take_geometry(struct report *report, struct conversion *conversion,
                                     const struct swath_file *file,
                                     const sonject_convert_params *params,
@@ -79,7 +79,7 @@ static sonject_status check_axis(struct report *report, const char *path, enum r
     return SONJECT_OK;
 }
 
-/* Slant range over a level seabed of a ground range, or the other way round. */
+/* Returns the range on the given axis of a range on the other axis, over a level seabed. */
 static double other_range(double altitude, enum range_axis axis, double range)
 {
     return axis == RANGE_SLANT ? hypot(range, altitude)
@@ -116,7 +116,7 @@ sonject_status range_axis_change(struct report *report, const char *path, enum r
     return SONJECT_OK;
 }
 
-/* Columns as far apart as they were. */
+/* Changes the range axis and keeps the column spacing. */
 static sonject_status resample(struct report *report, struct conversion *conversion,
                                const sonject_convert_params *params)
 {
@@ -138,7 +138,7 @@ static sonject_status resample(struct report *report, struct conversion *convers
     return SONJECT_OK;
 }
 
-/* What is asked for but has nothing to do. */
+/* Refuses options that would have no effect. */
 static sonject_status check_uses(struct report *report, const sonject_convert_params *params,
                                  const struct image_options *options)
 {

@@ -1,4 +1,4 @@
-/* Files of one format made of those of another. */
+/* Conversion of files from one format to another. */
 #ifndef SONJECT_SWATH_CONVERSION_H
 #define SONJECT_SWATH_CONVERSION_H
 
@@ -7,22 +7,22 @@
 #include "base/report.h"
 #include "swath/geometry_notes.h"
 
-/* sonject_convert, whose choices are checked. */
+/* Does the work of sonject_convert. The caller has checked the parameters. */
 sonject_status convert_file(struct report *report, const sonject_convert_params *params,
                             const struct image_options *options);
 
-/* Where an image's columns lie. */
+/* The ranges of an image's columns. */
 struct range_columns {
     enum range_axis axis;
-    double first_m, spacing_m; /* NaN: nobody said */
-    bool has_nadir;            /* some lie to the left of it */
+    double first_m, spacing_m; /* NaN: unknown */
+    bool has_nadir;            /* some columns lie to the left of the nadir */
     size_t count;
 };
 
-/* Replaces an image's columns by those at steps of another range axis over a level seabed, each the
- * nearest one. bytes: of a pixel. *pixels are the caller's, before and after. path: in messages.
- * Errors: INPUT (columns of which this cannot be made: says why), MEMORY; on failure all is as it
- * was. */
+/* Replaces an image's columns by columns at equal steps of another range axis, over a level seabed.
+ * Each new column is the nearest old one. bytes: size of a pixel. *pixels is the caller's, before
+ * and after. path: for messages. Errors: INPUT (columns that cannot be replaced; the message says
+ * why), MEMORY. On failure nothing has changed. */
 sonject_status range_axis_change(struct report *report, const char *path, enum range_axis axis,
                                  double altitude_m, double step_m, size_t rows, size_t bytes,
                                  struct range_columns *columns, void **pixels);

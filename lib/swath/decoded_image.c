@@ -1,4 +1,4 @@
-/* Images that the decoder reads and changes, and the two formats of them: rasters and HDF5. */
+/* Images that the decoder reads and changes, in two formats: rasters and HDF5. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,9 +11,9 @@
 
 #define SIDE_MAX            ((uint64_t)1 << 31)
 #define ANNOUNCED_BYTES_MAX ((uint64_t)1 << 30)
-#define INFLATION_MAX       1100 /* bytes that one byte of deflated data can stand for, and some */
+#define INFLATION_MAX       1100 /* a little above the largest ratio of deflated data */
 
-/* A file that announces more than it can hold, however well it is packed, is refused. */
+/* Refuses a file that announces more samples than its bytes can hold, however well packed. */
 static sonject_status check_reply(struct report *report, const struct decoded_image *image,
                                   const struct raster_layout *layout)
 {
@@ -33,7 +33,7 @@ static sonject_status check_reply(struct report *report, const struct decoded_im
                          (unsigned long long)image->bytes);
 }
 
-/* Asks for what an image is; where it lies is told from the root, for the child has a working
+/* Asks the decoder to open an image. The path is made absolute, because the child has a working
  * folder of its own. */
 static sonject_status ask_to_open(struct report *report, struct decoded_image *image,
                                   enum decoder_function function, const char *place,
@@ -100,8 +100,8 @@ sonject_status decoded_image_open(struct report *report, const char *path, const
     return open_image(report, DECODER_OPEN_IMAGE, path, path, array, image);
 }
 
-/* out: NULL where no bytes come. Refused once the image's decoder has ended, and in a process that
- * was forked from the one that opened it. */
+/* Sends a request about an image. out: NULL if no bytes come back. Refused if the image's decoder
+ * has ended, and in a process forked from the one that opened the image. */
 static sonject_status ask(struct report *report, const struct decoded_image *image,
                           struct decoder_request *request, const void *in, void *out, size_t bytes)
 {
@@ -134,8 +134,8 @@ void decoded_image_close(struct decoded_image **image)
     *image = NULL;
 }
 
-/* A region's samples pass piece by piece, each of some rows, or of some columns where these lie
- * together in the file. */
+/* A transfer of a region's samples, piece by piece. A piece is some rows, or some columns if the
+ * file stores column after column. */
 struct passage {
     struct report *report;
     const struct decoded_image *image;
@@ -146,7 +146,7 @@ struct passage {
     void *user;
 };
 
-/* Between a piece, which is packed, and its place in the region. */
+/* Copies samples between a packed piece and its place in the region. */
 static void move_piece(const struct passage *passage, const struct region *piece,
                        unsigned char *packed)
 {
@@ -231,9 +231,9 @@ static sonject_status patch_copy(struct report *report, const struct decoded_ima
     return status;
 }
 
-/* Whatever went into the copy must come out of it: a file that says contradictory things of itself
- * may fool the writer, but not the reader as well. Where samples lie in the place of what says so,
- * it may have become an image of other sides or another type. */
+/* Reads the patch from the copy and compares. A file that contradicts itself may fool the writer,
+ * but not the reader as well. If the samples overlap the file's own description, the copy may have
+ * become an image of other size or type. */
 static sonject_status check_copy(struct report *report, const struct decoded_image *image,
                                  const struct swath_copy *copy)
 {
@@ -256,7 +256,7 @@ static sonject_status check_copy(struct report *report, const struct decoded_ima
     return status == SONJECT_OK ? status : report_failure(report, status, "%s", unheard.message);
 }
 
-/* The decoder changes samples in a copy of all bytes. */
+/* Copies all bytes, then lets the decoder change samples in the copy. */
 static sonject_status copy_with_patch(struct report *report, const struct swath_file *file,
                                       const struct swath_copy *copy)
 {
@@ -301,7 +301,7 @@ static bool is_image(struct swath_file *file, const unsigned char *head, size_t 
     return image_kind_of_beginning(head, count, &file->image);
 }
 
-/* Its mark stands at byte 0, or at 512, 1024, 2048, ..., behind a user's block. */
+/* Looks for the mark at byte 0, or behind a user's block at byte 512, 1024, 2048, ... */
 static bool is_hdf5(struct swath_file *file, const unsigned char *head, size_t count)
 {
     static const unsigned char mark[] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1A, '\n'};

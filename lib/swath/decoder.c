@@ -36,7 +36,7 @@ static sonject_status start(struct report *report, struct decoder *decoder, cons
     return status;
 }
 
-/* What came of a child that does not answer. */
+/* Ends a child that does not answer, and reports why. */
 static sonject_status tell_end(struct report *report, struct decoder *decoder, const char *path)
 {
     const bool is_late = errno == EAGAIN;

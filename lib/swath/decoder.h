@@ -1,9 +1,10 @@
-/* Files that libraries of others decode, and change. A child process does it, the program
- * sonject-decoder, within limits of memory and time: a file that ends it ends one call, and the
- * next one starts another child. A context has one at most (or none: it decodes in this process).
+/* The decoder reads and changes files with libraries of others, such as libtiff and HDF5. It runs
+ * as a child process, the program sonject-decoder, within limits of memory and time. A file that
+ * crashes the child fails one call, and the next call starts another child. A context has at most
+ * one child, or none if it decodes in this process.
  *
- * The two pass records over a channel: a request and its bytes there, a reply and its bytes back,
- * one after the other. Nothing that comes back is believed. */
+ * Library and child exchange records over a channel: a request and its bytes, then a reply and its
+ * bytes. Nothing in a reply is trusted. */
 #ifndef SONJECT_SWATH_DECODER_H
 #define SONJECT_SWATH_DECODER_H
 
@@ -19,22 +20,21 @@
 #include "image/raster.h"
 
 #define DECODER_PROGRAM      "sonject-decoder" PROGRAM_ENDING
-#define DECODER_STRANGER     2                   /* its exit status if it is not this library's */
-#define DECODER_MEMORY_BYTES ((uint64_t)2 << 30) /* of the child, all told */
-#define DECODER_CPU_S        60                  /* for a request */
-#define DECODER_SILENCE_S    120                 /* after which it is taken for stuck */
-#define DECODER_FILES_MAX    256                 /* open at once */
-#define DECODER_PIECE_BYTES  ((size_t)16 << 20)  /* of samples in a request, or one line */
+#define DECODER_STRANGER     2                   /* exit status of another version's child */
+#define DECODER_MEMORY_BYTES ((uint64_t)2 << 30) /* limit of the child's memory */
+#define DECODER_CPU_S        60                  /* limit of processor time for a request */
+#define DECODER_SILENCE_S    120                 /* silence after which the child counts as stuck */
+#define DECODER_FILES_MAX    256                 /* files open at once */
+#define DECODER_PIECE_BYTES  ((size_t)16 << 20)  /* samples in a request, or one longer line */
 
-/* What is asked. `in`: the request's bytes, `out`: the reply's. An image is a raster file,
- * or an array of an HDF5 file. */
+/* Requests. `in`: the request's bytes; `out`: the reply's bytes. An image is a raster file or an
+ * array of an HDF5 file. */
 enum decoder_function {
-    DECODER_OPEN_IMAGE, /* in: its name, where it lies, the array ("": the only one), each text with
-                           its 0; -> handle, layout, largest, is_turned; out: description, with its
-                           0; none: it has none */
-    DECODER_OPEN_COPY,  /* the same, to be written to */
-    DECODER_CLOSE,      /* handle: all that was written to a copy is to be in the file */
-    DECODER_READ,       /* handle, region -> out: its samples, row after row */
+    DECODER_OPEN_IMAGE, /* in: name for messages, path, array ("": the only one), each with a 0; ->
+                           handle, layout, largest, is_turned; out: description with a 0, or none */
+    DECODER_OPEN_COPY,  /* DECODER_OPEN_IMAGE for a copy that is written to */
+    DECODER_CLOSE,      /* handle: afterwards all that was written to a copy is in the file */
+    DECODER_READ,       /* handle, region -> out: samples, row after row */
     DECODER_WRITE,      /* handle of a copy, region; in: samples */
     DECODER_FUNCTIONS
 };
@@ -42,90 +42,91 @@ enum decoder_function {
 struct decoder_request {
     uint32_t function, handle;
     struct region region;
-    uint64_t bytes; /* that follow */
+    uint64_t bytes; /* number of bytes that follow */
 };
 
 struct decoder_reply {
-    int32_t status; /* a sonject_status; unless it is OK, the bytes are its message */
+    int32_t status; /* a sonject_status; on failure the bytes are the message */
     uint32_t handle;
     struct raster_layout layout;
-    uint32_t largest;   /* 0: of its type */
-    uint32_t is_turned; /* columns lie together in the file */
+    uint32_t largest;   /* 0: the type's maximum */
+    uint32_t is_turned; /* the file stores column after column */
     int32_t jpeg_quality;
-    uint64_t bytes; /* that follow */
+    uint64_t bytes; /* number of bytes that follow */
 };
 
-/* The path of the program: in the folder sonject beside the library (beside the host's program,
- * where the library is part of it); right beside it, as in Python's package and where it was built;
- * or where sonject was installed. Tests are told where (BUILT_FOLDER). To be given to free(); NULL
- * when memory is out. */
+/* Returns the path of the program, for free(); NULL if out of memory. Looks in three places: the
+ * folder sonject beside the library (or beside the host's program that contains the library), right
+ * beside the library (Python's package, the build), and where sonject was installed. In tests the
+ * folder is BUILT_FOLDER. */
 char *decoder_path(void);
 
-/* What the child's first argument must be. */
+/* Makes the text that must be the child's first argument. */
 void decoder_stamp(char stamp[64]);
 
-/* Bytes from the other; false with errno where it is gone (0) or silent for too long, or the caller
- * has cancelled (ECANCELED). */
+/* Receives bytes from the other side. On failure returns false and sets errno: 0 if the other side
+ * is gone, EAGAIN if it is silent for too long, ECANCELED if the caller has cancelled. */
 bool decoder_receive(const struct report *report, const struct channel *channel, void *bytes,
                      size_t count);
 
-/* The files that one decoder has open, in the process that decodes. */
+/* The open files of a decoder, in the process that decodes. */
 struct decoder_state;
-struct decoder_state *decoder_state_make(void); /* NULL: memory is out */
+struct decoder_state *decoder_state_make(void); /* NULL: out of memory */
 void decoder_state_release(struct decoder_state **state);
 
-/* Does what is asked, here. in: of request->bytes. *out: reply->bytes of it, to be given to free();
- * NULL: none, or the call failed. */
+/* Answers a request in this process. in: request->bytes bytes. *out: reply->bytes bytes, for
+ * free(); NULL if there are none or the call failed. */
 sonject_status decoder_answer(struct report *report, struct decoder_state *state,
                               const struct decoder_request *request, const void *in,
                               struct decoder_reply *reply, void **out);
 
-/* All 0: none is started. */
+/* A context's decoder. All 0: not started. */
 struct decoder {
     bool is_in_process;
-    struct decoder_state *state; /* in this process; NULL: none is needed yet */
+    struct decoder_state *state; /* for decoding in this process; NULL: not needed yet */
     struct child child;
-    uint32_t starts; /* how often */
+    uint32_t starts; /* number of children started so far */
 };
 
-/* Ends it, if there is one. What it had open is lost. */
+/* Ends the decoder if it runs. Its open files are lost. */
 void decoder_stop(struct decoder *decoder);
 
-/* Starts the child if it is needed and does not run, as one of another process does not. path: the
- * file that needs it, for messages. Errors: UNSUPPORTED (no program), STORAGE, MEMORY. */
+/* Starts the child if one is needed and none of this process runs; after a fork the parent's child
+ * does not count. path: the file that needs the child, for messages. Errors: UNSUPPORTED (no
+ * program), STORAGE, MEMORY. */
 sonject_status decoder_start(struct report *report, struct decoder *decoder, const char *path);
 
-/* Asks. out: room for capacity bytes, of which *count came; more are refused. reply: all but the
- * bytes. Errors: as decoder_answer's; INPUT (the file ended the decoder), STORAGE, MEMORY,
- * CANCELLED. */
+/* Sends a request and waits for the reply. out: room for capacity bytes; a longer reply is refused.
+ * *count: bytes received. reply: all but the bytes. Errors: those of decoder_answer; INPUT (the
+ * file ended the decoder), STORAGE, MEMORY, CANCELLED. */
 sonject_status decoder_ask(struct report *report, struct decoder *decoder, const char *path,
                            const struct decoder_request *request, const void *in,
                            struct decoder_reply *reply, void *out, size_t capacity, size_t *count);
 
 /* An image that a decoder has open. */
 struct decoded_image {
-    char *path;     /* as the caller named it; owned */
-    char *array;    /* which of the file; NULL: the only one */
-    uint64_t bytes; /* how long the file is */
+    char *path;     /* owned; the name that the caller gave */
+    char *array;    /* owned; the array's name; NULL: the only one */
+    uint64_t bytes; /* size of the file */
     struct decoder *decoder;
-    struct decoder own; /* where the report has no host */
+    struct decoder own; /* used if the report has no host */
     uint32_t handle, start;
     struct raster_layout layout;
-    uint32_t largest;  /* that it may hold; 0: its type's */
-    bool is_turned;    /* columns lie together in the file */
-    int jpeg_quality;  /* as of swath_file_jpeg_quality */
-    char *description; /* texts that are stored with it, each a line "name=value"; NULL: none */
+    uint32_t largest;  /* the largest number allowed; 0: the type's */
+    bool is_turned;    /* the file stores column after column */
+    int jpeg_quality;  /* see swath_file_jpeg_quality */
+    char *description; /* owned; texts in the image, each a line "name=value"; NULL: none */
 };
 
-/* path: its name in messages, and the file. array: as of swath_file_open_array. Errors: INPUT (not
- * a regular file, damaged, more samples than the file can hold, what opening refuses), STORAGE (the
- * system's), MEMORY, UNSUPPORTED (no decoder). On success *image is the caller's, for
- * decoded_image_close; on failure NULL. */
+/* Opens an image. path: the file, and its name in messages. array: see swath_file_open_array.
+ * Errors: INPUT (not a regular file, damaged, more samples than the file can hold, other files that
+ * opening refuses), STORAGE (errors of the system), MEMORY, UNSUPPORTED (no decoder). On success
+ * *image is the caller's, for decoded_image_close; on failure *image is NULL. */
 sonject_status decoded_image_open(struct report *report, const char *path, const char *array,
                                   struct decoded_image **image);
 void decoded_image_close(struct decoded_image **image);
 
-/* Samples of a region of the image, row after row. Errors: INPUT, STORAGE, MEMORY. */
+/* Reads the samples of a region, row after row. Errors: INPUT, STORAGE, MEMORY. */
 sonject_status decoded_image_read(struct report *report, struct decoded_image *image,
                                   const struct region *region, void *pixels);
 

@@ -1,4 +1,4 @@
-/* What the decoder does, in its own process or in the library's. */
+/* The decoder's work, in its own process or in the library's. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,25 +17,25 @@ void decoder_stamp(char stamp[64])
 }
 
 struct opened {
-    char *name;  /* in messages; NULL: none is open */
-    char *place; /* of the file */
+    char *name;  /* for messages; NULL: no file is open here */
+    char *place; /* the file's path */
     const struct image_library *library;
-    void *image; /* of the library's */
+    void *image; /* the library's own */
     struct raster_layout layout;
 };
 
 struct decoder_state {
-    struct opened files[DECODER_FILES_MAX]; /* a handle is a place here plus 1 */
+    struct opened files[DECODER_FILES_MAX]; /* a handle is an index here plus 1 */
 };
 
-/* One request. */
+/* A request and what its answer needs. */
 struct question {
     struct report *report;
     struct decoder_state *state;
     const struct decoder_request *request;
-    const char *texts[3]; /* of one that opens a file; else "" */
+    const char *texts[3]; /* name, path and array to open; else "" */
     const void *in;
-    struct opened *file; /* of its handle; NULL: it has none */
+    struct opened *file; /* the file of the handle; NULL: none */
     struct decoder_reply *reply;
     void *out;
 };
@@ -55,7 +55,7 @@ static sonject_status close_file(struct report *report, struct opened *file)
     return status;
 }
 
-/* False: it is HDF5's. */
+/* Returns false if the file is left to HDF5. */
 static bool is_raster(const char *path, enum image_kind *kind)
 {
     unsigned char head[16] = {0};
@@ -136,7 +136,7 @@ static sonject_status read_samples(struct question *question)
                                question->out);
 }
 
-/* The library asks what can be done. */
+/* Answers a request. The library sends only valid requests, so nothing is checked. */
 static sonject_status give_answer(struct question *question)
 {
     const struct decoder_request *request = question->request;
@@ -155,8 +155,8 @@ static sonject_status give_answer(struct question *question)
     return close_file(question->report, question->file);
 }
 
-/* Where the disk could not be read HDF5 says that it is damaged, or does without what lies there: a
- * walk through a file may then find another array. */
+/* Reports STORAGE if the disk failed. HDF5 then says that the file is damaged, or goes on without
+ * the unread part. A walk through the file may find another array. */
 static sonject_status tell_disk(struct question *question, sonject_status status)
 {
     const char *path =

@@ -1,12 +1,12 @@
-/* The program sonject-decoder: answers what the library asks, over the channel that is its standard
- * input, until that ends. */
+/* The program sonject-decoder. It answers the library's requests over a channel, its standard
+ * input, until the channel ends. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "swath/decoder.h"
 
-#ifdef IS_SANITIZED /* sanitizers keep terabytes of addresses for themselves */
+#ifdef IS_SANITIZED /* sanitizers reserve terabytes of addresses */
 #define MEMORY_BYTES 0
 #else
 #define MEMORY_BYTES DECODER_MEMORY_BYTES
@@ -20,7 +20,7 @@ static bool serve(const struct channel *channel, struct decoder_state *state)
     void *out = NULL;
     if (!decoder_receive(&report, channel, &request, sizeof request))
         return false;
-    child_limit_time(DECODER_CPU_S); /* each request has its own */
+    child_limit_time(DECODER_CPU_S); /* each request has its own limit */
     memset(&reply, 0, sizeof reply);
     char *in = malloc((size_t)request.bytes + 1);
     bool goes_on = in && decoder_receive(&report, channel, in, (size_t)request.bytes);

@@ -21,7 +21,7 @@ char *decoder_path(void)
                        within ? path_join(beside, DECODER_PROGRAM) : NULL,
                        path_join(INSTALLED_FOLDER, DECODER_PROGRAM)};
     const int first = beside && *beside ? 0 : 2;
-    int chosen = first == 0 ? 1 : 2; /* what a message names where there is none */
+    int chosen = first == 0 ? 1 : 2; /* the path for messages if no program is found */
     for (int i = 2; i >= first; i--)
         if (places[i] && file_exists(places[i]))
             chosen = i;

@@ -11,7 +11,7 @@
 
 /* The numbers, in the order of the notes. */
 static const struct {
-    const char *name, *ground_name; /* the other one in ground range; NULL: the same */
+    const char *name, *ground_name; /* ground_name: in ground range; NULL: as name */
     size_t place;
 } numbers[] = {
     {"sonject:frequency_hz", NULL, offsetof(struct noted_geometry, frequency_hz)},
@@ -116,7 +116,7 @@ void geometry_notes_read(const struct swath_file *file, struct noted_geometry *g
         read_texts(file, geometry);
 }
 
-/* Whether lengths that a file tells are such as a sonar can meet. */
+/* Checks that lengths from a file are within a sonar's limits. */
 static sonject_status check_told(const sonject_geometry_params *geometry, struct report *report)
 {
     struct check check = {report, NULL, SONJECT_OK};
@@ -145,7 +145,7 @@ bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_pa
     return true;
 }
 
-/* The rows of the scene's patch within the file's; all zeros mean all rows. */
+/* Finds the rows of the scene's patch in the file. A patch of all zeros means all rows. */
 static sonject_status patch_rows(struct report *report, const struct scene *scene, uint64_t rows,
                                  uint64_t *first, uint64_t *count)
 {
@@ -162,7 +162,7 @@ static sonject_status patch_rows(struct report *report, const struct scene *scen
     return SONJECT_OK;
 }
 
-/* What is asked for, and where it goes. */
+/* The wish, and the values found for it. */
 struct wanted {
     struct recording_wish wish;
     const char **key; /* gets the scene's key that a failure is about */
@@ -170,7 +170,7 @@ struct wanted {
     double altitude_m, altitudes_m[2];
 };
 
-/* Whether a table of pings tells all of the patch's rows. */
+/* Checks that a table of pings has all of the patch's rows. */
 static sonject_status check_ping_rows(struct report *report, const struct ping_table *pings,
                                       uint64_t rows, uint64_t first, uint64_t count)
 {
@@ -190,7 +190,8 @@ static sonject_status check_ping_rows(struct report *report, const struct ping_t
     return SONJECT_OK;
 }
 
-/* Of a whole line, the pings that the objects lie at; false where no object lies among the rows. */
+/* Finds the rows of a whole line that the objects span. Returns false if there are no objects, or
+ * if one lies outside the line. */
 static bool rows_of_objects(const struct scene *scene, uint64_t rows, double row_spacing_m,
                             uint64_t *first, uint64_t *count)
 {
@@ -205,14 +206,14 @@ static bool rows_of_objects(const struct scene *scene, uint64_t rows, double row
         low = fmin(low, row);
         high = fmax(high, row);
     }
-    if (!(low >= 0.0 && low <= high && high <= (double)(rows - 1))) /* also where there are none */
+    if (!(low >= 0.0 && low <= high && high <= (double)(rows - 1)))
         return false;
     *first = (uint64_t)low;
     *count = (uint64_t)ceil(high) - *first + 1;
     return true;
 }
 
-/* Where no patch is chosen and the altitude changes, that is told. */
+/* Keeps the altitude. If it varies and no patch is chosen, keeps its range, which is reported. */
 static void keep_altitude(const struct scene *scene, const struct recording_geometry *geometry,
                           struct wanted *wanted)
 {
@@ -223,8 +224,8 @@ static void keep_altitude(const struct scene *scene, const struct recording_geom
     }
 }
 
-/* The mean altitude over the patch's rows, or where none is chosen over the objects': of a table of
- * pings, or of first returns. */
+/* Takes the mean altitude over the patch's rows, or over the objects' rows if no patch is chosen.
+ * The source is a table of pings, or first returns. */
 static void take_row_altitudes(const struct scene *scene, uint64_t rows, uint64_t first,
                                uint64_t count, struct wanted *wanted)
 {
@@ -269,7 +270,7 @@ static sonject_status take_returns(struct report *report, const struct scene *sc
     return SONJECT_OK;
 }
 
-/* Altitude, and the mean first range over the patch's rows. */
+/* Takes the altitude and the mean first range over the patch's rows. */
 static sonject_status take_pings(struct report *report, const struct scene *scene, uint64_t rows,
                                  struct wanted *wanted)
 {
@@ -306,16 +307,16 @@ static sonject_status take_pings(struct report *report, const struct scene *scen
     return SONJECT_OK;
 }
 
-/* From the file itself. */
+/* Returns whether the altitude comes from the input file itself. */
 static bool takes_altitude(const struct scene *scene, const struct wanted *wanted)
 {
     return wanted->wish.altitude_by == ALTITUDE_RECORDED && scene->pings.count == 0;
 }
 
-/* Rows of a patch are as far apart as its own pings, those of the line's picture as far as all
- * pings are on average: the patch's middle lies where that has it. A line that ends where it began
- * has no such average. Where no patch is chosen the altitude is that at the objects' pings: one of
- * a whole line may be far off there, and with it every shadow. */
+/* Takes geometry and altitude of a recording. A patch's row spacing is the mean of its own pings.
+ * The picture of the whole line has the mean of all pings, and the patch's middle lies where that
+ * picture has it. A line that ends where it began has no such mean. Without a patch, the altitude
+ * is that at the objects' pings: a line's mean, and so every shadow, may be far off there. */
 static sonject_status take_recording(struct report *report, const struct scene *scene,
                                      const struct recording *recording, struct wanted *wanted)
 {
@@ -381,7 +382,7 @@ static sonject_status take_notes(struct report *report, const struct scene *scen
     return SONJECT_OK;
 }
 
-/* Files may say anything. */
+/* Checks the values, since files may say anything, and sets them in the scene. */
 static sonject_status check_and_set(struct report *report, const struct wanted *wanted,
                                     struct scene *scene)
 {
@@ -439,7 +440,7 @@ sonject_status recording_describe(struct report *report, const struct recording_
     return status;
 }
 
-/* 0 where nothing is told of it. */
+/* Returns 0 if the row's altitude is unknown. */
 static double row_altitude(const struct scene *scene, const struct recording *recording,
                            uint64_t row)
 {

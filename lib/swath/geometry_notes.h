@@ -1,5 +1,4 @@
-/* The geometry that a file says of itself: a recording, or an image in texts that sonject writes
- * and reads. */
+/* The geometry that a file states: a recording's, or texts that sonject stores with an image. */
 #ifndef SONJECT_SWATH_GEOMETRY_NOTES_H
 #define SONJECT_SWATH_GEOMETRY_NOTES_H
 
@@ -9,59 +8,59 @@
 
 #define GEOMETRY_NOTES_MAX 10
 
-/* Where the pixels of a file lie and what made them, as far as it is known: NaN where it is not. */
+/* The geometry of a file's pixels and the sonar's data; NaN where unknown. */
 struct noted_geometry {
     enum range_axis axis;
-    double row_spacing_m, column_spacing_m; /* columns: along the axis */
+    double row_spacing_m, column_spacing_m; /* column spacing: along the axis */
     double first_along_track_m, first_range_m;
     double nadir_column;
     double altitude_m, frequency_hz, bandwidth_hz;
-    bool altitude_varies; /* along a recorded line, so that the mean does not do */
+    bool altitude_varies; /* the altitude changes too much along the line for a mean */
     bool knows_side;
     uint32_t side; /* SONJECT_SIDE_... */
 };
 
-/* The texts and the attributes that point at them. */
+/* The texts, and the attributes that point at the texts. */
 struct geometry_notes {
     char texts[GEOMETRY_NOTES_MAX][48];
     struct raster_attribute attributes[GEOMETRY_NOTES_MAX];
     size_t count;
 };
 
-/* Texts of all that is known. */
+/* Makes notes of all known values. */
 void geometry_notes_make(struct geometry_notes *notes, const struct noted_geometry *geometry);
 
-/* The same of a scene's image, whose pixel (0, 0) is the geometry's. */
+/* Makes the notes of a scene's image, whose pixel (0, 0) is the geometry's. */
 void geometry_notes_init(struct geometry_notes *notes, const sonject_sonar_params *sonar,
                          const sonject_geometry_params *geometry);
 
-/* What a file says: in such texts, or as a recording (means over all of it). Nothing of it is
- * checked but that numbers are finite. */
+/* Reads what a file says, in such texts or as a recording (means over all rows). Checks only that
+ * numbers are finite. */
 void geometry_notes_read(const struct swath_file *file, struct noted_geometry *geometry);
 
-/* As parameters of a slant range image; false (and nothing changed) where they are not all known,
- * or are none that an image has. */
+/* Turns noted geometry into parameters of a slant range image. Returns false and changes nothing if
+ * some are unknown or out of range. */
 bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_params *geometry);
 
-/* What a scene leaves to its input. */
+/* The values that a scene leaves to its input. */
 struct recording_wish {
     bool geometry;
     enum altitude_source altitude_by;
-    bool first_range; /* of a geometry that is given else */
+    bool first_range; /* the first range alone; the scene gives the rest */
 };
 
-/* Takes that from it: from a recording, of which spacing and altitude are the means over the
- * patch's rows, or from an image whose notes say them. Where the scene has a table of pings,
- * altitude and first range are its means over the patch's rows; first returns give an altitude
- * alike. Errors: INPUT (it does not say them: says what to give instead; ground range; a table that
- * has not all of the patch's rows, or first ranges that are more than a column apart; as
- * swath_file_open_array), UNSUPPORTED, STORAGE, MEMORY. On failure the scene is unchanged, and *key
- * is the key of the scene that the message is about. */
+/* Takes the wished values from the input. Spacing and altitude of a recording are means over the
+ * patch's rows; an image must have notes of them. With a table of pings, altitude and first range
+ * are the table's means over the patch's rows. First returns give an altitude in the same way.
+ * Errors: INPUT (a value is missing, and the message says what to give instead; ground range; a
+ * table without some of the patch's rows, or whose first ranges span more than two columns there;
+ * see swath_file_open_array), UNSUPPORTED, STORAGE, MEMORY. On failure the scene is unchanged, and
+ * *key is the scene's key that the message is about. */
 sonject_status recording_describe(struct report *report, const struct recording_wish *wish,
                                   struct scene *scene, const char **key);
 
-/* The altitudes at the region's rows of the scene's input, m: the row's before it where none is
- * told. recording: the input; NULL for other files. */
+/* Finds the altitude at each of the region's rows, m. A row without one has that of the row before.
+ * recording: the scene's input; NULL for other files. */
 void row_altitudes(const struct scene *scene, const struct recording *recording,
                    const struct region *region, double *altitudes);
 

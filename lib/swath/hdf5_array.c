@@ -1,9 +1,9 @@
-/* Two-dimensional data sets of HDF5 files: float64, float32, uint8, uint16 or int16, or complex, a
- * compound of two equal floats r and i (h5py's) or real and imag (MATLAB's). Rows are the first
- * index; in data sets of MATLAB (v7.3, told by the attribute MATLAB_class), which keeps its columns
- * together, rows are MATLAB's, the second index. Refused are a damaged file, no such data set or
- * several (lists them), other types, data in other files, filters that sonject does not know or
- * that change numbers. Links are not followed. */
+/* Two-dimensional data sets of HDF5 files: float64, float32, uint8, uint16, int16, or complex, a
+ * compound of two equal floats r and i (h5py) or real and imag (MATLAB). Rows are the first index.
+ * MATLAB v7.3, told by the attribute MATLAB_class, stores column after column, so its rows are the
+ * second index. Refused: a damaged file, no such data set or several (the message lists them),
+ * other types, data in other files, filters that sonject does not know or that change numbers. Soft
+ * and external links are not followed. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,36 +17,36 @@
 #include "swath/raster_file.h"
 #include "swath/swath_format.h"
 
-#define NAME_BYTES 256    /* of a data set's path, the final 0 among them */
-#define LINKS_MAX  100000 /* that are followed: groups may hold each other */
+#define NAME_BYTES 256    /* a data set's path with its final 0 */
+#define LINKS_MAX  100000 /* limit of the walk: groups may hold each other */
 
-/* What a data set is. */
+/* A data set and its type. */
 struct data_set {
     char name[NAME_BYTES];
     hsize_t sides[2]; /* in the file's order */
-    bool is_read;     /* its numbers are of a type that sonject reads */
+    bool is_read;     /* the numbers are of a type that sonject reads */
     enum stored_type number;
     bool is_complex;
-    bool is_turned;        /* MATLAB's: the file's order is columns, rows */
-    char part_names[2][8]; /* of a complex one's compound */
+    bool is_turned;        /* stored by MATLAB: sides are columns, rows */
+    char part_names[2][8]; /* names of a complex compound's parts */
 };
 
 struct hdf5_array {
-    const char *path; /* in messages */
+    const char *path; /* for messages */
     struct data_set set;
     struct raster_layout layout;
     hid_t file, dataset;
     bool writes;
 };
 
-/* Lets go of whatever an identifier stands for; negative ones are of what failed. */
+/* Releases any identifier. Negative ones, of failed calls, are ignored. */
 static void release(hid_t id)
 {
     if (id >= 0)
         H5Idec_ref(id);
 }
 
-/* False for numbers that sonject does not read. */
+/* Finds the type of numbers. Returns false for types that sonject does not read. */
 static bool number_of(hid_t type, enum stored_type *number)
 {
     const size_t bytes = H5Tget_size(type);
@@ -63,7 +63,7 @@ static bool number_of(hid_t type, enum stored_type *number)
            ((bytes == 1 && !is_signed) || bytes == 2);
 }
 
-/* Two floats of one type, r and i or real and imag. */
+/* Takes a compound of two equal floats, r and i or real and imag. Returns false for others. */
 static bool take_compound(hid_t type, struct data_set *set)
 {
     static const char *const names[2][2] = {{"r", "real"}, {"i", "imag"}};
@@ -85,7 +85,7 @@ static bool take_compound(hid_t type, struct data_set *set)
            numbers[0] >= STORED_FLOAT32;
 }
 
-/* What the data set is; false if it is not one of two dimensions. */
+/* Finds out what a data set is. Returns false unless it has two dimensions. */
 static bool look_at(hid_t group, const char *name, struct data_set *set)
 {
     memset(set, 0, sizeof *set);
@@ -108,21 +108,21 @@ static bool look_at(hid_t group, const char *name, struct data_set *set)
     return is_plane;
 }
 
-/* A walk through all groups, of whose links hard ones count. */
+/* A walk through all groups along hard links. */
 struct walk {
     struct array_list list;
     struct data_set *chosen;
-    char path[NAME_BYTES]; /* of the group */
+    char path[NAME_BYTES]; /* the current group's path */
     unsigned links;
 };
 
-/* H5Lvisit would end where a group or a data set is damaged: these are passed over. */
+/* Visits a link. H5Lvisit would end at a damaged group or data set; this walk passes it over. */
 static herr_t visit_link(hid_t group, const char *name, const H5L_info_t *link, void *user)
 {
     struct walk *walk = user;
     struct data_set set;
     const size_t end = strlen(walk->path);
-    /* MATLAB keeps what its cells refer to under names that begin with # */
+    /* names that begin with # hold what MATLAB's cells refer to */
     if (link->type != H5L_TYPE_HARD || name[0] == '#' ||
         end + strlen(name) + 2 > sizeof walk->path || walk->links++ >= LINKS_MAX)
         return 0;
@@ -203,8 +203,8 @@ static sonject_status check_storage(struct report *report, const struct hdf5_arr
     return layout == H5D_CHUNKED ? check_filters(report, path, creation) : SONJECT_OK;
 }
 
-/* The disk's failures, and the limits' of memory, are told from the file's by errno, which is to be
- * 0 before. */
+/* Reports why samples could not be moved. errno, which must be 0 before, tells failures of the disk
+ * and limits of memory from faults of the file. */
 static sonject_status cannot_move(struct report *report, const struct hdf5_array *array)
 {
     const int error = errno;
@@ -217,7 +217,7 @@ static sonject_status cannot_move(struct report *report, const struct hdf5_array
     return input_failure(report, array->path, "its array is cut short or damaged: copy it again");
 }
 
-/* Those of sonject's that are one text. */
+/* Adds an attribute to the description if it is one of sonject's and a single text. */
 static herr_t add_attribute(hid_t dataset, const char *name, const H5A_info_t *info, void *text)
 {
     const hid_t attribute =
@@ -276,7 +276,7 @@ static sonject_status open_image(struct report *report, const char *name, const 
 static sonject_status close_image(struct report *report, void *image)
 {
     struct hdf5_array *array = image;
-    const int before = errno; /* of what failed, where an image is closed for that */
+    const int before = errno; /* the earlier failure's, if an image is closed after one */
     errno = 0;
     bool is_done = !array->writes || array->file < 0 || H5Fflush(array->file, H5F_SCOPE_LOCAL) >= 0;
     if (!is_done)
@@ -289,7 +289,7 @@ static sonject_status close_image(struct report *report, void *image)
     return status;
 }
 
-/* The type in memory: numbers, or pairs of them. For release. */
+/* Returns the type in memory, of numbers or of pairs, for release. */
 static hid_t memory_type(const struct data_set *set)
 {
     const hid_t plain = set->number == STORED_UINT8     ? H5T_NATIVE_UINT8
@@ -308,7 +308,7 @@ static hid_t memory_type(const struct data_set *set)
     return -1;
 }
 
-/* Reads or writes a part of the image that lies in memory as in the file. */
+/* Reads or writes a part of the image, which lies in memory in the file's order. */
 static bool move_run(const struct hdf5_array *array, const struct region *part, hid_t type,
                      void *run, bool writes)
 {
@@ -329,7 +329,7 @@ static bool move_run(const struct hdf5_array *array, const struct region *part, 
     return is_done;
 }
 
-/* A region is no larger than a piece of those that the decoder is asked for. */
+/* Reads or writes a region, which is no larger than a piece of the decoder's requests. */
 static sonject_status exchange(struct report *report, const struct hdf5_array *array,
                                const struct region *region, void *pixels, bool writes)
 {

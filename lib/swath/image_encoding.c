@@ -1,4 +1,4 @@
-/* What the writers of image files share. */
+/* Functions that the writers of image files share. */
 #include <errno.h>
 #include <stdlib.h>
 

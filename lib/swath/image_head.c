@@ -15,7 +15,7 @@ static const struct beginning beginnings[] = {
     {IMAGE_TIFF, "II\x2A\0", 4}, {IMAGE_TIFF, "MM\0\x2A", 4}, {IMAGE_TIFF, "II\x2B\0", 4},
     {IMAGE_TIFF, "MM\0\x2B", 4}, {IMAGE_PNG, "\x89PNG", 4},   {IMAGE_JPEG, "\xFF\xD8\xFF", 3}};
 
-/* What users may have at hand that sonject does not read. */
+/* Formats that users may have at hand but sonject does not read. */
 static const struct {
     const char *name;
     const char *bytes;

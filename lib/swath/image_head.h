@@ -1,4 +1,4 @@
-/* What the first bytes of image files say: their kind. */
+/* The kind of an image file, told by the first bytes. */
 #ifndef SONJECT_SWATH_IMAGE_HEAD_H
 #define SONJECT_SWATH_IMAGE_HEAD_H
 
@@ -17,11 +17,11 @@ enum image_kind {
 
 #define PNG_PALETTE_BYTES 768 /* red, green and blue of 256 numbers */
 
-/* The message for a file of no kind that sonject reads, by its first bytes. Returns INPUT. */
+/* Refuses a file of a kind that sonject does not read, told by the first bytes. Returns INPUT. */
 sonject_status image_kind_refuse(struct report *report, const char *path, const unsigned char *head,
                                  size_t count);
 
-/* Told by bytes from a file's beginning; false for another kind. */
+/* Tells the kind by a file's first bytes. Returns false for other kinds. */
 bool image_kind_of_beginning(const unsigned char *bytes, size_t count, enum image_kind *kind);
 
 #endif

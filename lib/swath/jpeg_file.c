@@ -14,29 +14,29 @@
 #include "base/memory.h"
 #include "swath/swath_file.h"
 
-#define QUALITY_DIFFERENCE 0.2 /* of entries, in the mean, up to which tables are close */
+#define QUALITY_DIFFERENCE 0.2 /* largest mean relative difference of close tables */
 
-#define COMMENT_MAX 65533 /* bytes of a comment, where the description is kept */
+#define COMMENT_MAX 65533 /* bytes of a comment, which holds the description */
 
-/* Coarser coding would show in the noise of every pixel of the swath, not only near the target. */
+/* The quality of whole swaths: coarser coding would show in all noise, not only at the target. */
 #define FINEST_QUALITY 98
 
-/* Where libjpeg's errors arrive. */
+/* The receiver of libjpeg's errors. */
 struct listener {
-    struct jpeg_error_mgr manager; /* first: libjpeg hands on its address */
+    struct jpeg_error_mgr manager; /* first, because libjpeg passes on its address */
     jmp_buf back;
     FILE *file;
     struct library_fault fault;
 };
 
 struct jpeg_image {
-    const char *name, *path; /* name: in messages */
+    const char *name, *path; /* name: for messages */
     struct raster_layout layout;
     struct listener listener;
-    struct jpeg_decompress_struct jpeg; /* all 0: not there */
-    struct jpeg_compress_struct scaled; /* to compare tables with; all 0: not there */
-    uint64_t next_row;                  /* that libjpeg decodes */
-    unsigned char *row;                 /* the last one; owned */
+    struct jpeg_decompress_struct jpeg; /* all 0: not created */
+    struct jpeg_compress_struct scaled; /* for comparing tables; all 0: not created */
+    uint64_t next_row;                  /* the next row to decode */
+    unsigned char *row;                 /* owned; the row decoded last */
 };
 
 static void hear(j_common_ptr jpeg)
@@ -46,11 +46,12 @@ static void hear(j_common_ptr jpeg)
     listener->fault.error = jpeg->err->msg_code == JERR_OUT_OF_MEMORY ? ENOMEM
                             : is_of_file                              ? errno
                                                                       : 0;
-    jpeg->err->format_message(jpeg, listener->fault.message); /* JMSG_LENGTH_MAX bytes at most */
+    jpeg->err->format_message(jpeg, listener->fault.message); /* JMSG_LENGTH_MAX bytes or fewer */
     longjmp(listener->back, 1);
 }
 
-/* Warnings (negative levels) are of damaged files: libjpeg would go on with made-up pixels. */
+/* Treats warnings (negative levels) as errors. They mean a damaged file, and libjpeg would go on
+ * with made-up pixels. */
 static void hear_warning(j_common_ptr jpeg, int level)
 {
     if (level < 0)
@@ -71,7 +72,7 @@ static sonject_status tell_fault(struct report *report, const struct jpeg_image 
 {
     if (image->listener.fault.error == ENOMEM)
         return report_out_of_memory(report, image->name);
-    errno = image->listener.fault.error; /* the disk's failures are told by it */
+    errno = image->listener.fault.error; /* for file_check_disk */
     return input_failure(report, image->name, "cut short or damaged at row %llu: %s",
                          (unsigned long long)image->next_row, image->listener.fault.message);
 }
@@ -98,7 +99,7 @@ static bool read_head(struct jpeg_image *image)
     return true;
 }
 
-/* Opens the file, again where rows are wanted that were decoded before. */
+/* Opens the file, or opens it again if rows are wanted that were decoded before. */
 static sonject_status begin_decoding(struct report *report, struct jpeg_image *image)
 {
     end_decoding(image);
@@ -127,8 +128,8 @@ static sonject_status take_layout(struct report *report, struct jpeg_image *imag
     return SONJECT_OK;
 }
 
-/* The quality whose table, as libjpeg scales its own, differs least from the file's; before all
- * rows are decoded, when libjpeg forgets it. */
+/* Finds the quality whose table, as libjpeg scales its own, differs least from the file's. Must run
+ * before all rows are decoded, because libjpeg then forgets the table. */
 static bool take_quality(struct jpeg_image *image, int *nearest)
 {
     const JQUANT_TBL *table = image->jpeg.quant_tbl_ptrs[image->jpeg.comp_info->quant_tbl_no];
@@ -155,7 +156,7 @@ static bool take_quality(struct jpeg_image *image, int *nearest)
     return true;
 }
 
-/* Decodes rows up to the region's end, and copies what is in it unless pixels is NULL. */
+/* Decodes rows up to the region's end. Copies the region's pixels unless pixels is NULL. */
 static bool decode_region(struct jpeg_image *image, const struct region *region,
                           unsigned char *pixels)
 {
@@ -168,7 +169,7 @@ static bool decode_region(struct jpeg_image *image, const struct region *region,
                    image->row + region->first_column, (size_t)region->columns);
     }
     if (image->next_row == image->layout.rows)
-        jpeg_finish_decompress(&image->jpeg); /* which hears of bytes that follow */
+        jpeg_finish_decompress(&image->jpeg); /* warns of surplus bytes */
     return true;
 }
 
@@ -195,7 +196,7 @@ static sonject_status close_image(struct report *report, void *opened)
     return SONJECT_OK;
 }
 
-/* Decodes all: so a file that is cut short is told at once, not after hours of work. */
+/* Decodes all rows, so that a file that is cut short is found at once, not after hours of work. */
 static sonject_status open_image(struct report *report, const char *name, const char *path,
                                  const char *array, bool writes, void **opened,
                                  struct image_facts *facts)

@@ -1,15 +1,14 @@
-/* Sidescan channels of EdgeTech's JSF files: messages one after the other, of which those of type
- * 80 each hold a ping of one channel of one subsystem. Little-endian; offsets after EdgeTech's
- * published description (0004824, rev. 1.20). Channels are numbered from 0 in the order of
- * subsystem and channel; subsystem 0 is a sub-bottom profiler. Samples are envelopes, or analytic
- * signals as pairs, of 16 bits that a power of two scales ping by ping: where pings differ in it
- * they are shown as floats, 1 being the finest ping's step. Ranges come from the first ping's sound
- * speed. Numbers beyond what samples of 16 bits hold are cut when they are written; what is not a
- * number is refused.
+/* Sidescan channels of EdgeTech's JSF files. A file is a sequence of messages. Each message of type
+ * 80 holds a ping of one channel of one subsystem. Numbers are little-endian, at the offsets of
+ * EdgeTech's published description (0004824, rev. 1.20). Channels are numbered from 0 in the order
+ * of subsystem and channel; subsystem 0 is a sub-bottom profiler. Samples have 16 bits: envelopes,
+ * or pairs for analytic signals. A power of two scales each ping. If pings differ in it, samples
+ * are shown as floats in steps of the finest ping. Ranges use the first ping's sound speed. Writing
+ * clips numbers beyond 16 bits, and refuses what is not a number.
  *
  * Refused: a file that is cut short or damaged, no sidescan channel, no channel as chosen or
- * several (lists them), other kinds of samples, compressed ones, pings in several packets, pings
- * with different cells. */
+ * several (the message lists them), other kinds of samples, compressed ones, pings in several
+ * packets, pings with different cells. */
 #include <math.h>
 #include <stdio.h>
 
@@ -18,41 +17,41 @@
 #include "swath/swath_format.h"
 
 #define MARK            0x1601
-#define MESSAGE_BYTES   16  /* of what stands before each message */
-#define PING_BYTES      240 /* of what stands before a ping's samples */
+#define MESSAGE_BYTES   16  /* a message's header */
+#define PING_BYTES      240 /* a ping's header, before its samples */
 #define TYPE_PING       80
 #define KIND_ENVELOPE   0
 #define KIND_ANALYTIC   1
-#define KIND_COMPRESSED 256 /* and above */
+#define KIND_COMPRESSED 256 /* this and all above */
 #define HAS_POSITION    (1u << 0)
 #define HAS_HEADING     (1u << 3)
 #define HAS_ALTITUDE    (1u << 6)
 #define UNITS_MM        1
-#define UNITS_ARC       2 /* 1e-4 minutes */
+#define UNITS_ARC       2 /* 1e-4 minutes of arc */
 #define UNITS_DM        3
-#define USUAL_SPEED     1500.0 /* m/s, where the file has none that is water's */
-#define WEIGHTS_MAX     64     /* from the lowest to the highest */
-#define WHOLE_WEIGHTS   16     /* between which the largest number fits 32 bits */
+#define USUAL_SPEED     1500.0 /* m/s, if the file has none between 1300 and 1700 */
+#define WEIGHTS_MAX     64     /* largest difference between pings' weights */
+#define WHOLE_WEIGHTS   16     /* largest difference at which numbers fit 32 bits */
 
-/* A channel of a subsystem; ordered. */
+/* A channel of a subsystem. Order: by subsystem, then by channel. */
 struct source {
     uint32_t subsystem, channel;
 };
 
 struct message {
-    uint64_t place, bytes; /* of what follows its head */
+    uint64_t place, bytes; /* the body, after the header */
     struct source source;
-    bool is_ping; /* of a sidescan */
+    bool is_ping; /* a ping of a sidescan */
 };
 
 struct opening {
     struct report *report;
     struct swath_file *file;
-    struct source sources[CHANNEL_NUMBER_MAX + 1]; /* in order */
+    struct source sources[CHANNEL_NUMBER_MAX + 1]; /* sorted */
     uint32_t source_count;
     double speed_mps; /* 0 before the first ping */
-    uint32_t kind;    /* of the first ping's samples */
-    bool has_units;   /* some ping has a position, which tells all positions' units */
+    uint32_t kind;    /* the first ping's kind of samples */
+    bool has_units;   /* a ping has had a position, which sets all units */
 };
 
 static bool is_jsf(struct swath_file *file, const unsigned char *head, size_t count)
@@ -91,7 +90,7 @@ static sonject_status read_message(const struct opening *opening, uint64_t place
     return SONJECT_OK;
 }
 
-/* Whether a comes after b. */
+/* Returns whether a comes after b. */
 static bool is_after(const struct source *a, const struct source *b)
 {
     return a->subsystem > b->subsystem || (a->subsystem == b->subsystem && a->channel > b->channel);
@@ -160,7 +159,7 @@ static sonject_status check_kind(struct opening *opening, const unsigned char *h
     return SONJECT_OK;
 }
 
-/* Positions in other units than the first are passed over. */
+/* Reads a position. Skips angles if the first position was a length, and the reverse. */
 static void read_position(struct opening *opening, const unsigned char *head,
                           struct recorded_ping *ping)
 {
@@ -209,7 +208,7 @@ static sonject_status add_ping(struct opening *opening, const struct message *me
     return recording_add(opening->report, file, &ping, message->place + sizeof head, samples);
 }
 
-/* How samples are shown, once all pings are known. */
+/* Decides how samples are shown, once all pings are known. */
 static sonject_status set_samples(const struct opening *opening)
 {
     struct swath_file *file = opening->file;

@@ -1,8 +1,8 @@
-/* Arrays of MATLAB files of version 5 (.mat; -v6 and -v7 of MATLAB, scipy's and Octave's too):
- * two-dimensional, of double, single, uint8, uint16 or int16 numbers, real or (double, single)
- * complex. Rows and columns are MATLAB's. Copies differ from their source in the array's changed
- * numbers alone; all other variables keep every byte. A variable that is compressed, or whose
- * numbers MATLAB had packed into a smaller type than their own, is written anew. */
+/* Arrays of MATLAB files of version 5 (.mat: -v6 and -v7 of MATLAB, and those of scipy and Octave).
+ * Arrays are two-dimensional, of double, single, uint8, uint16 or int16 numbers; double and single
+ * may be complex. Rows and columns are MATLAB's. A copy differs from its source only in the array's
+ * changed numbers; all other variables keep every byte. A variable is written again as a whole if
+ * it is compressed, or if MATLAB packed its numbers into a smaller type. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,13 +16,13 @@
 
 #define TAG_BYTES       8
 #define HEADER_BYTES    128
-#define HEAD_BYTES      512  /* that hold class, sides and name of a variable */
-#define DEFLATE_RATIO   1040 /* more than any deflated byte holds */
-#define NAME_MAX_BYTES  64   /* the final 0 among them */
+#define HEAD_BYTES      512  /* enough for class, sides and name of a variable */
+#define DEFLATE_RATIO   1040 /* more than the bytes that a deflated byte holds */
+#define NAME_MAX_BYTES  64   /* final 0 included */
 #define FLAG_COMPLEX    0x0800u
-#define SUBSYSTEM_PLACE 116 /* of the header: where further data of MATLAB's own objects begin */
+#define SUBSYSTEM_PLACE 116 /* in the header: offset of the data of MATLAB's own objects */
 
-/* Types of elements and stored numbers, as the format numbers them. */
+/* Types of elements and stored numbers. The values are the format's. */
 enum mat_type {
     MAT_INT8 = 1,
     MAT_UINT8 = 2,
@@ -46,32 +46,32 @@ enum mat_class {
     MAT_CLASS_LAST_NUMERIC = 15
 };
 
-/* Numbers of a variable: its real or imaginary part. */
+/* The numbers of a variable: the real or the imaginary part. */
 struct part {
-    uint32_t type;           /* as they are stored */
-    size_t tag, data, bytes; /* places in the variable's element */
+    uint32_t type;           /* stored mat_type */
+    size_t tag, data, bytes; /* tag, data: offsets in the variable's element */
 };
 
-/* Where a variable lies and what it is. */
+/* A variable in the file. */
 struct variable {
-    uint64_t place, bytes; /* of its element in the file, the tag among them */
+    uint64_t place, bytes; /* the element in the file, tag included */
     bool is_compressed, is_complex;
     uint32_t kind; /* MATLAB's class */
     uint64_t rows, columns;
-    size_t head; /* bytes of the element before its numbers; 0: it is no two-dimensional array */
+    size_t head; /* bytes of the element before its numbers; 0: not a two-dimensional array */
     char name[NAME_MAX_BYTES];
 };
 
 struct mat_array {
     bool is_big_endian;
-    struct variable variable; /* that is read */
-    unsigned char *element;   /* owned: the variable, not compressed, its tag among it */
+    struct variable variable; /* the one that is read */
+    unsigned char *element;   /* owned; the variable, inflated, with its tag */
     size_t element_bytes;
     struct part parts[2];
 };
 
-/* Inflates the beginning of a variable: at most capacity bytes, *count gets how many. False if it
- * is damaged. Elements of the format have at most 2^32 bytes. */
+/* Inflates the beginning of a variable, at most capacity bytes; *count gets how many. Returns false
+ * if the variable is damaged. Elements have at most 2^32 bytes, which zlib's sizes hold. */
 static bool inflate_start(const unsigned char *compressed, size_t compressed_bytes,
                           unsigned char *bytes, size_t capacity, size_t *count)
 {
@@ -89,7 +89,7 @@ static bool inflate_start(const unsigned char *compressed, size_t compressed_byt
     return answer == Z_OK || answer == Z_STREAM_END || answer == Z_BUF_ERROR;
 }
 
-/* False for what is no number of up to 64 bits. */
+/* Returns false for types other than floats and integers of up to 32 bits. */
 static bool stored_type_of(uint32_t type, enum stored_type *stored)
 {
     static const enum stored_type types[] = {
@@ -102,7 +102,7 @@ static bool stored_type_of(uint32_t type, enum stored_type *stored)
     return true;
 }
 
-/* How numbers of a variable are stored when they are not packed; 0: sonject does not read it. */
+/* Returns the type of a variable's unpacked numbers; 0 if sonject does not read the variable. */
 static uint32_t own_type(const struct variable *variable)
 {
     static const uint32_t types[] = {[MAT_CLASS_DOUBLE] = MAT_DOUBLE,
@@ -130,8 +130,8 @@ static sonject_status damaged(struct report *report, const struct swath_file *fi
                          (unsigned long long)place);
 }
 
-/* Takes the element that begins at *place of the bytes: *part gets where its data lie, *place what
- * follows. False if the bytes do not hold it. */
+/* Takes the element at *place of the bytes. *part gets where its data lie, and *place becomes the
+ * next element's. Returns false if the bytes do not hold the element. */
 static bool take_element(const unsigned char *bytes, size_t count, bool is_big_endian,
                          size_t *place, struct part *part)
 {
@@ -150,8 +150,8 @@ static bool take_element(const unsigned char *bytes, size_t count, bool is_big_e
     return true;
 }
 
-/* Class, sides and name, from the beginning of an element; false if it is no array of numbers in
- * two dimensions. */
+/* Reads class, sides and name from the beginning of an element. Returns false unless the element is
+ * a two-dimensional array of numbers. */
 static bool read_head(const unsigned char *bytes, size_t count, bool is_big_endian,
                       struct variable *variable)
 {
@@ -177,7 +177,7 @@ static bool read_head(const unsigned char *bytes, size_t count, bool is_big_endi
            variable->columns <= INT32_MAX;
 }
 
-/* Finds out what a variable is; a compressed one's beginning is inflated. */
+/* Finds out what a variable is, after inflating the beginning of a compressed one. */
 static sonject_status look_at(struct report *report, const struct swath_file *file,
                               struct variable *variable)
 {
@@ -199,7 +199,7 @@ static sonject_status look_at(struct report *report, const struct swath_file *fi
     return SONJECT_OK;
 }
 
-/* Walks through the file's variables and keeps the one that is wanted. */
+/* Walks through the file's variables and keeps the wanted one. */
 static sonject_status choose_variable(struct report *report, struct swath_file *file,
                                       const char *array)
 {
@@ -225,8 +225,7 @@ static sonject_status choose_variable(struct report *report, struct swath_file *
     return array_list_check(report, file->path, &list);
 }
 
-/* Inflates the whole variable. What it says of its size is believed no further than compressed
- * bytes can hold. */
+/* Inflates the whole variable. Refuses a size that its compressed bytes cannot hold. */
 static sonject_status inflate_element(struct report *report, const struct swath_file *file,
                                       const unsigned char *stored, size_t count)
 {
@@ -269,7 +268,7 @@ static sonject_status load_element(struct report *report, const struct swath_fil
     return status;
 }
 
-/* Where the numbers lie in the element. */
+/* Finds the places of the numbers in the element. */
 static sonject_status find_parts(struct report *report, const struct swath_file *file)
 {
     struct mat_array *mat = file->mat;
@@ -324,7 +323,7 @@ void mat_array_release(struct mat_array **array)
     *array = NULL;
 }
 
-/* Between a region's pixels and the numbers of an element, whose parts are given. */
+/* Moves samples between a region's pixels and an element, whose parts are given. */
 static sonject_status exchange(struct report *report, const struct swath_file *file,
                                const struct part *parts, unsigned char *element,
                                const struct region *region, void *pixels, bool writes)
@@ -348,8 +347,8 @@ static sonject_status read_mat(struct report *report, struct swath_file *file,
     return exchange(report, file, file->mat->parts, file->mat->element, region, pixels, false);
 }
 
-/* The element with its numbers in the variable's own type, for free(); parts gets where they lie.
- */
+/* Returns the element with its numbers in the variable's own type, for free(). parts gets the
+ * places of the numbers. NULL if memory or the format cannot hold the element. */
 static unsigned char *unpack(const struct swath_file *file, struct part *parts, size_t *bytes)
 {
     const struct mat_array *mat = file->mat;
@@ -382,7 +381,7 @@ static unsigned char *unpack(const struct swath_file *file, struct part *parts, 
     return element;
 }
 
-/* The variable's element as the copy shall have it, for free(). */
+/* Makes the variable's element for the copy, for free(). */
 static sonject_status make_element(struct report *report, const struct swath_file *file,
                                    const struct swath_copy *copy, unsigned char **element,
                                    size_t *bytes)
@@ -414,7 +413,7 @@ static sonject_status make_element(struct report *report, const struct swath_fil
     return is_done ? SONJECT_OK : report_out_of_memory(report, "a compressed array");
 }
 
-/* The header names the place of MATLAB's own data, which moves with the variable's size. */
+/* Corrects the header's offset of MATLAB's own data, which move with the variable's size. */
 static bool move_subsystem(const struct swath_file *file, FILE *out, uint64_t bytes)
 {
     const struct variable *variable = &file->mat->variable;

@@ -11,8 +11,8 @@
 #include "swath/raster_file.h"
 #include "swath/swath_format.h"
 
-#define HEADER_MAX 65536 /* bytes: of two numbers, a type and an order hundreds are written */
-#define NPY_HEADER 128   /* bytes of a new file's, as the format wants a multiple of 64 */
+#define HEADER_MAX 65536 /* bytes; usual headers have hundreds */
+#define NPY_HEADER 128   /* bytes in a new file; the format wants a multiple of 64 */
 #define SIDE_MAX   (UINT64_C(1) << 40)
 
 static const unsigned char mark[] = {0x93, 'N', 'U', 'M', 'P', 'Y'};
@@ -42,7 +42,7 @@ static bool is_npy(struct swath_file *file, const unsigned char *head, size_t co
     return some >= 4 && memcmp(head, mark, some) == 0;
 }
 
-/* What follows "'key':" in the header, less leading spaces; NULL if the key is not there. */
+/* Returns what follows "'key':" in the header, less leading spaces; NULL if there is no key. */
 static const char *value_of(const char *header, const char *key)
 {
     const char *place = strstr(header, key);
@@ -75,7 +75,7 @@ static bool read_type(const char *header, struct swath_file *file)
     return false;
 }
 
-/* "(rows, columns)" and at most one more comma. */
+/* Reads "(rows, columns)", with at most one more comma. */
 static bool read_shape(const char *header, struct swath_file *file)
 {
     const char *place = value_of(header, "shape");
@@ -120,7 +120,7 @@ static sonject_status take_header(struct report *report, const char *header,
             report, file->path,
             "is not two-dimensional: rows are track positions, columns range cells");
     const struct region whole = {0, 0, file->layout.rows, file->layout.columns};
-    const size_t size = file->lines.type == STORED_FLOAT64 ? 2 : 1; /* of what the image takes */
+    const size_t size = file->lines.type == STORED_FLOAT64 ? 2 : 1; /* times the image's bytes */
     if (!region_bytes(&file->layout, &whole, &bytes) || bytes > SIZE_MAX / size ||
         file->bytes - file->lines.first_place < bytes * size)
         return input_failure(report, file->path, "is cut short: copy it again");

@@ -1,4 +1,4 @@
-/* PNG by libpng: grey images of 8 or 16 bits, and those whose pixels are numbers of objects. */
+/* PNG by libpng: grey images of 8 or 16 bits, and palette images of object numbers. */
 #include "swath/image_library.h"
 
 #include <errno.h>
@@ -12,22 +12,21 @@
 #include "base/file.h"
 #include "base/memory.h"
 
-#define DESCRIPTION "Description" /* the text that the file keeps */
+#define DESCRIPTION "Description" /* keyword of the description */
 
-/* A chunk that tells sonject's own palettes, whose numbers are meant: those of others are colours.
- */
+/* The chunk that marks sonject's own palettes: their pixels are numbers, all others colours. */
 #define NUMBERS_CHUNK "soNu"
 
 struct png_image {
-    const char *name, *path; /* name: in messages */
+    const char *name, *path; /* name: for messages */
     struct raster_layout layout;
     struct library_fault fault;
     FILE *file;
     png_structp png;
     png_infop info;
-    uint64_t next_row;  /* that libpng decodes */
-    unsigned char *row; /* the last one; owned */
-    unsigned char *all; /* rows of an interlaced image; NULL: of another; owned */
+    uint64_t next_row;  /* the next row to decode */
+    unsigned char *row; /* owned; the row decoded last */
+    unsigned char *all; /* owned; rows of an interlaced image; NULL: not interlaced */
 };
 
 static void hear(png_structp png, png_const_charp message)
@@ -38,7 +37,7 @@ static void hear(png_structp png, png_const_charp message)
     png_longjmp(png, 1);
 }
 
-/* What libpng goes on without. */
+/* Ignores warnings, after which libpng goes on. */
 static void ignore(png_structp png, png_const_charp message)
 {
     (void)png, (void)message;
@@ -55,7 +54,7 @@ static sonject_status tell_fault(struct report *report, const struct png_image *
 {
     if (image->fault.error == ENOMEM)
         return report_out_of_memory(report, image->name);
-    errno = image->fault.error; /* the disk's failures are told by it */
+    errno = image->fault.error; /* for file_check_disk */
     return input_failure(report, image->name, "cannot be read: %s", image->fault.message);
 }
 
@@ -82,7 +81,7 @@ static bool read_head(struct png_image *image)
     return true;
 }
 
-/* Opens the file, again where rows are wanted that were decoded before. */
+/* Opens the file, or opens it again if rows are wanted that were decoded before. */
 static sonject_status begin_decoding(struct report *report, struct png_image *image)
 {
     end_decoding(image);
@@ -133,7 +132,7 @@ static sonject_status take_layout(struct report *report, struct png_image *image
     return SONJECT_OK;
 }
 
-/* All passes of an interlaced image. */
+/* Decodes all passes of an interlaced image. */
 static bool decode_all(struct png_image *image, size_t row_bytes)
 {
     if (setjmp(png_jmpbuf(image->png)) != 0)
@@ -144,7 +143,7 @@ static bool decode_all(struct png_image *image, size_t row_bytes)
     return true;
 }
 
-/* Decodes rows up to the region's end, and copies what is in it unless pixels is NULL. */
+/* Decodes rows up to the region's end. Copies the region's pixels unless pixels is NULL. */
 static bool decode_region(struct png_image *image, const struct region *region,
                           unsigned char *pixels)
 {
@@ -167,7 +166,8 @@ static bool decode_region(struct png_image *image, const struct region *region,
     return true;
 }
 
-/* The decoder alone tells that a file is cut short: at once, not after hours of work. */
+/* Decodes all rows. Only the decoder can tell that a file is cut short, and this way it does so at
+ * once, not after hours of work. */
 static sonject_status try_all_rows(struct report *report, struct png_image *image)
 {
     const struct region whole = {0, 0, image->layout.rows, image->layout.columns};
@@ -275,8 +275,8 @@ static bool write_head(struct png_output *output)
     if (setjmp(png_jmpbuf(output->png)) != 0)
         return false;
     png_init_io(output->png, output->file);
-    /* few values, or noise by way of a colour map: filters and searching for longer matches cost
-     * much time, and make files no smaller */
+    /* few values, or noise in a colour map: filters and a search for longer matches would take much
+     * time and make files no smaller */
     if (encoding->is_drawn) {
         png_set_filter(output->png, 0, PNG_FILTER_NONE);
         png_set_compression_level(output->png, 1);

@@ -14,12 +14,12 @@
 #include "swath/raster_file.h"
 #include "swath/swath_file.h"
 
-#define SIDE_LIMIT 4096 /* pixels that are drawn a side; larger images are averaged down to it */
+#define SIDE_LIMIT 4096 /* pixels per side of a picture; larger images are averaged */
 
-/* An image as it is drawn: amplitudes of blocks of pixels. */
+/* The image to draw: amplitudes of blocks of pixels. */
 struct view_image {
     size_t rows, columns;
-    uint64_t block; /* pixels a side that became one */
+    uint64_t block; /* side of a block, pixels */
     float *amplitude;
 };
 
@@ -91,7 +91,7 @@ static sonject_status read_reduced(struct report *report, const char *path, stru
     return status;
 }
 
-/* Steps are of a column's width, longer where the drawn image would get too wide of that. */
+/* Resamples to ground range. Steps are a column wide, or wider if the picture would be too wide. */
 static sonject_status to_ground_range(struct report *report, const char *path, enum range_axis axis,
                                       double altitude, struct view_image *image,
                                       struct plot_frame *frame)
@@ -142,8 +142,7 @@ static sonject_status draw(struct report *report, const struct plot_frame *frame
     return status;
 }
 
-/* Axes: what the caller says, else what the file says, else pixels. Returns which range axis it is.
- */
+/* Fills in the axes: the caller's, else the file's, else pixels. Returns the range axis. */
 static enum range_axis fill_frame(struct plot_frame *frame, const sonject_quicklook_params *params,
                                   const struct image_options *options,
                                   const struct swath_file *file, const struct view_image *image,
@@ -153,7 +152,7 @@ static enum range_axis fill_frame(struct plot_frame *frame, const sonject_quickl
     struct noted_geometry noted;
     geometry_notes_read(file, &noted);
     const bool is_ground = noted.axis == RANGE_GROUND && !options->has_geometry;
-    if (is_ground) /* such numbers are checked as slant ranges are */
+    if (is_ground) /* the numbers are checked as slant ranges are */
         noted.axis = RANGE_SLANT;
     const bool has_metres = options->has_geometry || geometry_notes_tell(&noted, &geometry);
     *altitude = params->altitude_m > 0.0 ? params->altitude_m

@@ -8,7 +8,7 @@
 #include "image/raster.h"
 #include "scene/params.h"
 
-/* sonject_quicklook, whose parameters are checked; boxes of pixels are framed in it. */
+/* Draws sonject_quicklook's picture, whose parameters are checked, with frames around boxes. */
 sonject_status draw_quicklook(struct report *report, const sonject_quicklook_params *params,
                               const struct image_options *options, const struct region *boxes,
                               size_t box_count);

@@ -14,10 +14,10 @@
 #include "swath/swath_format.h"
 
 #define PIXELS_MAX    ((uint64_t)1 << 40)
-#define PNG_SIDE_MAX  1000000 /* of libpng */
-#define JPEG_SIDE_MAX 65500   /* of libjpeg */
+#define PNG_SIDE_MAX  1000000 /* limit of libpng */
+#define JPEG_SIDE_MAX 65500   /* limit of libjpeg */
 
-/* Rows of an image that is written: those of source, or zeros, but for the region's pixels. */
+/* The rows of an image that is written: source's, or zeros, with the region's pixels put in. */
 struct patched_rows {
     struct report *report;
     struct decoded_image *source; /* NULL: zeros */
@@ -26,7 +26,7 @@ struct patched_rows {
     const void *pixels;
     sonject_progress_function progress; /* may be NULL */
     void *user;
-    int quality; /* of a JPEG; 0: the finest */
+    int quality; /* JPEG's; 0: the finest */
 };
 
 struct raster_attribute raster_make_grey(struct raster_layout *layout, void *pixels,
@@ -114,10 +114,10 @@ sonject_status hdf5_array_write(struct report *report, const char *path,
 }
 #endif
 
-/* New files, by their extension in any case of letters. */
+/* Formats of new files by extension, in upper or lower case. */
 static const struct new_format {
     const char *extension;
-    enum image_kind kind; /* of an image, which no writer of its own writes */
+    enum image_kind kind; /* the image's, if write is NULL */
     sonject_status (*write)(struct report *report, const char *path,
                             const struct raster_layout *layout,
                             const struct raster_attribute *attributes, size_t attribute_count,
@@ -131,7 +131,7 @@ static const struct new_format {
                    {".h5", IMAGE_TIFF, hdf5_array_write},
                    {".hdf5", IMAGE_TIFF, hdf5_array_write}};
 
-/* NULL: none. */
+/* Returns NULL for an unknown extension. */
 static const struct new_format *format_of(const char *path)
 {
     const char *dot = strrchr(path, '.');
@@ -244,7 +244,7 @@ bool raster_format_keeps_attributes(const char *path)
     return !format || format->write != write_npy;
 }
 
-/* Whether the extension tells a format that holds such samples. */
+/* Checks that the extension names a lossless format for such samples. */
 static sonject_status check_format(struct report *report, const char *path,
                                    const struct raster_layout *layout)
 {

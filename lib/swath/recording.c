@@ -1,5 +1,4 @@
-/* What formats of recordings share: channels, of which one is wanted, and pings that become rows.
- */
+/* Functions for all formats of recordings: the choice of a channel, and pings that become rows. */
 #include "swath/recording.h"
 
 #include <math.h>
@@ -59,7 +58,7 @@ sonject_status recording_damaged(struct report *report, const struct swath_file 
                          (unsigned long long)place, what);
 }
 
-/* Every row of an image has the same cells. */
+/* Checks that a ping has the same range cells as the rows before. */
 static sonject_status check_same(struct report *report, const struct swath_file *file,
                                  const struct recorded_ping *ping, uint64_t samples)
 {

@@ -45,7 +45,7 @@ static double stored_number(bool is_big_endian, enum stored_type type, const uns
     return is_negative ? (double)word - (double)(UINT64_C(1) << (8 * size)) : (double)word;
 }
 
-/* A number that the type holds. */
+/* Stores a number that the type can hold. */
 static void put_number(double number, enum stored_type type, unsigned char *bytes,
                        bool is_big_endian)
 {
@@ -64,7 +64,7 @@ void samples_convert(enum stored_type from_type, const unsigned char *from, enum
     put_number(stored_number(is_big_endian, from_type, from), type, to, is_big_endian);
 }
 
-/* The largest number of a whole type that a file may hold. */
+/* Returns the largest number of an integer type that a file may hold. */
 static double largest_of(const struct stored_samples *stored, enum stored_type type)
 {
     const double full = (double)(UINT64_C(1) << (8 * stored_bytes(type) - is_signed(type))) - 1.0;
@@ -76,7 +76,8 @@ static double scale_of(const struct stored_samples *stored)
     return stored->scale > 0.0 ? stored->scale : 1.0;
 }
 
-/* False if the file cannot hold the number. One that the file's own is shown as changes nothing. */
+/* Stores a number. A stored number that already reads as the new one keeps its bits. Returns false
+ * if the file cannot hold the new number. */
 static bool store(const struct stored_samples *stored, enum stored_type type, double number,
                   unsigned char *bytes)
 {
@@ -98,7 +99,7 @@ static bool store(const struct stored_samples *stored, enum stored_type type, do
     return true;
 }
 
-/* The same bits on both sides, whatever they are, but for their order. */
+/* Copies a float32 bit by bit, NaN included; only the byte order may change. */
 static void exchange_floats(const struct stored_samples *stored, bool writes, unsigned char *bytes,
                             unsigned char *shown)
 {

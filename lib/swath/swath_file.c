@@ -9,7 +9,7 @@
 #include "swath/swath_format.h"
 
 #define COPIED_AT_ONCE ((uint64_t)8 << 20)
-#define PIXELS_MAX     ((uint64_t)1 << 31) /* that are read at once */
+#define PIXELS_MAX     ((uint64_t)1 << 31) /* limit of swath_file_read_all */
 
 #define FORMAT_ADDRESS(name, files) &name##_format,
 static const struct swath_format *const formats[] = {SWATH_FORMATS(FORMAT_ADDRESS)};
@@ -69,7 +69,7 @@ static sonject_status open_recognised(struct report *report, struct swath_file *
     return format->open(report, file, channel, array);
 }
 
-/* NULL for a file that cannot be read: who opens it says so. */
+/* Returns NULL for a file that cannot be read. Opening the file reports why. */
 static const struct swath_format *format_of(const char *path)
 {
     struct report unheard = {{0}, NULL, NULL};
@@ -244,7 +244,7 @@ sonject_status swath_close_copy(struct report *report, const struct swath_copy *
     return status;
 }
 
-/* Reads a region's lines, one at a time, or writes them to a copy (out). */
+/* Reads a region's lines one at a time, or writes them to a copy if out is not NULL. */
 static sonject_status exchange_lines(struct report *report, const struct swath_file *file,
                                      const struct region *region, void *pixels,
                                      const struct swath_copy *copy, FILE *out)

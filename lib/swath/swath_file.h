@@ -1,6 +1,4 @@
-/* Files that hold a swath: images, channels of XTF and JSF files, arrays of NumPy, HDF5 and MATLAB
- * files.
- */
+/* Files that hold a swath: images, XTF and JSF channels, arrays of NumPy, HDF5 and MATLAB files. */
 #ifndef SONJECT_SWATH_SWATH_FILE_H
 #define SONJECT_SWATH_SWATH_FILE_H
 
@@ -10,38 +8,38 @@
 
 struct swath_file;
 
-/* Opens for reading; the file's first bytes tell what it is. channel: of a recording; must be
- * SONJECT_CHANNEL_ONLY for other files. array: its name in an HDF5 or MATLAB file, NULL for the
- * only one; must be NULL for other files. Errors: INPUT (as decoded_image_open and the formats'
- * files say), UNSUPPORTED, STORAGE, MEMORY. On success *file is the caller's, for swath_file_close;
- * on failure NULL. */
+/* Opens a file for reading. The first bytes tell the format. channel: a recording's channel; must
+ * be SONJECT_CHANNEL_ONLY for other files. array: a name in an HDF5 or MATLAB file, NULL for the
+ * only array; must be NULL for other files. Errors: INPUT (see decoded_image_open and the formats'
+ * files), UNSUPPORTED, STORAGE, MEMORY. On success *file is the caller's, for swath_file_close; on
+ * failure *file is NULL. */
 sonject_status swath_file_open_array(struct report *report, const char *path, int32_t channel,
                                      const char *array, struct swath_file **file);
 
-/* Whether it is a file of a recording's channels; false also for one that cannot be read. */
+/* Returns whether the file is a recording with channels. False also if the file cannot be read. */
 bool swath_file_has_channels(const char *path);
 
-/* The same where channel and array may be meant for another file that is opened too, or for both:
- * each takes what its kind has. other: NULL for none. */
+/* Opens a file where channel and array may be meant for another file that is opened too, or for
+ * both. Each file takes what its format has. other: the other file's path; NULL for none. */
 sonject_status swath_file_open_beside(struct report *report, const char *path, const char *other,
                                       int32_t channel, const char *array, struct swath_file **file);
 void swath_file_close(struct swath_file **file);
 
 void swath_file_layout(const struct swath_file *file, struct raster_layout *layout);
 
-/* NULL: copies keep the file's format and all else that it says. Else they are new images, of which
- * this is the extension. */
+/* Returns NULL if copies keep the file's format and all its other contents. Otherwise copies are
+ * new images, and the extension of these is returned. */
 const char *swath_file_new_extension(const struct swath_file *file);
 
-/* The quality, 1...100 as libjpeg scales it, whose table for luminance is a JPEG's or close to it;
- * JPEG_QUALITY_UNTOLD where none is; 0 of other files. */
+/* Returns the quality, 1...100 on libjpeg's scale, whose luminance table is a JPEG file's or close
+ * to it. Returns JPEG_QUALITY_UNTOLD if no table is close, 0 for other files. */
 #define JPEG_QUALITY_UNTOLD 95
 int swath_file_jpeg_quality(const struct swath_file *file);
 
-/* The largest number that the file may hold where that is less than its type's; 0 elsewhere. */
+/* Returns the largest number that the file may hold if that is less than its type's; else 0. */
 uint32_t swath_file_largest(const struct swath_file *file);
 
-/* Which range axis a file says that its columns have. */
+/* The range axis that a file states for its columns. */
 enum range_axis {
     RANGE_UNKNOWN,
     RANGE_SLANT,
@@ -49,11 +47,11 @@ enum range_axis {
 };
 enum range_axis swath_file_range_axis(const struct swath_file *file);
 
-/* The recording behind it; NULL for other kinds. */
+/* Returns the recording in the file; NULL for other files. */
 const struct recording *swath_file_recording(const struct swath_file *file);
 
-/* A text that sonject stored with an image, copied into value; false if it has none of that name or
- * it does not fit. */
+/* Copies to value a text that sonject stored with an image. Returns false if there is no text of
+ * that name or value is too short. */
 bool swath_file_attribute(const struct swath_file *file, const char *name, char *value,
                           size_t capacity);
 
@@ -62,15 +60,14 @@ bool swath_file_attribute(const struct swath_file *file, const char *name, char 
 sonject_status swath_file_read(struct report *report, struct swath_file *file,
                                const struct region *region, void *pixels);
 
-/* All of them, and how they lie. On success *pixels is for free(), on failure NULL. Errors as of
- * swath_file_read; INPUT for more than 2^31 pixels. */
+/* Reads all pixels and their layout. On success *pixels is the caller's, for free(); on failure
+ * *pixels is NULL. Errors: those of swath_file_read; INPUT for more than 2^31 pixels. */
 sonject_status swath_file_read_all(struct report *report, struct swath_file *file,
                                    struct raster_layout *layout, void **pixels);
 
-/* Writes at path a copy of the file with region replaced by pixels, everything else as it was, or
- * a new image (swath_file_new_extension). Published whole or not at all. progress may be NULL.
- * Errors: INPUT, STORAGE, MEMORY, CANCELLED.
- */
+/* Writes a copy of the file to path, with region replaced by pixels. Everything else stays, or the
+ * copy is a new image (swath_file_new_extension). The copy appears whole or not at all. progress
+ * may be NULL. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
 sonject_status swath_file_copy_with_patch(struct report *report, const struct swath_file *file,
                                           const char *path, const struct region *region,
                                           const void *pixels, sonject_progress_function progress,

@@ -1,5 +1,5 @@
-/* What a file format is made of: a row of the table SWATH_FORMATS; and what formats share:
- * samples in a file's types and order, and the arrays that a file holds, of which one is wanted. */
+/* File formats, each a row of the table SWATH_FORMATS, and what they share: samples in a file's
+ * types and byte order, and lists of a file's arrays or channels. */
 #ifndef SONJECT_SWATH_SWATH_FORMAT_H
 #define SONJECT_SWATH_SWATH_FORMAT_H
 
@@ -24,70 +24,70 @@ enum stored_type {
 
 size_t stored_bytes(enum stored_type type);
 
-/* Bytes of a float or double, whose bits stay as they are. */
+/* Returns the number whose bits these are: a float (count 4) or a double (count 8). */
 double float_from_bytes(const unsigned char *bytes, size_t count, bool is_big_endian);
 
-/* Where the samples of a part of an image are in memory, in the file's types and order. */
+/* The samples of a part of an image in memory, in the file's types and byte order. */
 struct stored_samples {
     unsigned char *bytes[2];         /* the first sample of each channel */
-    enum stored_type types[2];       /* of each channel */
-    ptrdiff_t row_step, column_step; /* in samples */
+    enum stored_type types[2];       /* the type of each channel */
+    ptrdiff_t row_step, column_step; /* distances of neighbours, in samples */
     bool is_big_endian;
-    bool are_amplitudes; /* numbers of whole types must not be negative */
-    bool clips;          /* what a whole type cannot hold is cut; else it is refused */
-    double scale;        /* an image's number over the file's; 0: 1 */
-    uint32_t largest;    /* more than this is not written; 0: the type's own */
+    bool are_amplitudes; /* integer samples must not be negative */
+    bool clips;          /* numbers beyond an integer type are clipped, else refused */
+    double scale;        /* an image's number over the file's; 0 stands for 1 */
+    uint32_t largest;    /* the largest number that may be written; 0: the type's */
 };
 
-/* Moves samples between a file's order and an image's: those of a part of region, whose pixels are
- * given row after row. writes: from the image to the file, where a number that is shown as the
- * float32 that is to be written keeps its bits; others of whole types are rounded. path: in
- * messages. Errors: INPUT (a sample that the other side cannot hold: says where). */
+/* Moves the samples of part between a file and an image, whose pixels are the region's, row after
+ * row. writes: from the image to the file. A stored number that already reads as the given float32
+ * keeps its bits; others are rounded if the type is an integer. path: for messages. Errors: INPUT
+ * (a sample that the other side cannot hold; says where). */
 sonject_status samples_exchange(struct report *report, const char *path,
                                 const struct raster_layout *layout,
                                 const struct stored_samples *stored, const struct region *part,
                                 const struct region *region, void *pixels, bool writes);
 
-/* A number in another type, which holds it. */
+/* Converts a number to another type, which must be able to hold the number. */
 void samples_convert(enum stored_type from_type, const unsigned char *from, enum stored_type type,
                      unsigned char *to, bool is_big_endian);
 
 struct array_list {
-    const char *wanted; /* NULL: the only one */
-    unsigned matches;   /* arrays that are wanted */
+    const char *wanted; /* a name; NULL: the only array */
+    unsigned matches;   /* number of arrays that are wanted */
     unsigned count;
-    char text[600]; /* as messages list them */
+    char text[600]; /* the list of arrays for messages */
 };
 
-/* Notes an array; true if it is wanted. is_image: it has several rows and columns of numbers that
- * sonject reads; others are wanted by their names alone, and not listed. */
+/* Notes an array; returns true if it is wanted. is_image: the array has several rows and columns of
+ * numbers that sonject reads. Other arrays are wanted only by name, and not listed. */
 bool array_list_add(struct array_list *list, const char *name, uint64_t rows, uint64_t columns,
                     bool is_image);
 
-/* INPUT unless just one array is wanted. */
+/* Returns INPUT unless exactly one array is wanted. */
 sonject_status array_list_check(struct report *report, const char *path,
                                 const struct array_list *list);
 
-/* Lines of samples in a file, recordings' and NumPy's: an image's rows, or its columns. */
+/* Lines of samples in a recording or NumPy file: an image's rows, or its columns. */
 struct sample_lines {
-    uint64_t *places; /* owned: of each line's first sample; NULL: line_bytes apart */
-    double *scales;   /* owned: of each line, as of stored_samples; NULL: 1 */
+    uint64_t *places; /* owned; file offset of each line's first sample; NULL: line_bytes apart */
+    double *scales;   /* owned; scale of each line, see stored_samples; NULL: 1 */
     uint64_t first_place, line_bytes;
     enum stored_type type;
-    bool is_transposed; /* they are columns */
+    bool is_transposed; /* lines are columns */
     bool is_reversed;   /* column 0 is the last of its line */
-    bool clips;         /* as of stored_samples */
+    bool clips;         /* see stored_samples */
     bool is_big_endian;
 };
 
-/* A file that is open. What a format needs is 0 in files of others. */
+/* An open file. Members that only other formats need are 0. */
 struct swath_file {
     const struct swath_format *format;
     char *path;
-    FILE *stream; /* for reading */
+    FILE *stream; /* open for reading */
     uint64_t bytes;
     struct raster_layout layout;
-    uint32_t largest; /* that it may hold, where that is less than its type's; else 0 */
+    uint32_t largest; /* the largest number allowed, if less than the type's; else 0 */
     struct sample_lines lines;
     struct recording recording;
     struct mat_array *mat;
@@ -95,10 +95,10 @@ struct swath_file {
     struct decoded_image *decoded;
 };
 
-/* A copy in the making: a part that becomes path. */
+/* A copy that is being written. It is called part until it is complete, then path. */
 struct swath_copy {
     const char *path, *part;
-    const struct region *region; /* whose samples are replaced; inside the image */
+    const struct region *region; /* the region, inside the image, whose samples are replaced */
     const void *pixels;
     sonject_progress_function progress; /* may be NULL */
     void *user;
@@ -106,9 +106,9 @@ struct swath_copy {
 
 struct swath_format {
     bool has_channels, has_names;
-    /* by the file's first bytes, of which there are count */
+    /* returns whether the file has this format, by head, its first count bytes */
     bool (*is_of)(struct swath_file *file, const unsigned char *head, size_t count);
-    /* sets layout, largest and what the format needs; who calls closes what failed */
+    /* sets layout, largest and what the format needs; on failure the caller closes the file */
     sonject_status (*open)(struct report *report, struct swath_file *file, int32_t channel,
                            const char *array);
     sonject_status (*read)(struct report *report, struct swath_file *file,
@@ -117,8 +117,8 @@ struct swath_format {
                            const struct swath_copy *copy);
 };
 
-/* ROW(name, files of it): NAME_format is what there is of it, in a file that may have its name.
- * They are recognised in this order. */
+/* ROW(name, files): the format NAME_format, and its files as messages call them. Formats are tried
+ * in this order. */
 #define SWATH_FORMATS(ROW)                                                                         \
     ROW(xtf, "XTF")                                                                                \
     ROW(jsf, "JSF")                                                                                \
@@ -130,46 +130,46 @@ struct swath_format {
 #define FORMAT_DECLARATION(name, files) extern const struct swath_format name##_format;
 SWATH_FORMATS(FORMAT_DECLARATION)
 
-/* Reading and copying of files of sample_lines. */
+/* Reads or copies a file of sample_lines. */
 sonject_status sample_lines_read(struct report *report, struct swath_file *file,
                                  const struct region *region, void *pixels);
 sonject_status sample_lines_copy(struct report *report, const struct swath_file *file,
                                  const struct swath_copy *copy);
 
-/* Channels that a recording has, of which one is wanted. */
+/* The channels of a recording, from which one is chosen. */
 struct channel_list {
     int32_t wanted; /* SONJECT_CHANNEL_... or a number */
     uint32_t matches, found;
-    char text[400]; /* as messages list them */
+    char text[400]; /* the list of channels for messages */
 };
 
-/* of: what else tells the channel from others; NULL: nothing. */
+/* Notes a channel. of: a further text that tells the channel from others; NULL: none. */
 void channel_list_add(struct channel_list *list, uint32_t number, uint32_t side, const char *of);
 
-/* INPUT unless just one channel is wanted: the one found. */
+/* Returns INPUT unless exactly one channel is wanted. list->found is the channel's number. */
 sonject_status channel_list_check(struct report *report, const char *path,
                                   const struct channel_list *list);
 
-/* Makes a ping, whose samples begin at place, the image's next row. One without samples is noted
- * as empty and makes none. Errors: INPUT (other cells than the rows before), MEMORY. */
+/* Appends a ping, whose samples begin at place, as the image's next row. A ping without samples is
+ * noted as empty and makes no row. Errors: INPUT (range cells unlike earlier rows), MEMORY. */
 sonject_status recording_add(struct report *report, struct swath_file *file,
                              const struct recorded_ping *ping, uint64_t place, uint64_t samples);
 
-/* Little-endian numbers of a recording: of 1 to 4 bytes, and floats of 4 or 8, 0 where they are not
- * finite. */
+/* Reads little-endian numbers of a recording: unsigned integers of 1 to 4 bytes; floats of 4 or 8
+ * bytes, 0 if not finite. */
 uint32_t word_at(const unsigned char *bytes, size_t place, size_t size);
 double finite_at(const unsigned char *bytes, size_t place, size_t size);
 
-/* INPUT: what is wrong at a place of the file. */
+/* Reports what is wrong at a byte of the file. Returns INPUT. */
 sonject_status recording_damaged(struct report *report, const struct swath_file *file,
                                  uint64_t place, const char *what);
 
-/* Copies bytes first...end of the file to where out stands. */
+/* Copies bytes first...end - 1 of the file to the current position of out. */
 sonject_status swath_copy_bytes(struct report *report, const struct swath_file *file,
                                 const struct swath_copy *copy, uint64_t first, uint64_t end,
                                 FILE *out);
 
-/* Closes a file that was written; status: of what was done with it. */
+/* Closes a written file. Returns status (that of the writing) or the failure to close. */
 sonject_status swath_close_copy(struct report *report, const struct swath_copy *copy, FILE *out,
                                 sonject_status status);
 

@@ -10,28 +10,28 @@
 #include "swath/tiff_stream.h"
 
 #define BLOCKS_MAX      ((uint32_t)1 << 25)
-#define NEW_STRIP_BYTES ((uint64_t)1 << 18)                 /* of a new image */
-#define CLASSIC_MAX     (UINT32_MAX - ((uint64_t)64 << 20)) /* with some for its directory */
+#define NEW_STRIP_BYTES ((uint64_t)1 << 18)                 /* in a new image */
+#define CLASSIC_MAX     (UINT32_MAX - ((uint64_t)64 << 20)) /* less 64 MB for the directory */
 
-/* A block that was read last: pieces of an image come one after the other. */
+/* The block read last, kept because pieces of an image come one after the other. */
 struct kept_block {
     unsigned char *pixels; /* owned */
     uint32_t number;
     bool is_there;
 };
 
-/* Blocks are tiles or strips; strips are as wide as the image, and the last one may be short. */
+/* An open TIFF. Blocks are tiles or strips. Strips are full rows, and the last may be short. */
 struct tiff_image {
-    const char *name, *path; /* name: in messages */
+    const char *name, *path; /* name: for messages */
     TIFF *file;
     struct library_fault fault;
-    uint32_t rows, columns; /* of the image */
+    uint32_t rows, columns; /* the image's sides */
     uint16_t channels, bits, compression;
-    uint16_t planes; /* each with blocks of its own: of one channel, or of all */
+    uint16_t planes; /* 1 or a plane per channel; each has its own blocks */
     bool is_tiled;
     uint32_t block_rows, block_columns;
     uint32_t count;
-    struct kept_block kept[2]; /* of each plane */
+    struct kept_block kept[2]; /* one per plane */
 };
 
 static sonject_status damaged(struct report *report, const struct tiff_image *image,
@@ -40,10 +40,10 @@ static sonject_status damaged(struct report *report, const struct tiff_image *im
     return input_failure(report, image->name, "damaged TIFF: %s", how);
 }
 
-/* Of what libtiff could not do. */
+/* Reports what libtiff could not do. */
 static sonject_status tell_fault(struct report *report, const struct tiff_image *image)
 {
-    errno = image->fault.error; /* the disk's failures are told by it */
+    errno = image->fault.error; /* for file_check_disk */
     return damaged(report, image, *image->fault.message ? image->fault.message : "cannot be read");
 }
 
@@ -155,7 +155,7 @@ static void look_at_blocks(struct tiff_image *image)
     image->count = image->is_tiled ? TIFFNumberOfTiles(file) : TIFFNumberOfStrips(file);
 }
 
-/* Rows that a block holds whose first one is this. */
+/* Returns the number of rows in the block whose first row is given. */
 static uint32_t rows_of_block(const struct tiff_image *image, uint32_t row)
 {
     const uint32_t left = image->rows - row;
@@ -175,8 +175,8 @@ static int compare_places(const void *a, const void *b)
     return (*x > *y) - (*x < *y);
 }
 
-/* Blocks must lie apart: one that is seen in several places of the image cannot be changed in one
- * of them. places: room for a place and an end for each. */
+/* Checks that blocks lie apart. A block in several places of the image could not be changed in just
+ * one. places: room for the start and end of each block. */
 static sonject_status check_places(struct report *report, const struct tiff_image *image,
                                    uint64_t file_bytes, uint64_t (*places)[2])
 {
@@ -203,8 +203,8 @@ static sonject_status check_places(struct report *report, const struct tiff_imag
     return SONJECT_OK;
 }
 
-/* Further pages stay as they are; smaller copies of the first one would not show what is put in.
- * Leaves the file at its first page again. */
+/* Refuses smaller copies of the first page, which would not show the target. Other pages stay as
+ * they are. Leaves the file at its first page. */
 static sonject_status check_other_pages(struct report *report, const struct tiff_image *image)
 {
     uint16_t count = 0;
@@ -283,7 +283,7 @@ static sonject_status open_image(struct report *report, const char *name, const 
     return SONJECT_OK;
 }
 
-/* Moves what a block of a plane shares with the region between the two. */
+/* Copies the pixels that a block of a plane shares with the region, in one direction. */
 static void move_pixels(const struct tiff_image *image, uint32_t row, uint32_t column,
                         uint16_t plane, const struct region *region, unsigned char *pixels,
                         unsigned char *block, bool writes)
@@ -310,7 +310,7 @@ static void move_pixels(const struct tiff_image *image, uint32_t row, uint32_t c
     }
 }
 
-/* A block's pixels, which are kept; NULL: they cannot be read. */
+/* Returns a block's pixels, which are kept; NULL if they cannot be read. */
 static unsigned char *read_block(struct tiff_image *image, uint32_t number, uint16_t plane,
                                  tmsize_t bytes)
 {
@@ -324,8 +324,8 @@ static unsigned char *read_block(struct tiff_image *image, uint32_t number, uint
     return kept->is_there ? kept->pixels : NULL;
 }
 
-/* Reads a block by one file and, if there is a writer, writes it by another: a codec of libtiff's
- * does one of the two. */
+/* Reads a block through one file and writes it through another, the writer, if there is one. A
+ * codec of libtiff either reads or writes. */
 static bool exchange_block(struct tiff_image *image, TIFF *writer, uint32_t row, uint32_t column,
                            uint16_t plane, const struct region *region, unsigned char *pixels)
 {
@@ -338,7 +338,7 @@ static bool exchange_block(struct tiff_image *image, TIFF *writer, uint32_t row,
     move_pixels(image, row, column, plane, region, pixels, block, writer != NULL);
     if (!writer)
         return true;
-    image->kept[plane].is_there = false; /* what encodes it may use the block for itself */
+    image->kept[plane].is_there = false; /* encoding may overwrite the block */
     return (image->is_tiled ? TIFFWriteEncodedTile(writer, number, block, bytes)
                             : TIFFWriteEncodedStrip(writer, number, block, bytes)) == bytes;
 }
@@ -373,15 +373,15 @@ static sonject_status read_pixels(struct report *report, void *opened, const str
                          image->fault.message);
 }
 
-/* Writing ends with the lists of places and sizes; were the directory to be written anew, tags
- * could be lost. */
+/* Ends the writing with the lists of places and sizes. Returns false if libtiff rewrote the
+ * directory, which could lose tags. */
 static bool flush_lists(TIFF *writer)
 {
     const uint64_t directory = TIFFCurrentDirOffset(writer);
     return TIFFFlush(writer) && TIFFCurrentDirOffset(writer) == directory;
 }
 
-/* The file is opened anew for each change, for its lists of places move with the blocks. */
+/* Reopens the file for each change, because its lists of places move with the blocks. */
 static sonject_status change_pixels(struct report *report, void *opened,
                                     const struct region *region, const void *pixels)
 {
@@ -436,11 +436,11 @@ static void set_tags(TIFF *file, const struct image_encoding *encoding)
         TIFFSetField(file, TIFFTAG_IMAGEDESCRIPTION, encoding->description);
 }
 
-/* A new image in the making. */
+/* A new image that is being written. */
 struct tiff_output {
     TIFF *file;
     size_t row_bytes;
-    uint32_t row; /* the next one */
+    uint32_t row; /* the next row to write */
 };
 
 static bool write_rows(void *tiff_output, const unsigned char *rows, uint64_t count)

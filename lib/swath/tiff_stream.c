@@ -19,14 +19,14 @@ static int hear(TIFF *file, void *user, const char *module, const char *format, 
     return 1;
 }
 
-/* What libtiff goes on without: of that, only what lies behind the end of a file that is cut. */
+/* Ignores libtiff's warnings, except of data behind the end of a file that is cut short. */
 static int hear_warning(TIFF *file, void *user, const char *module, const char *format,
                         va_list values)
 {
     return strstr(format, "IO error") ? hear(file, user, module, format, values) : 1;
 }
 
-/* A stream wants a seek between reading and writing. */
+/* Reads bytes. C's streams need a seek between reading and writing. */
 static tmsize_t read_bytes(thandle_t stream, void *bytes, tmsize_t count)
 {
     return fseek(stream, 0, SEEK_CUR) == 0 ? (tmsize_t)fread(bytes, 1, (size_t)count, stream) : -1;
@@ -37,7 +37,7 @@ static tmsize_t write_bytes(thandle_t stream, void *bytes, tmsize_t count)
     return fseek(stream, 0, SEEK_CUR) == 0 ? (tmsize_t)fwrite(bytes, 1, (size_t)count, stream) : -1;
 }
 
-/* libtiff seeks from the beginning and to the end. */
+/* Seeks from the beginning or the end, which is all that libtiff needs. */
 static toff_t seek_place(thandle_t stream, toff_t place, int from)
 {
     const bool is_there =
@@ -69,7 +69,7 @@ TIFF *tiff_open(const char *path, const char *mode, struct library_fault *fault)
     errno = 0;
     TIFF *file = NULL;
     FILE *stream = file_open(path, *mode == 'w' ? "w+b" : strchr(mode, '+') ? "r+b" : "rb");
-    if (stream) { /* without a buffer, so that a full disk is told as bytes are written */
+    if (stream) { /* no buffer: a full disk is found as bytes are written */
         setvbuf(stream, NULL, _IONBF, 0);
         file = TIFFClientOpenExt(path, mode, stream, read_bytes, write_bytes, seek_place,
                                  close_stream, file_size, NULL, NULL, options);

@@ -1,4 +1,4 @@
-/* What a recording says of where the sonar was: geometry of its rows, and its track. */
+/* Positions in a recording: the geometry of its rows, and its track. */
 #include "swath/recording.h"
 
 #include <math.h>
@@ -11,17 +11,17 @@
 #define PI                3.14159265358979323846
 #define METRES_PER_DEGREE (1852.0 * 60.0)
 #define EQUATOR_RADIUS_M  6378137.0
-#define ECCENTRICITY_2    6.69437999014e-3 /* of the WGS 84 ellipsoid, squared */
-#define HIGHEST_LATITUDE  89.9             /* beyond, east and west mean nothing */
-#define COURSE_ROWS       25.0             /* to either side, of which the course is the mean */
+#define ECCENTRICITY_2    6.69437999014e-3 /* squared eccentricity of WGS 84 */
+#define HIGHEST_LATITUDE  89.9 /* degrees; nearer to a pole, east and west mean nothing */
+#define COURSE_ROWS       25.0 /* rows on either side over which a course is measured */
 
-/* False for a ping that the recorder left empty, or had no navigation for. */
+/* Returns false for a ping that the recorder left empty or had no navigation for. */
 static bool ping_has_position(const struct recorded_ping *ping)
 {
     return ping->easting != 0.0 || ping->northing != 0.0;
 }
 
-/* Straight distance between two pings with positions, m. */
+/* Returns the straight distance between two pings with positions, m. */
 static double distance_between(const struct recording *file, const struct recorded_ping *a,
                                const struct recorded_ping *b)
 {
@@ -35,7 +35,8 @@ static double distance_between(const struct recording *file, const struct record
     return hypot(across, along);
 }
 
-/* Takes in as many rows on either side; false if all of the file's were there. */
+/* Extends a range of rows by its length on either side. Returns false if the range already held all
+ * rows of the file. */
 static bool widen(const struct recording *file, uint64_t *first, uint64_t *end)
 {
     const uint64_t rows = file->rows;
@@ -46,8 +47,8 @@ static bool widen(const struct recording *file, uint64_t *first, uint64_t *end)
     return is_more;
 }
 
-/* Between the first and the last position of the rows, and of those around them where two are not
- * there; NaN if they are nowhere. */
+/* Returns the mean row spacing between the first and last position of the rows, m. Takes in rows
+ * around them until there are two positions; NaN if there are none. */
 static double mean_spacing(const struct recording *file, uint64_t first, uint64_t end)
 {
     do {
@@ -64,7 +65,8 @@ static double mean_spacing(const struct recording *file, uint64_t first, uint64_
     return NAN;
 }
 
-/* Of the rows' pings that have an altitude, or of those around them; 0 if there are none. */
+/* Reads the altitudes of the rows' pings, or of pings around the rows if none of these has one. All
+ * altitudes are 0 if the file has none. */
 static void read_altitudes(const struct recording *file, uint64_t first, uint64_t end,
                            struct recording_geometry *geometry)
 {
@@ -99,7 +101,7 @@ struct recording_geometry recording_geometry_of(const struct recording *file, ui
     struct recording_geometry geometry;
     geometry.row_spacing_m = mean_spacing(file, first_row, first_row + count);
     read_altitudes(file, first_row, first_row + count, &geometry);
-    /* the delay is part of the way to the far edge */
+    /* the far edge's range includes the delay */
     const double duration = (double)first->duration_s;
     const double delay = (double)first->delay_s;
     const double delay_share = duration > 0.0 && delay > 0.0 ? delay / (delay + duration) : 0.0;
@@ -116,7 +118,7 @@ void track_clear(struct track *track)
     memset(track, 0, sizeof *track);
 }
 
-/* Whether a ping says where it was, and elsewhere than the fix before. */
+/* Returns whether a ping has a valid position that differs from the last fix. */
 static bool is_new_fix(const struct track *track, const struct recorded_ping *ping)
 {
     const struct track_fix *last =
@@ -136,7 +138,7 @@ sonject_status track_of_recording(struct track *track, struct report *report,
     const size_t rows = (size_t)file->rows;
     bool has_headings = false;
     bool are_angles = true;
-    size_t told = rows; /* the last row so far whose ping says anything */
+    size_t told = rows; /* the last row so far whose ping has data; `rows`: none yet */
     memset(track, 0, sizeof *track);
     track->rows = rows;
     track->is_geographic = file->is_geographic;
@@ -168,18 +170,19 @@ sonject_status track_of_recording(struct track *track, struct report *report,
     return SONJECT_OK;
 }
 
-/* From one x to another: the short way round where they are longitudes. */
+/* Returns the way from one x to another, for longitudes the short way round. */
 static double step_in_x(const struct track *track, double from, double to)
 {
     return track->is_geographic ? remainder(to - from, 360.0) : to - from;
 }
 
-/* Position at a row, on the line through the two fixes around it (or next to it). */
+/* Interpolates the position at a row between the two fixes around the row. Beyond the first or last
+ * fix, extrapolates from the two nearest. */
 static void position_at(const struct track *track, double row, double *x, double *y)
 {
     const struct track_fix *fixes = track->fixes;
     size_t low = 0;
-    size_t high = track->fix_count - 1; /* the first fix beyond the row is not above it */
+    size_t high = track->fix_count - 1; /* no lower than the first fix beyond the row */
     *x = fixes[0].x;
     *y = fixes[0].y;
     if (high == 0)
@@ -196,7 +199,7 @@ static void position_at(const struct track *track, double row, double *x, double
     *y = fixes[low].y + share * (fixes[high].y - fixes[low].y);
 }
 
-/* Metres in a unit of x and of y. */
+/* Finds the length of a unit of x and of y, m. */
 static void unit_sizes(const struct track *track, double y, double *x_m, double *y_m)
 {
     *x_m = *y_m = 1.0;
@@ -220,7 +223,7 @@ static bool course_at(const struct track *track, double row, double *heading)
     return east != 0.0 || north != 0.0;
 }
 
-/* The headings of the rows on both sides, the short way round. */
+/* Interpolates the headings of the rows on both sides, the short way round; rad. */
 static double recorded_heading(const struct track *track, double row)
 {
     const size_t low = (size_t)row;

@@ -1,7 +1,8 @@
-/* Sidescan channels of XTF files (eXtended Triton Format, X41). Little-endian; offsets after
- * Triton's published format description. Refused: a file that is cut short or damaged, no sidescan
- * channel, no channel as chosen or several (lists them), samples of other sizes than 1 or 2 bytes,
- * pings of the channel with different numbers of samples or slant ranges (says where). */
+/* Sidescan channels of XTF files (eXtended Triton Format, X41). Numbers are little-endian, at the
+ * offsets of Triton's published format description. Refused: a file that is cut short or damaged,
+ * no sidescan channel, no channel as chosen or several (the message lists them), samples of other
+ * sizes than 1 or 2 bytes, pings of the channel with different numbers of samples or slant ranges
+ * (the message says where). */
 #include "base/file.h"
 #include "swath/swath_format.h"
 
@@ -10,20 +11,20 @@
 #define HEADER_BLOCK        1024
 #define CHANNELS_PLACE      256
 #define CHANNEL_BYTES       128
-#define PACKET_BYTES        256 /* of a ping's header */
+#define PACKET_BYTES        256 /* a ping's header */
 #define CHANNEL_HEAD_BYTES  64
 #define PACKET_KIND_SONAR   0
-#define CORRECTED_TO_GROUND 2 /* of a channel's correction flags; 1: slant range */
+#define CORRECTED_TO_GROUND 2 /* a channel's correction flags; 1: slant range */
 #define UNITS_GEOGRAPHIC    3
 
 struct xtf_channel {
-    uint32_t kind; /* enum recorded_side, or others */
+    uint32_t kind; /* enum recorded_side or another kind */
     uint32_t sample_bytes;
     bool is_signed;
     bool is_ground_range;
 };
 
-/* A file being opened. */
+/* A file that is being opened. */
 struct opening {
     struct report *report;
     struct swath_file *file;
@@ -57,7 +58,7 @@ static bool is_sidescan(const struct xtf_channel *channel)
     return channel->kind == RECORDED_PORT || channel->kind == RECORDED_STARBOARD;
 }
 
-/* Reads the file's header and the channels' descriptions; *first_packet gets where pings begin. */
+/* Reads the header and the channels' descriptions. *first_packet gets the first packet's offset. */
 static sonject_status read_header(struct opening *opening, uint64_t *first_packet)
 {
     FILE *stream = opening->file->stream;
@@ -112,7 +113,7 @@ static sonject_status set_samples(struct opening *opening)
                        : channel->is_signed       ? STORED_INT16
                                                   : STORED_UINT16;
     file->largest = file->lines.type == STORED_INT16 ? INT16_MAX : 0;
-    /* port's samples are stored as a display shows them: from far to near */
+    /* port's samples are stored as displayed, from far to near */
     file->lines.is_reversed = file->recording.side == RECORDED_PORT;
     return SONJECT_OK;
 }
@@ -137,7 +138,7 @@ static sonject_status add_ping(struct opening *opening, const unsigned char *pac
     return recording_add(opening->report, file, &ping, place, samples);
 }
 
-/* Finds the chosen channel in a packet; packets may lack it. */
+/* Adds the chosen channel's ping of a packet, which may lack that channel. */
 static sonject_status read_packet(struct opening *opening, const unsigned char *packet,
                                   uint64_t start, uint64_t end)
 {

@@ -1,4 +1,4 @@
-#define _DEFAULT_SOURCE /* syscall */
+#define _DEFAULT_SOURCE /* for syscall */
 #include "base/system/child.h"
 
 #include <errno.h>
@@ -20,7 +20,7 @@
 
 extern char **environ;
 
-/* Signals for all of a job's processes are the host's to answer; others end the child as usual. */
+/* Blocks signals to all of a job's processes, which the host answers. Others work as usual. */
 static void choose_signals(posix_spawnattr_t *attributes)
 {
     const int kept_away[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2, SIGTSTP};
@@ -68,7 +68,7 @@ static int spawn(struct child *child, const char *program, const char *argument,
     return error;
 }
 
-/* Answers are waited for in pieces, between which the caller may end the call. */
+/* Limits waits. Answers are awaited in pieces, between which the caller may end the call. */
 static int limit_waits(int socket, int silence_s)
 {
     const struct timeval limit = {silence_s, 0};
@@ -103,7 +103,7 @@ struct child_end child_stop(struct child *child)
     if (child->number == 0)
         return end;
     close((int)child->channel.end);
-    /* a host that was forked has its parent's numbers; one whose child was waited for, none */
+    /* not ours after a fork; waited is -1 if the host itself has waited for the child */
     const bool is_ours = child->owner == (long)getpid();
     pid_t waited = is_ours ? waitpid((pid_t)child->number, &status, WNOHANG) : -1;
     if (waited == 0) {
@@ -167,7 +167,7 @@ static void limit(int resource, rlim_t amount)
     setrlimit(resource, &limits);
 }
 
-/* The library's process may end while a request is worked at. */
+/* Ends the child with the channel: the library's process may end during a request. */
 static void *end_with_the_channel(void *unused)
 {
     struct pollfd watched = {CHANNEL, 0, 0};

@@ -12,11 +12,11 @@
 #include "base/system/windows_text.h"
 
 #define PIPE_BYTES   ((DWORD)1 << 16)
-#define MOVED_MAX    ((size_t)1 << 20) /* bytes in a call */
+#define MOVED_MAX    ((size_t)1 << 20) /* bytes per call */
 #define STOP_WAIT_MS 50
 #define CRASHES      0xC0000000u /* exit codes from here on name an exception */
 
-/* The two ends of a channel; the child's is for it to inherit. Returns 0 or an errno. */
+/* Makes the two ends of a channel; the child inherits its own. Returns 0 or an errno. */
 static int make_channel(struct channel *channel, int silence_s, HANDLE *end)
 {
     SECURITY_ATTRIBUTES inherited = {sizeof inherited, NULL, TRUE};
@@ -49,7 +49,7 @@ static void close_channel(struct channel *channel)
     channel->pending = NULL;
 }
 
-/* What ends with its last handle, and limits memory; NULL: the system has none. */
+/* Makes a job, which ends with its last handle and limits memory; NULL if the system refuses. */
 static HANDLE make_job(uint64_t memory_bytes)
 {
     JOBOBJECT_EXTENDED_LIMIT_INFORMATION limits;
@@ -98,7 +98,7 @@ static int create_process(const wchar_t *program, wchar_t *line, HANDLE end, HAN
     return error;
 }
 
-/* The program, in the job. Returns 0 or an errno. */
+/* Starts the program in the job. Returns 0 or an errno. */
 static int start_in_job(struct child *child, const char *program, const char *argument, HANDLE end,
                         HANDLE nowhere)
 {
@@ -164,7 +164,7 @@ struct child_end child_stop(struct child *child)
     DWORD code = 0;
     if (child->number == 0)
         return end;
-    close_channel(&child->channel); /* it ends with that, if it has not ended before */
+    close_channel(&child->channel); /* the child ends with the channel, if not before */
     end.is_known = WaitForSingleObject(child->process, STOP_WAIT_MS) == WAIT_OBJECT_0 &&
                    GetExitCodeProcess(child->process, &code);
     end.has_exited = end.is_known && code < CRASHES;
@@ -177,7 +177,7 @@ struct child_end child_stop(struct child *child)
     return end;
 }
 
-/* Waits for what was begun, for a time in milliseconds. Returns the bytes moved, -1 with errno. */
+/* Waits wait_ms milliseconds for a pending operation. Returns the bytes moved, or -1 with errno. */
 static long finish(const struct channel *channel, OVERLAPPED *begun, DWORD wait_ms)
 {
     HANDLE end = (HANDLE)channel->end;
@@ -230,16 +230,16 @@ long channel_receive(const struct channel *channel, void *bytes, size_t count)
     return got < 0 && errno == EPIPE ? 0 : got;
 }
 
-/* The job limits memory, and ends this process with the other one. */
+/* Keeps windows away. The job limits memory, and ends this process with its starter. */
 bool child_begin(struct channel *channel, uint64_t memory_bytes)
 {
     (void)memory_bytes;
-    SetErrorMode(SEM_FAILCRITICALERRORS | SEM_NOGPFAULTERRORBOX); /* no window asks what to do */
+    SetErrorMode(SEM_FAILCRITICALERRORS | SEM_NOGPFAULTERRORBOX); /* no window for errors */
     *channel = (struct channel){.end = (intptr_t)GetStdHandle(STD_INPUT_HANDLE)};
     return true;
 }
 
-/* Windows limits a whole process's time alone: the other one waits for an answer so long. */
+/* Does nothing: Windows limits only the time of a whole process. The starter's wait is limited. */
 void child_limit_time(int seconds)
 {
     (void)seconds;

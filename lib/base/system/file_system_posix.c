@@ -37,8 +37,7 @@ bool file_exists(const char *path)
 
 FILE *file_open(const char *path, const char *mode)
 {
-    char closing[8]; /* where a program is started; C libraries that do not know the 'e' pass over
-                        it */
+    char closing[8]; /* 'e': not for started programs; other C libraries ignore it */
     snprintf(closing, sizeof closing, "%se", mode);
     return fopen(path, closing);
 }
@@ -57,7 +56,7 @@ FILE *byte_file_open(const char *path, uint64_t *bytes)
     struct stat facts;
     FILE *file = NULL;
     int descriptor = -1;
-    /* looked at first, for some devices do something when they are opened */
+    /* looks first, because some devices do something when they are opened */
     if (stat(path, &facts) != 0)
         return NULL;
     if (S_ISREG(facts.st_mode)) {
@@ -98,9 +97,9 @@ static int flush_to_disk(const char *path)
     return error;
 }
 
-/* A rename is only safe from a power cut once the folder is on disk. File systems that cannot flush
- * a folder say EINVAL; a folder that may be written but not read says EACCES: neither harms what
- * was written. */
+/* Flushes a folder, without which a rename is not safe from a power cut. File systems that cannot
+ * flush a folder say EINVAL, and a folder that may be written but not read says EACCES. Neither
+ * harms the files. */
 static int flush_folder_of(const char *path)
 {
     const char *slash = strrchr(path, '/');

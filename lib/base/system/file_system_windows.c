@@ -11,11 +11,11 @@
 #include "base/system/windows_text.h"
 
 #define SHARES_ALL      (FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE)
-#define EPOCH_S         INT64_C(11644473600) /* from Windows' to 1970 */
+#define EPOCH_S         INT64_C(11644473600) /* 1970 on Windows' clock, s */
 #define REPLACE_TRIES   20
 #define REPLACE_WAIT_MS 50
 
-/* A handle, INVALID_HANDLE_VALUE with errno where there is none. Folders are opened, too. */
+/* Opens a file or folder. Returns INVALID_HANDLE_VALUE with errno on failure. */
 static HANDLE open_handle(const char *path, DWORD access)
 {
     wchar_t *name = wide_text(path);
@@ -29,7 +29,7 @@ static HANDLE open_handle(const char *path, DWORD access)
     return handle;
 }
 
-/* 0, or an errno. */
+/* Returns 0 or an errno. */
 static int read_facts(HANDLE handle, struct path_facts *facts)
 {
     BY_HANDLE_FILE_INFORMATION found;
@@ -132,8 +132,7 @@ static int flush_to_disk(const char *path)
     return error;
 }
 
-/* Programs that look for viruses keep a new file open for a moment, in which nothing replaces it.
- */
+/* Moves a file, with retries because virus scanners keep new files open for a moment. */
 static int replace(const wchar_t *from, const wchar_t *to)
 {
     int error = 0;
@@ -192,7 +191,7 @@ void folder_discard(const char *path)
     free(name);
 }
 
-/* What FindFirstFileW wants to be told of a folder, NULL with errno. */
+/* Returns the pattern by which FindFirstFileW lists a folder, for free(); NULL with errno. */
 static wchar_t *all_within(const char *path)
 {
     const size_t length = strlen(path);
@@ -217,7 +216,7 @@ int folder_hear_names(const char *path, bool (*hear)(void *user, const char *nam
         return error;
     bool goes_on = true;
     do {
-        char *name = narrow_text(entry.cFileName); /* NULL: no text of UTF-16, and none of ours */
+        char *name = narrow_text(entry.cFileName); /* NULL: not valid UTF-16, so not ours */
         if (name && strcmp(name, ".") != 0 && strcmp(name, "..") != 0)
             goes_on = hear(user, name);
         free(name);

@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* sched_getaffinity, dladdr */
+#define _GNU_SOURCE /* for sched_getaffinity, dladdr */
 #include "base/system/process.h"
 
 #include <dlfcn.h>
@@ -75,7 +75,7 @@ void forks_watch(void (*begin_child)(void))
 
 uint32_t processor_count(void)
 {
-    cpu_set_t set; /* a batch system gives a job few of many */
+    cpu_set_t set; /* batch systems give a job a few of many */
     const long count = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set)
                                                                    : sysconf(_SC_NPROCESSORS_ONLN);
     return count < 1 ? 1 : (uint32_t)count;
@@ -107,7 +107,7 @@ char *folder_of_code(const void *address)
 {
     Dl_info library;
     char program[4096] = "";
-    const bool is_named = /* a program may have been found by its name alone */
+    const bool is_named = /* a program may be known by its name alone */
         dladdr(address, &library) != 0 && library.dli_fname && strchr(library.dli_fname, '/');
     if (!is_named && readlink("/proc/self/exe", program, sizeof program - 1) < 0)
         program[0] = '\0';
@@ -118,10 +118,10 @@ char *folder_of_code(const void *address)
     return folder;
 }
 
-/* Each image of a campaign takes megabytes and gives them back. glibc would have the system take
- * them, and clear them anew for the next image: a tenth of a campaign's time. What the heap takes
- * first comes in large pages, which the system makes at once, not 4 KB at a time: a seventh of
- * a short run's time. */
+/* Keeps freed memory in the process. Each image of a campaign takes megabytes and frees them. glibc
+ * would return them to the system, which clears them for the next image: a tenth of a campaign's
+ * time. The heap begins with large pages, which the system makes at once, not 4 KB at a time: a
+ * seventh of a short run's time. */
 static void keep_freed_memory(void)
 {
 #ifdef __GLIBC__
@@ -132,7 +132,7 @@ static void keep_freed_memory(void)
     mallopt(M_MMAP_THRESHOLD, 32 << 20);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
     mallopt(M_TOP_PAD, HEAP);
-    char *first = malloc(1 << 20); /* more than the heap has */
+    char *first = malloc(1 << 20); /* more than the heap has so far */
     mallopt(M_TOP_PAD, 0);
     if (first)
         madvise(first + (-(uintptr_t)first & (LARGE_PAGE - 1)), HEAP - LARGE_PAGE, MADV_HUGEPAGE);
@@ -142,7 +142,7 @@ static void keep_freed_memory(void)
 
 void program_begin(int *count, char ***arguments)
 {
-    /* Opened the wrong way round: reading the input, writing the output fails as it should. */
+    /* Modes are the wrong way round: reading the input or writing the output must fail. */
     const int flags[] = {O_WRONLY, O_RDONLY, O_RDONLY};
     (void)count, (void)arguments;
     keep_freed_memory();
@@ -164,9 +164,9 @@ void signals_watch(void (*note)(int number))
         struct sigaction action;
         memset(&action, 0, sizeof action);
         action.sa_handler = note;
-        /* Writing a file is not to fail because a signal came. A second SIGINT ends the command at
-         * once; SIGTERM comes twice from schedulers that signal a job's script, which hands it on,
-         * and its processes. */
+        /* No signal may make writing a file fail. A second SIGINT ends the command at once. SIGTERM
+         * comes twice from schedulers that signal a job's script, which passes it on, and the
+         * script's processes. */
         action.sa_flags = (int)(numbers[i] == SIGINT ? SA_RESTART | SA_RESETHAND : SA_RESTART);
         sigemptyset(&action.sa_mask);
         sigaction(numbers[i], &action, NULL);

@@ -1,4 +1,4 @@
-#define _CRT_RAND_S /* rand_s */
+#define _CRT_RAND_S /* for rand_s */
 #include "base/system/process.h"
 
 #include <fcntl.h>
@@ -70,7 +70,7 @@ uint64_t peak_memory_bytes(void)
                : 0;
 }
 
-/* Windows forks no process. */
+/* Does nothing: Windows forks no process. */
 void forks_watch(void (*begin_child)(void))
 {
     (void)begin_child;
@@ -84,7 +84,7 @@ uint32_t processor_count(void)
         own = 1;
     for (; own != 0; own &= own - 1)
         count++;
-    return count > 0 ? count : 1; /* 0: it may use more than one group of 64 */
+    return count > 0 ? count : 1; /* 0: several groups of 64 processors */
 }
 
 bool thread_start(pthread_t *thread, void *(*run)(void *user), void *user)
@@ -95,7 +95,7 @@ bool thread_start(pthread_t *thread, void *(*run)(void *user), void *user)
 void *library_load(const char *name, int number)
 {
     char file[256];
-    (void)number; /* names of Windows have none */
+    (void)number; /* not in Windows' names */
     snprintf(file, sizeof file, "%s.dll", name);
     return (void *)LoadLibraryA(file);
 }
@@ -143,7 +143,7 @@ void signals_watch(void (*note)(int number))
 {
     signal(SIGTERM, note);
     signal(SIGBREAK, note);
-    signal(SIGINT, note); /* the system forgets it once it was called */
+    signal(SIGINT, note); /* the system forgets note once it was called */
 }
 
 bool errors_are_shown(void)

@@ -1,5 +1,5 @@
-/* OpenCL C's words for entry points, as plain C: the kernels are compiled with it by native.py's
- * files, for one instruction set each. */
+/* OpenCL C's words for entry points, as plain C. native.py's files compile the kernels with it,
+ * once for each instruction set. */
 #ifndef SONJECT_DEVICE_NATIVE_ENTRY_H
 #define SONJECT_DEVICE_NATIVE_ENTRY_H
 
@@ -13,10 +13,10 @@
 #define uint               uint32_t
 #define get_global_id(way) native_item[way]
 
-/* The work-item that the calling thread is at. */
+/* The calling thread's current work-item. */
 static __thread size_t native_item[3];
 
-/* The next in the order in which the device counts them. */
+/* Goes to the next work-item in the device's order: the first dimension runs fastest. */
 static inline void native_item_next(const size_t *global)
 {
     if (++native_item[0] < global[0])

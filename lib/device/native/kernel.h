@@ -1,4 +1,4 @@
-/* Kernels that the C compiler built: what native.py's files offer, and lib/device/native runs. */
+/* Kernels that the C compiler built. native.py's files define them, lib/device/native runs them. */
 #ifndef SONJECT_DEVICE_NATIVE_KERNEL_H
 #define SONJECT_DEVICE_NATIVE_KERNEL_H
 
@@ -11,7 +11,7 @@ typedef void native_function(const struct kernel_argument *arguments, const size
                              size_t first, size_t end);
 
 struct native_kernel {
-    const char *name; /* NULL behind a program's last */
+    const char *name; /* NULL: the program's end */
     native_function *run;
 };
 

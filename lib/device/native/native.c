@@ -1,4 +1,4 @@
-/* The device native: kernels that the C compiler built for instruction sets of processors. */
+/* The device native: kernels that the C compiler built for several instruction sets. */
 #if defined(HAS_AVX2) || defined(HAS_AVX512)
 #include <cpuid.h>
 #endif
@@ -14,18 +14,17 @@
 
 #define NAME "native"
 
-#define KEPT_LEAST ((size_t)128 << 10) /* bytes of a buffer that is kept */
-#ifdef IS_SANITIZED /* whose buffers must end where they were asked to, and be lost when released  \
-                     */
+#define KEPT_LEAST ((size_t)128 << 10) /* bytes of the smallest buffer that is kept */
+#ifdef IS_SANITIZED                    /* sanitizers must see a buffer's end and release */
 #define KEPT_MOST ((size_t)0)
 #else
 #define KEPT_MOST ((size_t)8 << 20)
 #endif
 
-/* Released buffers, of all contexts; atomic. */
+/* Released buffers of all contexts, for later calls; atomic. */
 static void *kept[12];
 
-/* In the order of enum device_program. */
+/* The programs of a set, in the order of enum device_program. */
 #define PROGRAMS(set)                                                                              \
     {                                                                                              \
         set##_trace_rough, set##_trace_rough_images, set##_trace_smooth,                           \
@@ -41,7 +40,7 @@ struct instruction_set {
     const char *name;
     uint32_t width;
     uint32_t features, registers; /* bits that the processor and the system must have */
-    native_program programs[2][PROGRAM_COUNT]; /* by variant */
+    native_program programs[2][PROGRAM_COUNT]; /* first index: variant */
 };
 
 DECLARE(baseline_full)
@@ -58,7 +57,7 @@ DECLARE(avx512_full)
 #define AVX2_REGISTERS   0x06
 #define AVX512_REGISTERS 0xE6
 
-/* The best last. */
+/* The instruction sets, the best last. */
 static const struct instruction_set instruction_sets[] = {
     {"baseline", 4, 0, 0, {PROGRAMS(baseline_full), PROGRAMS(baseline_full)}},
 #ifdef HAS_AVX2
@@ -73,9 +72,9 @@ static const struct instruction_set instruction_sets[] = {
 #endif
 };
 
-/* The features of leaf 7 in ebx, and the registers that the system keeps, of XCR0, above them. The
- * processor is asked itself, since not every compiler's library can be, and once, since a virtual
- * machine takes long to answer. */
+/* Returns the features in ebx of CPUID's leaf 7 and, above them, the registers in XCR0 that the
+ * system keeps. Asks the processor itself, since not every compiler's library can, and only once,
+ * since a virtual machine takes long to answer. */
 static uint64_t processor_abilities(void)
 {
 #if defined(HAS_AVX2) || defined(HAS_AVX512)
@@ -98,7 +97,7 @@ static uint64_t processor_abilities(void)
 #endif
 }
 
-/* The best that the processor has; of `width` lanes if that is not 0. NULL: there is none. */
+/* Returns the best set that the processor has, of `width` lanes unless that is 0; NULL: none. */
 static const struct instruction_set *find_instruction_set(uint32_t width)
 {
     const struct instruction_set *best = NULL;
@@ -139,10 +138,10 @@ static sonject_status native_claim(struct report *report)
     return SONJECT_OK;
 }
 
-/* Lies before each buffer. The system clears what it lends page by page, which took a quarter of a
- * short call's time: some large buffers are kept for the next call. */
+/* The head before each buffer. The system clears new memory page by page, which took a quarter of a
+ * short call's time. Some large buffers are therefore kept for the next call. */
 struct buffer_head {
-    size_t capacity, bytes; /* that it has, that were asked for; together they keep it aligned */
+    size_t capacity, bytes; /* allocated, asked for; the two keep the buffer aligned */
 };
 
 size_t native_buffer_bytes(device_buffer buffer)
@@ -165,8 +164,8 @@ static bool put_back(size_t place, struct buffer_head *head)
                                        __ATOMIC_RELAXED);
 }
 
-/* A kept buffer of so many bytes, or up to twice as many; NULL: there is none. Of threads, who
- * takes a buffer out of its place has it. */
+/* Takes a kept buffer of so many bytes, or up to twice as many; NULL if there is none. A buffer
+ * belongs to the thread that takes it out of its place. */
 static struct buffer_head *take_kept(size_t bytes)
 {
     for (size_t i = 0; i < COUNT(kept); i++) {
@@ -201,7 +200,7 @@ static void native_release(device_buffer buffer)
     for (size_t i = 0; is_kept && i < COUNT(kept); i++)
         if (put_back(i, head))
             return;
-    /* in the place of any other, so that those of a size that is asked for no more go */
+    /* replaces any other, so that buffers of sizes no longer asked for go */
     void **any = &kept[((uintptr_t)head >> 12) % COUNT(kept)];
     free(is_kept ? __atomic_exchange_n(any, head, __ATOMIC_ACQ_REL) : head);
 }

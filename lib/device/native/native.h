@@ -1,4 +1,4 @@
-/* What this folder's files share: the threads that run launches (threads.c). */
+/* The threads that run launches (threads.c), for this folder's files. */
 #ifndef SONJECT_DEVICE_NATIVE_NATIVE_H
 #define SONJECT_DEVICE_NATIVE_NATIVE_H
 
@@ -9,17 +9,16 @@
 
 #include "device/native/kernel.h"
 
-/* The threads of this process are kept for as long as a device uses them. */
+/* Counts the devices that use the threads of this process, which end with the last one. */
 void threads_retain(void);
 void threads_release(void);
 
 /* Runs work-items on the calling thread and on up to most - 1 others, and waits for all. Any
- * threads may do so at once; those of this process are shared among them. A forked child starts its
- * own. */
+ * threads may call this at once and share the process's threads. A forked child starts its own. */
 void threads_run(uint32_t most, native_function *run, const struct kernel_argument *arguments,
                  const size_t global[3]);
 
-/* The same on a host's threads. */
+/* Runs work-items in the same way on a host's threads. */
 void threads_run_by_host(sonject_run_tasks_function run_tasks, void *user, uint32_t most,
                          native_function *run, const struct kernel_argument *arguments,
                          const size_t global[3]);

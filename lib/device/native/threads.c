@@ -1,5 +1,5 @@
-/* Threads that run launches. Each launch is run by its caller, too, so that none waits for a thread
- * to be free, and a system that gives no threads is slow but right. */
+/* Threads that run launches. The caller runs its launch, too, so that no launch waits for a free
+ * thread, and a system without threads is slow but right. */
 #include <fenv.h>
 #include <pthread.h>
 #include <stdbool.h>
@@ -10,36 +10,36 @@
 #include "device/native/native.h"
 
 #define THREADS_MAX 256
-#define SHARES      4 /* a thread takes this part of its even share of what is left */
+#define SHARES      4 /* a thread takes 1/SHARES of its even share of the rest */
 
-/* A launch under way; its caller's. */
+/* A running launch, owned by its caller. */
 struct job {
     struct job *next;
     native_function *run;
     const struct kernel_argument *arguments;
     const size_t *global;
     size_t total;
-    size_t begun;    /* work-items; atomic */
-    uint32_t most;   /* threads, with the caller */
-    uint32_t inside; /* threads of the pool that run its work-items now */
+    size_t begun;    /* work-items begun; atomic */
+    uint32_t most;   /* threads at once, with the caller */
+    uint32_t inside; /* threads of the pool that run the job now */
 };
 
 static struct {
     pthread_mutex_t lock;
     pthread_cond_t has_work, has_ended;
-    struct job *jobs; /* that may have work-items left */
+    struct job *jobs; /* launches that may have work-items left */
     size_t users;
     uint32_t most;    /* threads besides the callers' */
     uint32_t count;   /* threads started */
-    uint32_t waiting; /* of them, for a job */
+    uint32_t waiting; /* threads that wait for a job */
     bool is_ending;
     pthread_t threads[THREADS_MAX];
 } pool = {.lock = PTHREAD_MUTEX_INITIALIZER,
           .has_work = PTHREAD_COND_INITIALIZER,
           .has_ended = PTHREAD_COND_INITIALIZER};
 
-/* The next run of work-items: long ones first, since each costs a little to begin, and single ones
- * in the end, that all threads end together. Returns false where all are begun. */
+/* Takes the next run of work-items. Long runs come first, since each costs a little to begin;
+ * single items come last, so that all threads end together. Returns false if all are begun. */
 static bool begin_items(struct job *job, size_t *first, size_t *end)
 {
     *first = __atomic_load_n(&job->begun, __ATOMIC_RELAXED);
@@ -53,7 +53,8 @@ static bool begin_items(struct job *job, size_t *first, size_t *end)
     return true;
 }
 
-/* Whatever a host does to its threads' rounding or denormal numbers, kernels give the same bits. */
+/* Runs items in the default floating-point environment: whatever a host does to its threads'
+ * rounding or denormal numbers, kernels give the same bits. */
 static void run_items(void *job_to_run)
 {
     struct job *job = job_to_run;
@@ -66,7 +67,7 @@ static void run_items(void *job_to_run)
     fesetenv(&before);
 }
 
-/* A job that wants one thread more; NULL: none does. With the lock. */
+/* Returns a job that wants one thread more; NULL if none does. Needs the lock. */
 static struct job *find_job(void)
 {
     struct job *job = pool.jobs;
@@ -98,8 +99,8 @@ static void *serve(void *unused)
     return unused;
 }
 
-/* The parent's threads and launches are not the child's, which may have been forked while a thread
- * held the lock. */
+/* Empties the pool in a forked child, which has none of the parent's threads and launches. The lock
+ * is made again, because a thread may have held it during the fork. */
 static void begin_child(void)
 {
     pthread_mutex_init(&pool.lock, NULL);
@@ -147,7 +148,7 @@ void threads_release(void)
     pthread_mutex_unlock(&pool.lock);
 }
 
-/* Threads for a job, as long as those that wait do not suffice. With the lock. */
+/* Starts threads for a job while too few are waiting. Needs the lock. */
 static void start_threads(uint32_t wanted)
 {
     while (!pool.is_ending && pool.waiting < wanted && pool.count < pool.most &&

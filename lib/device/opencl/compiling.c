@@ -1,5 +1,5 @@
-/* Compiling takes a driver seconds, on slow machines minutes, and tells nothing meanwhile: a thread
- * of its own does it, while the caller's tells what is waited for, and how long already. */
+/* Compiling takes a driver seconds, on slow machines minutes, and shows no progress. So a thread of
+ * its own compiles, while the caller's tells what it waits for, and for how long. */
 #include <pthread.h>
 #include <stdio.h>
 
@@ -42,7 +42,7 @@ sonject_status wait_for_compiler(struct report *report, void (*compile)(void *us
         char stage[32];
         snprintf(stage, sizeof stage, "compiling, once: %.0f s", waited_s);
         pthread_mutex_unlock(&waited_for.lock);
-        if (waited_s > 0.5) /* else it was compiled before */
+        if (waited_s > 0.5) /* less: it was compiled before */
             is_cancelled = report_is_cancelled(report, stage) || is_cancelled;
         pthread_mutex_lock(&waited_for.lock);
         if (!waited_for.has_ended)

@@ -1,4 +1,4 @@
-/* Finding and opening OpenCL devices, and what a process has one of. */
+/* OpenCL's devices, found and opened, and what a process has one of. */
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,9 +10,9 @@
 #include "device/opencl/opencl.h"
 
 #define DEVICES_MAX 64
-#define GPU_GROUP   64 /* work-items; two of NVIDIA's warps, one of AMD's wavefronts */
+#define GPU_GROUP   64 /* work-items: two warps of NVIDIA, one wavefront of AMD */
 
-static long process_of_driver; /* 0: no call was made yet; atomic */
+static long process_of_driver; /* 0: no call yet; atomic */
 static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
 static struct shared_device *devices_in_use;
 
@@ -77,7 +77,7 @@ sonject_status opencl_answer(struct report *report, const struct device *device,
         (int)error);
 }
 
-/* The process is noted before the lock is taken, so that no child waits for one that a thread of
+/* Notes the process before the lock is taken, so that no child waits for a lock that a thread of
  * its parent held. */
 sonject_status driver_claim(struct report *report)
 {
@@ -106,7 +106,7 @@ void driver_leave(void)
     pthread_mutex_unlock(&one_at_a_time);
 }
 
-/* None may be for want of memory: the loader passes over drivers that cannot be loaded. */
+/* Reports why there is no device. Memory may be short: drivers that do not load are skipped. */
 static sonject_status explain_no_device(struct report *report, cl_int error)
 {
     if (error == CL_OUT_OF_HOST_MEMORY || memory_is_short())
@@ -119,7 +119,7 @@ static sonject_status explain_no_device(struct report *report, cl_int error)
                           opencl_error_name(error), (int)error);
 }
 
-/* A platform that fails is passed over where another has a device. */
+/* Finds all devices. A platform that fails is skipped if another has a device. */
 static sonject_status find_devices(struct report *report, struct found_device *found, size_t *count)
 {
     cl_platform_id platforms[16];
@@ -158,7 +158,7 @@ static void read_text(cl_device_id id, cl_device_info what, char *text, size_t c
     free(whole);
 }
 
-/* CPUs run as many lanes as their registers hold; GPUs make lanes of work-items themselves. */
+/* Returns the number of lanes: on CPUs what registers hold; on GPUs 1, as work-items are lanes. */
 static uint32_t lanes_for(cl_device_id id, cl_device_type type)
 {
     cl_uint native = 1;
@@ -183,7 +183,7 @@ static void describe(cl_device_id id, cl_device_type type, cl_platform_id platfo
     info->vector_width = lanes_for(id, type);
 }
 
-/* Its place; count if there is none. */
+/* Returns the first GPU's index; count if there is none. */
 static size_t first_gpu(const struct found_device *found, size_t count)
 {
     size_t i = 0;
@@ -236,7 +236,7 @@ static sonject_status choose_device(struct report *report, const char *name,
                           "no device has '%s' in its name: `sonject devices` lists them", name);
 }
 
-/* The device's record, made for its first user and released by its last. */
+/* Returns the device's record, which is made for its first user and released by its last. */
 static struct shared_device *find_shared(cl_device_id id, cl_int *error)
 {
     *error = CL_SUCCESS;

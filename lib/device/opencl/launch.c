@@ -3,9 +3,9 @@
 
 #include "device/opencl/opencl.h"
 
-/* PoCL ends the process, by an assertion on its count of a kernel's users, where two threads run
- * one kernel over ranges of different width at once: seen with 3.1, and the same in the source of
- * 5.0. A launch uses all cores, so little is lost by one at a time. */
+/* A lock for PoCL. If two threads run one kernel over ranges of different width at once, PoCL ends
+ * the process, by an assertion on its count of a kernel's users: seen with 3.1, and the same in the
+ * source of 5.0. A launch uses all cores, so one at a time costs little. */
 static pthread_mutex_t one_launch_of_pocl = PTHREAD_MUTEX_INITIALIZER;
 
 static sonject_status opencl_reserve(struct report *report, struct device *device, size_t bytes,
@@ -49,7 +49,7 @@ static sonject_status opencl_map(struct report *report, struct device *device, d
 
 static void opencl_unmap(struct device *device, device_buffer buffer, const void *contents)
 {
-    /* the queue is in order, so nothing that follows can overtake this */
+    /* the queue is in order, so no later command overtakes this one */
     (void)clEnqueueUnmapMemObject(device->queue, buffer, (void *)contents, 0, NULL, NULL);
 }
 
@@ -66,8 +66,8 @@ struct kernel_launch {
     const struct device *device;
     device_kernel kernel;
     cl_uint dimensions;
-    const size_t *global, *group; /* group: NULL: as the driver likes */
-    const char *call;             /* the last one */
+    const size_t *global, *group; /* group: NULL: the driver's choice */
+    const char *call;             /* the last OpenCL call */
     cl_int error;
 };
 
@@ -98,7 +98,7 @@ static sonject_status opencl_kernel_run(struct report *report, struct device *de
         CHECK(opencl_answer(
             report, device, "clSetKernelArg",
             clSetKernelArg(kernel, (cl_uint)i, arguments[i].bytes, arguments[i].value)));
-    /* on a CPU a work-item is a whole strip: groups of one let the cores share them evenly */
+    /* a CPU's work-item is a whole strip: in groups of one, cores share strips evenly */
     size_t group[3] = {1, 1, 1};
     bool has_group = device->is_cpu;
     if (!device->is_cpu) {
@@ -114,7 +114,7 @@ static sonject_status opencl_kernel_run(struct report *report, struct device *de
                                 .global = global,
                                 .group = has_group ? group : NULL};
     sonject_status waited = SONJECT_OK;
-    if (kernel == device->fresh) { /* PoCL compiles most of it now */
+    if (kernel == device->fresh) { /* PoCL compiles most of the kernel now */
         device->fresh = NULL;
         waited = wait_for_compiler(report, launch, &run);
     } else {

@@ -1,13 +1,13 @@
-/* OpenCL's functions, handed on to its library, which the first call loads: no process needs it
- * that does not ask for OpenCL's devices. Where there is none, no platform is found. */
+/* OpenCL's functions, passed on to its library. The first call loads the library, so that only
+ * processes that ask for OpenCL's devices need it. Without the library, no platform is found. */
 #include <pthread.h>
 #include <string.h>
 
 #include "base/system/process.h"
 #include "device/opencl/opencl.h"
 
-/* NULL: there is none. It stays loaded; one that could not be loaded, for want of memory say, is
- * tried again. */
+/* Finds a function; NULL if there is no library. A library stays loaded. If loading fails, for want
+ * of memory say, the next call tries again. */
 static void *find(const char *name)
 {
     static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
@@ -20,7 +20,7 @@ static void *find(const char *name)
     return function;
 }
 
-/* absent: what is returned without the library. */
+/* absent: the result without the library. */
 #define FORWARD(result, name, parameters, arguments, absent)                                       \
     result CL_API_CALL name parameters                                                             \
     {                                                                                              \

@@ -1,5 +1,5 @@
-/* What this folder's files share: OpenCL, and what a process has one of: its driver, and of each
- * device in use the context and the programs. */
+/* OpenCL for this folder's files, and what a process has one of: the driver, and for each device in
+ * use the context and the programs. */
 #ifndef SONJECT_DEVICE_OPENCL_OPENCL_H
 #define SONJECT_DEVICE_OPENCL_OPENCL_H
 
@@ -9,7 +9,7 @@
 
 #include "device/backend.h"
 
-/* More than all of a device, at some widths. */
+/* More than all programs of a device, at several widths. */
 #define PROGRAMS_KEPT    64
 #define OPTIONS_CAPACITY 128
 
@@ -19,7 +19,7 @@ struct kept_program {
     char options[OPTIONS_CAPACITY];
 };
 
-/* What contexts share of a device. Only for use between driver_enter and driver_leave. */
+/* The part of a device that contexts share. Only for use between driver_enter and driver_leave. */
 struct shared_device {
     struct shared_device *next;
     size_t users;
@@ -29,24 +29,24 @@ struct shared_device {
     struct kept_program programs[PROGRAMS_KEPT];
 };
 
-/* Claims the driver and locks it, until driver_leave: drivers find their devices anew in each
- * thread that asks first. Nothing of the caller's is to be called within. Errors: DEVICE. */
+/* Claims the driver and locks it until driver_leave: drivers search for devices again in each
+ * thread that asks first. No function of the caller's may be called in between. Errors: DEVICE. */
 sonject_status driver_enter(struct report *report);
 void driver_leave(void);
 
-/* "CL_OUT_OF_RESOURCES" and the like. */
+/* Returns a name such as "CL_OUT_OF_RESOURCES". */
 const char *opencl_error_name(cl_int error);
 
-/* SONJECT_OK, or where the OpenCL call failed SONJECT_ERROR_DEVICE (MEMORY where the host is out of
- * memory) with a message that names it and the error. */
+/* Returns SONJECT_OK or, if the OpenCL call failed, SONJECT_ERROR_DEVICE (MEMORY if the host is out
+ * of memory) with a message that names the call and the error. */
 sonject_status opencl_answer(struct report *report, const struct device *device, const char *call,
                              cl_int error);
 
-/* Calls compile(user), and tells the call's progress while that takes long. Errors: CANCELLED,
- * after it. */
+/* Calls compile(user), and tells the progress if that takes long. Errors: CANCELLED, but only after
+ * compile has returned. */
 sonject_status wait_for_compiler(struct report *report, void (*compile)(void *user), void *user);
 
-/* What an open device does (launch.c), with what the other files have of it. */
+/* The functions of an open device (launch.c), and those that other files define. */
 extern const struct device_calls opencl_calls;
 void opencl_close(struct device *device);
 sonject_status opencl_kernel_create(struct report *report, struct device *device,

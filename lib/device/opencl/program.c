@@ -8,7 +8,7 @@
 #include "base/system/process.h"
 #include "device/opencl/opencl.h"
 
-/* No fast-math of any kind; correctly rounded division where the compiler has to be told. */
+/* Writes options: no fast-math of any kind; correctly rounded division if it must be asked for. */
 static void program_options(const struct device *device, enum program_variant variant,
                             char options[OPTIONS_CAPACITY])
 {
@@ -22,18 +22,18 @@ static void program_options(const struct device *device, enum program_variant va
              variant == PROGRAM_PLAIN ? " -DPLAIN" : "");
 }
 
-/* A program to be built, and what came of it, to be told when the driver is left. */
+/* A program to be built, and the outcome, which is reported after driver_leave. */
 struct building {
     struct report *report;
     struct device *device;
     const struct embedded_source *source;
-    const char *name; /* of the kernel */
+    const char *name; /* the kernel's name */
     device_kernel *kernel;
     char options[OPTIONS_CAPACITY];
-    const char *call; /* the last one, of OpenCL; NULL: none yet */
+    const char *call; /* the last OpenCL call; NULL: none yet */
     cl_int error;
-    cl_program failed; /* has the log; NULL: none */
-    double seconds;    /* 0: it was there */
+    cl_program failed; /* the program with the log; NULL: none */
+    double seconds;    /* duration of the build, s; 0: not built */
 };
 
 static sonject_status tell_failure(struct report *report, const struct building *building)
@@ -59,11 +59,11 @@ static sonject_status tell_failure(struct report *report, const struct building 
     return status;
 }
 
-/* NULL: see `building`. */
+/* Returns NULL on failure: see `building`. */
 static cl_program compile(struct building *building)
 {
-    /* LLVM removes its files at a signal, and so fails in what it was about. Kernels that are known
-     * to be right are built again, for the caller to stop as it does elsewhere. */
+    /* LLVM removes its files at a signal, and so fails in its work. Kernels that are known to be
+     * right are built again, so that the caller can stop as it does elsewhere. */
     int tries = 3;
     const struct device *device = building->device;
     building->call = "clCreateProgramWithSource";
@@ -90,8 +90,8 @@ static cl_program find_kept(const struct building *building)
     return NULL;
 }
 
-/* The program stays the device's, in the place of the last one where there is no room; NULL: see
- * `building`. */
+/* Builds the program, which the device keeps, in place of the last one if there is no room. Returns
+ * NULL on failure: see `building`. */
 static cl_program build(struct building *building)
 {
     struct shared_device *shared = building->device->shared;
@@ -107,7 +107,7 @@ static cl_program build(struct building *building)
     return kept.program;
 }
 
-/* Nothing where the program is to be built and may not. */
+/* Makes the kernel. Does nothing if the program must be built and builds is false. */
 static void make_kernel(struct building *building, bool builds)
 {
     if (driver_enter(building->report) != SONJECT_OK)
