@@ -51,15 +51,15 @@ typedef struct sonject_elements_params {
     double ping_spacing_m; /* 0: half the array, so that phase centres are evenly spaced */
     double transmitter_offset_m; /* offset of the transmitter's middle */
     double transmitter_length_m; /* NaN: twice the along-track resolution; 0: omnidirectional */
-    double first_hydrophone_m;   /* offset of the hydrophone's middle; NaN: the array is centred on
-                                    its origin */
+    double first_hydrophone_m; /* offset of the first one's middle; NaN: the array is centred on its
+                                  origin */
     double hydrophone_spacing_m; /* 0: the hydrophone's length or, if it is 0, the default length */
     double hydrophone_length_m;  /* NaN: twice the along-track resolution; 0: omnidirectional */
     double sampling_rate_hz; /* at least the bandwidth, in pass band plus twice the frequency; 0:
                                 twice the bandwidth, in pass band plus twice the frequency */
-    double first_time_s;     /* first sample of each ping, after transmission; NaN: as the patch's
-                                aperture needs */
-    double last_time_s;      /* last sample; NaN: as the patch's aperture needs */
+    double first_time_s;     /* time of each ping's first sample, after transmission; NaN: as the
+                                patch's aperture needs */
+    double last_time_s;      /* time of the last sample; NaN: as the patch's aperture needs */
     double chirp_duration_s; /* duration of the chirp, above 0 */
     double aspect_limit_rad; /* largest angle from abeam at which echoes are kept, 0...pi/2; 0: no
                                 limit */

@@ -123,15 +123,15 @@ typedef struct sonject_contact_measures {
     double axis_rad;      /* direction of the axis, from along-track towards range, -pi/2...pi/2 */
     double highlight_db;  /* mean intensity of the highlight's pixels, 10 log10 of squared amplitude
                              units */
-    double shadow_db; /* mean of the darkest third of the shadow's columns in the middle third of
+    double shadow_db; /* mean over the darkest third of the shadow's columns in the middle third of
                          its rows */
     double seabed_db; /* median of means of 6 x 6 pixels around the box */
     double highlight_contrast_db; /* contrast over the seabed; the standard error of both contrasts
                                      is 0.4 dB for contacts of 100 pixels and more of single-look
                                      speckle */
     double shadow_contrast_db;
-    double seabed_shape; /* seabed_* and lengths: of the whole image without the contacts that are
-                            measured with it, as in sonject_measurement */
+    double seabed_shape; /* this and the next three: of the whole image without the contacts that
+                            are measured with it, as in sonject_measurement */
     double seabed_looks;
     double row_length_pixels;
     double column_length_pixels;

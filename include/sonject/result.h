@@ -97,9 +97,8 @@ typedef struct sonject_object_truth {
     double slant_range_m;      /* apparent slant range of the centre */
     double ground_range_m;     /* ground range of the centre */
     double height_m;           /* height of the centre over the mean seabed */
-    sonject_box highlight; /* box of the mask, the layer of this name, like the next two; fainter
-                              changes, such as side lobes, may lie beyond: the layer influence shows
-                              all */
+    sonject_box highlight; /* box of the mask, which is the layer of this name; side lobes and other
+                              faint changes may lie beyond: the layer influence shows all */
     sonject_box shadow;
     sonject_box both;
     uint64_t highlight_pixels;
@@ -119,7 +118,7 @@ typedef struct sonject_object_truth {
                                     transmission and absorption */
     uint32_t level_kind;         /* sonject_level_kind of the scene */
     uint32_t reserved;
-    double level_gain_db;  /* scaling of the echo for its level; 0: physical */
+    double level_gain_db;  /* gain of the echo that its level needed; 0: physical */
     double over_seabed_db; /* target_strength_db over the cross-section of a pixel of plain seabed
                               at the echo's range; -infinity: nothing of the object is in view */
     double seabed_strength_db; /* assumed strength of that seabed: 10 log10 of its cross-section per
