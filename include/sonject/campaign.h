@@ -38,8 +38,7 @@ typedef struct sonject_campaign_image {
     uint32_t struct_size;
     uint32_t object_count;
     uint64_t id;
-    uint64_t first_row; /* first row of the image in its swath; it changes only after many failed
-                           draws */
+    uint64_t first_row; /* first row of the image in its swath; many failed draws change it */
     uint64_t first_column;
     uint64_t rows;
     uint64_t columns;
@@ -84,11 +83,11 @@ typedef struct sonject_campaign_run_params {
     uint32_t only_one;    /* 1: only the image `only`, which is made again if it exists */
     uint64_t only;        /* id of that image */
     const char *folder;   /* folder for the data set; created if missing */
-    double exit_after_s;  /* time after which the call stops as if cancelled, once images under way
-                             are done; 0: never */
-    uint32_t overwrites;  /* 1: images of another campaign in the folder are removed, not allowed
-                             with shards; 0: they are refused */
-    uint32_t reserved;    /* 0 */
+    double exit_after_s; /* time after which the call stops as if cancelled, after images under way;
+                            0: never */
+    uint32_t overwrites; /* 1: images of another campaign in the folder are removed, not allowed
+                            with shards; 0: they are refused */
+    uint32_t reserved;   /* 0 */
 } sonject_campaign_run_params;
 
 /* Makes the images that the folder lacks. Each image is published file by file, its record last. If
@@ -117,8 +116,7 @@ SONJECT_API sonject_status sonject_campaign_run(sonject_context *context,
 SONJECT_API sonject_status sonject_campaign_merge(sonject_context *context, const char *folder,
                                                   sonject_progress_function progress, void *user);
 
-/* The part of a contact that its box encloses, unless the box's class is named shadow or highlight.
- */
+/* The part of a contact inside its box, unless the box's class is named shadow or highlight. */
 typedef enum sonject_label_part {
     SONJECT_LABELS_BOTH = 0, /* highlight and shadow */
     SONJECT_LABELS_HIGHLIGHT = 1,
@@ -138,7 +136,7 @@ typedef struct sonject_campaign_fit_params {
                            and its picture (".png") are written beside it. If the scene's
                            input.calibration is auto, a folder named after it, with "_fit" for the
                            extension, gets calibrations of the swaths and of the contacts' images */
-    const char *const *classes; /* classes of contacts to use, class_count of them; NULL: all */
+    const char *const *classes; /* contacts' classes to use, class_count of them; NULL: all */
     size_t class_count;
 } sonject_campaign_fit_params;
 

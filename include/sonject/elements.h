@@ -24,8 +24,8 @@ SONJECT_BEGIN_DECLARATIONS
  *     A b_t b_r / (R_t R_r) exp(+i 2 pi f0 tau) g(t - tau)
  *
  * where |A|^2 is a backscattering cross-section in m^2, and b = sinc(length sin(aspect) /
- * wavelength) at f0. A series is thereby the pressure over that of the source at 1 m, without
- * absorption, unless source_level_db makes it a pressure. */
+ * wavelength) at f0. A series is the pressure over that of the source at 1 m, without absorption,
+ * unless source_level_db makes it a pressure. */
 typedef enum sonject_series_form {
     SONJECT_SERIES_BASEBAND = 0, /* the complex envelope above */
     SONJECT_SERIES_PASSBAND = 1  /* the real part of this envelope times exp(-i 2 pi f0 t) */
@@ -44,29 +44,25 @@ typedef struct sonject_elements_params {
     uint32_t struct_size;
     uint32_t form;        /* sonject_series_form */
     uint32_t pulse;       /* sonject_series_pulse */
-    uint32_t hydrophones; /* number of hydrophones, 1...65536 */
-    uint32_t pings; /* number of pings, at most 2^24; 0: enough for the patch's whole aperture */
+    uint32_t hydrophones; /* 1...65536 */
+    uint32_t pings;       /* at most 2^24; 0: enough for the patch's whole aperture */
     uint32_t reserved;
     double first_ping_m;   /* position of the array's origin; NaN: pings are centred on the patch */
     double ping_spacing_m; /* 0: half the array, so that phase centres are evenly spaced */
     double transmitter_offset_m; /* offset of the transmitter's middle */
     double transmitter_length_m; /* NaN: twice the along-track resolution; 0: omnidirectional */
-    double first_hydrophone_m; /* offset of the first one's middle; NaN: the array is centred on its
-                                  origin */
+    double first_hydrophone_m;   /* offset of its middle; NaN: the array is centred on its origin */
     double hydrophone_spacing_m; /* 0: the hydrophone's length or, if it is 0, the default length */
     double hydrophone_length_m;  /* NaN: twice the along-track resolution; 0: omnidirectional */
     double sampling_rate_hz; /* at least the bandwidth, in pass band plus twice the frequency; 0:
                                 twice the bandwidth, in pass band plus twice the frequency */
-    double first_time_s;     /* time of each ping's first sample, after transmission; NaN: as the
-                                patch's aperture needs */
-    double last_time_s;      /* time of the last sample; NaN: as the patch's aperture needs */
+    double first_time_s; /* first sample, after transmission; NaN: as the patch's aperture needs */
+    double last_time_s;  /* last sample; NaN: as the patch's aperture needs */
     double chirp_duration_s; /* duration of the chirp, above 0 */
-    double aspect_limit_rad; /* largest angle from abeam at which echoes are kept, 0...pi/2; 0: no
-                                limit */
+    double aspect_limit_rad; /* largest angle off abeam of echoes, 0...pi/2; 0: no limit */
     double source_level_db;  /* rms source level re 1 uPa at 1 m, 0...300: the series are pressures
                                 in Pa (for a tone sqrt(2) times its rms), less the water's absorption
-                                on the way to each echo abeam and back; NaN: the series are ratios of
-                                pressures */
+                                on the way to each echo abeam and back; NaN: the series are ratios */
 } sonject_elements_params;
 
 /* The places and times of a series. */
@@ -78,7 +74,7 @@ typedef struct sonject_element_layout {
     double sound_speed_mps; /* sound speed for the delays, the image processor's */
     double centre_frequency_hz;
     double bandwidth_hz;
-    double along_track_resolution_m; /* resolution of the scene's images */
+    double along_track_resolution_m; /* resolution of images */
 } sonject_element_layout;
 
 /* Describes the series of a patch of rows x columns pixels; both 0: of the uniform or synthetic

@@ -36,23 +36,19 @@ typedef struct sonject_run_params {
  * less than 16 MB or another time. Missing or changed files are made again. A result of other
  * inputs is refused unless params->overwrites, and stays until the new one is ready to be written.
  * Each file appears whole or not at all.
- *
  * Shards: with shard_count K this call traces one of K parts of all rays. It leaves its tallies in
  * params->folder/work and writes no results. Other processes, also on other machines of the same
  * kind, trace the other parts in the same folder, in any order. sonject_merge then makes the
  * result, byte for byte that of a whole run. For a shard that was there already *was_finished stays
  * 0.
- *
  * Checkpoints: a call returns CANCELLED if it is cancelled while it traces, or if it stops by
  * itself after exit_after_s (never before some progress). Its work stays in the folder work, and
  * the same call continues from there. A process that is killed loses what came after its last
  * checkpoint. A whole run removes the folder work once its results are written. Work of another
  * scene, image or version is refused; that of a whole run is dropped.
- *
- * If the scene's input.calibration is auto, the first call makes the file calibration.yaml in the
- * folder from the scene's image (sonject_calibrate), with a picture beside it. The run uses this
- * file, and so do all shards.
- *
+ * Calibration: if the scene's input.calibration is auto, the first call makes calibration.yaml in
+ * the folder from the scene's image (sonject_calibrate), with a picture beside it. The run and all
+ * shards use this file.
  * Errors: ARGUMENT (also another result in the folder: the message names what differs), INPUT,
  * DEVICE, STORAGE, MEMORY, UNSUPPORTED (no raster files in this build), CANCELLED. */
 SONJECT_API sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
