@@ -28,7 +28,7 @@ struct interview {
     char answers[ANSWERS][ANSWER]; /* "key=value" */
     size_t count;
     char scene[NAME], calibration[NAME], picture[NAME], campaign[NAME]; /* files */
-    char other_calibration[NAME], other_picture[NAME]; /* of a recording's other side; "": none */
+    char other_calibration[NAME], other_picture[NAME]; /* the other side's; "": none */
     char folder[NAME];               /* folder of relative names; "": the scene's */
     char *objects;                   /* override with the target's file; owned; NULL: none */
     bool has_mesh;                   /* the target is a mesh */

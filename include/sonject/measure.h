@@ -32,7 +32,7 @@ typedef struct sonject_measure_params {
     double column_spacing_m;  /* spacing in slant range */
     double find_contrast_db;  /* least contrast of a contact that is looked for: brightest mean of 3
                                  x 3 pixels over the seabed within about 64 pixels; 6...100, 0: 12 */
-    uint32_t find_most;       /* number of contacts that are looked for, at most; 0: 100 */
+    uint32_t find_most;       /* most contacts to look for, the brightest ones; 0: 100 */
     uint32_t range_to_left;   /* 1: range grows to the left, as in the port half of an image of two
                                  sides; 0: to the right, or as in truth */
 } sonject_measure_params;

@@ -107,8 +107,8 @@ typedef struct sonject_object_truth {
                                      wherever pixels lie and however far apart they are: of glints
                                      through the point response, of rough surfaces with speckle
                                      averaged out. -infinity: nothing of the object is in view */
-    double highlight_contrast_db; /* as in sonject_contact_measures, of this object alone and of
-                                     expected energies, without speckle */
+    double highlight_contrast_db; /* see sonject_contact_measures; of this object alone, and of
+                                     expected energies without speckle */
     double shadow_contrast_db;
     double burial_m;    /* depth of the object's lowest point below the seabed under its origin;
                            negative: above the seabed */
@@ -131,14 +131,15 @@ typedef struct sonject_object_truth {
     double overall_length_m;  /* extent of all parts of the object along its nose */
     double overall_width_m;   /* extent along the object's own y */
     double overall_height_m;  /* extent along the object's own z */
-    double highlight_along_m; /* as in sonject_contact_measures, like the next five; NaN: absent */
+    double highlight_along_m; /* see sonject_contact_measures, also for the next five; NaN: absent
+                               */
     double highlight_range_m;
     double shadow_along_m;
     double shadow_range_m;
     double gap_range_m;
     double dim_range_m;
-    double highlight_visibility_db; /* as in sonject_contact_measures, but of the image itself with
-                                       its speckle: what somebody who labels it sees */
+    double highlight_visibility_db; /* see sonject_contact_measures; of the image itself with its
+                                       speckle: what somebody who labels it sees */
     double shadow_visibility_db;
     double highlight_clipped; /* share, 0...1, of the highlight's pixels that are as bright as the
                                  image, or the numbers in its file, can be; NaN: no highlight */

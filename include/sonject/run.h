@@ -58,7 +58,7 @@ SONJECT_API sonject_status sonject_run(sonject_context *context, const sonject_s
 
 typedef struct sonject_merge_params {
     uint32_t struct_size;
-    uint32_t labels;    /* as in sonject_run_params */
+    uint32_t labels;    /* see sonject_run_params */
     const char *folder; /* folder of the shards, and for the results */
 } sonject_merge_params;
 

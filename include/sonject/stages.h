@@ -29,8 +29,8 @@ typedef struct sonject_form_params {
         *overrides;  /* "key.path=value" for the scene whose text the file keeps: sonar.bandwidth,
                         .pulse, .resolution, .response, .measured_response and .motion, keys below
                         these, and input.path (the same image elsewhere); no other key */
-    uint32_t labels; /* as in sonject_run_params */
-    uint32_t overwrites; /* as in sonject_run_params */
+    uint32_t labels; /* see sonject_run_params */
+    uint32_t overwrites; /* see sonject_run_params */
 } sonject_form_params;
 
 /* Forms the image and writes into params->folder the files that sonject_run would. scene: NULL for

@@ -48,11 +48,10 @@ def delay_and_sum(
 ):
     """Returns complex pixels, rows (along_track_m) x columns (slant_range_m).
 
-    series: complex baseband, range-compressed, [ping, hydrophone, sample]. transmitter_m: position
-    at each ping. hydrophones_m: positions, [ping, hydrophone]. A point target of unit cross-section
-    peaks at 1: spreading and patterns are undone, and the weights of each pixel add up to one.
-    Aspects of a sine up to wavelength / (4 resolution_m) have equal weight, which makes a point as
-    wide as resolution_m.
+    series: complex baseband, range-compressed, [ping, hydrophone, sample]. transmitter_m: of each
+    ping. hydrophones_m: of each ping and hydrophone. A point target of unit cross-section peaks at
+    1: spreading and patterns are undone, and the weights of each pixel add up to one. Aspects of a
+    sine up to wavelength / (4 resolution_m) count alike, so that a point is resolution_m wide.
     """
     wavelength = sound_speed_mps / centre_frequency_hz
     widest = wavelength / (4 * resolution_m)

@@ -29,7 +29,7 @@ def _candidates() -> Iterator[str]:
         yield os.path.abspath(chosen) if os.path.dirname(chosen) else chosen
         return
     package = pathlib.Path(__file__).resolve().parent
-    for folder in (package, package.parent, package.parents[2] / "lib"):  # last: in a build
+    for folder in (package, package.parent, package.parents[2] / "lib"):  # the last one in a build
         for name in _file_names():
             if (folder / name).is_file():
                 yield str(folder / name)

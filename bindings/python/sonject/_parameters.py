@@ -1,4 +1,4 @@
-"""What classes of C structures share, and members that some have beside their fields."""
+"""The base classes of C structures' classes, and members that some have beside their fields."""
 
 import ctypes
 from dataclasses import fields

@@ -22,8 +22,7 @@ def decibels(image: Any) -> Any:
 
 
 def grey_ends(levels: Any) -> tuple[float, float]:
-    """Returns the ends of the grey scale, as sonject quicklook chooses them: percentiles 3 and
-    99.8."""
+    """Returns ends of the grey scale, as sonject quicklook chooses them: percentiles 3 and 99.8."""
     seen = levels[numpy.isfinite(levels)]
     low, high = numpy.quantile(seen, [0.03, 0.998]) if seen.size else (0.0, 0.0)
     if high - low < 1.0:
@@ -32,7 +31,7 @@ def grey_ends(levels: Any) -> tuple[float, float]:
 
 
 def _reduced(image: Any) -> Any:
-    """Returns the root of the mean energy of blocks of pixels, so large that no side is too long."""
+    """Returns the root of the mean energy of blocks, so large that no side is too long."""
     amplitudes = numpy.abs(numpy.asarray(image)).astype(numpy.float64)
     block = -(-max(amplitudes.shape) // _SIDE_LIMIT)
     starts = [numpy.arange(0, size, block) for size in amplitudes.shape]

@@ -189,8 +189,7 @@ def shard_values(shard: Tuple[int, int]) -> dict[str, int]:
 
 
 def override_texts(overrides: Overrides) -> Any:
-    """Returns an array of "key.path=value" texts, from these or from a mapping of key paths to
-    values."""
+    """Returns an array of "key.path=value" texts, from such texts or from a mapping of key paths."""
     if isinstance(overrides, str):
         raise TypeError("overrides must be a list of texts or a mapping, not one text")
     if isinstance(overrides, Mapping):
@@ -212,7 +211,7 @@ STORED_KINDS = {
 
 
 def _single_precision(array: Any) -> Any:
-    """Returns the numbers as float32 or complex64; the array itself if it has one of these types."""
+    """Returns the numbers as float32 or complex64; array itself if it has one of these types."""
     if array.dtype in _KINDS:
         return array
     if array.dtype.kind not in "fc":

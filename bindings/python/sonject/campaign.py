@@ -33,8 +33,8 @@ class Campaign(Handle):
     swath's Transfer converts between both. Full scale is 1, or the value that a curve of kind
     decibel sets. A JPEG loses more.
 
-    calibration: auto works only in run(), which keeps the file in its folder; name that file for
-    images in memory.
+    calibration: auto is for run(), which keeps the file in its folder; name that file for images in
+    memory.
 
     overrides: as in Scene.read, but of the campaign's keys: ``{"images": 100}``.
     """

@@ -127,7 +127,7 @@ class Handle:
         """Returns one line, whatever the state."""
         try:
             told = " " + self._summary()
-        except (RuntimeError, SonjectError, ValueError) as error:  # in a callback, wrong, closed
+        except (RuntimeError, SonjectError, ValueError) as error:  # in a callback; a wrong scene; closed
             told = ": " + str(error).partition("\n")[0]
         return f"<sonject.{type(self).__name__}{told}>"
 
@@ -266,7 +266,7 @@ class Context:
         self.call(name, *arguments, bridge.callback, None, *outputs, bridge=bridge)
 
     def complete(self, name: str, *arguments: Any, progress: Optional[Progress]) -> bool:
-        """Does work that may have been finished before. Returns whether there was anything to do."""
+        """Does work that may have been finished before; returns whether there was anything to do."""
         was_finished = ctypes.c_int()
         self.work(name, *arguments, progress=progress, outputs=[ctypes.byref(was_finished)])
         return not was_finished.value

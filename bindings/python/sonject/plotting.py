@@ -19,8 +19,7 @@ def _pyplot() -> Any:
 
 
 def _extent(shape: tuple[int, int], geometry: Mapping[str, Any]) -> tuple[float, float, float, float]:
-    """Returns the pixels' outer edges, m: first and last slant range, last and first track
-    position."""
+    """Returns outer edges of the pixels, m: first and last slant range, last and first track place."""
     rows, columns = shape
     given = {"first_along_track": 0.0, **geometry}
     wide, high, left, top = (
@@ -41,9 +40,8 @@ def draw(
     """Draws an image's magnitudes in dB; returns matplotlib's AxesImage.
 
     image: rows (track positions) x columns (slant ranges), amplitudes or complex pixels. geometry:
-    labels the axes, as input.geometry of scenes; None: in pixels. decibels: ends of the grey scale;
-    None: percentiles 3 and 99.8, as in sonject quicklook. axes: matplotlib's; None: the current
-    ones.
+    labels the axes, as input.geometry of scenes; None: pixels. decibels: ends of the grey scale;
+    None: percentiles 3 and 99.8, as sonject quicklook. axes: matplotlib's; None: the current ones.
     """
     axes = _pyplot().gca() if axes is None else axes
     levels = levels_of(image)

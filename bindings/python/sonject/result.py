@@ -106,8 +106,7 @@ class Result(Handle):
 
     @property
     def transfer(self) -> Optional[Transfer]:
-        """The function that made the image's grey levels from amplitudes; None: the image is
-        linear."""
+        """The function from amplitudes to the image's grey levels; None: the image is linear."""
         return self._transfer
 
     def _linear(self, image: Any) -> Any:

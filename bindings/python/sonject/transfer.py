@@ -14,14 +14,12 @@ from .keys import InputTransfer
 
 
 class Transfer(Dict[str, Any]):
-    """The function that made the numbers of an image from amplitudes: the keys of input.transfer of
-    scenes.
+    """The function from amplitudes to the numbers of an image: keys of input.transfer of scenes.
 
     >>> curve = Transfer("{kind: decibel, parameter: 0.378}")
     >>> amplitudes = curve.to_amplitude(grey_levels)
 
-    Amplitudes are relative to full scale: 1 is the largest number of uint8 or uint16, or 1.0 of
-    float32.
+    At full scale the amplitude is 1: the largest number of uint8 or uint16, or 1.0 of float32.
     """
 
     def __init__(self, keys: Union[str, Mapping[str, Any]]) -> None:
@@ -35,7 +33,7 @@ class Transfer(Dict[str, Any]):
         self.to_amplitude(numpy.zeros(1, numpy.uint8))  # refuses unknown keys
 
     def to_amplitude(self, stored: Any) -> Array:
-        """Returns linear amplitudes, float32, of an array of grey levels: uint8, uint16 or float32."""
+        """Returns linear amplitudes, float32, of grey levels: an array of uint8, uint16 or float32."""
         return _converted(stored, self, numpy.dtype(numpy.float32), None)
 
     def from_amplitude(self, amplitudes: Any, dtype: Any = numpy.uint8) -> Array:
