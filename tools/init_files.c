@@ -282,7 +282,6 @@ static void add_grey(FILE *file, const struct interview *interview)
                 floor(black), ceil(white));
 }
 
-/* Adds one swath, or both sides. */
 static void add_swaths(FILE *file, const struct interview *interview, const char *text)
 {
     struct checked checked;

@@ -79,7 +79,6 @@ static bool print_keys(const json_t *keys, const char *name, struct nearest *nea
     return is_found;
 }
 
-/* Adds the keys of one kind of file. */
 static sonject_status add_keys(sonject_context *context, json_t *keys, sonject_keys_of of)
 {
     char *text = NULL;

@@ -89,7 +89,6 @@ class context
         return list;
     }
 
-    /* Draws an image file as a PNG. */
     void quicklook(const sonject_quicklook_params &params) const
     {
         check(sonject_quicklook(handle_, &params));
