@@ -1,7 +1,7 @@
-"""Shows doxygen the headers' plain comments: doxygen_comments.py HEADER
+"""Turns the headers' plain comments into doxygen's: doxygen_comments.py HEADER
 
-A comment documents what follows it, or what stands before it on its line; at the head of a file, the
-file. Nothing in one is a command of doxygen's or of HTML; what stands further in stays as it is.
+A comment documents the declaration after it, or the one before it on its line; at the head of a file, the
+file. Commands of doxygen and HTML are escaped. Indented lines stay as they are.
 """
 
 import re

@@ -18,7 +18,7 @@ static void *member(void *options, size_t offset)
     return (char *)options + offset;
 }
 
-/* The option that text names, up to its end or a '='. */
+/* Returns the option that text names, up to its end or a '='; NULL if there is none. */
 static const struct argument *find_argument(const struct verb *verb, const char *text)
 {
     size_t length = strcspn(text, "=");

@@ -1,4 +1,4 @@
-/* Command line options, described by tables: one parser and one help text for all verbs. */
+/* Command line options in tables, with one parser and one help text for all verbs. */
 #ifndef SONJECT_TOOLS_ARGUMENTS_H
 #define SONJECT_TOOLS_ARGUMENTS_H
 
@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* What an option's value is, and the type of the member that takes it. */
+/* The kinds of an option's value, and the type of the member that takes it. */
 enum argument_kind {
     ARGUMENT_FLAG,   /* no value; bool */
     ARGUMENT_TEXT,   /* const char *, NULL: not given */
@@ -17,7 +17,7 @@ enum argument_kind {
 };
 
 struct text_list {
-    const char **texts; /* to be given to free() */
+    const char **texts; /* for free() */
     size_t count;
 };
 
@@ -34,11 +34,11 @@ struct whole_argument {
 struct argument {
     const char *name;       /* "--seed" */
     const char *short_name; /* "-o" or NULL */
-    const char *value;      /* how the help calls the value; NULL for flags */
+    const char *value;      /* the value's name in the help; NULL for flags */
     const char *help;
     enum argument_kind kind;
     bool is_required;
-    size_t offset; /* of the member in the verb's options */
+    size_t offset; /* offset of the member in the verb's options */
 };
 
 struct verb {
@@ -46,24 +46,24 @@ struct verb {
     const char *summary; /* one line for the list of verbs */
     const char *operand; /* "SCENE.yaml", NULL if the verb has none */
     size_t operand_offset;
-    const char *second_operand; /* behind it; NULL if the verb has none */
+    const char *second_operand; /* second operand; NULL if the verb has none */
     size_t second_offset;
     const struct argument *arguments;
     size_t argument_count;
-    const char *notes; /* below the options in the help; "" for none */
+    const char *notes; /* text below the options in the help; "" for none */
     size_t options_size;
-    int (*work)(const void *options); /* gives the exit code */
+    int (*work)(const void *options); /* returns the exit code */
 };
 
-/* Reads what follows the verb into zeroed options. On failure prints a message; options are to be
- * given to arguments_release either way. */
+/* Reads the words behind the verb into zeroed options. Returns false after a message. Give the
+ * options to arguments_release either way. */
 bool arguments_parse(const struct verb *verb, int count, char **texts, void *options);
 
 void arguments_release(const struct verb *verb, void *options);
 
 void arguments_help(const struct verb *verb, FILE *file);
 
-/* A whole text that is a finite decimal number, such as "-2.5e3", in every locale. */
+/* Parses a whole text that is a finite decimal number, such as "-2.5e3", in every locale. */
 bool number_parse(const char *text, double *value);
 
 #endif

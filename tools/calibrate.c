@@ -1,4 +1,4 @@
-/* sonject calibrate: what a swath tells of itself, for scenes to take. */
+/* sonject calibrate: estimates the properties of a swath for scenes. */
 #include <stdio.h>
 
 #include <sonject/sonject.h>

@@ -19,8 +19,8 @@ static bool is_campaign(const char *path)
     char line[256];
     bool is = false;
     uint64_t bytes;
-    FILE *file = byte_file_open(path, &bytes);            /* of no pipe */
-    while (file && !is && fgets(line, sizeof line, file)) /* of YAML, or of JSON */
+    FILE *file = byte_file_open(path, &bytes);            /* NULL for a pipe */
+    while (file && !is && fgets(line, sizeof line, file)) /* a line of YAML or JSON */
         is = strncmp(line + strspn(line, " {\""), "sonject_campaign", 16) == 0;
     if (file)
         fclose(file);

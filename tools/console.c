@@ -12,7 +12,7 @@
 
 enum {
     LINE_WIDTH = 78,
-    STAGE_WIDTH = 28, /* "hearing the impulses" fits */
+    STAGE_WIDTH = 28, /* room for "hearing the impulses" */
     BAR_WIDTH = 19
 };
 
@@ -58,7 +58,7 @@ int fail_with(const sonject_context *context, sonject_status status)
     const char *text = context ? sonject_context_message(context) : "";
     if (!text[0])
         message(sonject_status_name(status));
-    while (*text) { /* a line for each mistake of a scene */
+    while (*text) { /* one line for each mistake in a scene */
         char line[2048];
         const size_t length = strcspn(text, "\n");
         snprintf(line, sizeof line, "%.*s", (int)length, text);
@@ -113,7 +113,7 @@ void progress_begin(struct progress *progress, bool is_quiet)
     progress->drawn_s = -redraw_interval_s;
 }
 
-/* Time that the rest will take if it goes on as so far. */
+/* Formats the time left at the speed so far. */
 static void format_time_left(char *text, size_t capacity, double elapsed_s, double fraction)
 {
     double left_s = elapsed_s * (1 - fraction) / fraction;

@@ -1,4 +1,4 @@
-/* sonject convert: a file of one format from a file of another. */
+/* sonject convert: converts a file of one format to another. */
 #include <sonject/sonject.h>
 
 #include "console.h"

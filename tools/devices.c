@@ -1,4 +1,4 @@
-/* sonject devices: what can trace. */
+/* sonject devices: lists the devices. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@ struct device_options {
     char none; /* a structure needs a member */
 };
 
-/* All devices, to be given to free(). */
+/* Lists all devices; give *devices to free(). */
 static sonject_status list_devices(sonject_context *context, sonject_device_info **devices,
                                    size_t *count)
 {
@@ -26,7 +26,7 @@ static sonject_status list_devices(sonject_context *context, sonject_device_info
         return SONJECT_ERROR_MEMORY;
     status = sonject_devices(context, *devices, capacity, count);
     if (*count > capacity)
-        *count = capacity; /* one was plugged in meanwhile */
+        *count = capacity; /* a device was plugged in meanwhile */
     return status;
 }
 
@@ -57,7 +57,7 @@ static int work(const void *verb_options)
     sonject_context *context = NULL;
     sonject_device_info *devices = NULL;
     size_t count = 0;
-    /* which says why OpenCL's are not among them */
+    /* The log says why OpenCL's devices are missing. */
     const sonject_context_params params = {.struct_size = sizeof params, .log = progress_log};
     sonject_status status = sonject_context_create(&params, &context);
     if (status == SONJECT_OK)

@@ -1,4 +1,4 @@
-/* sonject fit: a campaign whose targets measure as real contacts do. */
+/* sonject fit: fits a campaign so that its targets measure as real contacts do. */
 #include <stddef.h>
 #include <string.h>
 

@@ -43,7 +43,7 @@ bool geometry_parse(const char *verb, const struct geometry_arguments *arguments
     return true;
 }
 
-/* Copies the piece of text up to the colon and gives what follows it, NULL at the end. */
+/* Copies the piece of text up to the colon. Returns the text behind the colon, NULL at the end. */
 static const char *next_piece(const char *text, char *piece, size_t capacity)
 {
     size_t length = strcspn(text, ":");

@@ -1,5 +1,5 @@
-/* What verbs that work on image files are told of these: geometry that their metadata lack, a
- * transfer function, a channel. Texts become those that scenes have as input.geometry and so on. */
+/* Options about image files: geometry that their metadata lack, a transfer function, a channel.
+ * They become texts as in a scene's section input. */
 #ifndef SONJECT_TOOLS_IMAGE_ARGUMENTS_H
 #define SONJECT_TOOLS_IMAGE_ARGUMENTS_H
 
@@ -7,7 +7,7 @@
 
 #include "arguments.h"
 
-#define IMAGE_TEXT 200 /* bytes of such a text */
+#define IMAGE_TEXT 200 /* capacity of such a text, bytes */
 
 struct geometry_arguments {
     const char *range_axis;
@@ -17,8 +17,8 @@ struct geometry_arguments {
     struct number_argument first_range;
 };
 
-/* Lines of a verb's arguments, whose options are a structure with a struct geometry_arguments
- * `geometry`. axis: what the verb does with the range axis. */
+/* Rows of a verb's arguments; the structure of its options has a struct geometry_arguments
+ * `geometry`. axis: help for the range axis. */
 #define GEOMETRY_NUMBER(structure, name, unit, help, member)                                       \
     {                                                                                              \
         name, NULL, unit, help, ARGUMENT_NUMBER, false, offsetof(structure, geometry.member)       \
@@ -44,20 +44,20 @@ struct geometry_arguments {
     "Transfer functions: amplitude, intensity, decibel:DB_PER_UNIT[:OFFSET_DB], gamma:EXPONENT,\n" \
     "schlick:B."
 
-/* Fills what was given: *is_ground 0 or 1, *altitude_m, and *geometry with the text; the rest
- * stays. false after a message that begins with the verb's name, as below. */
+/* Sets what was given: *is_ground to 0 or 1, *altitude_m, and *geometry to text; the rest stays.
+ * Returns false after a message that begins with the verb's name, as the next functions do. */
 bool geometry_parse(const char *verb, const struct geometry_arguments *arguments,
                     uint32_t *is_ground, double *altitude_m, char text[IMAGE_TEXT],
                     const char **geometry);
 
-/* --transfer KIND[:P[:OFFSET]], NULL: none was given, and none is there. */
+/* Parses --transfer KIND[:P[:OFFSET]]. NULL: not given, *transfer stays. */
 bool transfer_parse(const char *verb, const char *argument, char text[IMAGE_TEXT],
                     const char **transfer);
 
-/* --channel port, starboard or a number, NULL likewise. */
+/* Checks --channel: port, starboard or a number; NULL: not given. */
 bool channel_check(const char *verb, const char *argument);
 
-/* --db MIN:MAX, NULL likewise. */
+/* Parses --db MIN:MAX; NULL: not given, the values stay. */
 bool decibels_parse(const char *verb, const char *argument, double *minimum_db, double *maximum_db);
 
 #endif

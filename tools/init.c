@@ -1,5 +1,4 @@
-/* sonject init: asks for what an image does not tell of itself, and writes a scene to begin with.
- */
+/* sonject init: asks for what an image does not tell, and writes a first scene. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,7 +32,7 @@ static const struct argument arguments[] = {
      ARGUMENT_FLAG, false, MEMBER(makes_campaign)},
 };
 
-/* Whether the image's file tells what this scene leaves to it. */
+/* Returns whether the image's file has the facts that this scene leaves to the file. */
 static bool file_tells(const struct interview *interview, const char *scene_text)
 {
     sonject_scene *scene = NULL;
@@ -48,7 +47,7 @@ static bool file_tells(const struct interview *interview, const char *scene_text
     return status == SONJECT_OK;
 }
 
-/* One of the files that are made, beside the scene. */
+/* Names a file that is made beside the scene. Returns whether the name fits. */
 static bool name_file(char *name, const struct interview *interview, const char *end)
 {
     const struct init_options *options = interview->options;
@@ -58,7 +57,7 @@ static bool name_file(char *name, const struct interview *interview, const char 
     return snprintf(name, NAME, "%.*s%s", bytes, stem, end) < NAME;
 }
 
-/* The other side of a recording; NULL: the channel is a number, or none. */
+/* Returns the other side of a recording; NULL if the channel is a number, or none. */
 static const char *other_side(const struct init_options *options)
 {
     const char *channel = options->channel ? options->channel : "";
@@ -67,7 +66,7 @@ static const char *other_side(const struct init_options *options)
                                                : NULL;
 }
 
-/* The files of one side of a recording, or of all of it. */
+/* Names the files of one side of a recording, or of all of it. Returns whether the names fit. */
 static bool name_side(const struct interview *interview, const char *side, char *calibration,
                       char *picture)
 {
@@ -78,8 +77,8 @@ static bool name_side(const struct interview *interview, const char *side, char 
     return name_file(picture, interview, end) && is_named;
 }
 
-/* Beside each other, in the working folder unless -o says another. The scene names the image from
- * its own folder: as it was given, or from the root. */
+/* Names the files. They lie side by side, in the working folder unless -o names another. The scene
+ * names the image from its own folder: as given, or absolutely. */
 static bool name_files(struct interview *interview)
 {
     const struct init_options *options = interview->options;
@@ -105,7 +104,7 @@ static bool name_files(struct interview *interview)
     return is_named;
 }
 
-/* Whether nothing is in the way of what is made. */
+/* Returns whether no file to be made exists. */
 static bool are_free(const struct interview *interview)
 {
     const char *files[] = {
@@ -119,7 +118,8 @@ static bool are_free(const struct interview *interview)
     return true;
 }
 
-/* The scene's objects by the target's file alone; a mesh in a unit. NULL when memory is out. */
+/* Returns an override that makes the target's file the scene's only object, a mesh in a unit. NULL
+ * when memory is out. */
 static char *objects_override(const struct interview *interview, const char *unit)
 {
     const char *target = interview->options->target;
@@ -136,7 +136,7 @@ static char *objects_override(const struct interview *interview, const char *uni
     return override;
 }
 
-/* Whether the target can be read, a mesh in some unit: what unit is asked for later. */
+/* Checks that the target can be read, a mesh in any of the units; its unit is asked for later. */
 static sonject_status take_target(struct interview *interview)
 {
     static const char *const units[] = {"m", "cm", "mm"};
@@ -163,7 +163,7 @@ static sonject_status take_target(struct interview *interview)
     return status;
 }
 
-/* A number among what a calibration measured; NAN where there is none. */
+/* Returns a number that a calibration measured; NAN if there is none. */
 static double measured(const char *calibration, const char *key)
 {
     char sought[ANSWER];
@@ -174,7 +174,7 @@ static double measured(const char *calibration, const char *key)
     return found && text_to_number(found + strlen(sought), &number, &rest) ? number : NAN;
 }
 
-/* Of the plain place whose ceiling is told, likewise. */
+/* Returns the row or column of the plain place whose ceiling the calibration gives; NAN if none. */
 static double placed(const char *calibration, const char *axis)
 {
     char sought[ANSWER];
@@ -207,7 +207,7 @@ static sonject_status learn(struct interview *interview, char **text)
         return status;
     const char *nadir = strstr(*text, "nadir_column:"), *end = strstr(*text, "\nmeasured:");
     interview->has_returns = strstr(*text, "\n  first_return:") != NULL;
-    interview->has_nadir = nadir && end && nadir < end; /* behind it are reasons and errors */
+    interview->has_nadir = nadir && end && nadir < end; /* a later one is no key */
     const char *columns = strstr(*text, "\n  columns: ");
     interview->columns = columns ? strtod(columns + strlen("\n  columns: "), NULL) : NAN;
     interview->nadir_column = measured(*text, "nadir_column");
@@ -229,7 +229,7 @@ static sonject_status learn(struct interview *interview, char **text)
     return SONJECT_OK;
 }
 
-/* Without its notes, which are about the recording and were told of this side. */
+/* Calibrates the other side without a log: notes are about the recording, and were shown before. */
 static void learn_other_side(struct interview *interview, char **text)
 {
     sonject_context *context = NULL;
@@ -237,11 +237,11 @@ static void learn_other_side(struct interview *interview, char **text)
     if (status == SONJECT_OK)
         status = calibrate(interview, context, other_side(interview->options), text);
     if (status != SONJECT_OK)
-        *interview->other_calibration = *interview->other_picture = '\0'; /* it has no such side */
+        *interview->other_calibration = *interview->other_picture = '\0'; /* no such side */
     sonject_context_release(&context);
 }
 
-/* Draws a side of the image, or both about their nadir. */
+/* Draws a side of the image, or both sides about the nadir. */
 static sonject_status draw(const struct interview *interview, const char *channel,
                            const char *picture)
 {
@@ -272,7 +272,7 @@ static sonject_status draw(const struct interview *interview, const char *channe
     return sonject_quicklook(interview->context, &params);
 }
 
-/* Writes the scene and what goes with it, and checks it, as sonject check does. Gives the exit
+/* Writes the scene and its files, and checks the scene as sonject check does. Returns the exit
  * code. */
 static int write_files(struct interview *interview, const char *calibration, const char *other)
 {

@@ -13,9 +13,9 @@
 #include "console.h"
 
 #define USUAL_LEVEL_DB  15.0
-#define OVER_CEILING_DB 2.0  /* of a peak at a place that is darker than most */
-#define FAINTEST_DB     8.0  /* of a campaign's peaks; measured ones have 8 to 19 dB */
-#define SHADOWS_DB      35.0 /* of the seabed over the darkest that is worth a grey level */
+#define OVER_CEILING_DB 2.0  /* a peak's excess over the ceiling, as its place is dark */
+#define FAINTEST_DB     8.0  /* faintest peaks of a campaign; measured ones have 8 to 19 dB */
+#define SHADOWS_DB      35.0 /* seabed over black; darker shadows need no grey levels */
 #define CHIP_MOST       512.0
 
 const char *last_part(const char *path)
@@ -28,7 +28,7 @@ const char *last_part(const char *path)
 
 /* ---- One file. */
 
-/* Opens what becomes a file once it is closed by finish(); NULL after a message. */
+/* Opens a file that finish() publishes; NULL after a message. */
 static FILE *begin(const char *path, char part[NAME + 8])
 {
     char reason[128];
@@ -67,8 +67,8 @@ bool write_calibration(const char *path, const char *text)
 
 /* ---- Pieces of scenes and campaigns. */
 
-/* A text as YAML, which JSON is, behind a key; nothing when memory is out: whoever reads the file
- * is told that a value is missing. */
+/* Adds a text as YAML (JSON), behind a key. If memory is out, the value is missing, and whoever
+ * reads the file is told. */
 static void add_text(FILE *file, const char *before, const char *text)
 {
     json_t *value = json_string(text);
@@ -78,7 +78,7 @@ static void add_text(FILE *file, const char *before, const char *text)
     json_decref(value);
 }
 
-/* "  key: value # comment" in a scene, where there is a value. */
+/* Adds "  key: value # comment" to a scene if there is a value. */
 static void add_key(FILE *file, const char *indent, const char *key, const char *value,
                     const char *comment)
 {
@@ -86,7 +86,7 @@ static void add_key(FILE *file, const char *indent, const char *key, const char 
         fprintf(file, "%s%s: %s%s%s\n", indent, key, value, *comment ? " # " : "", comment);
 }
 
-/* The name of a file as the scene has it, whose folder may be another. */
+/* Adds a file's name as seen from the scene's folder, which may not be the working folder. */
 static void add_path(FILE *file, const char *before, const struct interview *interview,
                      const char *path)
 {
@@ -102,7 +102,7 @@ static bool is_mesh(const struct interview *interview)
     return answer_about(interview, "objects[0].mesh.unit") != NULL;
 }
 
-/* The keys of the target that tell what it is, with something between them. */
+/* Adds the keys that describe the target, with a separator between them. */
 static void add_target(FILE *file, const struct interview *interview, const char *between)
 {
     const char *target = interview->options->target;
@@ -119,7 +119,7 @@ static void add_target(FILE *file, const struct interview *interview, const char
     }
 }
 
-/* The name of the target's file without its extension. */
+/* Adds the name of the target's file without its extension. */
 static void add_name(FILE *file, const char *before, const struct interview *interview)
 {
     char name[NAME];
@@ -221,7 +221,7 @@ bool write_scene(const struct interview *interview)
 
 /* ---- The campaign. */
 
-/* What sonject_check tells of the scene. */
+/* Facts about the scene from the text of sonject_check. */
 struct checked {
     double rows, columns, along_m, first_m, last_m, altitude_m, top_m;
 };
@@ -243,7 +243,7 @@ static void read_checked(struct checked *checked, const char *text)
     }
 }
 
-/* As many pixels as a length has, a multiple of step, but neither too few nor too many. */
+/* Returns the pixels of a length, rounded up to a multiple of step and kept within limits. */
 static unsigned chip_pixels(double length_m, double image_m, double image_pixels, double step)
 {
     const double wanted = ceil(length_m / image_m * image_pixels / step) * step;
@@ -251,8 +251,8 @@ static unsigned chip_pixels(double length_m, double image_m, double image_pixels
     return (unsigned)fmax(step, fmin(most, fmax(wanted, 2.0 * step)));
 }
 
-/* To either side of the target is room for a shadow half as long again as the one at three quarters
- * of the range and the median altitude, and as much along the track. */
+/* Adds chips with room for a shadow to either side of the target. A shadow is half as long again as
+ * at three quarters of the range and at the median altitude. Chips are as long along the track. */
 static void add_chip(FILE *file, const struct interview *interview, const char *text)
 {
     struct checked checked;
@@ -269,8 +269,8 @@ static void add_chip(FILE *file, const struct interview *interview, const char *
             (checked.last_m - checked.first_m) / (checked.columns - 1.0));
 }
 
-/* Detectors read 8 bits. Of a recording's 16 bits these are from well below shadows to the ceiling.
- */
+/* Adds grey levels for detectors, which read 8 bits: from well below shadows to the ceiling of a
+ * recording's 16 bits. */
 static void add_grey(FILE *file, const struct interview *interview)
 {
     const double white = 20.0 * log10(interview->full_scale / 65535.0);
@@ -282,7 +282,6 @@ static void add_grey(FILE *file, const struct interview *interview)
                 floor(black), ceil(white));
 }
 
-/* One swath, or both sides. */
 static void add_swaths(FILE *file, const struct interview *interview, const char *text)
 {
     struct checked checked;
@@ -317,8 +316,8 @@ static void add_swaths(FILE *file, const struct interview *interview, const char
     }
 }
 
-/* Stones as high as the target, alone: of bare seabed a detector learns that all that is bright is
- * a target. */
+/* Adds stones as high as the target, without targets. With bare seabed alone a detector would learn
+ * that all bright things are targets. */
 static void add_clutter(FILE *file, const char *text)
 {
     struct checked checked;

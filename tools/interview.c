@@ -8,12 +8,12 @@
 #include "base/text.h"
 #include "console.h"
 
-#define SOUND_SPEED 1500.0 /* m/s, a scene's without another */
+#define SOUND_SPEED 1500.0 /* m/s, the default of scenes */
 #define PI          3.14159265358979323846
 #define BEAM_WIDTHS                                                                                \
-    0.886 /* wavelengths of an array, over the width of its half-power beam in rad */
+    0.886 /* array's length in wavelengths, times the half-power beam width in rad */
 
-/* What is asked for. Without `usual` there must be an answer. */
+/* A question and its default answer. usual NULL: an answer must be given. */
 struct question {
     const char *key, *text, *usual;
 };
@@ -79,7 +79,7 @@ sonject_status read_image_scene(const struct interview *interview, const char *t
     for (size_t i = 0; i < interview->count; i++)
         if (!interview->has_returns ||
             strcmp(interview->answers[i], "sonar.altitude=first_return") != 0)
-            overrides[count++] = interview->answers[i]; /* else the calibration is not there yet */
+            overrides[count++] = interview->answers[i]; /* not before the calibration is written */
     const sonject_scene_read_params params = {.struct_size = sizeof params,
                                               .text = text,
                                               .overrides = overrides,
@@ -87,7 +87,7 @@ sonject_status read_image_scene(const struct interview *interview, const char *t
     return sonject_scene_read(interview->context, NULL, &params, scene);
 }
 
-/* In SI units; NAN where the scene does not tell it. */
+/* Returns a number of the scene in SI units; NAN if the scene does not have it. */
 static double number_in(const sonject_scene *scene, const char *key)
 {
     char *json = NULL;
@@ -97,7 +97,7 @@ static double number_in(const sonject_scene *scene, const char *key)
     return number;
 }
 
-/* Whether a scene with what was answered so far can be read; a message is left if not. */
+/* Returns whether a scene with the answers so far can be read; leaves a message if not. */
 static bool is_possible(struct interview *interview)
 {
     sonject_scene *scene = NULL;
@@ -118,7 +118,7 @@ static bool is_possible(struct interview *interview)
     return status == SONJECT_OK;
 }
 
-/* The length of an array whose beam is as wide as an answer says; the answer itself, if it is no
+/* Returns the length of an array whose beam width is the answer; the answer itself if it is no
  * angle. */
 static const char *length_of_beam(const struct interview *interview, const char *answer,
                                   char length[ANSWER])
@@ -133,7 +133,7 @@ static const char *length_of_beam(const struct interview *interview, const char 
     return length;
 }
 
-/* The answer without the word left at its end, which *is_left tells. */
+/* Returns the answer without the word "left" at its end; *is_left: whether it was there. */
 static const char *length_of_range(const char *answer, char length[ANSWER], bool *is_left)
 {
     const char *end = strstr(answer, "left");
@@ -144,7 +144,7 @@ static const char *length_of_range(const char *answer, char length[ANSWER], bool
     return length;
 }
 
-/* Range that grows to the left is 0 beyond the last column, whose slant range was answered. */
+/* Makes the last column, whose slant range was answered, the nadir of range to the left. */
 static void add_reversed(struct interview *interview)
 {
     snprintf(interview->answers[interview->count++], ANSWER, "input.geometry.nadir_column=%.0f",
@@ -152,7 +152,7 @@ static void add_reversed(struct interview *interview)
     snprintf(interview->answers[interview->count++], ANSWER, "input.geometry.side=port");
 }
 
-/* Asks until there is an answer that is possible. False after a message: there is none. */
+/* Asks until the answer is possible. Returns false after a message if the input ends. */
 static bool ask(struct interview *interview, const struct question *question)
 {
     char line[ANSWER], converted[ANSWER];
@@ -170,7 +170,7 @@ static bool ask(struct interview *interview, const struct question *question)
         const char *value = line + strspn(line, " \t");
         if (!*value && question->usual) {
             if (!has_usual)
-                return true; /* nothing is an answer, too */
+                return true; /* an empty answer is allowed */
             value = question->usual;
         }
         if (question == &array_length)
@@ -190,7 +190,7 @@ static bool ask(struct interview *interview, const struct question *question)
     }
 }
 
-/* First returns are the usual answer, or else what the file tells. */
+/* Asks for the altitude. The default is first returns, else the altitude in the file. */
 static bool ask_altitude(struct interview *interview)
 {
     struct question question = altitude;
@@ -211,7 +211,7 @@ static bool ask_altitude(struct interview *interview)
     return ask(interview, &question);
 }
 
-/* No file tells it: that of the columns is the usual answer. */
+/* Asks for the bandwidth, which no file has. The default is that of the column spacing. */
 static bool ask_bandwidth(struct interview *interview)
 {
     struct question question = bandwidth;

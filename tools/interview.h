@@ -1,4 +1,4 @@
-/* The questions of sonject init, which an image leaves open. */
+/* The questions of sonject init about facts that an image lacks. */
 #ifndef SONJECT_TOOLS_INTERVIEW_H
 #define SONJECT_TOOLS_INTERVIEW_H
 
@@ -28,28 +28,28 @@ struct interview {
     char answers[ANSWERS][ANSWER]; /* "key=value" */
     size_t count;
     char scene[NAME], calibration[NAME], picture[NAME], campaign[NAME]; /* files */
-    char other_calibration[NAME], other_picture[NAME]; /* of a recording's other side; "": none */
-    char folder[NAME]; /* that names of other files are meant from; "": the scene's */
-    char *objects;     /* override with the target's file; owned; NULL: there is none */
-    bool has_mesh;     /* it is one of a mesh */
-    bool has_geometry, has_altitude; /* the image's file */
-    /* The image, as its calibration found; NAN: it did not. */
+    char other_calibration[NAME], other_picture[NAME]; /* the other side's; "": none */
+    char folder[NAME];               /* folder of relative names; "": the scene's */
+    char *objects;                   /* override with the target's file; owned; NULL: none */
+    bool has_mesh;                   /* the target is a mesh */
+    bool has_geometry, has_altitude; /* in the image's file */
+    /* Facts from the calibration of the image; NAN: not found. */
     bool has_nadir;
-    bool is_reversed; /* range grows to the left; an answer */
-    bool has_returns; /* first ones, so that they tell the altitude */
+    bool is_reversed; /* range grows to the left, as answered */
+    bool has_returns; /* first returns were found, which give the altitude */
     double columns, nadir_column, frequency_hz, column_spacing_m, altitude_m, recorded_altitude_m,
         full_scale, ceiling_over_seabed_db, plain_row, plain_column;
-    bool assumes_bandwidth; /* that of the columns */
+    bool assumes_bandwidth; /* the answer is the bandwidth of the column spacing */
 };
 
-/* The answer about a key; NULL: it was not asked for, or there was none. */
+/* Returns the answer about a key; NULL if it was not asked for or left empty. */
 const char *answer_about(const struct interview *interview, const char *key);
 
-/* Reads a scene of the image with what was answered so far; text: its other keys. */
+/* Reads a scene of the image with the answers so far; text: its other keys. */
 sonject_status read_image_scene(const struct interview *interview, const char *text,
                                 sonject_scene **scene);
 
-/* Asks what the image does not tell. False after a message: there was no answer. */
+/* Asks for the facts that the image lacks. Returns false after a message if the input ends. */
 bool ask_all(struct interview *interview);
 
 #endif

@@ -1,4 +1,4 @@
-/* What keys of scene and campaign files mean, for sonject help. */
+/* sonject help KEY: explains keys of scene and campaign files. */
 #include <string.h>
 
 #include <jansson.h>
@@ -16,7 +16,7 @@ static const char *text_of(const json_t *key, const char *what)
     return text ? text : "";
 }
 
-/* "objects[0].parts[].shape" as "objects.parts.shape": entries of lists are all alike. */
+/* Strips indices of lists: "objects[0].parts[].shape" becomes "objects.parts.shape". */
 static void strip_entries(const char *path, char stripped[PATH_BYTES])
 {
     size_t length = 0;
@@ -45,7 +45,7 @@ static void print_key(const json_t *key)
     puts(json_array_size(json_object_get(key, "words")) ? "\n" : "");
 }
 
-/* Whether a key is the one wanted, in that section, or has that name in whichever section. */
+/* Returns whether a key is the wanted one, in that section, or has that name in any section. */
 static bool is_wanted(const char *path, const char *wanted)
 {
     const size_t length = strlen(wanted), section = length - (wanted[length - 1] == '.');
@@ -54,7 +54,7 @@ static bool is_wanted(const char *path, const char *wanted)
            (before > 0 && path[before - 1] == '.' && strcmp(path + before, wanted) == 0);
 }
 
-/* Whether one was printed. */
+/* Prints the keys of that name. Returns whether there was one. */
 static bool print_keys(const json_t *keys, const char *name, struct nearest *nearest)
 {
     char wanted[PATH_BYTES], path[PATH_BYTES];
@@ -79,7 +79,6 @@ static bool print_keys(const json_t *keys, const char *name, struct nearest *nea
     return is_found;
 }
 
-/* Adds those of one kind of file. */
 static sonject_status add_keys(sonject_context *context, json_t *keys, sonject_keys_of of)
 {
     char *text = NULL;

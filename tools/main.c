@@ -28,7 +28,7 @@ static void print_help(FILE *file)
           file);
 }
 
-/* NULL: none has that name; then `nearest` knows those that are like it. */
+/* Returns the verb of that name; NULL if there is none, and `nearest` then knows similar names. */
 static const struct verb *find_verb(const char *name, struct nearest *nearest)
 {
     nearest_begin(nearest, name);

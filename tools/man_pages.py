@@ -15,7 +15,7 @@ def told(command, *arguments):
 
 
 def roff(text):
-    """Text as it stands, whatever roff takes for a request or an escape."""
+    """Escapes text that roff takes for a request or an escape."""
     escaped = text.replace("\\", "\\e").replace("-", "\\-").replace("'", "\\(aq")
     return "\\&" + escaped if escaped.startswith((".", "\\(aq")) else escaped
 
@@ -30,7 +30,7 @@ def head(name, version, summary):
 
 
 def options(lines):
-    """Entries of lines "  -o, --output DIR    what it is", whose second column begins at 31 or
+    """Returns entries for lines "  -o, --output DIR    what it is"; the second column begins at 31 or
     behind a longer first one."""
     made = []
     for line in lines:

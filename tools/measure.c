@@ -1,4 +1,4 @@
-/* sonject measure: an image's statistics as JSON. */
+/* sonject measure: an image's statistics, or its contacts, as JSON. */
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
@@ -59,7 +59,7 @@ static const struct argument arguments[] = {
      MEMBER(column_spacing)},
 };
 
-/* JSON knows neither NaN nor infinity. */
+/* Prints a number; null for NaN and infinity, which JSON lacks. */
 static void print_number(const char *name, double value, const char *end)
 {
     if (isfinite(value))
@@ -83,7 +83,7 @@ static int print_measurement(const sonject_measurement *measurement)
     return finish_output();
 }
 
-/* What is told of the image. text: for its transfer. */
+/* Fills in the options about the image. text: room for its transfer. */
 static bool fill(const struct measure_options *options, sonject_measure_params *params,
                  char text[IMAGE_TEXT])
 {
@@ -102,7 +102,7 @@ static bool wants_contacts(const struct measure_options *options)
     return options->boxes.count > 0 || options->truth || options->finds;
 }
 
-/* "ROW,COLUMN,ROWS,COLUMNS" */
+/* Parses "ROW,COLUMN,ROWS,COLUMNS". */
 static bool box_parse(const char *text, sonject_box *box)
 {
     uint64_t values[4];
@@ -124,7 +124,7 @@ static bool box_parse(const char *text, sonject_box *box)
     return box->rows > 0 && box->columns > 0;
 }
 
-/* boxes: as many as there are options. */
+/* Fills in the options about contacts. boxes: room for as many as there are --box options. */
 static bool fill_contacts(const struct measure_options *options, sonject_measure_params *params,
                           sonject_box *boxes)
 {
@@ -137,7 +137,7 @@ static bool fill_contacts(const struct measure_options *options, sonject_measure
     params->truth = options->truth;
     params->boxes = boxes;
     params->box_count = (uint32_t)options->boxes.count;
-    params->find_contrast_db = options->find_contrast.value; /* 0: as usual */
+    params->find_contrast_db = options->find_contrast.value; /* 0: the default */
     params->find_most = (uint32_t)options->find_most.value;
     params->range_to_left = options->range_to_left;
     params->row_spacing_m = options->row_spacing.value;
@@ -145,7 +145,7 @@ static bool fill_contacts(const struct measure_options *options, sonject_measure
     return true;
 }
 
-/* Contacts, or two sets of them; prints JSON. */
+/* Measures contacts and prints them as JSON. */
 static int work_on_contacts(const struct measure_options *options, sonject_measure_params *params)
 {
     sonject_box *boxes = calloc(options->boxes.count + 1, sizeof *boxes);
@@ -169,7 +169,7 @@ static int work_on_contacts(const struct measure_options *options, sonject_measu
     return code;
 }
 
-/* Options that mean nothing together. */
+/* Returns a message about options that are wrong or exclude each other; NULL if none are. */
 static const char *conflict(const struct measure_options *options)
 {
     const bool has_spacing = options->row_spacing.is_given || options->column_spacing.is_given;

@@ -1,4 +1,4 @@
-/* sonject merge: the whole of what shards made. */
+/* sonject merge: joins the work of all shards. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@
 #include "verbs.h"
 
 struct merge_options {
-    struct stage_options stage; /* output: the operand */
+    struct stage_options stage; /* output: the operand, the folder */
     const char *labels;
 };
 
@@ -31,7 +31,7 @@ static sonject_status merge_run(sonject_context *context, const struct merge_opt
     return sonject_merge(context, NULL, &params, progress_update, progress, was_finished);
 }
 
-/* A campaign's shards begin with its campaign.json. */
+/* Returns whether a folder holds a campaign, whose shards begin with its campaign.json. */
 static bool holds_campaign(const char *folder)
 {
     static const char name[] = "/campaign.json";

@@ -1,4 +1,4 @@
-/* sonject run: the targets of a scene into its image. */
+/* sonject run: puts the targets of a scene into its image. */
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,7 +35,7 @@ static const struct argument arguments[] = {
     STAGE_ARGUMENTS(struct run_options),
 };
 
-/* Of one band, NULL where the scene has no others, into a folder. */
+/* Runs one band of the scene into a folder; band NULL: the scene leaves none to be chosen. */
 static sonject_status inject_band(sonject_context *context, const struct run_options *options,
                                   const char *band, const char *folder, struct progress *progress,
                                   int *was_finished)
@@ -57,8 +57,8 @@ static sonject_status inject_band(sonject_context *context, const struct run_opt
     return status;
 }
 
-/* Each of the names, one a line, into a folder of its own; *was_finished is 1 if all were. Cuts the
- * text up. */
+/* Runs each band of names, one a line, into a folder of its own. *was_finished is 1 if all were
+ * finished. names is cut into pieces. */
 static sonject_status inject_bands(sonject_context *context, const struct run_options *options,
                                    char *names, struct progress *progress, int *was_finished)
 {

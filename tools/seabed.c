@@ -7,7 +7,7 @@
 #include "console.h"
 #include "verbs.h"
 
-/* ROW(member, option, unit, help, key of a scene whose input is the seabed): numbers. */
+/* The numbers: ROW(member, option, unit, help, key of a scene whose input is the seabed). */
 #define NUMBERS(ROW)                                                                               \
     ROW(row_spacing, "--row-spacing", "M", "along-track distance of rows",                         \
         "input.geometry.row_spacing")                                                              \
@@ -59,7 +59,7 @@ static const struct argument arguments[] = {
     {option, NULL, unit, help, ARGUMENT_NUMBER, false, MEMBER(member)},
     NUMBERS(NUMBER_ARGUMENT)};
 
-/* A number of degrees is set in radians, to the last bit. */
+/* Sets a number. Degrees are set as radians, to keep the last bit. */
 static sonject_status set_number(sonject_scene *scene, const char *key, const char *unit,
                                  const struct number_argument *number)
 {

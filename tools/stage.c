@@ -23,7 +23,7 @@ int stage_work(const struct stage_options *stage, stage_function function, const
         status = function(context, verb_options, &progress, &was_finished);
     progress_end(&progress);
     int code = EXIT_CODE_DONE;
-    /* A driver's compiler that a signal finds at work removes its files, and fails. */
+    /* A driver's compiler fails, after removing its files, if a signal interrupts it. */
     if (status == SONJECT_CANCELLED || (status == SONJECT_ERROR_DEVICE && stop_is_asked()))
         code = stop_report();
     else if (status != SONJECT_OK)

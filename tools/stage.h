@@ -1,5 +1,5 @@
-/* What the verbs have in common that read a scene, trace it or form its image: options, progress,
- * stopping, and the last word. */
+/* Common parts of verbs that read a scene, trace it or form its image: options, progress, stopping,
+ * and the last message. */
 #ifndef SONJECT_TOOLS_STAGE_H
 #define SONJECT_TOOLS_STAGE_H
 
@@ -19,8 +19,7 @@ struct stage_options {
 
 #define OVERWRITE_HELP "replaces a result of other inputs, which else is refused"
 
-/* Lines of a verb's arguments, whose options are a structure with a struct stage_options `stage`.
- */
+/* Rows of a verb's arguments; the structure of its options has a struct stage_options `stage`. */
 #define STAGE_ARGUMENTS(structure)                                                                 \
     {"--device",                                                                                   \
      NULL,                                                                                         \
@@ -41,11 +40,12 @@ struct stage_options {
             false, offsetof(structure, stage.is_quiet)                                             \
     }
 
-/* Does the work in a context; *was_finished stays 0 unless there was nothing to do. */
+/* Does the work in a context; sets *was_finished to 1 if there was nothing to do. */
 typedef sonject_status (*stage_function)(sonject_context *context, const void *verb_options,
                                          struct progress *progress, int *was_finished);
 
-/* Calls it and answers the exit code. done: "the result is in ", before the output's name. */
+/* Calls the function and returns the exit code. done: the last message before the output's name,
+ * such as "the result is in ". */
 int stage_work(const struct stage_options *stage, stage_function function, const void *verb_options,
                const char *done);
 
@@ -54,12 +54,12 @@ int stage_work(const struct stage_options *stage, stage_function function, const
 struct scene_arguments {
     const char *path;
     struct text_list overrides;
-    struct whole_argument seed; /* an override too, the last */
-    const char *band; /* --set band=, of a verb that goes through all; NULL: as the scene says */
+    struct whole_argument seed; /* the last of the overrides */
+    const char *band; /* --set band= of a verb that goes through all bands; NULL: the scene's own
+                         choice */
 };
 
-/* Lines of a verb's arguments, whose options are a structure with a struct scene_arguments `scene`.
- */
+/* Rows of a verb's arguments; the structure of its options has a struct scene_arguments `scene`. */
 #define SCENE_ARGUMENTS(structure)                                                                 \
     {"--seed",                                                                                     \
      NULL,                                                                                         \
@@ -73,33 +73,33 @@ struct scene_arguments {
             ARGUMENT_TEXTS, false, offsetof(structure, scene.overrides)                            \
     }
 
-/* The bands that the scene leaves to be chosen; see sonject_scene_bands. */
+/* Gets the bands that must be chosen from; see sonject_scene_bands. */
 sonject_status scene_arguments_bands(sonject_context *context,
                                      const struct scene_arguments *arguments, char **names);
 
-/* Of a scene or campaign with these overrides. */
+/* Returns parameters for reading a scene or campaign with these overrides. */
 sonject_scene_read_params reading_of(const struct text_list *overrides);
 
-/* As sonject_scene_read. */
+/* Reads the scene; see sonject_scene_read. */
 sonject_status scene_arguments_read(sonject_context *context,
                                     const struct scene_arguments *arguments, sonject_scene **scene);
 
-/* Prints the scene's geometry as sonject_check tells it, or what is wrong: then, or where status
- * says that the scene could not be read, the context's message. Gives the exit code. */
+/* Prints the scene's geometry by sonject_check. If that fails, or status is a failure to read the
+ * scene, prints the context's message. Returns the exit code. */
 int scene_show(sonject_context *context, sonject_status status, const sonject_scene *scene);
 
 /* ---- --shard I/K. */
 
-/* "2/4": whole numbers, I from 1 to K; NULL leaves both as they are. A message where it is none of
- * that. */
+/* Parses "2/4", whole numbers I from 1 to K. NULL leaves both as they are. Returns false after a
+ * message. */
 bool shard_parse(const char *verb, const char *text, uint32_t *index, uint32_t *count);
 
 /* ---- --labels: formats by name. */
 
 #define LABELS_HELP "label files beside coco.json: yolo, voc, or both"
 
-/* Reads names with commas between them into a sum of sonject_labels; text NULL: 0. On failure
- * prints a message. verb: for that. */
+/* Parses names, separated by commas, into a sum of sonject_labels; text NULL: 0. Returns false
+ * after a message with the verb. */
 bool labels_parse(const char *verb, const char *text, uint32_t *labels);
 
 #endif

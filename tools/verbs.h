@@ -1,5 +1,5 @@
-/* The verbs in the order of the help, a file each, which has the verb's name. The command's table,
- * what is compiled and the manual pages come from these rows. */
+/* The verbs in the order of the help. Each has a file of its name. The command's table, the
+ * compiled files and the manual pages come from these rows. */
 #ifndef SONJECT_TOOLS_VERBS_H
 #define SONJECT_TOOLS_VERBS_H
 
@@ -26,9 +26,8 @@
 #define VERB_DECLARATION(name) extern const struct verb name##_verb;
 VERBS(VERB_DECLARATION)
 
-/* sonject help KEY (key_help.c): prints the keys of that name, whichever their section, and all
- * below it; numbers in brackets do not matter. nearest: knows the verbs that may have been meant.
- * Gives the exit code. */
+/* Prints, for sonject help KEY, the keys of that name in any section and all keys below them.
+ * Indices in brackets are ignored. nearest: knows the similar verbs. Returns the exit code. */
 int key_help(const char *name, struct nearest *nearest);
 
 #endif

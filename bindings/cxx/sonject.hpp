@@ -10,11 +10,11 @@
  *     sonject::result result = sonject::inject(scene, {pixels.data(), rows, columns});
  *     result.layer(SONJECT_LAYER_IMAGE, sonject::span<float>(pixels));
  *
- * Keys are those of scene files (tools/scenes/KEYS.md); structures, units and meanings those of
- * <sonject/...>. What fails throws sonject::error (sonject::cancelled where a progress callback
- * asked to stop) with the library's message; nothing is then changed unless the C function says so.
- * An object of these classes belongs to one thread at a time, and must not outlive the context that
- * it was made with; moving a context is fine. */
+ * Keys are those of scene files (tools/scenes/KEYS.md). Structures, units and meanings are those of
+ * <sonject/...>. A failed call throws sonject::error with the library's message, or
+ * sonject::cancelled if a progress callback asked to stop. Nothing is then changed, unless the C
+ * function says so. An object of these classes belongs to one thread at a time, and must not
+ * outlive the context that it was made with; moving a context is fine. */
 #ifndef SONJECT_HPP
 #define SONJECT_HPP
 

@@ -5,19 +5,19 @@ function [injected, truth, masks] = sonject(pixels, scene, varargin)
 %
 %   PIXELS    a matrix with one row a ping, of class single or double, real or complex, or of
 %             class int16, uint16 or uint8; or the name of an image file, TIFF, PNG or NumPy; or
-%             [] where the scene says what to read.
+%             [] if the scene says what to read.
 %   SCENE     the name of a scene file, or a struct with the keys of scene files. File names
 %             within a struct must be absolute.
-%   KEY       such as 'objects[0].heading', and VALUE such as '60 deg', 1.5, {} or a struct.
+%   KEY       a key such as 'objects[0].heading', with a VALUE: '60 deg', 1.5, {} or a struct.
 %
 %   INJECTED  the image with the targets: of the class of PIXELS, or of the file's samples.
 %   TRUTH     truth.json as a struct. Its rows, columns and boxes count from 0.
 %   MASKS     a struct of matrices as large as the image: labels (numbers of objects), highlight,
 %             shadow and influence (each pixel that changed).
 %
-%   The command is what the environment's SONJECT_COMMAND names, or else "sonject" on the path.
-%   Where it fails, its message becomes an error: sonject:scene for mistakes in scene or image,
-%   sonject:failed for all else. What it notes becomes a warning. "sonject help KEY" in a shell
+%   The environment's SONJECT_COMMAND names the command; by default it is "sonject" on the path.
+%   If the command fails, its message becomes an error: sonject:scene for mistakes in scene or
+%   image, sonject:failed for all else. Its notes become warnings. "sonject help KEY" in a shell
 %   explains a key.
 %
 %   Example:
@@ -35,7 +35,7 @@ remover = onCleanup(@() remove(folder));
 
 if isstruct(scene)
     scene.sonject = 1; % the version of the keys
-    text = jsonencode(scene); % which is YAML, too
+    text = jsonencode(scene); % JSON is YAML, too
     scene = fullfile(folder, 'scene.yaml');
     stream = fopen(scene, 'w', 'n', 'UTF-8');
     fprintf(stream, '%s', text);
@@ -104,7 +104,7 @@ array = reshape(array, sizes(2), sizes(1)).';
 end
 
 function output = command(varargin)
-% Runs the command with these words; its messages.
+% Runs the command with these words and returns its messages.
 program = getenv('SONJECT_COMMAND');
 if isempty(program)
     program = 'sonject';
@@ -120,7 +120,7 @@ end
 end
 
 function word = quote(word)
-% The word as one word of the shell.
+% Quotes the word as one word of the shell.
 if ispc()
     word = ['"', strrep(word, '"', '\"'), '"'];
 else
@@ -129,7 +129,7 @@ end
 end
 
 function remove(folder)
-if exist('confirm_recursive_rmdir', 'builtin') % of Octave, which would ask
+if exist('confirm_recursive_rmdir', 'builtin') % Octave would ask
     confirm_recursive_rmdir(false, 'local');
 end
 rmdir(folder, 's');

@@ -1,8 +1,9 @@
-"""Writes the modules of the Python package that say what other files say: generate.py FOLDER KEYS HEADER...
+"""Generates modules of the Python package: generate.py FOLDER KEYS HEADER...
 
-FOLDER gets _interface.py, the declarations of the C headers for ctypes; enumerations.py; _classes.py,
-the dataclasses of structures, with the headers' comments as their documentation; and keys.py, the
-keys of scenes, from tools/scenes/KEYS.md. Whatever is not understood ends it with an error.
+FOLDER gets _interface.py, the declarations of the C headers for ctypes; enumerations.py;
+_classes.py, the dataclasses of structures, documented by the headers' comments; and keys.py, the
+keys of scenes, from tools/scenes/KEYS.md. Anything that the parser does not understand ends it with
+an error.
 """
 
 import keyword
@@ -14,7 +15,7 @@ import textwrap
 SCALARS = {"char": "c_char", "double": "c_double", "float": "c_float", "int": "c_int",
            "size_t": "c_size_t", "int32_t": "c_int32", "uint8_t": "c_uint8",
            "uint32_t": "c_uint32", "uint64_t": "c_uint64"}
-# Enumerations whose name in Python is not that in C.
+# Enumerations with another name in Python than in C.
 ENUMERATION_NAMES = {"sonject_labels": "LabelFormat"}
 # Structures that are classes in Python: name and base, of _parameters.py.
 CLASSES = {
@@ -33,7 +34,7 @@ COMMENT = r"/\*(?:(?!\*/).)*\*/"
 
 
 class Header:
-    """The declarations of the headers, in the order in which they come."""
+    """The declarations of the headers, in their order."""
 
     def __init__(self, sources):
         text = "\n".join(sources)
@@ -62,7 +63,7 @@ class Header:
 
 
 def lines(comment):
-    """The lines of a C comment, those of a drawing as they are."""
+    """Returns the lines of a C comment, those of a drawing as they are."""
     return [re.sub(r"^ ?\* ?", "", line).rstrip() for line in comment[2:-2].strip().split("\n")]
 
 
@@ -71,7 +72,7 @@ def words(comment):
 
 
 def members(body):
-    """(declaration, comment) of each member; a comment of its own line is of the next one."""
+    """Yields (declaration, comment) of members; a comment on its own line belongs to the next one."""
     end = ";" if ";" in re.sub(COMMENT, "", body, flags=re.S) else ","
     before, place = "", 0
     for found in re.finditer(rf"\s*({COMMENT})|\s*([^/{end}]+?)(?:{end}|(?=\s*/\*)|$)"
@@ -89,13 +90,13 @@ def members(body):
 
 
 def split(declaration):
-    """Type, name and array length of "const char *name", "char name[64]", ..."""
+    """Splits "const char *name", "char name[64]", ... into type, name and array length."""
     found = re.fullmatch(r"(.*?)(\w+)(?:\[(\w+)\])?", declaration.strip(), flags=re.S)
     return " ".join(found[1].split()), found[2], found[3]
 
 
 def ctypes_name(header, text):
-    """The ctypes type that a C type's spelling stands for."""
+    """Returns the ctypes type for the spelling of a C type."""
     found = re.fullmatch(r"(?:const )?(\w+) ?((?:\*| |const)*)", text.strip())
     assert found, f"not understood: {text}"
     base, stars = found.groups()
@@ -117,7 +118,7 @@ def parameters(header, text):
 
 
 def interface(header):
-    """_interface.py"""
+    """Yields _interface.py."""
     yield '"""The public structures and functions of include/sonject under their C names."""\n'
     yield "import ctypes\nfrom ctypes import CFUNCTYPE, POINTER"
     yield "from ctypes import " + ", ".join([*SCALARS.values(), "c_char_p", "c_void_p"])
@@ -165,7 +166,7 @@ def enumeration_name(name):
 
 
 def values(header, name):
-    """(member's name in Python, value, comment) of an enumeration."""
+    """Yields (member's name in Python, value, comment) of an enumeration."""
     found = [(*re.fullmatch(r"(SONJECT_\w+) = (\d+)", text).groups(), comment)
              for text, comment in header.enumerations[name]]
     stem = found[0][0]
@@ -175,7 +176,7 @@ def values(header, name):
 
 
 def enumerations(header):
-    """enumerations.py"""
+    """Yields enumerations.py."""
     yield '"""Named choices; the values are those of the C enumerations."""\n\nimport enum'
     for name in header.enumerations:
         found = values(header, name)
@@ -186,7 +187,7 @@ def enumerations(header):
 
 
 def documentation(header, title, described):
-    """A docstring, in the words of Python."""
+    """Yields a docstring, with C's names replaced by Python's."""
     told = textwrap.wrap(title[0], 94) if len(title) == 1 else [*title]
     described = [(name, comment) for name, comment in described
                  if comment and comment not in header.enumerations]
@@ -209,7 +210,7 @@ def documentation(header, title, described):
 
 
 def fields_of(header, structure):
-    """(name, type in Python, comment) of the fields of a structure's class."""
+    """Yields (name, type in Python, comment) of the fields of a structure's class."""
     for declaration, comment in header.structures[structure]:
         written, name, length = split(declaration)
         if name in NO_FIELDS:
@@ -230,7 +231,7 @@ def fields_of(header, structure):
 
 
 def classes(header):
-    """_classes.py"""
+    """Yields _classes.py."""
     bases = sorted({base for _, base in CLASSES.values()})
     yield '"""The classes of structures, their fields as include/sonject declares them."""\n'
     yield "from dataclasses import dataclass\n"
@@ -245,14 +246,14 @@ def classes(header):
 
 
 class Key:
-    """A key of scene files, or a section of keys, as tools/scenes/KEYS.md tells it."""
+    """A key of scene files, or a section of keys, as in tools/scenes/KEYS.md."""
 
     def __init__(self):
         self.unit, self.told, self.words = "", "", ""
         self.inner, self.is_list = {}, False
 
     def at(self, path):
-        """The key at a path below this one, made where it is new."""
+        """Returns the key at a path below this one; makes it if it is new."""
         key = self
         for part in path.split("."):
             key = key.inner.setdefault(part.removesuffix("[]"), Key())
@@ -277,7 +278,7 @@ def read_keys(text):
 
 
 def key_types(scene):
-    """keys.py: what a scene says, as dictionaries whose keys type checkers know."""
+    """Yields keys.py: scenes as dictionaries whose keys type checkers know."""
     yield '"""The keys of scenes, as in scene files: each section is a dictionary.\n'
     yield "Quantities are numbers in the first unit that is listed, or texts with a unit: 0.3 or \"30 cm\"."
     yield '"""\n\nfrom __future__ import annotations\n'

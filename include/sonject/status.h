@@ -1,4 +1,4 @@
-/* What every call of the library answers. */
+/* The status that every call of the library returns. */
 #ifndef SONJECT_STATUS_H
 #define SONJECT_STATUS_H
 
@@ -6,8 +6,8 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
-/* Values are stable: new ones are added at the end. The context keeps the message that goes
- * with the last failure (sonject_context_message). */
+/* The outcome of a call. Values are stable: new ones are added at the end. After a failure the
+ * context holds the message (sonject_context_message). */
 typedef enum sonject_status {
     SONJECT_OK = 0,
     SONJECT_ERROR_ARGUMENT = 1, /* the call breaks its contract (null, wrong size, out of range) */
@@ -19,7 +19,7 @@ typedef enum sonject_status {
     SONJECT_CANCELLED = 7          /* the progress callback asked to stop; nothing was published */
 } sonject_status;
 
-/* A short English name of the status, such as "bad input". Never NULL; static storage. */
+/* Returns a short English name of the status, such as "bad input". Never NULL; static storage. */
 SONJECT_API const char *sonject_status_name(sonject_status status);
 
 SONJECT_END_DECLARATIONS

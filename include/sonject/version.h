@@ -1,4 +1,4 @@
-/* Version of the headers and of the library that is loaded. */
+/* The version of the headers, and of the library that is loaded. */
 #ifndef SONJECT_VERSION_H
 #define SONJECT_VERSION_H
 
@@ -10,7 +10,7 @@ SONJECT_BEGIN_DECLARATIONS
 #define SONJECT_VERSION_MINOR 1
 #define SONJECT_VERSION_PATCH 0
 
-/* "major.minor.patch" of the loaded library; static storage. */
+/* Returns "major.minor.patch" of the loaded library; static storage. */
 SONJECT_API const char *sonject_version(void);
 
 SONJECT_END_DECLARATIONS

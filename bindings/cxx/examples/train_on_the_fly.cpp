@@ -1,8 +1,7 @@
-/* A detector that learns from targets put into seabed on the fly: no image is stored, every step of
- * training sees a target in a pose that it has never seen. The detector is as small as can be (a
- * logistic regression on four numbers of a window); what the example shows is how injection joins a
- * training loop. Prints how well it tells windows with a target from windows without, on targets
- * that it was not trained on.
+/* A detector that learns from targets put into seabed on the fly. No image is stored: each step of
+ * training sees a target in a new pose. The detector is as small as can be, a logistic regression
+ * on four numbers of a window; the example shows how injection joins a training loop. It prints how
+ * well the detector separates windows with and without a target, on new targets.
  *
  *     c++ train_on_the_fly.cpp $(pkg-config --cflags --libs sonject) && ./a.out
  */
@@ -19,11 +18,11 @@
 namespace
 {
 
-constexpr std::uint32_t side = 128; /* pixels of a patch */
-constexpr int features = 5;         /* with the constant one */
+constexpr std::uint32_t side = 128; /* pixels of a patch's side */
+constexpr int features = 5;         /* the constant included */
 using sample = std::array<double, features>;
 
-/* Rayleigh speckle: a seabed of one's own would come from measured swaths. */
+/* Makes Rayleigh speckle; a real seabed would come from measured swaths. */
 std::vector<float> make_seabed(std::mt19937 &random)
 {
     std::normal_distribution<float> normal(0.0f, 0.05f);
@@ -57,7 +56,8 @@ sonject::scene make_scene(const sonject::context &context, std::mt19937 &random)
     return scene;
 }
 
-/* Brightest and darkest smoothed pixel, spread and mean of the logarithms. */
+/* Returns levels of a window in dB: its brightest and darkest cell over the mean of the cells,
+ * their spread, and that mean, each scaled to about 1. */
 sample describe(const std::vector<float> &image)
 {
     constexpr std::uint32_t cell = 4;
@@ -90,7 +90,7 @@ double answer(const sample &weights, const sample &numbers)
     return 1.0 / (1.0 + std::exp(-sum));
 }
 
-/* One window, with or without a target. */
+/* Describes one window, with or without a target. */
 sample draw(const sonject::context &context, std::mt19937 &random, bool has_target)
 {
     const std::vector<float> seabed = make_seabed(random);

@@ -66,7 +66,7 @@ class campaign
         check(sonject_campaign_describe(handle_, id, &image));
         return image;
     }
-    /* The scene of an image: its input is the swath's file, its patch the image. */
+    /* Makes the scene of an image; its input is the swath's file, its patch the image. */
     sonject::scene scene(std::uint64_t id) const
     {
         sonject_scene *made = nullptr;
@@ -82,7 +82,7 @@ class campaign
                 return sonject_campaign_inject(context_, handle_, id, tell, user, made);
             });
     }
-    /* Makes the images that the folder lacks; true if there was nothing left to do. */
+    /* Makes the images that the folder lacks. Returns true if nothing was left to do. */
     bool run(const sonject_campaign_run_params &params, const progress &callback = progress()) const
     {
         return detail::was_finished(
@@ -100,7 +100,7 @@ class campaign
     sonject_campaign *handle_;
 };
 
-/* Joins what the shards of a campaign left in a folder; see sonject_campaign_merge. */
+/* Joins the shards of a campaign in a folder; see sonject_campaign_merge. */
 inline void merge_campaign(const context &context, const std::string &folder,
                            const progress &callback = progress())
 {

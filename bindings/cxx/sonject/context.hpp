@@ -1,4 +1,4 @@
-/* Contexts, and what needs no more than one. */
+/* Contexts, and calls that need only a context. */
 #ifndef SONJECT_CONTEXT_HPP
 #define SONJECT_CONTEXT_HPP
 
@@ -22,17 +22,18 @@ namespace sonject
 /* Called with a line of the log. Must not throw. */
 using log = std::function<void(sonject_log_level level, const char *line)>;
 
-/* What a context is made from; empty texts and null handles: the defaults. */
+/* The options of a context. Empty texts and null handles stand for the defaults. */
 struct context_options {
     std::string device_name;
     sonject::log log;
-    bool decodes_in_process = false; /* images and HDF5, else by a child process */
-    std::uint32_t threads = 0;       /* of a launch on the device native; 0: one a processor */
-    sonject_run_tasks_function run_tasks = nullptr; /* that are a host's own; must not throw */
+    bool decodes_in_process = false; /* images and HDF5; false: by a child process */
+    std::uint32_t threads = 0; /* threads of a launch on the device native; 0: one per processor */
+    sonject_run_tasks_function run_tasks = nullptr; /* runs tasks on the host's own threads; must
+                                                       not throw */
     void *run_tasks_user = nullptr;
 };
 
-/* One device and what is compiled for it. */
+/* One device and its compiled kernels. */
 class context
 {
   public:
@@ -72,7 +73,7 @@ class context
         delete log_;
     }
 
-    /* For calls of the C interface. */
+    /* Returns the handle for calls of the C interface. */
     sonject_context *get() const noexcept
     {
         return handle_;
@@ -88,19 +89,17 @@ class context
         return list;
     }
 
-    /* Draws an image file as a PNG. */
     void quicklook(const sonject_quicklook_params &params) const
     {
         check(sonject_quicklook(handle_, &params));
     }
 
-    /* Makes a file of one format from a file of another. */
     void convert(const sonject_convert_params &params) const
     {
         check(sonject_convert(handle_, &params));
     }
 
-    /* Throws what a status of a call on this context means. */
+    /* Throws the error that a status of a call on this context stands for. */
     void check(sonject_status status) const
     {
         detail::check(handle_, status);
@@ -111,11 +110,11 @@ class context
     {
         (*static_cast<sonject::log *>(user))(static_cast<sonject_log_level>(level), line);
     }
-    sonject::log *log_; /* owned, apart, so that moving keeps its place */
+    sonject::log *log_; /* owned, on the heap, so that moving a context keeps its place */
     sonject_context *handle_;
 };
 
-/* The library's version, such as "0.1.0". */
+/* Returns the library's version, such as "0.1.0". */
 inline std::string version()
 {
     return sonject_version();

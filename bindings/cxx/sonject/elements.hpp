@@ -1,4 +1,4 @@
-/* What an array's hydrophones hear. */
+/* Time series of an array's hydrophones. */
 #ifndef SONJECT_ELEMENTS_HPP
 #define SONJECT_ELEMENTS_HPP
 
@@ -13,7 +13,7 @@
 namespace sonject
 {
 
-/* What the hydrophones of the scene's array hear: pings x hydrophones x samples of
+/* Computes the time series of the scene's array: pings x hydrophones x samples of
  * scene::describe_elements, in base band pairs of real and imaginary part. */
 inline std::vector<float> element_series(const scene &scene, const pixels &patch,
                                          const progress &callback = progress())

@@ -1,4 +1,4 @@
-/* What failed calls throw. */
+/* The exceptions that failed calls throw. */
 #ifndef SONJECT_ERROR_HPP
 #define SONJECT_ERROR_HPP
 
@@ -11,7 +11,7 @@
 namespace sonject
 {
 
-/* A failed call: status() and the message, as of sonject_context_message. */
+/* A failed call: status(), and the message of sonject_context_message. */
 class error : public std::runtime_error
 {
   public:
@@ -28,7 +28,7 @@ class error : public std::runtime_error
     sonject_status status_;
 };
 
-/* A progress callback asked to stop; nothing was published. */
+/* A call that a progress callback asked to stop; nothing was published. */
 class cancelled : public error
 {
   public:
@@ -40,7 +40,7 @@ class cancelled : public error
 namespace detail
 {
 
-/* Throws what a status of a call on this context means. */
+/* Throws the error that a status of a call on this context stands for. */
 inline void check(sonject_context *context, sonject_status status)
 {
     if (status == SONJECT_CANCELLED)

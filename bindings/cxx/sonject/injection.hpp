@@ -18,7 +18,7 @@
 namespace sonject
 {
 
-/* What an injection gave. */
+/* The result of an injection. */
 class result
 {
   public:
@@ -62,7 +62,7 @@ class result
         return size().kind == SONJECT_PIXELS_COMPLEX;
     }
 
-    /* Copies a layer into memory of exactly its size: the patch's numbers for IMAGE (pairs where
+    /* Copies a layer into memory of exactly its size: the patch's numbers for IMAGE (pairs if
      * is_complex), float for FIELD (pairs), ENERGY and VISIBILITY, std::uint8_t for the masks. */
     template <typename Element> void layer(sonject_layer layer, span<Element> buffer) const
     {
@@ -72,17 +72,18 @@ class result
     {
         return copy<float>(SONJECT_LAYER_ENERGY, 1);
     }
-    /* Number: float, std::uint8_t or std::uint16_t, as the patch's. */
+    /* Copies the image. Number: float, std::uint8_t or std::uint16_t, as in the patch. */
     template <typename Number = float> std::vector<Number> image() const
     {
         return copy<Number>(SONJECT_LAYER_IMAGE, is_complex() ? 2 : 1);
     }
-    /* A mask: HIGHLIGHT, SHADOW, LABELS or INFLUENCE. */
+    /* Copies a mask: HIGHLIGHT, SHADOW, LABELS or INFLUENCE. */
     std::vector<std::uint8_t> mask(sonject_layer layer) const
     {
         return copy<std::uint8_t>(layer, 1);
     }
-    /* Expected energy of the paths that meet `order` surfaces, where the scene asked for it. */
+    /* Copies the expected energy of the paths that meet `order` surfaces, if the scene asked for
+     * it. */
     std::vector<float> order_energy(std::uint32_t order) const
     {
         const measure extent = size();
@@ -140,7 +141,7 @@ class result
 namespace detail
 {
 
-/* The result that call(function, user, &handle) makes. */
+/* Returns the result that call(function, user, &handle) makes. */
 template <typename Call>
 result make_result(sonject_context *context, std::uint32_t objects, const progress &callback,
                    const Call &call)
@@ -150,7 +151,7 @@ result make_result(sonject_context *context, std::uint32_t objects, const progre
         tell_progress(context, callback, [&](sonject_progress_function tell, void *user) {
             return call(tell, user, &handle);
         });
-    } catch (...) { /* of the callback, perhaps after all was made */
+    } catch (...) { /* thrown by the callback, perhaps after the result was made */
         sonject_result_release(&handle);
         throw;
     }
@@ -174,7 +175,7 @@ inline result inject(const scene &scene, const pixels &patch, const progress &ca
     return detail::inject(scene, &patch.value, callback);
 }
 
-/* The same into the swath that the scene itself makes (uniform or synthetic). */
+/* Puts the scene's objects into the swath that the scene itself makes (uniform or synthetic). */
 inline result inject(const scene &scene, const progress &callback = progress())
 {
     return detail::inject(scene, nullptr, callback);

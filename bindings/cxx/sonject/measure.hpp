@@ -1,4 +1,4 @@
-/* What images and contacts measure. */
+/* Measures of images and contacts. */
 #ifndef SONJECT_MEASURE_HPP
 #define SONJECT_MEASURE_HPP
 
@@ -17,7 +17,7 @@
 namespace sonject
 {
 
-/* What an image file says of its seabed; see sonject_measure. */
+/* Measures the seabed of an image file; see sonject_measure. */
 inline sonject_measurement measure(const context &context, const sonject_measure_params &params)
 {
     sonject_measurement measurement = defaults<sonject_measurement>();
@@ -25,7 +25,7 @@ inline sonject_measurement measure(const context &context, const sonject_measure
     return measurement;
 }
 
-/* The same of pixels in memory; labels: rows x columns bytes, or none. */
+/* Measures the seabed of pixels in memory. labels: rows x columns bytes, or none. */
 inline sonject_measurement measure(const context &context, const pixels &image,
                                    span<const std::uint8_t> labels = span<const std::uint8_t>())
 {
@@ -37,7 +37,7 @@ inline sonject_measurement measure(const context &context, const pixels &image,
     return measure(context, params);
 }
 
-/* What a swath tells of itself, for scenes to take; see sonject_calibrate. */
+/* Estimates the properties of a swath for scenes; see sonject_calibrate. */
 inline std::string calibrate(const context &context, const sonject_calibrate_params &params)
 {
     detail::text text;
@@ -45,7 +45,7 @@ inline std::string calibrate(const context &context, const sonject_calibrate_par
     return text.copy();
 }
 
-/* Contacts of an image as JSON; see sonject_measure_contacts. */
+/* Measures the contacts of an image, as JSON; see sonject_measure_contacts. */
 inline std::string measure_contacts(const context &context, const sonject_measure_params &params)
 {
     detail::text text;
@@ -53,7 +53,8 @@ inline std::string measure_contacts(const context &context, const sonject_measur
     return text.copy();
 }
 
-/* Lengths and levels of a contact; see sonject_measure_contact. box: nullptr for the brightest. */
+/* Measures lengths and levels of a contact; see sonject_measure_contact. box: nullptr for the
+ * brightest. */
 inline sonject_contact_measures measure_contact(const context &context, const pixels &image,
                                                 const sonject_box *box = nullptr,
                                                 double row_spacing_m = 0.0,

@@ -1,4 +1,4 @@
-/* Parameters, whose zeros are the library's defaults. */
+/* Structures of parameters with the library's defaults. */
 #ifndef SONJECT_PARAMETERS_HPP
 #define SONJECT_PARAMETERS_HPP
 
@@ -7,7 +7,7 @@
 namespace sonject
 {
 
-/* A structure with its size, else of zeros: the defaults. */
+/* Returns a structure with its size set and zeros otherwise: the defaults. */
 template <typename Structure> Structure defaults()
 {
     Structure structure = Structure();

@@ -43,9 +43,7 @@ struct pixels {
         value.row_stride = row_stride;
         value.data = data;
     }
-    /* Numbers as they are stored: float, std::uint8_t or std::uint16_t. transfer: the caller's,
-     * too.
-     */
+    /* Stored numbers: float, std::uint8_t or std::uint16_t. transfer stays the caller's, too. */
     template <typename Number>
     pixels(const Number *data, std::uint64_t rows, std::uint64_t columns, const char *transfer,
            std::uint64_t row_stride = 0)
@@ -61,8 +59,8 @@ struct pixels {
     sonject_pixels value;
 };
 
-/* The patch in other numbers (float, std::uint8_t or std::uint16_t), of a transfer function or
- * linear; see sonject_pixels_convert. */
+/* Converts the patch to other numbers (float, std::uint8_t or std::uint16_t) with a transfer
+ * function, or to linear ones; see sonject_pixels_convert. */
 template <typename Number>
 std::vector<Number> convert_pixels(const context &context, const pixels &patch,
                                    const char *transfer = nullptr)

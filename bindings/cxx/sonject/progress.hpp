@@ -1,4 +1,4 @@
-/* Callbacks: progress, and what they throw. */
+/* Progress callbacks, and the exceptions that they throw. */
 #ifndef SONJECT_PROGRESS_HPP
 #define SONJECT_PROGRESS_HPP
 
@@ -11,14 +11,14 @@
 namespace sonject
 {
 
-/* Called with the finished fraction 0...1 and the stage's name; false cancels. What it throws ends
- * the call and comes out of it. */
+/* Called with the finished fraction 0...1 and the stage's name; false cancels. An exception of the
+ * callback ends the call, which throws it on. */
 using progress = std::function<bool(double fraction, const char *stage)>;
 
 namespace detail
 {
 
-/* Carries a progress callback through C, and what it throws around it. */
+/* Carries a progress callback through C, and its exceptions around C. */
 class progress_bridge
 {
   public:
@@ -50,8 +50,8 @@ class progress_bridge
     std::exception_ptr thrown_;
 };
 
-/* Makes a call that tells its progress: call(function, user) answers with the status. Throws what
- * the callback threw, or what the status means. */
+/* Makes a call that tells its progress: call(function, user) returns the status. Throws the
+ * callback's exception, or the error that the status stands for. */
 template <typename Call>
 void tell_progress(sonject_context *context, const progress &callback, const Call &call)
 {
@@ -61,7 +61,7 @@ void tell_progress(sonject_context *context, const progress &callback, const Cal
     check(context, status);
 }
 
-/* The same of one that tells whether its result was finished before. */
+/* Makes a call that tells its progress, too, and returns whether its result was finished before. */
 template <typename Call>
 bool was_finished(sonject_context *context, const progress &callback, const Call &call)
 {

@@ -1,4 +1,4 @@
-/* Scenes, and what becomes of their files. */
+/* Scenes, and runs of them. */
 #ifndef SONJECT_SCENE_HPP
 #define SONJECT_SCENE_HPP
 
@@ -30,13 +30,13 @@ namespace sonject
 class scene
 {
   public:
-    /* An empty one. */
+    /* Makes an empty scene. */
     explicit scene(const context &context) : context_(context.get()), handle_(nullptr)
     {
         check(sonject_scene_create(context_, &handle_));
     }
 
-    /* Reads a scene file; overrides: "key.path=value". Of params all but these counts. */
+    /* Reads a scene file. overrides: "key.path=value"; they replace those of params. */
     scene(const context &context, const std::string &path,
           const std::vector<std::string> &overrides = std::vector<std::string>(),
           sonject_scene_read_params params = defaults<sonject_scene_read_params>())
@@ -48,7 +48,7 @@ class scene
         check(sonject_scene_read(context_, path.c_str(), &params, &handle_));
     }
 
-    /* Takes over what the C interface made with that context. */
+    /* Takes over a handle that the C interface made with that context. */
     scene(sonject_context *context, sonject_scene *handle) noexcept
         : context_(context), handle_(handle)
     {
@@ -84,24 +84,25 @@ class scene
     {
         check(sonject_scene_set(handle_, key.c_str(), value.c_str()));
     }
-    /* The same of a number, in the key's SI unit (angles: degrees), with all its digits. */
+    /* Sets a key to a number in its SI unit (angles: degrees), with all digits. */
     void set(const std::string &key, double value)
     {
         std::ostringstream text;
-        text.imbue(std::locale::classic()); /* a host's may have a comma for the point */
+        text.imbue(std::locale::classic()); /* a host's locale may have a decimal comma */
         text.precision(17);
         text << value;
         set(key, text.str());
     }
-    /* The same of a whole number, such as a seed, or of true and false. */
+    /* Sets a key to a whole number, such as a seed, or to true or false. */
     template <typename T, typename = typename std::enable_if<std::is_integral<T>::value>::type>
     void set(const std::string &key, T value)
     {
         set(key, std::is_same<T, bool>::value ? std::string(value ? "true" : "false")
                                               : std::to_string(value));
     }
-    /* Numbers in place of a table's file: rows of as many columns as are named, separated by
-     * commas; of heights, without names, column_count. See sonject_scene_set_table. */
+    /* Sets a key to numbers instead of a table's file: rows of the columns that are named,
+     * separated by commas. Heights have no names: columns is empty, column_count counts. See
+     * sonject_scene_set_table. */
     void set_table(const std::string &key, const std::string &columns, span<const double> values,
                    std::size_t column_count = 0)
     {
@@ -114,8 +115,8 @@ class scene
                                       columns.empty() ? nullptr : columns.c_str(), values.data(),
                                       values.size() / column_count, column_count));
     }
-    /* What the scene says at a key, as JSON, "" for all of it: "10.0", "null" where it says
-     * nothing. See sonject_scene_get. */
+    /* Returns the value of a key as JSON, such as "10.0", or "null" if the scene does not set it.
+     * The key "" is the whole scene. See sonject_scene_get. */
     std::string get(const std::string &key) const
     {
         detail::text json;
@@ -137,7 +138,7 @@ class scene
         return description.copy();
     }
 
-    /* The scene as text, with all that was set. */
+    /* Returns the scene as a text, with all that was set. */
     std::string text() const
     {
         detail::text text;
@@ -145,7 +146,7 @@ class scene
         return text.copy();
     }
 
-    /* Does the run on files that the parameters tell, or a shard of it; true if the folder held its
+    /* Runs on files as the parameters say, wholly or a shard. Returns true if the folder held the
      * finished result already. */
     bool run(const sonject_run_params &params, const progress &callback = progress()) const
     {
@@ -155,7 +156,7 @@ class scene
             });
     }
 
-    /* The whole run into the folder. labels: sum of sonject_labels. */
+    /* Makes the whole run into the folder. labels: sum of sonject_labels. */
     bool run(const std::string &folder, const progress &callback = progress(),
              std::uint32_t labels = 0) const
     {
@@ -176,7 +177,7 @@ class scene
         run(params, callback);
     }
 
-    /* Makes the result of all shards in the folder; true if it was finished already. */
+    /* Makes the result of all shards in the folder. Returns true if it was finished already. */
     bool merge(const std::string &folder, const progress &callback = progress()) const
     {
         sonject_merge_params params = defaults<sonject_merge_params>();
@@ -187,7 +188,7 @@ class scene
             });
     }
 
-    /* Traces alone, and keeps the sums in the file, for sonject::form. */
+    /* Traces and keeps the sums in the file, for sonject::form. */
     void trace(const std::string &file, const progress &callback = progress()) const
     {
         detail::tell_progress(context_, callback, [&](sonject_progress_function tell, void *user) {
@@ -195,7 +196,7 @@ class scene
         });
     }
 
-    /* What the series of a patch of rows x columns are; both 0: of the patch that the scene makes.
+    /* Describes the series of a patch of rows x columns; both 0: of the patch that the scene makes.
      */
     sonject_element_layout describe_elements(std::uint64_t rows = 0,
                                              std::uint64_t columns = 0) const
@@ -205,7 +206,7 @@ class scene
         return layout;
     }
 
-    /* Writes what the array's hydrophones hear of the scene's own input into the folder. */
+    /* Writes the series of the array's hydrophones, for the scene's own input, into the folder. */
     void run_elements(const std::string &folder, const progress &callback = progress()) const
     {
         sonject_run_params params = defaults<sonject_run_params>();
@@ -230,8 +231,7 @@ class scene
     sonject_scene *handle_;
 };
 
-/* The scene that a text describes, YAML or JSON; name: for messages, and where names of files are
- * meant from. */
+/* Reads a scene from a text, YAML or JSON. name: for messages, and for resolving file names. */
 inline scene scene_of_text(const context &context, const std::string &text,
                            const std::string &name = "scene")
 {
@@ -240,7 +240,7 @@ inline scene scene_of_text(const context &context, const std::string &text,
     return scene(context, name, std::vector<std::string>(), params);
 }
 
-/* All keys that files of a kind have, as JSON; see sonject_keys. */
+/* Returns all keys of a kind of files as JSON; see sonject_keys. */
 inline std::string keys(const context &context, sonject_keys_of of = SONJECT_KEYS_OF_SCENES)
 {
     detail::text text;
@@ -248,7 +248,7 @@ inline std::string keys(const context &context, sonject_keys_of of = SONJECT_KEY
     return text.copy();
 }
 
-/* The bands of a scene file that are to be chosen by an override such as "band=low". */
+/* Returns the bands of a scene file from which an override such as "band=low" must choose. */
 inline std::vector<std::string> bands(
     const context &context, const std::string &path,
     const std::vector<std::string> &overrides = std::vector<std::string>())

@@ -8,8 +8,8 @@
 namespace sonject
 {
 
-/* Elements in somebody's memory. Takes anything with data() and size(): vectors, arrays, and the
- * spans of later C++. */
+/* Elements in somebody else's memory. A span is made of anything with data() and size(): vectors,
+ * arrays, and the spans of later C++. */
 template <typename Element> class span
 {
   public:

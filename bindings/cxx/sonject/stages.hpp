@@ -1,4 +1,4 @@
-/* Results of what was traced before: of the shards of a run, or of sums in a file. */
+/* Results of earlier traces: of the shards of a run, or of sums in a file. */
 #ifndef SONJECT_STAGES_HPP
 #define SONJECT_STAGES_HPP
 
@@ -11,8 +11,8 @@
 namespace sonject
 {
 
-/* Makes the result of all shards in params.folder, of all bands too. scene: the one that was
- * traced, nullptr: that which the shards keep. True if it was finished already. */
+/* Makes the result of all shards in params.folder, and of all bands. traced: the traced scene;
+ * nullptr: the scene that the shards keep. Returns true if the result was finished already. */
 inline bool merge(const context &context, const sonject_merge_params &params,
                   const scene *traced = nullptr, const progress &callback = progress())
 {
@@ -23,9 +23,9 @@ inline bool merge(const context &context, const sonject_merge_params &params,
         });
 }
 
-/* Forms the image of what scene::trace kept; params.folder gets it. other: a scene that differs in
- * what another image may differ, nullptr: the one that the file keeps. True if the result was
- * finished already. */
+/* Forms the image of the sums that scene::trace kept, into params.folder. other: a scene that
+ * differs as sonject_form allows; nullptr: the scene that the file keeps. Returns true if the
+ * result was finished already. */
 inline bool form(const context &context, const sonject_form_params &params,
                  const scene *other = nullptr, const progress &callback = progress())
 {

@@ -1,4 +1,4 @@
-/* Texts on their way from and to C. */
+/* Texts passed from and to C. */
 #ifndef SONJECT_TEXT_HPP
 #define SONJECT_TEXT_HPP
 
@@ -13,7 +13,7 @@ namespace sonject
 namespace detail
 {
 
-/* A text that the library made, which it gets back. */
+/* A text that the library made, and that is given back to the library. */
 class text
 {
   public:
@@ -39,7 +39,7 @@ class text
     char *text_;
 };
 
-/* Texts as C takes an array of them; the originals must stay. */
+/* Makes an array of C texts; the originals must outlive it. */
 inline std::vector<const char *> pointers_to(const std::vector<std::string> &texts)
 {
     std::vector<const char *> pointers;

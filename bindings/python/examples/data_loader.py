@@ -1,10 +1,10 @@
-"""A data set for PyTorch whose chips are made as they are asked for, in any number of workers.
+"""A data set for PyTorch that makes each chip when it is asked for, in any number of workers.
 
     python3 data_loader.py [--chips N] [--workers N] [--start fork|spawn]
 
-loads all chips through torch's DataLoader and prints how many come a second. Chip i is the same in
-every process and thread, and in every epoch: its draws are its own. InjectedChips needs no torch:
-any loader of data sets with a length and an index will do.
+loads all chips through torch's DataLoader and prints the rate per second. Chip i is the same in
+every process, thread and epoch, since it has random numbers of its own. InjectedChips needs no
+torch: it suits any loader of data sets with a length and an index.
 """
 
 import argparse
@@ -23,7 +23,7 @@ EXTENT = (ROWS * SPACING, COLUMNS * SPACING)  # m, along the track and in slant 
 
 
 class InjectedChips:
-    """Chip i of a seabed: an image with a cylinder in it, and its highlight and shadow."""
+    """Chips of a seabed: an image with a cylinder in it, and its highlight and shadow."""
 
     def __init__(self, patches, length):
         self.patches = patches
@@ -34,15 +34,15 @@ class InjectedChips:
         return self.length
 
     def __getstate__(self):
-        """For workers that are spawned: they make contexts of their own."""
+        """Leaves contexts out: spawned workers make their own."""
         return {"patches": self.patches, "length": self.length}
 
     def __setstate__(self, state):
         self.__init__(**state)
 
     def context(self):
-        """One for each thread, since threads that share one take turns. A forked worker goes on with
-        its parent's. One thread within: the workers share the processors already."""
+        """Returns the thread's own context, since threads that share one take turns. A forked
+        worker continues with its parent's. threads=1: the workers share the processors already."""
         if not hasattr(self.of_thread, "context"):
             self.of_thread.context = sonject.Context(threads=1)
         return self.of_thread.context
@@ -68,7 +68,7 @@ class InjectedChips:
 
 
 def made_patches(count=8):
-    """Seabeds to try it on: yours are patches of measured swaths, as linear amplitudes."""
+    """Makes seabeds for a try; yours are patches of measured swaths, as linear amplitudes."""
     random = numpy.random.default_rng(1)
     return random.rayleigh(size=(count, ROWS, COLUMNS)).astype(numpy.float32)
 

@@ -2,8 +2,8 @@
 
     python3 delay_and_sum.py FOLDER
 
-images the series.npy and elements.json that ``sonject elements SCENE.yaml -o FOLDER`` wrote into
-image.npy. It is written to be read, not to be fast: every pixel asks every ping.
+reads the series.npy and elements.json that ``sonject elements SCENE.yaml -o FOLDER`` wrote, and
+writes image.npy. The code is written for readers, not for speed: every pixel uses every ping.
 """
 
 import json
@@ -16,7 +16,7 @@ FINE = 8  # samples for each of the series; linear interpolation between them er
 
 
 def finer(series):
-    """The series at FINE times its sampling rate, by zeros about its spectrum."""
+    """Returns the series at FINE times its sampling rate, by zeros about its spectrum."""
     count = series.shape[-1]
     spectrum = numpy.fft.fft(series)
     middle = (count + 1) // 2
@@ -27,7 +27,7 @@ def finer(series):
 
 
 def pattern(length, sine, wavelength):
-    """Amplitude of a line transducer off abeam."""
+    """Returns the amplitude of a line transducer off abeam."""
     return numpy.sinc(length * sine / wavelength)
 
 
@@ -46,12 +46,12 @@ def delay_and_sum(
     transmitter_length_m=0.0,
     hydrophone_length_m=0.0,
 ):
-    """Complex pixels, rows (along_track_m) x columns (slant_range_m).
+    """Returns complex pixels, rows (along_track_m) x columns (slant_range_m).
 
-    series: complex baseband, range-compressed, [ping, hydrophone, sample]; transmitter_m: of each
-    ping; hydrophones_m: of each ping and hydrophone. A point target of unit cross-section peaks at
+    series: complex baseband, range-compressed, [ping, hydrophone, sample]. transmitter_m: of each
+    ping. hydrophones_m: of each ping and hydrophone. A point target of unit cross-section peaks at
     1: spreading and patterns are undone, and the weights of each pixel add up to one. Aspects of a
-    sine up to wavelength / (4 resolution_m) count alike, so that a point is as wide as that.
+    sine up to wavelength / (4 resolution_m) count alike, so that a point is resolution_m wide.
     """
     wavelength = sound_speed_mps / centre_frequency_hz
     widest = wavelength / (4 * resolution_m)
@@ -77,7 +77,7 @@ def delay_and_sum(
         gain = pattern(transmitter_length_m, sine_there, wavelength) * pattern(
             hydrophone_length_m, sine_back, wavelength
         )
-        # the share of the aperture, in sines, that a step along the track is: r^2 / R^3
+        # the share of the aperture, in sines, of a step along the track: r^2 / R^3
         share = columns**2 / (0.5 * (there + back)) ** 3
         share = numpy.where(numpy.abs(0.5 * (sine_there + sine_back)) <= widest, share, 0)
         image[rows] += share * there * back / gain * value * numpy.exp(-1j * phase)
@@ -86,7 +86,7 @@ def delay_and_sum(
 
 
 def read(folder):
-    """series and geometry, as delay_and_sum takes them, from a folder."""
+    """Returns series, geometry (arguments of delay_and_sum) and image axes from a folder."""
     facts = json.loads((pathlib.Path(folder) / "elements.json").read_text(encoding="utf-8"))
     if facts["form"] != "baseband" or facts["pulse"] != "compressed":
         raise SystemExit("compressed pulses in complex baseband are wanted")

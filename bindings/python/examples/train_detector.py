@@ -2,9 +2,9 @@
 
     python3 train_detector.py CAMPAIGN.yaml [--train SPLIT] [--try SPLIT]
 
-needs scikit-learn. Images are made in memory, the same as `sonject campaign` makes. The detector looks at an
-image's largest and least levels in windows of several sizes, since highlights are bright and shadows are dark. It
-tells whether an image has a target, so the campaign needs images without one: `empty: 0.5`.
+needs scikit-learn. Images are made in memory, the same as `sonject campaign` makes. The detector uses an image's
+largest and least levels in windows of several sizes, since highlights are bright and shadows are dark. It decides
+whether an image has a target, so the campaign needs images without one: `empty: 0.5`.
 
 It shows in a minute whether the campaign teaches anything. Only real targets can show that real targets are found.
 """
@@ -20,7 +20,7 @@ WINDOWS = (2, 4), (4, 4), (8, 4), (4, 12), (8, 20)  # rows, columns
 
 
 def features(image):
-    """Largest and least mean levels in dB over the image's median, for each size of window."""
+    """Returns largest and least mean levels in dB over the image's median, for each size of window."""
     sums = numpy.pad(numpy.abs(image).astype(float) ** 2, ((1, 0), (1, 0))).cumsum(0).cumsum(1)
     values = []
     for rows, columns in WINDOWS:
@@ -32,7 +32,7 @@ def features(image):
 
 
 def examples(campaign, split):
-    """Features of a split's images, whether each has a target, and how many have clutter alone."""
+    """Returns features of a split's images, whether each has a target, and how many have clutter alone."""
     told = [each for each in map(campaign.describe, range(len(campaign))) if each.split == split]
     if not told:
         raise SystemExit(f"the campaign has no split {split!r}: see its splits")
@@ -44,7 +44,7 @@ def examples(campaign, split):
 
 
 def area_under_curve(scores, labels):
-    """Of the ROC curve, with the standard error of Hanley and McNeil: 0.5 for a guess, 1 for a perfect detector."""
+    """Returns the area under the ROC curve (0.5: a guess, 1: perfect) and Hanley and McNeil's standard error."""
     higher = scores[labels][:, None] - scores[~labels][None]
     area = numpy.mean((higher > 0) + 0.5 * (higher == 0))
     variance = area * (1 - area)

@@ -39,7 +39,7 @@ __version__ = ".".join(str(part) for part in _VERSION)
 
 
 def version() -> str:
-    """major.minor.patch of the loaded library."""
+    """Returns major.minor.patch of the loaded library."""
     return str(_load().sonject_version().decode("ascii"))
 
 

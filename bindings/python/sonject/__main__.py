@@ -1,4 +1,4 @@
-"""The command sonject: python3 -m sonject, and what pip puts on the PATH."""
+"""The command sonject: python3 -m sonject, or the program that pip puts on the PATH."""
 
 import os
 import pathlib
@@ -7,11 +7,11 @@ import sys
 
 
 def main() -> None:
-    """Runs the program beside this module in place of this one."""
+    """Runs the program beside this module in place of this process."""
     is_windows = sys.platform == "win32"
     program = pathlib.Path(__file__).resolve().with_name("sonject.exe" if is_windows else "sonject")
     try:
-        if is_windows:  # where a process cannot become another
+        if is_windows:  # a process there cannot become another
             sys.exit(subprocess.call([program, *sys.argv[1:]]))
         os.execv(program, ["sonject", *sys.argv[1:]])
     except OSError as error:

@@ -22,14 +22,14 @@ def _file_names() -> list[str]:
 
 
 def _candidates() -> Iterator[str]:
-    """Names to load, in order: SONJECT_LIBRARY alone if it is set, beside the package, system."""
+    """Yields names to load, in order: SONJECT_LIBRARY alone if set, beside the package, system."""
     chosen = os.environ.get("SONJECT_LIBRARY")
     if chosen:
-        # The library looks for its decoder beside itself, wherever we go meanwhile.
+        # The library looks for its decoder beside itself, also after a change of folder.
         yield os.path.abspath(chosen) if os.path.dirname(chosen) else chosen
         return
     package = pathlib.Path(__file__).resolve().parent
-    for folder in (package, package.parent, package.parents[2] / "lib"):  # the last in a build
+    for folder in (package, package.parent, package.parents[2] / "lib"):  # the last one in a build
         for name in _file_names():
             if (folder / name).is_file():
                 yield str(folder / name)
@@ -52,7 +52,7 @@ def _check_version(library: ctypes.CDLL) -> None:
 
 @functools.lru_cache(maxsize=None)
 def load() -> ctypes.CDLL:
-    """The loaded library with all functions declared. Raises ImportError if there is none."""
+    """Returns the library with all functions declared. Raises ImportError if there is none."""
     failures: list[str] = []
     for name in _candidates():
         try:

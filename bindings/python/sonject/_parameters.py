@@ -1,4 +1,4 @@
-"""What the classes of C structures have in common, and what some of them have beside their fields."""
+"""The base classes of C structures' classes, and members that some have beside their fields."""
 
 import ctypes
 from dataclasses import fields
@@ -14,7 +14,7 @@ Array = numpy.typing.NDArray[Any]
 
 
 def _from_c(kind: Any, value: Any) -> Any:
-    """A member of a structure as a field of this type."""
+    """Converts a member of a structure to a field of this type."""
     if isinstance(value, bytes):
         return text(value)
     if isinstance(value, ctypes.Structure):
@@ -23,18 +23,18 @@ def _from_c(kind: Any, value: Any) -> Any:
 
 
 class Answer:
-    """What the library tells in a C structure; fields have the names of the structure's."""
+    """A C structure of the library; fields have the names of the structure's members."""
 
     @classmethod
     def from_structure(cls: Type[Self], structure: Any) -> Self:
-        entries = fields(cls)  # type: ignore[arg-type]  # what derives from this is a dataclass
+        entries = fields(cls)  # type: ignore[arg-type]  # all derived classes are dataclasses
         return cls(**{each.name: _from_c(each.type, getattr(structure, each.name)) for each in entries})
 
 
 class BoxBase(Answer):
     @property
     def slices(self: Any) -> tuple[slice, slice]:
-        """To cut the box out of a layer: ``result.image[box.slices]``."""
+        """The slices that cut the box out of a layer: ``result.image[box.slices]``."""
         return (
             slice(self.first_row, self.first_row + self.rows),
             slice(self.first_column, self.first_column + self.columns),
@@ -44,7 +44,7 @@ class BoxBase(Answer):
 class ElementLayoutBase(Answer):
     @property
     def shape(self: Any) -> tuple[int, int, int]:
-        """Pings, hydrophones, samples."""
+        """The numbers of pings, hydrophones and samples."""
         return (self.elements.pings, self.elements.hydrophones, self.samples)
 
     @property
@@ -66,6 +66,6 @@ class ElementLayoutBase(Answer):
 
     @property
     def times_s(self: Any) -> Array:
-        """Of the samples, after transmission."""
+        """The times of the samples after transmission."""
         steps = numpy.arange(self.samples) / self.elements.sampling_rate_hz
         return numpy.asarray(self.elements.first_time_s + steps)

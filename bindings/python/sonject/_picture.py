@@ -1,4 +1,4 @@
-"""Images in dB as pictures, by NumPy and zlib alone."""
+"""Images in dB as pictures, made with NumPy and zlib alone."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy
 
-_SIDE_LIMIT = 800  # pixels that are shown a side; larger images are averaged down to it
+_SIDE_LIMIT = 800  # pixels per side of a picture; larger images are averaged down to it
 
 
 def decibels(image: Any) -> Any:
-    """20 log10 of the magnitudes, -inf where they are 0; float64, of the image's shape."""
+    """Returns 20 log10 of the magnitudes, -inf where they are 0; float64, of the image's shape."""
     levels = numpy.abs(numpy.asarray(image)).astype(numpy.float64)
     if levels.ndim != 2 or levels.size == 0:
         raise ValueError(f"an image has rows and columns, not the shape {levels.shape}")
@@ -22,7 +22,7 @@ def decibels(image: Any) -> Any:
 
 
 def grey_ends(levels: Any) -> tuple[float, float]:
-    """Ends of the grey scale as sonject quicklook chooses them: percentiles 3 and 99.8."""
+    """Returns ends of the grey scale, as sonject quicklook chooses them: percentiles 3 and 99.8."""
     seen = levels[numpy.isfinite(levels)]
     low, high = numpy.quantile(seen, [0.03, 0.998]) if seen.size else (0.0, 0.0)
     if high - low < 1.0:
@@ -31,7 +31,7 @@ def grey_ends(levels: Any) -> tuple[float, float]:
 
 
 def _reduced(image: Any) -> Any:
-    """The root of the mean energy of blocks of pixels, so many that no side is too long."""
+    """Returns the root of the mean energy of blocks, so large that no side is too long."""
     amplitudes = numpy.abs(numpy.asarray(image)).astype(numpy.float64)
     block = -(-max(amplitudes.shape) // _SIDE_LIMIT)
     starts = [numpy.arange(0, size, block) for size in amplitudes.shape]
@@ -45,7 +45,7 @@ def _chunk(kind: bytes, data: bytes) -> bytes:
 
 
 def _png(grey: Any) -> bytes:
-    """A PNG file of rows x columns of uint8."""
+    """Returns a PNG file of rows x columns of uint8."""
     rows, columns = grey.shape
     lines = numpy.zeros((rows, columns + 1), numpy.uint8)  # each begins with its filter, 0: none
     lines[:, 1:] = grey
@@ -55,7 +55,7 @@ def _png(grey: Any) -> bytes:
 
 
 def picture(image: Any) -> tuple[str, tuple[float, float]]:
-    """The image in dB as the address of a PNG that is in it, and the ends of its grey scale."""
+    """Returns the image in dB as a data address with a PNG, and the ends of its grey scale."""
     levels = decibels(_reduced(image))
     low, high = grey_ends(levels)
     shares = numpy.clip((numpy.nan_to_num(levels, neginf=low) - low) / (high - low), 0.0, 1.0)

@@ -1,4 +1,4 @@
-"""Python values into C fields, refusing what ctypes would quietly cut or wrap, and arrays as pixels."""
+"""Python values as C fields, refusing what ctypes would silently cut or wrap; arrays as pixels."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _LARGEST: dict[Any, int] = {ctypes.c_uint32: 2**32 - 1, ctypes.c_uint64: 2**64 -
 
 
 def whole_number(name: str, value: Any, largest: int) -> int:
-    """value as an int within 0...largest."""
+    """Returns value as an int within 0...largest."""
     try:
         number = operator.index(value)
     except TypeError:
@@ -35,7 +35,7 @@ def whole_number(name: str, value: Any, largest: int) -> int:
     return number
 
 
-# What a name ends in: a key of scenes that is written with the same units, and an example.
+# Endings of names: a key of scenes that takes the same units, and an example.
 _UNITS = {
     "_m": ("sonar.altitude", "25 cm"),
     "_hz": ("sonar.frequency", "100 kHz"),
@@ -46,7 +46,7 @@ _UNITS = {
 
 
 def real_number(name: str, value: Any) -> float:
-    """value as a float, a text by its unit; whether it makes sense is the library's to say."""
+    """Returns value as a float, a text by its unit. The library checks its range."""
     key, example = next((_UNITS[end] for end in _UNITS if name.endswith(end)), (None, None))
     number = scene_value(key, key_text(name, value)) if key and isinstance(value, str) else value
     if not isinstance(number, numbers.Real):
@@ -56,8 +56,8 @@ def real_number(name: str, value: Any) -> float:
 
 
 def scene_value(key: str, content: str) -> Any:
-    """What a scene reads in the text of a key's value; a text where that is no quantity."""
-    from .context import default_context  # which imports this module, as scenes do
+    """Returns the value that a scene reads from a text for a key; a text if it is no quantity."""
+    from .context import default_context  # both modules import this one
     from .scene import Scene
 
     context = default_context()
@@ -68,7 +68,7 @@ def scene_value(key: str, content: str) -> Any:
 
 
 def real_numbers(name: str, values: Any) -> Any:
-    """values, an array or a sequence of numbers in one row, as an array of doubles."""
+    """Returns values, an array or a sequence of numbers in one row, as an array of doubles."""
     if isinstance(values, numpy.ma.MaskedArray):
         raise TypeError(f"{name} must not be masked: its mask would be lost")
     array = numpy.asarray(values)
@@ -80,7 +80,7 @@ def real_numbers(name: str, values: Any) -> Any:
 
 
 def choice(name: str, kind: Type[AnyEnum], value: Any) -> AnyEnum:
-    """value as a member of kind; a member's name in any case is one too."""
+    """Returns value as a member of kind; a member's name in any case will do."""
     if isinstance(value, str) and value.upper() in kind.__members__:
         return kind[value.upper()]
     if not isinstance(value, str):
@@ -93,12 +93,12 @@ def choice(name: str, kind: Type[AnyEnum], value: Any) -> AnyEnum:
 
 
 def text(line: Optional[bytes]) -> str:
-    """A text of the library; damaged UTF-8 does not hide the rest of a message."""
+    """Decodes a text of the library; damaged UTF-8 does not hide the rest of a message."""
     return (line or b"").decode("utf-8", "replace")
 
 
 def plain_text(name: str, value: Any) -> bytes:
-    """value in UTF-8; a NUL would end it early."""
+    """Returns value in UTF-8. A NUL, which would end the text early, is refused."""
     if not isinstance(value, str):
         raise TypeError(f"{name} must be a text, not {value!r}")
     if "\0" in value:
@@ -107,7 +107,7 @@ def plain_text(name: str, value: Any) -> bytes:
 
 
 def file_name(name: str, value: Any) -> bytes:
-    """A path in the file system's encoding."""
+    """Returns a path in the file system's encoding."""
     try:
         encoded = os.fsencode(value)
     except TypeError:
@@ -122,19 +122,19 @@ def optional_file_name(name: str, value: Any) -> Optional[bytes]:
 
 
 def key_text(name: str, value: Any) -> str:
-    """The value of a scene's key as JSON, which is YAML, too."""
+    """Returns the value of a scene's key as JSON, which is YAML, too."""
     return json.dumps(_plain(name, value), ensure_ascii=False, allow_nan=False)
 
 
 def keys_text(name: str, value: Any) -> Optional[bytes]:
-    """Keys of a scene for a call, a mapping or their text; None where nothing is said."""
+    """Returns keys of a scene, a mapping or their text, for a call; None for None."""
     if value is None:
         return None
     return plain_text(name, value if isinstance(value, str) else key_text(name, value))
 
 
 def _plain(name: str, value: Any) -> Any:
-    """Of dictionaries, lists, texts and numbers alone."""
+    """Returns value as dictionaries, lists, texts and numbers alone."""
     if isinstance(value, numpy.generic) or isinstance(value, numpy.ndarray):
         value = value.tolist()
     if isinstance(value, (str, bool, int)):
@@ -151,7 +151,7 @@ def _plain(name: str, value: Any) -> Any:
 
 
 def initialised(kind: Type[AnyStructure]) -> AnyStructure:
-    """A structure of zeros, which stand for defaults, with its size."""
+    """Returns a structure with its size set and zeros otherwise, which stand for defaults."""
     structure = kind()
     if hasattr(structure, "struct_size"):
         structure.struct_size = ctypes.sizeof(kind)
@@ -159,7 +159,7 @@ def initialised(kind: Type[AnyStructure]) -> AnyStructure:
 
 
 def fill(structure: ctypes.Structure, values: Mapping[str, Any]) -> None:
-    """Assigns each named value, checked for the field's type."""
+    """Assigns each named value after checking it for the field's type."""
     types = {field[0]: field[1] for field in structure._fields_}
     for name, value in values.items():
         kind = types[name]
@@ -171,25 +171,25 @@ def fill(structure: ctypes.Structure, values: Mapping[str, Any]) -> None:
 
 
 def filled(kind: Type[AnyStructure], /, **values: Any) -> AnyStructure:
-    """A structure with the library's defaults but for these values."""
+    """Returns a structure with these values and the library's defaults otherwise."""
     structure = initialised(kind)
     fill(structure, values)
     return structure
 
 
 def given(**values: Any) -> dict[str, Any]:
-    """Those that are not None."""
+    """Returns the values that are not None."""
     return {name: value for name, value in values.items() if value is not None}
 
 
 def shard_values(shard: Tuple[int, int]) -> dict[str, int]:
-    """shard (i, K) as a structure takes it; whether i is one of K is the library's to say."""
+    """Returns shard (i, K) as members of a structure. The library checks that i is one of K."""
     index, count = (whole_number("shard", number, 2**32 - 1) for number in shard)
     return {"shard_index": index, "shard_count": count}
 
 
 def override_texts(overrides: Overrides) -> Any:
-    """An array of "key.path=value" texts, of these or of a mapping of key paths to values."""
+    """Returns an array of "key.path=value" texts, from such texts or from a mapping of key paths."""
     if isinstance(overrides, str):
         raise TypeError("overrides must be a list of texts or a mapping, not one text")
     if isinstance(overrides, Mapping):
@@ -198,7 +198,7 @@ def override_texts(overrides: Overrides) -> Any:
     return (ctypes.c_char_p * len(texts))(*texts)
 
 
-# Types of pixels: linear ones, and those that may have a transfer function.
+# Types of linear pixels, and of pixels that may have a transfer function.
 _KINDS = {
     numpy.dtype(numpy.float32): PixelKind.AMPLITUDE,
     numpy.dtype(numpy.complex64): PixelKind.COMPLEX,
@@ -211,7 +211,7 @@ STORED_KINDS = {
 
 
 def _single_precision(array: Any) -> Any:
-    """The same numbers as float32 or complex64; array itself if it has one of these types."""
+    """Returns the numbers as float32 or complex64; array itself if it has one of these types."""
     if array.dtype in _KINDS:
         return array
     if array.dtype.kind not in "fc":
@@ -230,7 +230,7 @@ def _single_precision(array: Any) -> Any:
 
 
 def _stored(array: Any) -> Any:
-    """The same numbers in a type that has a transfer function."""
+    """Returns the numbers in a type that has a transfer function."""
     if array.dtype.kind == "f":
         return _single_precision(array)
     if array.dtype.newbyteorder("=") in STORED_KINDS:
@@ -239,7 +239,7 @@ def _stored(array: Any) -> Any:
 
 
 def _is_direct(array: Any) -> bool:
-    """Whether the library can read the array where it lies."""
+    """Returns whether the library can read the array without a copy."""
     rows, columns = array.shape
     row_step, column_step = array.strides
     size = array.dtype.itemsize
@@ -249,7 +249,7 @@ def _is_direct(array: Any) -> bool:
 
 
 def library_pixels(patch: Any, transfer: Any = None) -> tuple[s.sonject_pixels, Any]:
-    """The structure for patch and the array that its pointer points into, to be kept meanwhile.
+    """Returns the structure for patch, and the array that its pointer points into and needs.
 
     Arrays of the library's types with contiguous columns are not copied, whatever their row stride.
     """

@@ -1,4 +1,4 @@
-"""What there is to do: inject into arrays, and whole runs on files."""
+"""The calls of the package: injection into arrays, and whole runs on files."""
 
 from __future__ import annotations
 
@@ -45,21 +45,20 @@ def inject(
     *,
     transfer: Optional[AnyTransfer] = None,
 ) -> Result:
-    """Puts the scene's objects into a patch.
+    """Puts the scene's objects into a patch, which is never changed.
 
     patch: array of rows (track positions) x columns (slant ranges), linear amplitudes or complex
-    pixels; its pixel (0, 0) lies where the scene's geometry begins. float32 and complex64 arrays
-    with contiguous columns are read where they lie, other floating point arrays are converted to
-    these, anything else is refused. None where the scene's input makes the patch, uniform or
-    synthetic. The patch is never changed.
+    pixels. Its pixel (0, 0) lies where the scene's geometry begins. float32 and complex64 arrays
+    with contiguous columns are read in place. Other floating point arrays are converted to these;
+    anything else is refused. None if the scene's input makes the patch, uniform or synthetic.
 
-    transfer: the patch's, where it holds grey levels (uint8, uint16, float32), not amplitudes; as
+    transfer: for a patch of grey levels (uint8, uint16, float32) instead of amplitudes, as
     input.transfer of scenes: "{kind: decibel, parameter: 0.378}", or a dictionary. The image then
-    has the patch's type, untouched pixels their grey levels, and each bit is that of a run on a file
-    of these pixels; a row of nothing but 0 is one where nothing was heard and stays empty.
+    has the patch's type, and untouched pixels keep their grey levels. Each bit is that of a run on
+    a file of these pixels. A row of zeros alone is one where nothing was heard, and stays empty.
 
-    progress: called with the finished fraction and the stage's name; a true answer cancels, and
-    what it raises ends the call and is raised here. True shows a bar by tqdm if that is installed.
+    progress: called with the finished fraction and the stage's name. A true answer cancels; an
+    exception ends the call and is raised here. True shows a bar by tqdm if that is installed.
 
     Raises SonjectError, Cancelled, and TypeError or ValueError for arrays that are no patch.
     """
@@ -87,7 +86,7 @@ def _curve(transfer: Optional[AnyTransfer]) -> Optional[Transfer]:
 
 
 def _optional_pixels(patch: Any, transfer: Optional[Transfer]) -> tuple[Any, Any]:
-    """The argument for a patch or None, and the array that it points into, to be kept meanwhile."""
+    """Returns the argument for a patch or None, and the array that it points into and needs."""
     if patch is None:
         return None, None
     pixels, array = library_pixels(patch, transfer)
@@ -118,13 +117,13 @@ def run(
 ) -> bool:
     """Reads the scene's input, injects, and writes the result files into folder.
 
-    labels: formats ("yolo", "voc") of label files beside coco.json.
-    shard: (i, K), i from 1, traces one of K parts of all rays into folder/work and leaves no
-    result: merge makes it of all K. exit_after_s: stops by itself after so long, as if cancelled;
-    the same call then goes on. checkpoint_s: how often what was traced is kept, 60 s by itself.
+    labels: formats ("yolo", "voc") of label files beside coco.json. shard: (i, K), i from 1, traces
+    one of K parts of all rays into folder/work and leaves no result; merge makes the result of all
+    K. exit_after_s: time after which the call stops by itself, as if cancelled; the same call then
+    continues. checkpoint_s: longest time between checkpoints, 60 s by default.
 
-    False, with nothing done, if folder already held the finished result of the same inputs, every
-    file as it was written. A result of other inputs is refused unless overwrites is true.
+    Returns False, with nothing done, if folder already held the finished result of the same inputs,
+    every file as it was written. A result of other inputs is refused unless overwrites is true.
     """
     context = scene.context
     params = filled(
@@ -150,9 +149,8 @@ def merge(
 ) -> bool:
     """Makes the result of all shards in folder, as run would have without shards.
 
-    scene: where it was traced from no scene file; else the shards know their scene; labels: as of
-    run.
-    False, with nothing done, if folder already held the finished result.
+    scene: needed if the traced scene came from no scene file; else the shards know it. labels: as
+    in run. Returns False, with nothing done, if folder already held the finished result.
     """
     context = _context_of(scene, context)
     params = filled(
@@ -166,7 +164,7 @@ def merge(
 
 
 def trace(scene: Scene, file: PathLike, progress: Optional[Progress] = None) -> None:
-    """Traces the scene and writes its sums to a file, which form makes images of."""
+    """Traces the scene and writes its sums to a file, from which form makes images."""
     context = scene.context
     context.work("sonject_trace", context, scene, file_name("file", file), progress=progress)
 
@@ -182,12 +180,12 @@ def form(
     labels: Iterable[Union[str, LabelFormat]] = (),
     overwrites: bool = False,
 ) -> bool:
-    """Forms the image of what trace wrote into file, and writes what run would into folder.
+    """Forms the image of a file that trace wrote, and writes into folder what run would.
 
-    overrides: as of Scene.read, of bandwidth, pulse, resolution, response, measured_response and
-    motion of the sonar, and of input.path; scene: where it was traced from no scene file, or
-    instead of overrides; labels and overwrites: as of run.
-    False, with nothing done, if folder already held the finished result of the same inputs.
+    overrides: as in Scene.read, of bandwidth, pulse, resolution, response, measured_response and
+    motion of the sonar, and of input.path. scene: instead of overrides, and needed if the traced
+    scene came from no scene file. labels, overwrites: as in run. Returns False, with nothing done,
+    if folder already held the finished result of the same inputs.
     """
     context = _context_of(scene, context)
     texts = override_texts(overrides)
@@ -206,7 +204,7 @@ def form(
 
 
 def check(scene: Scene) -> str:
-    """Checks the scene against its input image and describes the geometry, with a drawing."""
+    """Checks the scene against its input image; describes the geometry as a text with a drawing."""
     return scene.context.text("sonject_check", scene.context, scene)
 
 
@@ -223,12 +221,12 @@ def quicklook(
     array: Optional[str] = None,
     context: Optional[Context] = None,
 ) -> None:
-    """Draws an image file, a channel of an XTF or JSF file ("port", "starboard", its number, None for the
-    only one), or the array of that name in an HDF5 or MATLAB file, as a PNG.
+    """Draws an image file as a PNG.
 
-    decibels: ends of the grey scale, None: chosen from the image; altitude_m, geometry: None for
-    what the image's metadata says; transfer: None for plain amplitudes. The latter two have the keys
-    of input.geometry and input.transfer of scenes.
+    channel: "port", "starboard" or its number in an XTF or JSF file, None for the only one. array:
+    its name in an HDF5 or MATLAB file. decibels: ends of the grey scale; None: chosen from the
+    image. altitude_m, geometry: None for the image's metadata. transfer: None for plain amplitudes.
+    geometry and transfer have the keys of input.geometry and input.transfer of scenes.
     """
     context = default_context() if context is None else context
     minimum = maximum = None
@@ -260,11 +258,11 @@ def convert(
     grey: Optional[Tuple[Quantity, Quantity]] = None,
     context: Optional[Context] = None,
 ) -> None:
-    """Makes a file of one format (.tif, .png, .npy, .h5) from a file of another.
+    """Converts a file of one format to another (.tif, .png, .npy, .h5).
 
-    into: the output is a copy of this file with the source's samples; geometry, altitude_m: None for
-    what the source's metadata says. grey: black and white of 8 bit grey levels, dB over full scale;
-    None: the numbers stay as they are.
+    into: a file, of which the output becomes a copy with the source's samples. geometry,
+    altitude_m: None for the source's metadata. grey: black and white of 8 bit grey levels, dB over
+    full scale; None: the numbers stay as they are.
     """
     context = default_context() if context is None else context
     black, white = (None, None) if grey is None else grey
@@ -281,7 +279,7 @@ def convert(
 
 
 def _image_keys(**values: Any) -> dict[str, Optional[bytes]]:
-    """What is said of an image file."""
+    """Returns the keys for an image file as texts."""
     return {name: keys_text(name, value) for name, value in values.items()}
 
 
@@ -292,9 +290,9 @@ def measure(
     *,
     transfer: Optional[AnyTransfer] = None,
 ) -> Measurement:
-    """What an image and its transfer, as inject takes them, say about its seabed.
+    """Measures the seabed of an image; image and transfer are as in inject.
 
-    labels: where no seabed is, such as Result.labels, of the image's shape; None: not told.
+    labels: array of the image's shape, not 0 where there is no seabed, such as Result.labels.
     """
     context = default_context() if context is None else context
     pixels, array = library_pixels(image, _curve(transfer))
@@ -324,13 +322,14 @@ def calibrate(
     picture: Optional[PathLike] = None,
     context: Optional[Context] = None,
 ) -> dict[str, Any]:
-    """What a swath tells of itself: its transfer function, ceiling, looks, response, noise floor and
-    water column, as keys of scenes, and under "measured" each with its standard error, or "not_seen"
-    with the reason.
+    """Estimates a swath's transfer function, ceiling, looks, response, noise floor, water column.
 
-    swath: an image file, or an array of numbers as they are stored, of any transfer function;
-    geometry: keys of input.geometry of scenes, None for what the file's metadata says; output: a file
-    that gets it as JSON, for input.calibration of scenes; picture: a PNG that shows why to believe it.
+    Returns them as keys of scenes. Under "measured" each has its standard error, or "not_seen" with
+    the reason.
+
+    swath: an image file, or an array of stored numbers with any transfer function. geometry: keys
+    of input.geometry of scenes; None for the file's metadata. output: a file for the answer as
+    JSON, for input.calibration of scenes. picture: a PNG that shows the evidence.
     """
     context = default_context() if context is None else context
     is_file = isinstance(swath, (str, bytes)) or hasattr(swath, "__fspath__")
@@ -363,11 +362,10 @@ def measure_contact(
     transfer: Optional[AnyTransfer] = None,
     context: Optional[Context] = None,
 ) -> ContactMeasures:
-    """How long, wide and bright a contact's highlight and shadow are in an image with its transfer, as
-    inject takes them.
+    """Measures extent and brightness of a contact's highlight and shadow.
 
-    box: around both, with some seabed; None: the brightest highlight of the image. Spacings: 0 where
-    they are unknown, and lengths are known in pixels alone.
+    image, transfer: as in inject. box: around both, with some seabed; None: the brightest highlight
+    of the image. Spacings: 0 if unknown; lengths are then known in pixels alone.
     """
     context = default_context() if context is None else context
     pixels, array = library_pixels(image, _curve(transfer))
@@ -397,7 +395,7 @@ def _find_layout(scene: Scene, rows: int, columns: int) -> ElementLayout:
 
 
 def element_layout(scene: Scene, shape: tuple[int, int] = (0, 0)) -> ElementLayout:
-    """What element_series gives for a patch of this shape, rows x columns.
+    """Describes the series that element_series gives for a patch of this shape, rows x columns.
 
     (0, 0): for the patch that the scene's input makes, uniform or synthetic.
     """
@@ -413,12 +411,12 @@ def element_series(
     *,
     transfer: Optional[AnyTransfer] = None,
 ) -> Array:
-    """What each hydrophone of the scene's array hears: pings x hydrophones x samples.
+    """Computes each hydrophone's time series: pings x hydrophones x samples.
 
-    complex64, or float32 in pass band; over the source's pressure at 1 m, or in Pa where the array
-    has a source_level_db. Heard is what inject draws: targets and, where it resynthesises, the
-    seabed; in composite mode the seabed is the measured patch, which has no element data. patch,
-    progress, transfer, and what is raised: as for inject.
+    Series are complex64, or float32 in pass band; relative to the source's pressure at 1 m, or in
+    Pa if the array has a source_level_db. They contain what inject draws: targets and, in
+    resynthesise mode, the seabed. In composite mode the seabed is the measured patch, which has no
+    element data. patch, progress, transfer, and exceptions: as in inject.
     """
     pixels, array = _optional_pixels(patch, _curve(transfer))
     layout = _find_layout(scene, *((0, 0) if array is None else array.shape))
@@ -442,9 +440,9 @@ def run_elements(
     *,
     overwrites: bool = False,
 ) -> None:
-    """Reads the scene's input, and writes series.npy and elements.json into folder.
+    """Writes the series of the scene's input into folder: series.npy and elements.json.
 
-    Series of other inputs there are refused unless overwrites is true.
+    Series of other inputs in folder are refused unless overwrites is true.
     """
     params = filled(
         s.sonject_run_params, folder=file_name("folder", folder), overwrites=bool(overwrites)
@@ -461,10 +459,10 @@ def absorption(
     depth_m: Quantity = 0.0,
     ph: float = 8.0,
 ) -> float:
-    """Absorption of sea water in dB/m after Francois and Garrison (1982).
+    """Returns the absorption of sea water in dB/m after Francois and Garrison (1982).
 
-    200 Hz...1 MHz, -2...30 degrees Celsius, 0...40 per mille, 0...5000 m below the sea surface,
-    pH 7...9; NaN outside of these.
+    200 Hz...1 MHz, -2...30 degrees Celsius, 0...40 per mille, 0...5000 m below the sea surface, pH
+    7...9; NaN outside these ranges.
     """
     given_in_order = {
         "frequency_hz": frequency_hz, "temperature_celsius": temperature_celsius,

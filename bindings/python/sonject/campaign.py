@@ -20,22 +20,23 @@ from .scene import Scene
 
 
 class Campaign(Handle):
-    """A campaign file that was read and checked; len() is the number of its images.
+    """A campaign file, read and checked; len() is the number of its images.
 
-    As a sequence it makes images in memory, without files: campaign[17] is the Result of image 17,
-    the same however often and in whatever order it is asked for, so that
-    ``for result in campaign`` or a loader with workers of its own can train on it: the workers are
-    threads, or processes. Those that are spawned get it pickled and read the file again. Those that
-    are forked inject on the device native alone.
+    As a sequence it makes images in memory, without files. campaign[17] is the Result of image 17,
+    the same however often and in whatever order it is asked for. ``for result in campaign``, or a
+    loader with workers of its own, can train on it. Workers are threads or processes. Spawned
+    processes get the campaign pickled and read the file again. Forked ones inject on the device
+    native alone.
 
-    The image of a result is linear, whatever its swath's type: float32 amplitudes, or complex64
-    of a complex swath. Amplitudes are those of the numbers that run() writes, rounded and limited as
-    these are: the swath's Transfer makes the one of the other. Full scale is 1, or what the curve of
-    kind decibel says. A JPEG loses more.
+    The image of a result is linear, whatever its swath's type: float32 amplitudes, or complex64 for
+    a complex swath. Amplitudes are rounded and limited like the numbers that run() writes; the
+    swath's Transfer converts between both. Full scale is 1, or the value that a curve of kind
+    decibel sets. A JPEG loses more.
 
-    calibration: auto is for run(), which keeps the file in its folder: name that for images in memory.
+    calibration: auto is for run(), which keeps the file in its folder; name that file for images in
+    memory.
 
-    overrides: as of Scene.read, but of the campaign's keys: ``{"images": 100}``.
+    overrides: as in Scene.read, but of the campaign's keys: ``{"images": 100}``.
     """
 
     _noun = "campaign"
@@ -82,7 +83,7 @@ class Campaign(Handle):
         return index % count
 
     def describe(self, number: int) -> CampaignImage:
-        """What is drawn for an image."""
+        """Returns the values drawn for an image."""
         told = initialised(s.sonject_campaign_image)
         self._context.call(
             "sonject_campaign_describe", self, self._id(number), ctypes.byref(told)
@@ -90,7 +91,7 @@ class Campaign(Handle):
         return CampaignImage.from_structure(told)
 
     def scene(self, number: int) -> Scene:
-        """The scene of an image: its input is the swath's file, its patch the image."""
+        """Returns the scene of an image: its input is the swath's file, its patch the image."""
         pointer = self._context.make(
             s.sonject_scene, "sonject_campaign_scene", self._context, self, self._id(number)
         )
@@ -130,10 +131,10 @@ class Campaign(Handle):
     ) -> bool:
         """Makes the images that the folder lacks, and the data set's documents once all are there.
 
-        shard: (i, k) makes ids with id % k == i - 1, for merge; only: makes this image alone, anew.
-        exit_after_s: stops by itself after so long, as if cancelled; the same call then goes on.
-        overwrites: another campaign's images in folder are removed; else they are refused.
-        False if there was nothing left to do.
+        shard: (i, k) makes ids with id % k == i - 1, for merge. only: makes this image alone, again
+        if it exists. exit_after_s: time after which the call stops by itself, as if cancelled; the
+        same call then continues. overwrites: removes another campaign's images in folder; else they
+        are refused. Returns False if nothing was left to do.
         """
         params = filled(
             s.sonject_campaign_run_params,
@@ -173,10 +174,10 @@ def fit_campaign(
 ) -> None:
     """Writes a campaign file like the one at path whose targets measure as real contacts do.
 
-    contacts: as sonject fit takes them: a COCO file, a .csv file, a folder of YOLO's or VOC's labels,
-    or a .yaml file of quantiles. fitted: the file to write, in path's folder; a page comes beside it.
-    boxes: what labels are around where their class does not tell: both, highlight or shadow.
-    classes: names of those that alone are taken; none: all are.
+    contacts: as for sonject fit: a COCO file, a .csv file, a folder of YOLO's or VOC's labels, or a
+    .yaml file of quantiles. fitted: the file to write, in path's folder; a page comes beside it.
+    boxes: the part of contacts that boxes enclose, unless their class tells it: both, highlight or
+    shadow. classes: names of the classes to use; none: all.
     """
     context = default_context() if context is None else context
     texts = override_texts(overrides)

@@ -1,4 +1,4 @@
-"""Contexts: one device each, and whatever was made with them."""
+"""Contexts, one device each, and the handles made with them."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from .enumerations import Status
 from .errors import Cancelled, SonjectError
 
 
-# Called with the finished fraction 0...1, 1 at the end, and the stage's name; a true answer asks to
-# cancel. True: a bar by tqdm, or nothing where that is not installed.
+# A function called with the finished fraction 0...1, 1 at the end, and the stage's name; a true
+# answer cancels. True: a bar by tqdm, or nothing if tqdm is not installed.
 Progress = Union[bool, Callable[[float, str], Any]]
 
 
 class Bar:
-    """A bar by tqdm."""
+    """A progress bar by tqdm."""
 
     def __init__(self, tqdm: Any) -> None:
         self._bar = tqdm(total=1.0, bar_format="{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining}")
@@ -35,7 +35,7 @@ class Bar:
         self._bar.update(fraction - self._bar.n)
 
     def close(self) -> None:
-        """Leaves it where the work ended."""
+        """Leaves the bar where the work ended."""
         self._bar.close()
 
 
@@ -63,18 +63,18 @@ class ProgressBridge:
         try:
             function = self._progress if self._bar is None else self._bar
             return 0 if function is None else int(bool(function(fraction, text(stage))))
-        except BaseException as error:  # goes on to the caller of the library
+        except BaseException as error:  # raised again for the caller of the library
             self.error = error
             return 1
 
     def close(self) -> None:
-        """At the end of the work."""
+        """Ends the bar at the end of the work."""
         if self._bar is not None:
             self._bar.close()
 
 
 class LogBridge:
-    """Calls a log function. Does not refer to the context, which would then live for ever."""
+    """Calls a log function. It holds no reference to the context, which would then live for ever."""
 
     def __init__(self, log: Callable[[int, str], Any]) -> None:
         self.error: Optional[BaseException] = None
@@ -84,12 +84,12 @@ class LogBridge:
     def _called(self, _user: Optional[int], level: int, line: Optional[bytes]) -> None:
         try:
             self._log(logging.WARNING if level else logging.INFO, text(line))
-        except BaseException as error:  # goes on to the caller of the library
+        except BaseException as error:  # raised again for the caller of the library
             self.error = error
 
 
 def counted(number: int, word: str) -> str:
-    """1 object, 2 objects."""
+    """Returns "1 object", "2 objects" and so on."""
     return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 
@@ -97,26 +97,25 @@ Self = TypeVar("Self", bound="Handle")
 
 
 class Handle:
-    """Something that was made with a context and is released with its last reference, or sooner by
-    close() or a with statement."""
+    """An object made with a context; released by its last reference, close() or a with statement."""
 
     _noun = "handle"
 
     def __init__(self, context: "Context", pointer: Any) -> None:
         self._context = context
         self._pointer = pointer
-        # The finalizer keeps the context alive, which must be released last.
+        # The finalizer keeps the context alive: the context must be released last.
         self._finalizer = weakref.finalize(self, context.release, pointer)
         context.adopt(self)
 
     @property
     def context(self) -> "Context":
-        """The context that it was made with."""
+        """The context that this was made with."""
         return self._context
 
     @property
     def pointer(self) -> Any:
-        """The C handle. Raises ValueError once it is closed."""
+        """The C handle. Raises ValueError once it was closed."""
         if not self._finalizer.alive:
             raise ValueError(f"this sonject {self._noun} was closed")
         return self._pointer
@@ -125,10 +124,10 @@ class Handle:
         raise NotImplementedError
 
     def __repr__(self) -> str:
-        """In one line, whatever state it is in."""
+        """Returns one line, whatever the state."""
         try:
             told = " " + self._summary()
-        except (RuntimeError, SonjectError, ValueError) as error:  # in a callback, wrong, closed
+        except (RuntimeError, SonjectError, ValueError) as error:  # in a callback; a wrong scene; closed
             told = ": " + str(error).partition("\n")[0]
         return f"<sonject.{type(self).__name__}{told}>"
 
@@ -144,17 +143,17 @@ class Handle:
 
 
 class Context:
-    """Works with one device.
+    """One device, and the calls that use it.
 
-    device: part of the device's name, None for the one that SONJECT_DEVICE names, else a GPU, else
-    native, this processor; log: called with a level of logging, WARNING for notes that a user must
-    see and else INFO, and a line, as a logger's log is; None for that of the logger "sonject";
-    decodes_in_process: read images and HDF5 here, not in a child (a damaged file may end this);
-    threads: of a launch on native, 0 for one a processor.
+    device: part of the device's name; None: the one named by SONJECT_DEVICE, else a GPU, else
+    native, this processor. log: called like a logger's log, with a level of logging and a line; the
+    level is WARNING for notes that a user must see, else INFO. None: the log of the logger
+    "sonject". decodes_in_process: reads images and HDF5 in this process instead of a child (a
+    damaged file may end this process). threads: of a launch on native; 0: one per processor.
 
     Calls from several threads on one context wait for each other; use a context per thread to work
-    at once. The device native works in forked children, too; OpenCL's are refused in a child whose
-    parent used OpenCL.
+    at once. The device native works in forked children, too. OpenCL's devices are refused in a
+    child whose parent used OpenCL.
     """
 
     def __init__(
@@ -188,12 +187,12 @@ class Context:
         self._finalizer = weakref.finalize(self, _release_context, self._pointer, self._log)
 
     def close(self) -> None:
-        """Releases the context, after the scenes and results that were made with it."""
+        """Releases the context, after the scenes and results made with it."""
         for handle in list(self._handles.values()):
             handle.close()
         if self._finalizer.alive:
             with self._exclusive():
-                pass  # waits for a call that still runs and releases what it kept waiting
+                pass  # waits for a running call, and releases the handles that waited for its end
             self._finalizer()
 
     def __repr__(self) -> str:
@@ -207,7 +206,7 @@ class Context:
         self.close()
 
     def devices(self) -> list[Device]:
-        """The devices that there are: native, then OpenCL's."""
+        """Lists the devices: native, then OpenCL's."""
         count = ctypes.c_size_t()
         self.call("sonject_devices", self, None, 0, ctypes.byref(count))
         found = (s.sonject_device_info * count.value)()
@@ -223,18 +222,18 @@ class Context:
 
     @property
     def is_usable(self) -> bool:
-        """False once it is closed."""
+        """False once the context is closed."""
         return self._finalizer.alive
 
     def call(self, name: str, *arguments: Any, bridge: Optional[ProgressBridge] = None) -> None:
-        """Calls the library function name, which answers a status.
+        """Calls the library function name, which returns a status.
 
-        Handles among the arguments stand for their pointers. Raises what callbacks raised first,
+        Handles among the arguments stand for their pointers. Raises exceptions of callbacks first,
         then SonjectError.
         """
         try:
             with self._exclusive():
-                # Looked up under the lock: another thread may close a handle until then.
+                # Pointers are read under the lock: another thread may close a handle before.
                 values = [
                     each.pointer if isinstance(each, (Handle, Context)) else each
                     for each in arguments
@@ -262,12 +261,12 @@ class Context:
         progress: Optional[Progress],
         outputs: Sequence[Any] = (),
     ) -> None:
-        """Calls a function that takes a progress callback behind its arguments, outputs last."""
+        """Calls a function with a progress callback behind its arguments, and outputs last."""
         bridge = ProgressBridge(progress)
         self.call(name, *arguments, bridge.callback, None, *outputs, bridge=bridge)
 
     def complete(self, name: str, *arguments: Any, progress: Optional[Progress]) -> bool:
-        """Work that may have been finished before; whether there was anything to do."""
+        """Does work that may have been finished before; returns whether there was anything to do."""
         was_finished = ctypes.c_int()
         self.work(name, *arguments, progress=progress, outputs=[ctypes.byref(was_finished)])
         return not was_finished.value
@@ -293,19 +292,19 @@ class Context:
         try:
             self.call(name, *arguments, ctypes.byref(pointer), bridge=bridge)
         except BaseException:
-            if pointer:  # made, but a callback raised something
+            if pointer:  # made, but a callback raised an exception
                 self.release(pointer)
             raise
         return pointer
 
     def adopt(self, handle: Handle) -> None:
-        """Has handle closed before the context is."""
+        """Registers a handle to be closed before the context."""
         self._handles[id(handle)] = handle  # scenes have no hash
 
     def release(self, pointer: Any) -> None:
         """Gives a handle back to the library."""
-        # Runs wherever Python collects garbage, perhaps inside a callback of a running call: then
-        # the release waits for that call's end, since a context works for one thread at a time.
+        # This runs wherever Python collects garbage, perhaps inside a callback of a running call.
+        # The release then waits for that call's end: a context works for one thread at a time.
         self._waiting.append(pointer)
         if self._lock.acquire(blocking=False):
             try:
@@ -340,7 +339,7 @@ _of_thread = threading.local()
 
 
 def default_context() -> Context:
-    """The calling thread's own context on the default device."""
+    """Returns the calling thread's own context on the default device."""
     context: Optional[Context] = getattr(_of_thread, "context", None)
     if context is None or not context.is_usable:
         context = Context()
@@ -349,5 +348,5 @@ def default_context() -> Context:
 
 
 def devices() -> list[Device]:
-    """The devices that there are: native, then OpenCL's."""
+    """Lists the devices: native, then OpenCL's."""
     return default_context().devices()

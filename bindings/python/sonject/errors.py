@@ -1,4 +1,4 @@
-"""What the package raises when the library refuses."""
+"""The exceptions for failed calls of the library."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from .enumerations import Status
 
 
 class SonjectError(Exception):
-    """A call of the library failed.
+    """A failed call of the library.
 
-    status: which kind of failure; message: says what is wrong and where, in one line, or in
-    one for each mistake of a scene or campaign file.
+    status: the kind of failure. message: names what is wrong and where, in one line, or in one line
+    for each mistake of a scene or campaign file.
     """
 
     def __init__(self, status: Status, message: str) -> None:
@@ -22,4 +22,4 @@ class SonjectError(Exception):
 
 
 class Cancelled(SonjectError):
-    """The progress function asked to stop. Nothing was published."""
+    """A call that the progress function asked to stop. Nothing was published."""

@@ -1,4 +1,4 @@
-"""Meshes in memory, as files that scenes name."""
+"""Meshes in memory as files that scenes can name."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ from ._values import PathLike, file_name
 
 
 def write_mesh(path: PathLike, vertices: Any, faces: Any) -> str:
-    """Writes a PLY file of triangles and gives its name, for a scene's key:
+    """Writes a PLY file of triangles, whole or not at all, and returns its name, for a scene's key:
 
     >>> scene["objects[0]"] = {"shape": "mesh", "mesh": write_mesh("rock.ply", vertices, faces)}
 
-    vertices: an array of points x 3, by itself in m; faces: triangles x 3, numbers of vertices from 0.
+    vertices: points x 3, in m unless the scene has a unit. faces: triangles x 3, numbers of
+    vertices from 0.
     """
     points, corners = numpy.asarray(vertices), numpy.asarray(faces)
     for name, array, kinds in (("vertices", points, "fiu"), ("faces", corners, "iu")):

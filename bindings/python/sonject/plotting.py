@@ -1,4 +1,4 @@
-"""Pictures by matplotlib, which is imported when the first one is drawn."""
+"""Pictures by matplotlib, which is imported for the first of them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def _pyplot() -> Any:
 
 
 def _extent(shape: tuple[int, int], geometry: Mapping[str, Any]) -> tuple[float, float, float, float]:
-    """Outer edges of the pixels in m: first and last slant range, last and first track position."""
+    """Returns outer edges of the pixels, m: first and last slant range, last and first track place."""
     rows, columns = shape
     given = {"first_along_track": 0.0, **geometry}
     wide, high, left, top = (
@@ -37,11 +37,11 @@ def draw(
     decibels: Optional[tuple[Quantity, Quantity]] = None,
     axes: Any = None,
 ) -> Any:
-    """Draws an image's magnitudes in dB; gives matplotlib's AxesImage.
+    """Draws an image's magnitudes in dB; returns matplotlib's AxesImage.
 
-    image: rows (track positions) x columns (slant ranges), amplitudes or complex pixels; geometry:
-    as input.geometry of scenes, labels the axes; None: in pixels; decibels: ends of the grey scale, None: those of
-    sonject quicklook, percentiles 3 and 99.8; axes: matplotlib's to draw in, None: the current ones.
+    image: rows (track positions) x columns (slant ranges), amplitudes or complex pixels. geometry:
+    labels the axes, as input.geometry of scenes; None: pixels. decibels: ends of the grey scale;
+    None: percentiles 3 and 99.8, as sonject quicklook. axes: matplotlib's; None: the current ones.
     """
     axes = _pyplot().gca() if axes is None else axes
     levels = levels_of(image)
@@ -68,10 +68,10 @@ def draw_result(
     decibels: Optional[tuple[Quantity, Quantity]] = None,
     figure: Any = None,
 ) -> Any:
-    """Draws the patch as it was, with the objects in it, and with their labels; gives the figure.
+    """Draws the patch before, with the objects, and with their labels; returns the figure.
 
-    patch: what inject was given; geometry, decibels: as of draw, the same for all three; figure:
-    matplotlib's to draw in, None: a new one.
+    patch: the argument of inject. geometry, decibels: as in draw, the same for all three. figure:
+    matplotlib's; None: a new one.
     """
     figure = _pyplot().figure(figsize=(12, 4), layout="constrained") if figure is None else figure
     panels = figure.subplots(1, 3, sharex=True, sharey=True)

@@ -1,4 +1,4 @@
-"""What an injection gives back."""
+"""Results of injections."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _PIXEL_TYPES = {
     PixelKind.UINT16: numpy.uint16,
 }
 
-# Of the truth, what notebooks show: heading, member of ObjectTruth, how it is written.
+# The part of the truth that notebooks show: heading, member of ObjectTruth, format.
 _SHOWN = (
     ("row", "row", ".1f"),
     ("column", "column", ".1f"),
@@ -84,7 +84,7 @@ class Result(Handle):
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Rows and columns of every layer."""
+        """The rows and columns of every layer."""
         return self._size[:2]
 
     def _layer(self, layer: Layer) -> Array:
@@ -106,11 +106,11 @@ class Result(Handle):
 
     @property
     def transfer(self) -> Optional[Transfer]:
-        """How the image's grey levels came from amplitudes; None: it is linear."""
+        """The function from amplitudes to the image's grey levels; None: the image is linear."""
         return self._transfer
 
     def _linear(self, image: Any) -> Any:
-        """Amplitudes or complex pixels of an image of this transfer."""
+        """Returns the amplitudes or complex pixels of an image with this transfer."""
         return image if self._transfer is None else self._transfer.to_amplitude(image)
 
     @cached_property
@@ -120,14 +120,14 @@ class Result(Handle):
 
     @cached_property
     def energy(self) -> Array:
-        """float32; expected cross-section in m^2 of what was traced, no speckle, no noise."""
+        """float32; expected cross-section in m^2 of the traced scene, without speckle and noise."""
         return self._layer(Layer.ENERGY)
 
     @cached_property
     def visibility(self) -> Array:
-        """float32; the seabed's energy that arrives, over that of a level seabed without objects.
+        """float32; the seabed's energy that arrives, relative to a level seabed without objects.
 
-        0...1 without relief; slopes that face the sonar return more than 1.
+        It is 0...1 without relief; slopes that face the sonar return more than 1.
         """
         return self._layer(Layer.VISIBILITY)
 
@@ -153,8 +153,8 @@ class Result(Handle):
 
     @cached_property
     def order_energies(self) -> list[Array]:
-        """float32, one for each number of interactions from 1 on: the part of energy that paths
-        have which meet so many surfaces. Empty unless the injection asked for order_energies."""
+        """float32 arrays, one for each number of interactions from 1 on: the part of energy from
+        paths that meet so many surfaces. Empty unless the injection asked for order_energies."""
         energies: list[Array] = []
         while True:
             energy = numpy.empty(self.shape, numpy.float32)
@@ -190,7 +190,7 @@ class Result(Handle):
         return f"{rows} x {columns} pixels, {counted(self._object_count, 'object')}"
 
     def _repr_html_(self) -> Optional[str]:
-        """For notebooks: the image in dB and the truth. None once it is closed."""
+        """Returns the image in dB and the truth for notebooks; None once the result is closed."""
         try:
             image, truths = self._linear(self.image), self.objects
         except ValueError:

@@ -1,4 +1,4 @@
-"""Scenes: what the sonar sees."""
+"""Scenes, with the keys of scene files."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class Scene(Handle):
-    """What the sonar sees, in the keys of scene files, which tools/scenes/KEYS.md lists.
+    """A scene, in the keys of scene files, which tools/scenes/KEYS.md lists.
 
     >>> scene = Scene(
     ...     sonar={"frequency": "100 kHz", "bandwidth": "30 kHz", "altitude": 10},
@@ -35,10 +35,9 @@ class Scene(Handle):
     ... )
     >>> scene["objects[0].burial"] = "5 cm"
 
-    A number is in m, Hz, m/s, degrees, s; a text may say another unit. Sections are dictionaries,
-    lists may be arrays. Where the image is an array that a call is given, ``input`` says its
-    geometry alone. Names of files are meant from the working directory. context: None for the
-    thread's own one.
+    A number is in m, Hz, m/s, degrees, s; a text may have another unit. Sections are dictionaries,
+    lists may be arrays. If a call is given the image as an array, ``input`` has only its geometry.
+    File names are relative to the working directory. context: None for the thread's own one.
     """
 
     _noun = "scene"
@@ -60,10 +59,10 @@ class Scene(Handle):
         overrides: Overrides = (),
         context: Optional[Context] = None,
     ) -> "Scene":
-        """Reads a scene file; of one with bands the override "band" chooses one of ``Scene.bands``.
+        """Reads a scene file. If it has bands, the override "band" chooses one of ``Scene.bands``.
 
-        overrides: "key.path=value" texts, or a mapping of key paths to values, which replace or
-        add keys: ``{"input.path": "swath.tif", "objects[0].heading": "30 deg"}``.
+        overrides: "key.path=value" texts, or a mapping of key paths to values, which replace or add
+        keys: ``{"input.path": "swath.tif", "objects[0].heading": "30 deg"}``.
         """
         context = default_context() if context is None else context
         texts = override_texts(overrides)
@@ -73,7 +72,7 @@ class Scene(Handle):
 
     @classmethod
     def _adopt(cls, context: Context, pointer: Any) -> "Scene":
-        """The scene behind a handle that the library made."""
+        """Returns the scene of a handle that the library made."""
         scene = cls.__new__(cls)
         Handle.__init__(scene, context, pointer)
         return scene
@@ -82,7 +81,7 @@ class Scene(Handle):
     def bands(
         path: PathLike, overrides: Overrides = (), context: Optional[Context] = None
     ) -> list[str]:
-        """Names of the bands that a scene file, with overrides as for ``read``, leaves to be chosen."""
+        """Returns the bands from which an override must choose; arguments as in ``read``."""
         texts = override_texts(overrides)
         context = default_context() if context is None else context
         params = filled(s.sonject_scene_read_params, override_count=len(texts),
@@ -93,17 +92,17 @@ class Scene(Handle):
     def __setitem__(self, key: str, value: Any) -> None:
         """Sets a key, a whole section or an entry: ``scene["objects[1]"] = {...}``.
 
-        The index behind a list's last adds an entry. Values are checked when the scene is used next.
+        The index behind a list's last one adds an entry. The next use of the scene checks values.
         """
         self._context.call("sonject_scene_set", self, plain_text("key", key),
                            plain_text(key, key_text(key, value)))
 
     def __getitem__(self, key: str) -> Any:
-        """What the scene says at a key: a number, a text, a dictionary or a list; "" for all of it.
+        """Returns the value of a key: a number, text, dictionary or list; "" is the whole scene.
 
-        Quantities are the numbers that say the same without a unit: in SI units and degrees. Names of
-        files are absolute. A table in memory has "columns" and "values". Raises KeyError where the
-        scene says nothing: defaults, and what a calibration adds, are not told.
+        Quantities are numbers in SI units and degrees. File names are absolute. A table in memory
+        has "columns" and "values". Raises KeyError if the scene does not set the key: defaults and
+        values added by a calibration are left out.
         """
         value = self._get(key)
         if value is None:
@@ -111,7 +110,7 @@ class Scene(Handle):
         return value
 
     def __contains__(self, key: object) -> bool:
-        """Whether the scene says something at a key."""
+        """Returns whether the scene sets a key."""
         return self._get(key) is not None
 
     def _get(self, key: Any) -> Any:
@@ -120,8 +119,8 @@ class Scene(Handle):
     def set_table(self, key: str, values: Any = None, /, **columns: Any) -> None:
         """Sets a key that names a file of numbers to numbers in memory.
 
-        Columns have the names that the file's would have,
-        ``scene.set_table("sonar.motion.file", along_track_m=x, sway_m=sway)``; the heights of
+        Columns have the names that the file's would have:
+        ``scene.set_table("sonar.motion.file", along_track_m=x, sway_m=sway)``. The heights of
         ``seabed.relief[0].heights.file`` are an array of rows and columns instead.
         """
         if (values is None) == (not columns):
@@ -140,14 +139,14 @@ class Scene(Handle):
                            table.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), *table.shape)
 
     def text(self) -> str:
-        """The scene as the text of a scene file, with all that was set but tables in memory.
+        """Returns the scene as the text of a scene file, without tables in memory.
 
-        Names of files in it are absolute.
+        File names in the text are absolute.
         """
         return self._context.text("sonject_scene_text", self)
 
     def write(self, path: PathLike) -> None:
-        """Writes a scene file, whole or not at all. Raises ValueError where a table is in memory."""
+        """Writes a scene file, whole or not at all. Raises ValueError if a table is in memory."""
         content = self._whole_text()
         name = os.fsdecode(file_name("path", path))
         part = f"{name}.{os.getpid()}-{threading.get_ident()}.part"
@@ -169,12 +168,12 @@ class Scene(Handle):
         return self.text()
 
     def __eq__(self, other: object) -> bool:
-        """Whether both say the same: 10, "10 m" and "1000 cm" are equal."""
+        """Returns whether both mean the same: 10, "10 m" and "1000 cm" are equal."""
         if not isinstance(other, Scene):
             return NotImplemented
         return self is other or bool(self[""] == other[""])
 
-    __hash__ = None  # type: ignore[assignment]  # what it says may change
+    __hash__ = None  # type: ignore[assignment]  # scenes are mutable
 
     def __copy__(self) -> "Scene":
         return _of_text(self._whole_text(), self._context)
@@ -189,7 +188,7 @@ class Scene(Handle):
         return f"of {counted(self.object_count, 'object')}"
 
     def _repr_html_(self) -> Optional[str]:
-        """For notebooks: the scene's text. None where there is none, or it is closed."""
+        """Returns the scene's text for notebooks; None if it has none or is closed."""
         try:
             return f"<pre>{html.escape(self.text())}</pre>"
         except (SonjectError, ValueError):
@@ -197,7 +196,7 @@ class Scene(Handle):
 
     @property
     def object_count(self) -> int:
-        """How many objects it has."""
+        """The number of objects."""
         count = ctypes.c_uint32()
         self._context.call("sonject_scene_object_count", self, ctypes.byref(count))
         return count.value
@@ -217,7 +216,7 @@ def _of_text(content: str, context: Optional[Context] = None) -> Scene:
 
 
 def _tables(key: str, value: Any) -> Iterator[str]:
-    """Keys of the tables in memory, in what the scene says at a key."""
+    """Yields the keys of tables in memory below the value of a key."""
     if isinstance(value, dict) and set(value) == {"columns", "values"}:
         yield key
     elif isinstance(value, dict):

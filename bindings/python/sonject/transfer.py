@@ -1,4 +1,4 @@
-"""Transfer functions: grey levels of amplitudes, and amplitudes of grey levels."""
+"""Transfer functions between amplitudes and grey levels."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from .keys import InputTransfer
 
 
 class Transfer(Dict[str, Any]):
-    """How the numbers of an image came from amplitudes: the keys of input.transfer of scenes.
+    """The function from amplitudes to the numbers of an image: keys of input.transfer of scenes.
 
     >>> curve = Transfer("{kind: decibel, parameter: 0.378}")
     >>> amplitudes = curve.to_amplitude(grey_levels)
 
-    Amplitudes are over full scale: 1 is the largest number of uint8 or uint16, or 1.0 of float32.
+    At full scale the amplitude is 1: the largest number of uint8 or uint16, or 1.0 of float32.
     """
 
     def __init__(self, keys: Union[str, Mapping[str, Any]]) -> None:
@@ -30,14 +30,14 @@ class Transfer(Dict[str, Any]):
             raise TypeError("a transfer function is a dictionary of keys or its text, such as "
                             f'"{{kind: decibel, parameter: 0.5}}", of a kind {kinds}; not {keys!r}')
         super().__init__(keys)
-        self.to_amplitude(numpy.zeros(1, numpy.uint8))  # refuses keys that are none
+        self.to_amplitude(numpy.zeros(1, numpy.uint8))  # refuses unknown keys
 
     def to_amplitude(self, stored: Any) -> Array:
-        """Linear amplitudes, float32, of an array of grey levels: uint8, uint16 or float32."""
+        """Returns linear amplitudes, float32, of grey levels: an array of uint8, uint16 or float32."""
         return _converted(stored, self, numpy.dtype(numpy.float32), None)
 
     def from_amplitude(self, amplitudes: Any, dtype: Any = numpy.uint8) -> Array:
-        """Grey levels (uint8, uint16 or float32) of linear amplitudes, as a run stores them: whole
+        """Returns grey levels (uint8, uint16 or float32) of linear amplitudes. As in a run, whole
         numbers are rounded and limited to full scale."""
         kind = numpy.dtype(dtype)
         if kind not in STORED_KINDS:

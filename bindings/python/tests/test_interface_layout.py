@@ -1,4 +1,4 @@
-"""What generate.py makes of the headers: against the C compiler, and where it does not understand."""
+"""The output of generate.py: against the C compiler, and refusals of unknown declarations."""
 
 import ctypes
 import os
@@ -21,7 +21,7 @@ STRUCTURES = {
 
 
 def layout_program():
-    """A C program that prints the size of each structure and the place of each field."""
+    """Returns a C program that prints the size of each structure and the place of each field."""
     lines = ["#include <stddef.h>", "#include <stdio.h>", "#include <sonject/sonject.h>"]
     lines.append("int main(void) {")
     for name, kind in STRUCTURES.items():

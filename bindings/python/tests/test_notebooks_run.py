@@ -1,4 +1,4 @@
-"""The notebooks run from end to end; what they state they assert themselves."""
+"""The notebooks run from end to end, with the assertions in them."""
 
 import nbclient
 import nbformat

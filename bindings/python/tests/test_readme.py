@@ -19,7 +19,7 @@ ELSEWHERE = ("SONJECT_LIBRARY", "tools/scenes/KEYS.md", "PYTHONPATH", "sonject.p
 
 @pytest.fixture(scope="module")
 def names():
-    """What the README's program leaves, and what the text under it means by its words."""
+    """Returns names that the README's program leaves, for the words of the text under it."""
     example = EXAMPLES[0]
     names = dict(vars(sonject))
     exec(compile(example, "README.md", "exec"), names)
@@ -43,7 +43,7 @@ def test_the_example_of_a_campaign_runs(campaign_folder, capsys, monkeypatch):
 
 
 def test_the_example_of_a_data_set_has_the_boxes_of_targets(campaign_folder, monkeypatch):
-    """Whose outermost pixels are those of the layer labels; clutter has none."""
+    """The outermost pixels of boxes are those of the layer labels; clutter has no boxes."""
     monkeypatch.chdir(campaign_folder)
     with open("campaign.yaml", "a", encoding="utf-8") as file:
         file.write("clutter: {number: 1, alone: 0.2, objects: [{class: stone, object: {shape: sphere, diameter: 25 cm}}]}\n")
@@ -65,7 +65,7 @@ def test_the_example_of_a_data_set_has_the_boxes_of_targets(campaign_folder, mon
 
 
 def calls():
-    """Spans that say more than a name."""
+    """Returns the spans that are more than a name."""
     found = [span for span in SPANS if not span.startswith(ELSEWHERE)]
     return [span for span in found if re.search(r"[(\[.]", span)]
 
@@ -114,7 +114,7 @@ def test_what_the_text_calls_can_be_called(names, span, tmp_path, monkeypatch):
 
 
 def test_names_in_the_text_exist(names):
-    """Of the package, of its classes, or of its functions' parameters."""
+    """Names may be of the package, of its classes, or of its functions' parameters."""
     source = "".join(path.read_text(encoding="utf-8")
                      for path in PACKAGE.glob("*.py"))
     words = set(re.findall(r"\w+", source)) | {"float32", "complex64"}

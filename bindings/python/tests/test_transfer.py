@@ -112,7 +112,7 @@ def test_amplitudes_that_have_no_grey_level_are_refused(amplitudes, kind, error,
 
 
 def grey_levels(kind, curve, amplitudes):
-    """A picture with its faults: clipped pixels, a row where nothing was heard, steps of 16 bits."""
+    """A picture with faults: clipped pixels, a row where nothing was heard, steps of 16 bits."""
     if kind == "uint16":
         levels = 257 * sonject.Transfer(curve).from_amplitude(amplitudes, "uint8").astype("uint16")
     else:
@@ -171,7 +171,7 @@ def test_no_element_hears_a_transfer(amplitude_patch, make_scene):
 
 
 def test_the_transfer_of_a_scene_is_that_of_its_file(amplitude_patch, make_scene):
-    """Grey levels without one are refused in words that do as they say."""
+    """Grey levels without a transfer are refused, and the message's advice works."""
     scene = make_scene()
     scene["input.transfer"] = {"kind": "gamma", "parameter": 2}
     grey = sonject.Transfer(scene["input.transfer"]).from_amplitude(0.3 * amplitude_patch)

@@ -1,4 +1,4 @@
-"""The package's types hold, by a checker of others."""
+"""An independent type checker accepts the package's types."""
 
 import os
 import pathlib
