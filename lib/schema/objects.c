@@ -53,7 +53,7 @@ END_SECTION(tail_end, tail_end)
         {"nose_end", "cylinder's nose: flat, open, spherical or {depth: }", END_FIELD(nose_end)},  \
         {"tail_end", "cylinder's tail: flat, open, spherical or {depth: }", END_FIELD(tail_end)},  \
     {                                                                                              \
-        "mesh", "mesh of the shape mesh: name of its file, or a section",                          \
+        "mesh", "mesh for the shape mesh: its file's name, or a section",                          \
             .kind = FIELD_SPECIAL, .unit = "file name", .section = &mesh_section,                  \
             .read = read_mesh                                                                      \
     }
@@ -389,7 +389,8 @@ static const struct field burial_fields[] = {
 static const struct section burial_section = {ROWS(burial_fields), .choice = "fraction proud"};
 
 static const struct field level_fields[] = {
-    {"target_strength", "echo's peak strength, between pixels too, speckle averaged out, re 1 m^2",
+    {"target_strength",
+     "peak's target strength, between pixels too, speckle averaged out, re 1 m^2",
      QUANTITY(level_db, DECIBEL), WITHIN(-200.0, 200.0),
      SETS(level_kind, SONJECT_LEVEL_TARGET_STRENGTH)},
     {"over_seabed", "echo's peak level over the local mean seabed", QUANTITY(level_db, DECIBEL),
