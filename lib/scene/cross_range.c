@@ -32,16 +32,15 @@ bool cross_range_is_plain(const struct point_response *response)
     return response->array_length_m == 0.0 && !response->cross_range_table && !response->motion;
 }
 
-/* Returns the cosine between the array's long side and the path at broadside to the seabed at a
- * range. */
+/* Returns the cosine between the array's long side and the broadside path to the seabed at a range.
+ */
 static double lean_of_array(const struct point_response *response, double range)
 {
     const double down = fmin(response->array_altitude_m / range, 1.0);
     return response->array_along[1] * sqrt(1.0 - down * down) - response->array_along[2] * down;
 }
 
-/* Returns the two-way amplitude of the beam at the tangent x / range, where x is ahead of the
- * array. */
+/* Returns the beam's two-way amplitude at the tangent x / range, with x ahead of the array. */
 static double beam_at(const struct point_response *response, double lean, double tangent)
 {
     const double along = response->array_along[0] * tangent + lean;
@@ -50,8 +49,7 @@ static double beam_at(const struct point_response *response, double lean, double
     return one_way * one_way;
 }
 
-/* Returns the largest distance along the track by which a turned array's beam is off broadside at a
- * range. */
+/* Returns how far along the track a turned array's beam is off broadside at most, at a range. */
 static double largest_shift(const struct point_response *response, double range)
 {
     return (range * fabs(response->array_along[1]) +
@@ -66,8 +64,7 @@ static double tangent_at(const struct point_response *response, double z)
     return sine / sqrt(1.0 - sine * sine);
 }
 
-/* Sets the beam of the sonar's array, a real aperture of uniform weighting, in place of the window.
- */
+/* Sets the beam of the array, a real aperture of uniform weighting, in place of the window. */
 static void set_array(struct point_response *response, const sonject_sonar_params *sonar,
                       const struct patch_view *view)
 {
@@ -149,9 +146,8 @@ double cross_range_tail(const struct point_response *response, double range_m)
            largest_shift(response, range_m / response->range_ratio);
 }
 
-/* Refuses what images of a turned array cannot show: its shadows over relief, paths on which sound
- * arrives at another angle than from the seabed there, and the map, whose pixels are seen from
- * broadside. */
+/* Refuses what a turned array's images cannot show: its shadows over relief, paths that arrive at
+ * another angle than from the seabed there, and the map, whose pixels are seen from broadside. */
 static sonject_status check_turned(struct report *report, const struct scene *scene,
                                    const struct patch_view *view)
 {
@@ -172,8 +168,7 @@ static sonject_status check_turned(struct report *report, const struct scene *sc
                           what);
 }
 
-/* Returns by how much the range of an echo at a processor range changes within the beam's half
- * power. */
+/* Returns the change of an echo's range, at a processor range, within the beam's half power. */
 static double migration_at(const struct point_response *response, double processor_range)
 {
     const double range = processor_range / response->range_ratio;

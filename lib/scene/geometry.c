@@ -67,7 +67,7 @@ double first_return_range(const struct first_return_list *returns,
 {
     const double columns = returns->columns[row / returns->every];
     const double to_centre =
-        geometry->nadir_column > 0.0 ? 0.5 : 0.0; /* to the centre of the seabed's first pixel */
+        geometry->nadir_column > 0.0 ? 0.5 : 0.0; /* centre of the seabed's first pixel */
     return geometry->first_slant_range_m + (columns + to_centre) * geometry->column_spacing_m;
 }
 

@@ -124,7 +124,7 @@ static sonject_status sample_sway(struct motion_response *motion, struct report 
                               "sonar.motion: the patch's aperture of %.4g m holds more than %zu "
                               "steps of the sway: give longer scales of it",
                               motion->length_m, SWAYS_MAX);
-    if (steps < rows) /* as fine as the image's rows, unless these are too many */
+    if (steps < rows) /* the steps follow the image's rows, unless these are too many */
         steps = fmin(ceil(rows), (double)SWAYS_MAX - 2.0);
     motion->sways = (size_t)steps + 2;
     motion->sway_step_m = motion->length_m / (double)(motion->sways - 2);

@@ -123,7 +123,7 @@ typedef struct sonject_sonar_params {
                               path to the echo */
     double array_height_m; /* height; the same pattern across; 0: all elevations are heard alike */
     double array_heading_rad; /* heading of the long side, from along-track (+x) towards range (+y),
-                                 whichever side that is */
+                                 to port or starboard */
     double array_pitch_rad;   /* pitch of the long side over the horizontal */
     double array_depression_rad; /* depression of the beam below the horizontal */
 } sonject_sonar_params;
@@ -211,8 +211,8 @@ typedef struct sonject_material_params {
     uint32_t reflection_kind; /* sonject_reflection_kind */
     double reflection;        /* amplitude reflection coefficient; 0: no smooth part */
     double roughness_m;       /* rms height */
-    double lambert; /* mu, linear; pi*mu + glossy_albedo <= reflection^2, or <= 1 where there
-                       is no smooth part or it is a fluid's */
+    double lambert; /* Lambert coefficient mu, linear; pi*mu + glossy_albedo <= reflection^2, or <=
+                       1 without a smooth part or for a fluid */
     double lambert_exponent; /* exponent n; 1: Lambert's law */
     double glossy_albedo;
     double glossy_slope;
@@ -237,7 +237,7 @@ double material_grain_size(uint32_t index);
 /* The reflectivity that resynthesise uses. */
 typedef enum sonject_seabed_map {
     SONJECT_MAP_INTENSITY = 0,  /* the measured intensity as it is, speckle and all */
-    SONJECT_MAP_DESPECKLED = 1, /* its local mean over a few resolution cells */
+    SONJECT_MAP_DESPECKLED = 1, /* the local mean over a few resolution cells */
     SONJECT_MAP_COHERENT = 2    /* complex reflectivity; needs a complex image */
 } sonject_seabed_map;
 
@@ -339,7 +339,7 @@ typedef struct sonject_object_params {
     uint32_t burial_kind;   /* sonject_burial_kind */
     double position_along;  /* see sonject_position_kind */
     double position_range;
-    double heading_rad; /* from along-track (+x) towards range (+y), whichever side that is */
+    double heading_rad; /* heading from along-track (+x) towards range (+y), to port or starboard */
     double pitch_rad;   /* raises the nose */
     double roll_rad;    /* about the nose; like the heading counted in the image: it raises the left
                            side to port, the right side to starboard */
@@ -349,10 +349,10 @@ typedef struct sonject_object_params {
     double top_diameter_m;   /* truncated cone; 0: a cone; may be the larger one */
     double front_height_m;   /* wedge: at the nose, 0...height */
     uint32_t nose_end;       /* sonject_end, cylinder */
-    uint32_t tail_end;       /* likewise */
+    uint32_t tail_end;       /* sonject_end, cylinder */
     double nose_end_depth_m; /* depth of a spherical end, above 0...half the diameter; 0: half the
                                 diameter, a half sphere. The length includes it */
-    double tail_end_depth_m; /* likewise */
+    double tail_end_depth_m; /* as nose_end_depth_m */
     double burial_fraction;  /* 0...1, share of the height that the object has in its pose */
     double proud_height_m;   /* height of the highest point above the seabed, 0...height in pose */
     uint32_t mesh;           /* number of a mesh of the scene */

@@ -16,7 +16,7 @@
 #define MARGIN_ENERGY_SHARE 0.005 /* share of |W|^2 and |G|^2 beyond a grid's margins */
 #define MOTION_SHARES       3
 
-/* The pulses: ROW(number, behind SONJECT_PULSE_; word in scene files). The functions of
+/* The pulses: ROW(number, after SONJECT_PULSE_; word in scene files). The functions of
  * point_response.c whose names begin with the word define a pulse. */
 #define PULSES(ROW)                                                                                \
     ROW(GAUSSIAN, gaussian) /* half-power width c / (2 bandwidth) */                               \
@@ -50,7 +50,7 @@ struct point_response {
     double cross_range_energy_m;
 
     double array_length_m;   /* length of a real aperture; 0: synthetic */
-    double array_along[3];   /* its long side, in the view's axes */
+    double array_along[3];   /* the array's long side, in the view's axes */
     double array_altitude_m; /* over the mean seabed */
     double wavelength_m, range_ratio;
     double beam_energy; /* integral of |W|^2 over x / range */

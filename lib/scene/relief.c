@@ -11,7 +11,7 @@
 
 #define POINTS_PER_PIXEL      2.0
 #define POINTS_PER_WAVELENGTH 24.0 /* points wanted, also over a bump's radius */
-#define POINTS_LEAST          8.0  /* slopes then err by 1 % */
+#define POINTS_LEAST          8.0  /* least points; slopes then err by 1 % */
 #define POINTS_MAX            (UINT32_C(1) << 22)
 #define SIDE_MAX              16384.0
 #define SLOPE_MAX             1.75 /* 60 degrees: sand never stands so steep, rocks may */
@@ -94,7 +94,8 @@ static sonject_status lay_grid(struct making *making)
                               : feature->kind == RELIEF_SCOUR ? feature->width_m
                                                               : feature->radius_m);
     }
-    if (scene->relief.heights_m) { /* as fine as the file's, down to what no pixel shows */
+    if (scene->relief
+            .heights_m) { /* the step follows the file's, down to one that no pixel shows */
         const sonject_relief_params *grid = &scene->relief.grid;
         step = fmin(step, fmax(0.5 * step, fmin(grid->row_spacing_m, grid->column_spacing_m)));
     }

@@ -24,8 +24,8 @@ struct relief {
 
 /* The ground that an object covers: half_width_m about a line of half_length_m each way. */
 struct footprint {
-    double x_m, y_m;         /* its middle, in the view */
-    double along_x, along_y; /* unit direction of its nose */
+    double x_m, y_m;         /* middle of the footprint, in the view */
+    double along_x, along_y; /* unit direction of the object's nose */
     double half_length_m, half_width_m;
 };
 

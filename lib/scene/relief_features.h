@@ -27,12 +27,12 @@ struct relief_feature {
     double height_m;     /* mound: height; ripples: from trough to crest; pit, scour: depth */
     double wavelength_m; /* ripples: from crest to crest */
     double heading_rad;  /* ripples: direction across the crests, from along-track towards range */
-    double phase_rad;    /* ripples: at along-track 0, ground range 0; a crest is at 0 */
+    double phase_rad;    /* ripples: phase at along-track 0, ground range 0; a crest is at 0 */
     double sharpness;    /* ripples: 0 (a sine) ... 1 (narrow crests, wide troughs) */
     double irregularity; /* ripples: 0 (straight crests) ... 1 (they wander, fork and end) */
     uint64_t seed;       /* ripples: seed of the irregularity */
     double radius_m;     /* mound, pit: a raised cosine ends there */
-    double width_m;      /* scour: from the object's outline to where it ends */
+    double width_m;      /* scour: from the object's outline to its end */
     uint32_t position_kind; /* mound, pit: as an object's */
     double position_along, position_range;
     char object[SONJECT_NAME_CAPACITY]; /* scour: name of the object within; "": all objects */

@@ -36,7 +36,7 @@ struct written_keys {
 /* A part of an object of parts. */
 struct scene_part {
     uint32_t object;
-    sonject_object_params shape; /* its sizes and material */
+    sonject_object_params shape; /* sizes and material of the part */
     double axes[3][3];           /* rows: nose, own y, own z, in the object's own axes */
     double centre[3];            /* m, in the object's own frame */
 };
@@ -62,7 +62,7 @@ struct scene {
     struct ping_table pings;  /* values of the input's rows, from a table */
     char *calibration;        /* owned; the file that input.calibration names; NULL: none */
     char *calibrated;         /* owned; the keys taken from that file, one per line; NULL: none */
-    char calibrated_side[12]; /* side that it was measured on, as keys name it; "": not given */
+    char calibrated_side[12]; /* side of the calibration's image, as keys name it; "": not given */
     double calibrated_altitudes; /* median of recorded altitudes over first returns; 0: not given */
     struct first_return_list first_returns; /* the whole swath's, from the calibration */
     bool calibrates_itself;  /* auto: whoever runs the scene makes the calibration first */

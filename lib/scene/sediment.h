@@ -10,7 +10,7 @@
 
 /* A sediment: a fluid with a rough surface and grains that scatter. */
 struct sediment {
-    double density_ratio, speed_ratio, loss; /* as in sonject_material_params */
+    double density_ratio, speed_ratio, loss; /* the members of sonject_material_params */
     double volume;   /* scattering of the volume over its attenuation, sigma2 */
     double strength; /* strength of the relief's spectrum, w2, cm^4: w2 (K cm)^-3.25 */
 };

@@ -272,7 +272,7 @@ sonject_status read_path(struct reader *reader, const struct tree_node *node, ch
 /* Returns the array that stands in for a file, or NULL if it is a file. */
 const struct number_array *find_array(const struct reader *reader, const char *path);
 
-/* Does as read_path, for a file that must exist or an array in its place. */
+/* Works like read_path, for a file that must exist or an array in its place. */
 sonject_status read_existing_path(struct reader *reader, const struct tree_node *node, char **path);
 
 /* Reads a table from the file that a text names, or from the array in its place. */
@@ -334,7 +334,8 @@ sonject_status refuse_value(const struct reader *reader, const struct tree_node 
 sonject_status refuse_key(struct reader *reader, const struct tree_node *node, const char *key,
                           const char *format, ...) REPORT_FORMAT(4);
 
-/* Does as refuse_key, but says nothing if one of some other keys, separated by blanks, is wrong. */
+/* Works like refuse_key, but says nothing if another key of a list, separated by blanks, is wrong.
+ */
 sonject_status refuse_relation(struct reader *reader, const struct tree_node *node, const char *key,
                                const char *others, const char *format, ...) REPORT_FORMAT(5);
 

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "schema/keys.h"
 
-#define MISTAKES_MAX 1000 /* mistakes that are kept; no file needs to be told more about */
+#define MISTAKES_MAX 1000 /* mistakes that are kept; nobody reads more */
 
 struct mistake {
     size_t

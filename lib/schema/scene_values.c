@@ -36,7 +36,7 @@ static struct spot entry_of(const struct spot *spot, size_t index)
     if (spot->section == &scene_section && strcmp(entry->key, "bands") == 0)
         below.section = &names_of_bands;
     else if (spot->section == &part_section && strcmp(entry->key, "parts") == 0)
-        below.section = &part_section; /* its table does not refer to itself */
+        below.section = &part_section; /* the table of parts does not refer to itself */
     return below;
 }
 
