@@ -32,8 +32,7 @@ bool cross_range_is_plain(const struct point_response *response)
     return response->array_length_m == 0.0 && !response->cross_range_table && !response->motion;
 }
 
-/* Returns the cosine between the array's long side and the broadside path to the seabed at a range.
- */
+/* Returns the cosine between the array's long side and the broadside path to a range's seabed. */
 static double lean_of_array(const struct point_response *response, double range)
 {
     const double down = fmin(response->array_altitude_m / range, 1.0);

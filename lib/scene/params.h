@@ -23,8 +23,7 @@ typedef enum sonject_side {
 /* The geometry of an image. Rows are track positions, columns slant range. Pixel (n, j) is centred
  * on track position first_along_track_m + n * row_spacing_m and on slant range first_slant_range_m
  * + j * column_spacing_m, where range is reference sound speed * time / 2. With a nadir column,
- * port lies to its left, starboard to its right, and range grows to both sides (scene/geometry.h).
- */
+ * port lies left of it, starboard right, and range grows to both sides (scene/geometry.h). */
 typedef struct sonject_geometry_params {
     uint32_t side; /* sonject_side; on either side poses count in the image's own ping order */
     double row_spacing_m;

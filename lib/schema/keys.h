@@ -334,8 +334,7 @@ sonject_status refuse_value(const struct reader *reader, const struct tree_node 
 sonject_status refuse_key(struct reader *reader, const struct tree_node *node, const char *key,
                           const char *format, ...) REPORT_FORMAT(4);
 
-/* Works like refuse_key, but says nothing if another key of a list, separated by blanks, is wrong.
- */
+/* Works like refuse_key, but says nothing if one of other keys, separated by blanks, is wrong. */
 sonject_status refuse_relation(struct reader *reader, const struct tree_node *node, const char *key,
                                const char *others, const char *format, ...) REPORT_FORMAT(5);
 

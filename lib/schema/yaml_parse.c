@@ -113,8 +113,7 @@ static sonject_status build_value(struct builder *builder, int depth, struct tre
     return status;
 }
 
-/* Builds the entries of a list or section, to its end. After a failure the path stays where it was.
- */
+/* Builds a list's or section's entries, to its end. After a failure the path stays where it was. */
 static sonject_status build_entries(struct builder *builder, enum tree_kind kind, int depth,
                                     struct tree_node *node)
 {
