@@ -21,8 +21,7 @@ double geometry_column(const sonject_geometry_params *geometry, double range_m);
 bool geometry_side(const sonject_geometry_params *geometry, uint64_t columns, uint64_t *first,
                    uint64_t *count);
 
-/* Returns the geometry of an image that shows the swath from a row and a column on, so many columns
- * wide. */
+/* Returns the geometry of an image that begins at a row and column of the swath, columns wide. */
 sonject_geometry_params geometry_crop(const sonject_geometry_params *geometry, double first_row,
                                       double first_column, double columns);
 

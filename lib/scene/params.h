@@ -230,8 +230,7 @@ const char *material_name(uint32_t index);
 /* Returns the grain size of the sediment of a name's index, in phi; NaN: no sediment. */
 double material_grain_size(uint32_t index);
 
-/* The seabed, with reflectivity from the measured image: the plane z = 0, or a relief about this
- * plane. */
+/* The seabed, with reflectivity from the image: the plane z = 0, or a relief about this plane. */
 
 /* The reflectivity that resynthesise uses. */
 typedef enum sonject_seabed_map {

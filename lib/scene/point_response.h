@@ -97,8 +97,7 @@ double along_track_energy_reach(const struct point_response *response, double sh
 /* Returns the half width, m, beyond which |W| is below -60 dB. */
 double along_track_tail(const struct point_response *response);
 
-/* Return G(r): exp(-r^2 / 2 sigma^2), the compressed sweep's, or a table's; real part or complex.
- */
+/* Return G(r): exp(-r^2 / 2 sigma^2), a compressed sweep, or a table; real part or complex. */
 double range_response(const struct point_response *response, double distance_m);
 struct complex_number range_response_complex(const struct point_response *response,
                                              double distance_m);

@@ -167,8 +167,7 @@ void section_defaults(const struct section *section, void *structure, struct sce
  * may be open). A missing item is null. Errors: MEMORY. */
 sonject_status section_keys_json(struct report *report, const struct section *section, char **text);
 
-/* Returns whether a key's value in the structure is within its bounds. If not, what gets "must be
- * 1...8, not 9". */
+/* Returns whether a key's value is within its bounds. If not, what gets "must be 1...8, not 9". */
 bool field_is_sound(const struct field *field, const void *structure, char what[300]);
 
 /* Returns the section that describes the values below a field, and its structure in *below; NULL:
@@ -185,8 +184,7 @@ bool field_is_file(const struct field *field);
 /* Returns whether texts of the key, or of its list's entries, may be numbers without a unit. */
 bool field_is_number(const struct field *field);
 
-/* Returns whether texts of the key, or of its list's entries, are quantities. *quantity gets their
- * kind. */
+/* Returns whether texts of the key, or of its list's entries, are quantities of kind *quantity. */
 bool field_quantity(const struct field *field, enum quantity *quantity);
 
 /* Finds a key path such as "sonar.frequency" or "seabed.relief[0].height" below a section. Returns

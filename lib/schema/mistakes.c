@@ -1,5 +1,5 @@
-/* The mistakes of a file that is read to its end, in the order of their places, and the messages of
- * section readers. */
+/* The mistakes of a file that is read to its end, ordered by place, and section readers' messages.
+ */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,9 +11,8 @@
 #define MISTAKES_MAX 1000 /* mistakes that are kept; nobody reads more */
 
 struct mistake {
-    size_t
-        order[5]; /* is an override; its number, or line and column; line, column in a named file */
-    char *file;   /* owned; its memory holds the two below */
+    size_t order[5]; /* override or not; number, or line and column; line, column in named file */
+    char *file;      /* owned; its memory holds the two below */
     const char *path;
     const char *line; /* NULL: only marks the key as wrong */
 };

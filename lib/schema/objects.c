@@ -1,5 +1,5 @@
-/* The keys of objects: a shape with its sizes, ends and surface, or parts, or a target's file; and
- * the object's place. */
+/* The keys of objects: a shape with sizes, ends and surface, or parts, or a target's file; a place.
+ */
 #include <stdlib.h>
 #include <string.h>
 

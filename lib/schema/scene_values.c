@@ -54,8 +54,7 @@ static const struct number_array *array_of(const struct scene_source *source, co
     return find_array(&reader, name);
 }
 
-/* Returns whether a text names a file: not an array in memory, nor `auto`, a calibration yet to be
- * made. */
+/* Returns whether a text names a file: no array in memory, nor `auto`, a calibration to be made. */
 static bool is_file(const struct scene_source *source, const struct spot *spot)
 {
     const struct tree_node *node = spot->node;

@@ -158,8 +158,7 @@ static bool is_plain_character(char c)
            (c && strchr("_./+-", c));
 }
 
-/* Returns whether a text needs no quotes in flow style: it has only letters, digits and a few
- * signs. */
+/* Returns whether a text needs no quotes in flow style: only letters, digits and a few signs. */
 static bool is_plain(const char *text)
 {
     const size_t length = strlen(text);
