@@ -16,8 +16,7 @@ struct point_response;
  * and row n is the image's row rows - 1 - n, so +y is to port of +x, as in a right-handed frame. */
 struct patch_view {
     size_t rows, columns;
-    size_t first_row,
-        first_column; /* first pixel of a window in the patch; 0 for the whole patch */
+    size_t first_row, first_column; /* a window's first pixel in the patch; 0: the whole patch */
     double row_spacing_m, column_spacing_m;
     double first_x_m;     /* x of row 0 of the view */
     double first_range_m; /* processor's slant range of column 0 */
@@ -27,8 +26,8 @@ struct patch_view {
     double wavelength_m;   /* in the straight water, around seabed and targets */
     double seabed_lambert; /* mu0: the scene's, or its sediment's at the middle of the patch's
                               seabed */
-    bool is_mirrored;      /* rows are reversed */
-    bool is_reversed;      /* columns are reversed, so that range grows with them */
+    bool is_mirrored;      /* rows are the image's reversed */
+    bool is_reversed;      /* columns are the image's reversed, so that range grows with them */
     struct ray_path water; /* path of sound straight from the sonar */
 };
 

@@ -1,5 +1,4 @@
-/* The mistakes of a file that is read to its end, ordered by place, and section readers' messages.
- */
+/* The mistakes of a file read to its end, ordered by place, and section readers' messages. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,4 @@
-/* The keys of objects: a shape with sizes, ends and surface, or parts, or a target's file; a place.
- */
+/* The keys of objects: a shape with sizes, ends and surface, parts, or a target's file; a place. */
 #include <stdlib.h>
 #include <string.h>
 
