@@ -28,7 +28,7 @@ enum field_kind {
     FIELD_LABEL,    /* char[SONJECT_NAME_CAPACITY] */
     FIELD_TEXT,     /* char *, owned by the structure */
     FIELD_PATH,     /* char *, owned by the scene */
-    FIELD_FILE,     /* char *, owned by the scene: a file that exists */
+    FIELD_FILE,     /* char *, owned by the structure: a file that exists */
     FIELD_SECTION,  /* a structure, which is the parent's own where offset is 0 */
     FIELD_NAMED,    /* a structure, or a single text that `read` takes into it */
     FIELD_ENTRIES,  /* an array of structures that the section fills, and their number */
