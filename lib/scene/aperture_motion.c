@@ -10,8 +10,8 @@
 #include "scene/response_table.h"
 
 #define PI           3.14159265358979323846
-#define RANDOM_WAVES 256        /* whose sum is as good as Gaussian */
-#define RANDOM_SWAY  0x73776179 /* streams of random numbers that no other part uses */
+#define RANDOM_WAVES 256        /* the sum of so many waves is as good as Gaussian */
+#define RANDOM_SWAY  0x73776179 /* the two streams of random numbers, which no other part uses */
 #define RANDOM_YAW   0x79617721
 
 static void motion_table_clear(struct motion_table *table)
@@ -83,7 +83,7 @@ static double value_of_table(const struct motion_table *table, double x)
     return table->values[low] + share * (table->values[low + 1] - table->values[low]);
 }
 
-/* Positions along-track, start + i step, and what is added up there. */
+/* Positions along-track, start + i step, and the sums at these. */
 struct places {
     double start, step;
     size_t count;
@@ -97,8 +97,8 @@ static void add_wave(const struct places *places, double amplitude, double waven
             amplitude * sin(wavenumber * (places->start + (double)i * places->step) + phase);
 }
 
-/* Waves of random phases whose wavenumbers are normal deviates: their spectrum is Gaussian, and so
- * is the autocorrelation. */
+/* Adds waves of random phases whose wavenumbers are normal deviates. Their spectrum is Gaussian,
+ * and so is the autocorrelation. */
 static void add_random(const struct places *places, double rms, double correlation, uint64_t seed,
                        uint32_t stream)
 {
@@ -115,7 +115,7 @@ static void add_random(const struct places *places, double rms, double correlati
     }
 }
 
-/* A table, sines and random waves of one of the two, added up. */
+/* The sway or the yaw: the sum of a table, a bias, sines and random waves. */
 struct motion {
     const struct motion_table *table;
     double bias;

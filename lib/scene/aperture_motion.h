@@ -1,4 +1,4 @@
-/* Residual motion of the sonar along its track: its sway, and the yaw of its array. */
+/* Residual motion of the sonar along its track: the sway, and the yaw of its array. */
 #ifndef SONJECT_SCENE_APERTURE_MOTION_H
 #define SONJECT_SCENE_APERTURE_MOTION_H
 
@@ -11,11 +11,11 @@
 
 #define MOTION_SAMPLES_MAX 65536
 #define SWAY_MAX_M         1e3
-#define YAW_MAX_RAD        0.1 /* its sine is the angle to 2 parts in 1000 */
-#define SCALE_MIN_M        0.1 /* sway from one centimetre to the next is no motion of a sonar */
+#define YAW_MAX_RAD        0.1 /* up to it sine and angle agree to 2 parts in 1000 */
+#define SCALE_MIN_M        0.1 /* changes over shorter scales are no motion of a sonar */
 #define SCALE_MAX_M        1e6
 
-/* Linear between its samples, constant beyond. */
+/* Samples of a motion, linear between them and constant beyond them. */
 struct motion_table {
     double *along_track_m, *values; /* owned */
     size_t count;                   /* 0: no table */
@@ -26,21 +26,22 @@ struct aperture_motion {
     struct motion_table sway_table, yaw_table;
 };
 
-/* Takes a copy of samples, whose positions rise, in place of the table's. Errors: MEMORY. */
+/* Replaces the table by a copy of samples, whose positions rise. Errors: MEMORY. */
 sonject_status motion_table_set(struct motion_table *table, struct report *report,
                                 const double *along_track_m, const double *values, size_t count);
 
-/* Of both tables. */
+/* Frees both tables. */
 void aperture_motion_clear(struct aperture_motion *motion);
 
-/* Whether there is yaw, which then has an advance; and whether there is no motion at all. */
+/* Return whether there is yaw, which then has an advance, and whether there is no motion at all. */
 bool aperture_motion_has_yaw(const struct aperture_motion *motion);
 bool aperture_motion_is_still(const struct aperture_motion *motion);
 
-/* A length over which the sway is all but linear, m: a hundredth of its shortest scale. */
+/* Returns a length over which the sway is nearly linear, m: a hundredth of its shortest scale. */
 double aperture_motion_step(const struct aperture_motion *motion);
 
-/* Sway in m, or yaw in rad, at count positions start + i step along-track; a step of any sign. */
+/* Compute the sway in m, or the yaw in rad, at count positions start + i step along-track. The step
+ * may have any sign. */
 void aperture_motion_sway(const struct aperture_motion *motion, double start_m, double step_m,
                           size_t count, double *sway_m);
 void aperture_motion_yaw(const struct aperture_motion *motion, double start_m, double step_m,

@@ -1,4 +1,4 @@
-/* The cross-range response as the image has it, and the whole response that a scene describes. */
+/* The cross-range response as the image has it, and the whole response of a scene. */
 
 #include <math.h>
 #include <string.h>
@@ -12,11 +12,11 @@
 #include "scene/scene.h"
 
 #define PI               3.14159265358979323846
-#define BEAM_LOBES       8.0  /* of the pattern; 4e-6 of its energy lies beyond */
-#define TAIL_LOBES       10.0 /* beyond which the two-way amplitude is below 1e-3 */
+#define BEAM_LOBES       8.0  /* lobes of the pattern that count; 4e-6 of the energy lies beyond */
+#define TAIL_LOBES       10.0 /* the lobe beyond which the two-way amplitude is below 1e-3 */
 #define BEAM_STEPS       4096
 #define HALF_POWER_POINT 0.31895 /* sinc(z)^4 = 1/2 */
-#define MIGRATION_SHARE  0.25    /* of a range cell, that an echo may move within the beam */
+#define MIGRATION_SHARE  0.25    /* share of a range cell that an echo may move within the beam */
 
 #define SPACING_OVER_WIDTH_MAX 64
 #define CELLS_OF_REACH_MAX     256
@@ -32,14 +32,14 @@ bool cross_range_is_plain(const struct point_response *response)
     return response->array_length_m == 0.0 && !response->cross_range_table && !response->motion;
 }
 
-/* Cosine between the array's long side and the way at broadside to the seabed at a range. */
+/* Returns the cosine between the array's long side and the broadside path to a range's seabed. */
 static double lean_of_array(const struct point_response *response, double range)
 {
     const double down = fmin(response->array_altitude_m / range, 1.0);
     return response->array_along[1] * sqrt(1.0 - down * down) - response->array_along[2] * down;
 }
 
-/* Two-way amplitude of the beam at the tangent x / range, x ahead of the array. */
+/* Returns the beam's two-way amplitude at the tangent x / range, with x ahead of the array. */
 static double beam_at(const struct point_response *response, double lean, double tangent)
 {
     const double along = response->array_along[0] * tangent + lean;
@@ -48,7 +48,7 @@ static double beam_at(const struct point_response *response, double lean, double
     return one_way * one_way;
 }
 
-/* How far from broadside the beam of a turned array looks at most, along the track, to a range. */
+/* Returns how far along the track a turned array's beam is off broadside at most, at a range. */
 static double largest_shift(const struct point_response *response, double range)
 {
     return (range * fabs(response->array_along[1]) +
@@ -56,14 +56,14 @@ static double largest_shift(const struct point_response *response, double range)
            response->array_along[0];
 }
 
-/* The beam's half width as a tangent, of a pattern's argument z. */
+/* Returns the beam's half width as a tangent, for an argument z of the pattern. */
 static double tangent_at(const struct point_response *response, double z)
 {
     const double sine = fmin(0.99, z * response->wavelength_m / response->array_length_m);
     return sine / sqrt(1.0 - sine * sine);
 }
 
-/* The beam of the sonar's array, a real aperture of uniform weighting, in place of the window. */
+/* Sets the beam of the array, a real aperture of uniform weighting, in place of the window. */
 static void set_array(struct point_response *response, const sonject_sonar_params *sonar,
                       const struct patch_view *view)
 {
@@ -74,7 +74,7 @@ static void set_array(struct point_response *response, const sonject_sonar_param
     response->array_length_m = sonar->array_length_m;
     response->wavelength_m = view->wavelength_m;
     response->range_ratio = view->range_ratio;
-    /* its band of spatial frequencies, 2 sin(aspect) / wavelength, is 4 / length wide at the foot
+    /* the band of spatial frequencies, 2 sin(aspect) / wavelength, is 4 / length wide at the foot
      */
     response->strip_m = 0.25 * sonar->array_length_m;
     const double step = tangent_at(response, BEAM_LOBES) / BEAM_STEPS;
@@ -145,7 +145,7 @@ double cross_range_tail(const struct point_response *response, double range_m)
            largest_shift(response, range_m / response->range_ratio);
 }
 
-/* What a turned array's images leave out: its shadows over relief, ways by which sound comes in at
+/* Refuses what a turned array's images cannot show: its shadows over relief, paths that arrive at
  * another angle than from the seabed there, and the map, whose pixels are seen from broadside. */
 static sonject_status check_turned(struct report *report, const struct scene *scene,
                                    const struct patch_view *view)
@@ -167,7 +167,7 @@ static sonject_status check_turned(struct report *report, const struct scene *sc
                           what);
 }
 
-/* By how much the range of an echo at a processor range changes within the beam's half power. */
+/* Returns the change of an echo's range, at a processor range, within the beam's half power. */
 static double migration_at(const struct point_response *response, double processor_range)
 {
     const double range = processor_range / response->range_ratio;
@@ -200,7 +200,7 @@ sonject_status cross_range_check(const struct point_response *response, struct r
     return SONJECT_OK;
 }
 
-/* Measured responses that no grid of this patch could hold. */
+/* Refuses measured responses that no grid of this patch can hold. */
 static sonject_status check_size(const struct point_response *response, struct report *report,
                                  const struct patch_view *view)
 {

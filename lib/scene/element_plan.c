@@ -5,7 +5,7 @@
 #define SAMPLES_MAX 16777216.0
 #define VALUES_MAX  70368744177664.0 /* 2^46 */
 
-/* Half of the track that a point at the range is seen from under the aspects of the image. */
+/* Returns half of the track from which a point at the range is seen at the aspects of the image. */
 static double half_aperture(const sonject_element_layout *layout, double range_m)
 {
     const double sine = layout->sound_speed_mps / layout->centre_frequency_hz /
@@ -18,7 +18,7 @@ static double array_length(const sonject_elements_params *elements)
     return (elements->hydrophones - 1) * elements->hydrophone_spacing_m;
 }
 
-/* Mean place of the phase centres, midway between transmitter and hydrophones. */
+/* Returns the mean place of the phase centres, midway between transmitter and hydrophones. */
 static double mean_phase_centre(const sonject_elements_params *elements)
 {
     return 0.5 * (elements->transmitter_offset_m + elements->first_hydrophone_m +
@@ -82,7 +82,7 @@ static void plan_rate(sonject_element_layout *layout)
         elements->sampling_rate_hz = carrier + 2.0 * layout->bandwidth_hz;
 }
 
-/* Times of the first and the last sample that the patch's aperture needs, the pulse included. */
+/* Finds the times of the first and last sample that the patch's aperture needs, with the pulse. */
 static sonject_status plan_times(sonject_element_layout *layout, struct report *report,
                                  const struct patch_view *view,
                                  const struct point_response *response)

@@ -51,7 +51,7 @@ sonject_geometry_params geometry_crop(const sonject_geometry_params *geometry, d
 {
     sonject_geometry_params crop = *geometry;
     const bool is_reversed = geometry_is_reversed(geometry);
-    /* the nearest column stands in for a nadir that is left outside */
+    /* the nearest column replaces a nadir outside the crop */
     const double nearest = is_reversed ? first_column + columns - 1.0 : first_column;
     crop.first_along_track_m += first_row * geometry->row_spacing_m;
     crop.nadir_column = fmax(0.0, geometry->nadir_column - first_column);
@@ -66,7 +66,8 @@ double first_return_range(const struct first_return_list *returns,
                           const sonject_geometry_params *geometry, uint64_t row)
 {
     const double columns = returns->columns[row / returns->every];
-    const double to_centre = geometry->nadir_column > 0.0 ? 0.5 : 0.0; /* of the seabed's pixel */
+    const double to_centre =
+        geometry->nadir_column > 0.0 ? 0.5 : 0.0; /* centre of the seabed's first pixel */
     return geometry->first_slant_range_m + (columns + to_centre) * geometry->column_spacing_m;
 }
 

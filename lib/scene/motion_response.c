@@ -11,15 +11,15 @@
 #define ASPECTS_MAX ((size_t)1 << 20)
 #define SWAYS_MAX   ((size_t)1 << 21)
 #define PINGS_MAX   ((size_t)1 << 22)
-#define HEARD_STEPS 32 /* of an integral over the aspects */
+#define HEARD_STEPS 32 /* steps of an integral over the aspects */
 
 #define SPREAD_ROWS  9
-#define SPREAD_REACH 2048 /* resolutions to each side that a spread is looked for in */
+#define SPREAD_REACH 2048 /* resolutions to each side within which a spread is measured */
 
-/* Of |W|^2 that may lie beyond: at the patch's edges, beyond margins, beyond taps. */
+/* Shares of |W|^2 beyond a spread: at the patch's edges, beyond margins, beyond taps. */
 static const double spread_shares[MOTION_SHARES] = {0.04, MARGIN_ENERGY_SHARE, 0.001};
 
-/* exp(+2 pi i m / count), m from 0 to count / 2 - 1. */
+/* Fills in exp(+2 pi i m / count) for m = 0...count / 2 - 1. */
 static void fourier_roots(double *root_real, double *root_imaginary, size_t count)
 {
     for (size_t m = 0; m < count / 2; m++) {
@@ -35,7 +35,7 @@ static void swap(double *values, size_t a, size_t b)
     values[b] = value;
 }
 
-/* Puts each element where its number's bits, reversed, say. */
+/* Moves each element to the index whose bits are those of its own index, reversed. */
 static void reverse_bits(double *real_part, double *imaginary_part, size_t count)
 {
     size_t reversed = 0;
@@ -58,7 +58,7 @@ static void fourier_transform(double *real_part, double *imaginary_part, size_t 
 {
     reverse_bits(real_part, imaginary_part, count);
     for (size_t half = 1; half < count; half *= 2) {
-        const size_t stride = count / (2 * half); /* of the roots */
+        const size_t stride = count / (2 * half); /* stride in the roots */
         for (size_t start = 0; start < count; start += 2 * half)
             for (size_t i = 0; i < half; i++) {
                 const size_t low = start + i;
@@ -75,14 +75,14 @@ static void fourier_transform(double *real_part, double *imaginary_part, size_t 
     }
 }
 
-/* Length over which the phase error changes all at once, m. */
+/* Returns the shortest length over which the phase error changes, m. */
 static double shortest_scale(const struct motion_response *motion)
 {
     const double of_sway = 100.0 * aperture_motion_step(motion->response->motion);
     return motion->pings > 0 ? fmin(of_sway, 0.5 * motion->advance_m) : of_sway;
 }
 
-/* As many as separate all distances four times over, and as follow the motion. */
+/* Chooses enough aspects to separate all distances four times over and to follow the motion. */
 static sonject_status count_aspects(struct motion_response *motion, struct report *report)
 {
     const double swing = motion->response->motion_range_m * motion->view->wavelength_m /
@@ -100,7 +100,7 @@ static sonject_status count_aspects(struct motion_response *motion, struct repor
     return SONJECT_OK;
 }
 
-/* Which way the image's along-track axis runs. */
+/* Returns the sign of the image's along-track axis in the view. */
 static double side_of(const struct motion_response *motion)
 {
     return motion->view->is_mirrored ? -1.0 : 1.0;
@@ -110,7 +110,7 @@ static sonject_status sample_sway(struct motion_response *motion, struct report 
 {
     const struct patch_view *view = motion->view;
     const double side = side_of(motion);
-    /* the steepest aspect that is integrated, as the sine of its angle */
+    /* the sine of the steepest aspect that is integrated */
     const double sine = fmin(0.999, view->wavelength_m / (4.0 * motion->response->resolution_m));
     const double half_aperture =
         motion->response->motion_range_m * sine / sqrt(1.0 - sine * sine) + view->row_spacing_m;
@@ -124,7 +124,7 @@ static sonject_status sample_sway(struct motion_response *motion, struct report 
                               "sonar.motion: the patch's aperture of %.4g m holds more than %zu "
                               "steps of the sway: give longer scales of it",
                               motion->length_m, SWAYS_MAX);
-    if (steps < rows) /* as fine as the image's rows, unless these are too many */
+    if (steps < rows) /* the steps follow the image's rows, unless these are too many */
         steps = fmin(ceil(rows), (double)SWAYS_MAX - 2.0);
     motion->sways = (size_t)steps + 2;
     motion->sway_step_m = motion->length_m / (double)(motion->sways - 2);
@@ -171,7 +171,7 @@ static sonject_status allocate_aspects(struct motion_response *motion, struct re
     return SONJECT_OK;
 }
 
-/* The window's weight at v = -1/2...1/2, over its mean. */
+/* Returns the window's weight at v = -1/2...1/2, over its mean. */
 static double weight_at(const struct point_response *response, double v)
 {
     double sum = 1.0;
@@ -180,14 +180,14 @@ static double weight_at(const struct point_response *response, double v)
     return sum;
 }
 
-/* The two-way beam of an element of 2 delta at a sine of v wavelengths over that length. */
+/* Returns an element's two-way beam, length 2 delta, at a sine of v wavelengths over 2 delta. */
 static double two_way_beam(double v)
 {
     const double one_way = v == 0.0 ? 1.0 : sin(PI * v) / (PI * v);
     return one_way * one_way;
 }
 
-/* A pixel's aspects look at a point beside it at other angles. */
+/* A pixel's aspects see a point beside the pixel at other angles. */
 static sonject_status find_heard(struct motion_response *motion, struct report *report)
 {
     const double range = motion->response->motion_range_m;
@@ -248,14 +248,14 @@ static double sway_at(const struct motion_response *motion, double x)
     return motion->sway_m[i] + share * (motion->sway_m[i + 1] - motion->sway_m[i]);
 }
 
-/* The number of the ping one of whose phase centres is at x. */
+/* Returns the number of the ping one of whose phase centres is at x. */
 static double ping_at(const struct motion_response *motion, double x)
 {
     return floor(x / motion->advance_m + 0.5);
 }
 
-/* Sway at x of a ping's phase centres, of which the yaw is that towards the imaged side for those
- * ahead. */
+/* Returns the sway at x of a ping's phase centres. Yaw towards the imaged side moves those ahead of
+ * the ping's middle towards that side. */
 static double sway_by_yaw(const struct motion_response *motion, double ping, double x)
 {
     const double last = (double)motion->pings - 1.0;
@@ -263,24 +263,24 @@ static double sway_by_yaw(const struct motion_response *motion, double ping, dou
     return side_of(motion) * motion->yaw_rad[i] * (x - ping * motion->advance_m);
 }
 
-/* How much of an aspect's cell lies within the band; cells are 1 wide, the band 2 half_band. */
+/* Returns an aspect cell's share within the band. Cells are 1 wide, the band 2 half_band. */
 static double share_in_band(double aspect, double half_band)
 {
     return fmax(0.0, fmin(1.0, half_band + 0.5 - fabs(aspect)));
 }
 
-/* A cell of aspects, as the track has it. */
+/* A cell of aspects, and its place on the track. */
 struct aspect_cell {
-    size_t at;    /* in the transform */
-    double place; /* m along-track of its middle */
-    double half;  /* of its width there */
+    size_t at;    /* index in the transform */
+    double place; /* along-track position of its middle, m */
+    double half;  /* half its width along-track, m */
     double per_m; /* phase error, rad per m of sway */
-    double shift; /* phase of the offset */
+    double shift; /* phase of the offset, rad */
     double weight;
 };
 
-/* Adds a share of the cell, less what it adds on a straight track: that response is added as it is
- * known, without the grid's own error. */
+/* Adds a share of the cell, less its value on a straight track. The straight response is known
+ * exactly and is added without the grid's error. */
 static void add_aspect(struct motion_response *motion, const struct aspect_cell *cell, double share,
                        double sway)
 {
@@ -289,7 +289,7 @@ static void add_aspect(struct motion_response *motion, const struct aspect_cell 
     motion->imaginary_part[cell->at] += share * cell->weight * (sin(phase) - sin(cell->shift));
 }
 
-/* From one ping to the next the error jumps: a cell with both takes its share of each. */
+/* The error jumps from one ping to the next. A cell with two pings takes its share of each. */
 static void add_pings(struct motion_response *motion, const struct aspect_cell *cell, double sway)
 {
     const double ping = ping_at(motion, cell->place + cell->half);
@@ -304,7 +304,7 @@ static void fill_aspects(struct motion_response *motion, double x)
 {
     const struct point_response *response = motion->response;
     const double count = (double)motion->aspects;
-    const double step = motion->view->wavelength_m / (2.0 * count * motion->strip_m); /* of sine */
+    const double step = motion->view->wavelength_m / (2.0 * count * motion->strip_m); /* sine */
     const double half_band = count * motion->strip_m / (2.0 * response->resolution_m);
     const int last = (int)ceil(fmin(half_band, 0.999 / step));
     memset(motion->real_part, 0, motion->aspects * sizeof(double));
@@ -328,7 +328,7 @@ static void fill_aspects(struct motion_response *motion, double x)
     }
 }
 
-/* What the error makes of the straight response, and that as it is known, at the distances. */
+/* Finds a row's response at the distances: the error's effect plus the straight response. */
 static void find_row(struct motion_response *motion, double row, bool is_all_around,
                      double *real_part, double *imaginary_part)
 {
@@ -358,8 +358,7 @@ void motion_response_row(struct motion_response *motion, double row, double *rea
     find_row(motion, row, false, real_part, imaginary_part);
 }
 
-/* Distances within which all but `share` of a row's energy lies; the whole reach where more lies
- * beyond. */
+/* Returns the distance that all but `share` of a row's energy lies within, at most the reach. */
 static double reach_of_row(const struct motion_response *motion, const double *real_part,
                            const double *imaginary_part, double share)
 {
@@ -393,7 +392,7 @@ static sonject_status spread_row(const struct motion_response *motion, struct re
     return SONJECT_OK;
 }
 
-/* Of a row's energy, what comes from beyond the beam of the elements. */
+/* Returns the share of a row's energy that comes from beyond the beam of the elements. */
 static double lost_by_row(const struct motion_response *motion, const double *real_part,
                           const double *imaginary_part)
 {

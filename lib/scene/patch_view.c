@@ -7,8 +7,8 @@
 #include "scene/sediment.h"
 
 #define PI                  3.14159265358979323846
-#define BINS_PER_RESOLUTION 8    /* sharing between bins then errs by 0.05 dB at most */
-#define ROUNDING            1e-9 /* 2.5 cm over 2.5 cm is one strip, not two */
+#define BINS_PER_RESOLUTION 8    /* sharing an echo between bins then errs by 0.05 dB at most */
+#define ROUNDING            1e-9 /* a ratio of 2.5 cm to 2.5 cm must give one strip, not two */
 
 sonject_status scene_lay_water(const struct scene *scene, struct report *report,
                                struct water *water)
@@ -22,7 +22,7 @@ sonject_status scene_lay_water(const struct scene *scene, struct report *report,
         highest = fmax(highest, top);
     }
     highest += highest_seabed;
-    /* what else may meet targets than fans from the sonar stays in water of one sound speed */
+    /* only fans from the sonar may cross layers near targets; other sound needs one sound speed */
     const bool is_sliced = scene->injection.interactions == 1 &&
                            scene->sonar.transducer_side_m == 0.0 &&
                            highest < scene->sonar.altitude_m;
@@ -38,7 +38,7 @@ double scene_reference_speed(const struct scene *scene)
                                         : scene->medium.sound_speed_mps;
 }
 
-/* Near the vertical, layers and heights would need rays that start at the nadir. */
+/* Refuses water columns under layers or with relief, where rays would start at the nadir. */
 static sonject_status check_water_column(const struct patch_view *view, struct report *report,
                                          const struct scene *scene, double first_column)
 {
@@ -119,7 +119,7 @@ struct patch_view patch_view_window(const struct patch_view *view, const struct 
     return part;
 }
 
-/* Puts count things of so many bytes each in reverse order. */
+/* Reverses the order of count things of so many bytes each. */
 static void reverse(char *things, size_t count, size_t bytes)
 {
     for (size_t k = 0; k < count / 2; k++) {
@@ -250,7 +250,7 @@ void line_grid_for_patch(struct line_grid *grid, const struct patch_view *view,
     const int32_t strip_margin = (int32_t)ceil(
         cross_range_energy_reach(response, view->farthest_m, MARGIN_ENERGY_SHARE) / strip);
     const int32_t bin_margin = bins_of(view, response->pulse_margin_m, grid->bins_per_pixel);
-    /* nothing returns from before range 0 */
+    /* there are no echoes from before range 0 */
     const int32_t bins_before = (int32_t)fmin(
         bin_margin, view->first_range_m * grid->bins_per_pixel / view->column_spacing_m);
     grid->strips.first = -strip_margin;

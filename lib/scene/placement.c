@@ -7,7 +7,7 @@
 #include "base/memory.h"
 
 #define PI                   3.14159265358979323846
-#define SMALLEST_WAVELENGTHS 0.5    /* an object's size, at least */
+#define SMALLEST_WAVELENGTHS 0.5    /* the least size of an object */
 #define THINNEST_M           1.0e-4 /* a plate without thickness lies on the seabed, not in it */
 
 static const double outward[3] = {0.0, 1.0, 0.0};
@@ -75,8 +75,8 @@ double placement_shadow_end(const struct placement *placement, const struct patc
     return end + ray_path_shadow(&view->water, end, top, ground_m);
 }
 
-/* How far some parts reach along a direction, from the origin that their centres are counted from;
- * 0 if there is none. */
+/* Returns how far parts reach along a direction from the origin that their centres count from; 0 if
+ * there are none. */
 static double parts_extent(const struct placement *parts, uint32_t count, const double direction[3])
 {
     double extent = count > 0 ? -INFINITY : 0.0;
@@ -86,7 +86,7 @@ static double parts_extent(const struct placement *parts, uint32_t count, const 
     return extent;
 }
 
-/* From one side to the other along an axis of the view. */
+/* Returns the size from one side to the other along an axis of the view. */
 static double overall_size(const struct placement *parts, uint32_t count, int axis)
 {
     double forward[3] = {0.0, 0.0, 0.0};
@@ -98,14 +98,14 @@ static double overall_size(const struct placement *parts, uint32_t count, int ax
 
 void object_axes(double axes[3][3], const sonject_object_params *object, bool is_mirrored)
 {
-    /* the image's along-track axis is -x in a mirrored view: heading and roll change sense; what is
-     * turned stays as it is, a left hand does not become a right one */
+    /* The image's along-track axis is -x in a mirrored view, so heading and roll change sense. Only
+     * the pose changes: a left hand does not become a right one. */
     turn_axes(axes, is_mirrored ? PI - object->heading_rad : object->heading_rad, object->pitch_rad,
               is_mirrored ? -object->roll_rad : object->roll_rad);
 }
 
-/* A part as it lies in its object, which may be its own only part: in_object is NULL then. axes:
- * the object's. */
+/* Returns a part as it lies in its object. in_object is NULL for an object that is its own only
+ * part. axes: the object's. */
 static struct placement pose_part(const struct scene *scene, uint32_t object,
                                   const struct scene_part *in_object, double axes[3][3])
 {
@@ -132,8 +132,8 @@ static struct placement pose_part(const struct scene *scene, uint32_t object,
     return part;
 }
 
-/* The parts of an object, their centres counted from its origin in axes of the view. Returns their
- * number. parts: room for them, or NULL to count. */
+/* Finds the parts of an object, whose centres count from its origin in axes of the view, and
+ * returns their number. parts: room for them, or NULL to count. */
 static uint32_t pose_parts(struct placement *parts, const struct scene *scene, uint32_t object,
                            bool is_mirrored)
 {
@@ -155,7 +155,7 @@ static uint32_t pose_parts(struct placement *parts, const struct scene *scene, u
     return count;
 }
 
-/* Depth of the lowest point below the seabed. */
+/* Returns the depth of the lowest point below the seabed. */
 static double burial_in_pose(const struct placement *parts, uint32_t count,
                              const sonject_object_params *object)
 {
@@ -172,7 +172,7 @@ static double burial_in_pose(const struct placement *parts, uint32_t count,
 sonject_status object_top(const struct scene *scene, struct report *report, uint32_t object,
                           double *top_m)
 {
-    /* to which side the sonar looks does not matter */
+    /* the side to which the sonar looks does not matter */
     const uint32_t count = pose_parts(NULL, scene, object, false);
     struct placement *parts = allocate_array(count, sizeof *parts);
     CHECK_MEMORY(report, parts, "an object's parts");
@@ -182,16 +182,16 @@ sonject_status object_top(const struct scene *scene, struct report *report, uint
     return SONJECT_OK;
 }
 
-/* Placements in the making. */
+/* Placements while they are made. */
 struct placing {
     struct placements *placements;
     struct report *report;
     const struct scene *scene;
     const struct patch_view *view;
-    double first_row, first_column; /* of the patch in the swath */
+    double first_row, first_column; /* patch's first pixel in the swath */
 };
 
-/* The ground point under an object's origin. */
+/* Finds the ground point under an object's origin. */
 static sonject_status find_ground_point(double origin[3], const struct placing *placing,
                                         const sonject_object_params *object)
 {
@@ -218,7 +218,7 @@ static sonject_status find_ground_point(double origin[3], const struct placing *
     return SONJECT_OK;
 }
 
-/* How high an object's origin comes to lie over the seabed under it, its parts being posed. */
+/* Finds the height of a posed object's origin over the seabed under it. */
 static sonject_status find_height(double *height_m, struct report *report,
                                   const sonject_object_params *object,
                                   const struct placement *parts, uint32_t count)
@@ -235,7 +235,7 @@ static sonject_status find_height(double *height_m, struct report *report,
     return SONJECT_OK;
 }
 
-/* What an object covers of the ground, its parts being posed about their origin. */
+/* Returns the ground that an object covers. Its parts are posed about their origin. */
 static struct footprint footprint_of(const struct placement *parts, uint32_t count,
                                      const double origin[3])
 {
@@ -244,7 +244,7 @@ static struct footprint footprint_of(const struct placement *parts, uint32_t cou
     const double along[3] = {level > 0.1 ? nose[0] / level : 1.0,
                              level > 0.1 ? nose[1] / level : 0.0, 0.0};
     const double across[3] = {-along[1], along[0], 0.0};
-    double reach[4]; /* along, back, across and to its other side */
+    double reach[4]; /* along, back, across and to the other side */
     for (int i = 0; i < 4; i++) {
         const double *axis = i < 2 ? along : across;
         const double sign = i % 2 == 0 ? 1.0 : -1.0;
@@ -262,7 +262,7 @@ static struct footprint footprint_of(const struct placement *parts, uint32_t cou
                               .half_length_m = fmax(0.0, 0.5 * (reach[0] + reach[1]) - half_width)};
 }
 
-/* Whether an object can be told and has room. */
+/* Checks that an object is large enough for its echo and fits into patch and water. */
 static sonject_status check_object_size(const struct placing *placing, const char *name,
                                         const struct placed_object *placed,
                                         const struct placement *parts)
@@ -270,8 +270,8 @@ static sonject_status check_object_size(const struct placing *placing, const cha
     const struct patch_view *view = placing->view;
     const double patch_length = (double)view->rows * view->row_spacing_m;
     const double patch_width = (double)view->columns * view->column_spacing_m;
-    /* smaller ones are less than rays, which are a fraction of a wavelength apart, and physical
-     * optics can tell the echo of (kernels/MATH.md, "Small objects") */
+    /* Rays are a fraction of a wavelength apart, and physical optics fails for smaller objects
+     * (kernels/MATH.md, "Small objects"). */
     if (placed->size_m < SMALLEST_WAVELENGTHS * view->wavelength_m)
         return report_failure(placing->report, SONJECT_ERROR_INPUT,
                               "object '%s' is %.3g mm large, which is less than half the "
@@ -310,12 +310,12 @@ static sonject_status pose(const struct placing *placing, uint32_t number)
                             "objects[%u]", (unsigned)number);
     const sonject_status status = find_ground_point(placed->origin, placing, object);
     if (status != SONJECT_OK)
-        placed->part_count = 0; /* it is not to be settled */
+        placed->part_count = 0; /* keeps place() from settling it */
     return scene_locate(placing->scene, placing->report, status, "objects[%u].position",
                         (unsigned)number);
 }
 
-/* Lets a posed object down on the seabed. */
+/* Puts a posed object on the seabed. */
 static sonject_status settle(const struct placing *placing, uint32_t number)
 {
     struct placements *placements = placing->placements;
@@ -340,7 +340,7 @@ static sonject_status settle(const struct placing *placing, uint32_t number)
                         (unsigned)number);
 }
 
-/* Random numbers are told apart by the number of a shape. */
+/* Checks the number of shapes, because random numbers are told apart by the number of a shape. */
 static sonject_status check_shape_count(struct report *report, const struct scene *scene)
 {
     uint32_t count = scene->part_count;
@@ -354,7 +354,7 @@ static sonject_status check_shape_count(struct report *report, const struct scen
                           (unsigned)count, SCENE_SHAPES_MAX);
 }
 
-/* Scour lies around objects, so the relief needs their places. */
+/* Lays the relief after the objects have places, because scour surrounds objects. */
 static sonject_status lay_relief(const struct placing *placing)
 {
     struct placements *placements = placing->placements;
@@ -372,7 +372,7 @@ static sonject_status lay_relief(const struct placing *placing)
     return scene_locate(placing->scene, placing->report, status, "seabed.relief");
 }
 
-/* All wrong objects are told. */
+/* Places all objects and reports all wrong ones. */
 static sonject_status place(const struct placing *placing)
 {
     char lines[REPORT_CAPACITY] = "";
@@ -420,7 +420,7 @@ void sonar_array_axes(double axes[3][3], const sonject_sonar_params *sonar, bool
     turn_axes(axes, sonar->array_heading_rad, sonar->array_pitch_rad, -sonar->array_depression_rad);
     if (!is_mirrored)
         return;
-    /* the view's track runs the other way, and so does the long side that points ahead in it */
+    /* the view's track runs the other way, and so does the long side that points ahead */
     for (int i = 0; i < 3; i++)
         axes[i][0] = -axes[i][0];
     for (int k = 0; k < 3; k++)

@@ -8,16 +8,16 @@
 #define GAUSSIAN_REACH     5.0   /* deviations of the envelope: -108 dB */
 #define TAIL_LEVEL         1e-3  /* amplitude below which a glint's side lobes in range are cut */
 #define TAIL_MAX           512.0 /* resolutions */
-#define PULSE_ENERGY_SHARE 0.001 /* of |G|^2 that is cut off from speckle and energies */
+#define PULSE_ENERGY_SHARE 0.001 /* share of |G|^2 that is cut off from speckle and energies */
 
 static double sinc(double x)
 {
     return x == 0.0 ? 1.0 : sin(PI * x) / (PI * x);
 }
 
-/* Cosine weights of Taylor's window, from T. T. Taylor, "Design of line-source antennas for narrow
- * beamwidth and low side lobes", IRE Trans. AP-3 (1955): side lobes of equal height out to the
- * terms-th zero. */
+/* Computes the cosine weights of Taylor's window: side lobes of equal height out to the terms-th
+ * zero (T. T. Taylor, "Design of line-source antennas for narrow beamwidth and low side lobes", IRE
+ * Trans. AP-3, 1955). */
 static int taylor_weights(double *weights, double sidelobe_db, int terms)
 {
     const double a = acosh(pow(10.0, sidelobe_db / 20.0)) / PI;
@@ -36,7 +36,7 @@ static int taylor_weights(double *weights, double sidelobe_db, int terms)
     return terms - 1;
 }
 
-/* Transform of the weighting 1 + sum of 2 w cos(2 pi m u), u from -1/2 to 1/2, over its mean. */
+/* Returns the transform of 1 + sum of 2 w cos(2 pi m u), u = -1/2...1/2, over its mean. */
 static double transform_at(const double *weights, int terms, double x)
 {
     double sum = sinc(x);
@@ -45,7 +45,7 @@ static double transform_at(const double *weights, int terms, double x)
     return sum;
 }
 
-/* Integral of its square over x: Parseval. */
+/* Returns the integral of that transform's square over x, by Parseval. */
 static double transform_energy(const double *weights, int terms)
 {
     double sum = 1.0;
@@ -54,8 +54,8 @@ static double transform_energy(const double *weights, int terms)
     return sum;
 }
 
-/* Beyond x = terms the transform is sin(pi x) / (pi x) times a function without zeros. Where that
- * has fallen below `level` for good. */
+/* Returns where the transform has fallen below `level` for good. Beyond x = terms the transform is
+ * sin(pi x) / (pi x) times a function without zeros. */
 static double transform_tail(const double *weights, int terms, double level)
 {
     double x = terms + 1.0;
@@ -108,8 +108,8 @@ double along_track_energy_width(const struct point_response *response)
     return response->resolution_m * transform_energy(response->weights, response->terms);
 }
 
-/* Half width, in units of step, within which midpoints of a response's energy make up all but
- * `share` of the total. */
+/* Returns the half width, a multiple of step, within which a response's energy, summed at
+ * midpoints, is all but `share` of the total. */
 static double reach_of(const struct point_response *response, double total, double step,
                        double longest, double share,
                        double (*energy_at)(const struct point_response *, double))
@@ -131,7 +131,7 @@ static double window_energy_at(const struct point_response *response, double dis
 
 double along_track_energy_reach(const struct point_response *response, double share)
 {
-    /* a sinc keeps 1 / (pi^2 x) of its energy beyond x resolutions, so this ends */
+    /* a sinc keeps 1 / (pi^2 x) of its energy beyond x resolutions, so the search ends */
     return reach_of(response, along_track_energy_width(response), response->resolution_m / 8.0,
                     4096.0 * response->resolution_m, share, window_energy_at);
 }
@@ -141,10 +141,10 @@ double along_track_tail(const struct point_response *response)
     return response->resolution_m * transform_tail(response->weights, response->terms, TAIL_LEVEL);
 }
 
-/* ---- Pulses: how each begins after point_response_set_widths, G, the integral of |G|^2, and the
- * half width beyond which less than a share of that lies. */
+/* ---- Pulses. Each has four functions: its start after point_response_set_widths, G, the integral
+ * of |G|^2, and the half width beyond which less than a share of that integral lies. */
 
-/* From a G that is real and even. */
+/* Returns the energy at both sides for a G that is real and even. */
 static double energy_at(const struct point_response *response, double distance_m)
 {
     const double g = range_response(response, distance_m);
@@ -154,7 +154,7 @@ static double energy_at(const struct point_response *response, double distance_m
 static void gaussian_init(struct point_response *response, const sonject_pulse_params *pulse,
                           const struct response_table *table, double reference_sound_speed_mps)
 {
-    (void)response, (void)pulse, (void)table, (void)reference_sound_speed_mps; /* it is one */
+    (void)response, (void)pulse, (void)table, (void)reference_sound_speed_mps; /* already set */
 }
 
 static double gaussian_at(const struct point_response *response, double distance_m)

@@ -10,29 +10,29 @@
 #define PI 3.14159265358979323846
 
 #define POINTS_PER_PIXEL      2.0
-#define POINTS_PER_WAVELENGTH 24.0 /* wanted; of ripples and of a bump's radius */
-#define POINTS_LEAST          8.0  /* slopes then err by 1 % */
+#define POINTS_PER_WAVELENGTH 24.0 /* points wanted, also over a bump's radius */
+#define POINTS_LEAST          8.0  /* least points; slopes then err by 1 % */
 #define POINTS_MAX            (UINT32_C(1) << 22)
 #define SIDE_MAX              16384.0
 #define SLOPE_MAX             1.75 /* 60 degrees: sand never stands so steep, rocks may */
 
-/* As in lib/image/synthetic.c: the wander is relative to the regular train of crests; where the two
- * cancel a crest forks. Lengths are deviations of the blur in wavelengths. */
+/* The wander of crests, as in lib/image/synthetic.c. It is relative to the regular train of crests;
+ * where the two cancel a crest forks. Lengths are deviations of the blur in wavelengths. */
 #define WANDERS        2
-#define STREAM_WANDERS 0x5eabed60u /* none that the tracer or a synthetic seabed uses */
+#define STREAM_WANDERS 0x5eabed60u /* a stream that neither tracer nor synthetic seabed uses */
 #define FULL_STRENGTH  0.6         /* relative height from which a crest has its full height */
 static const double wander_lengths[WANDERS] = {1.5, 0.5};
 static const double wander_strengths[WANDERS] = {1.1, 0.25};
 
-/* A relief in the making. */
+/* A relief while it is made. */
 struct making {
     struct report *report;
     const struct scene *scene;
     const struct patch_view *view;
-    double first_row, first_column; /* of the patch in the swath */
+    double first_row, first_column; /* patch's first pixel in the swath */
     const struct footprint *footprints;
     struct relief *relief;
-    double *heights; /* before they fall to 0 at the edges */
+    double *heights; /* heights before they fall to 0 at the edges */
 };
 
 double relief_x(const struct relief *relief, uint32_t row)
@@ -50,7 +50,7 @@ bool scene_has_relief(const struct scene *scene)
     return scene->relief.count > 0 || scene->relief.heights_m;
 }
 
-/* What cannot be had with relief: a smooth seabed, a coherent map; and heights near the sonar. */
+/* Refuses combinations with relief: a smooth seabed, a coherent map, heights near the sonar. */
 static sonject_status check_scene(const struct scene *scene, struct report *report)
 {
     const sonject_material_params *forward = &scene->seabed.forward;
@@ -74,7 +74,7 @@ static sonject_status check_scene(const struct scene *scene, struct report *repo
     return SONJECT_OK;
 }
 
-/* Where the grid lies: over the whole patch, pixels' edges included. */
+/* Lays the grid over the whole patch, including the pixels' edges. */
 static sonject_status lay_grid(struct making *making)
 {
     const struct scene *scene = making->scene;
@@ -86,7 +86,7 @@ static sonject_status lay_grid(struct making *making)
     const double length = (double)view->rows * view->row_spacing_m;
     const double width =
         view_ground_range(view, view_processor_range(view, (double)view->columns - 0.5)) - first_y;
-    double finest = INFINITY; /* m, of all features */
+    double finest = INFINITY; /* finest scale of all features, m */
     double step = fmin(view->row_spacing_m, view->column_spacing_m) / POINTS_PER_PIXEL;
     for (uint32_t i = 0; i < scene->relief.count; i++) {
         const struct relief_feature *feature = &scene->relief.features[i];
@@ -94,7 +94,8 @@ static sonject_status lay_grid(struct making *making)
                               : feature->kind == RELIEF_SCOUR ? feature->width_m
                                                               : feature->radius_m);
     }
-    if (scene->relief.heights_m) { /* as fine as the file's, down to what no pixel shows */
+    if (scene->relief
+            .heights_m) { /* the step follows the file's, down to one that no pixel shows */
         const sonject_relief_params *grid = &scene->relief.grid;
         step = fmin(step, fmax(0.5 * step, fmin(grid->row_spacing_m, grid->column_spacing_m)));
     }
@@ -116,15 +117,15 @@ static sonject_status lay_grid(struct making *making)
     return SONJECT_OK;
 }
 
-/* 1 at 0, falling to 0 at 1 and staying there. */
+/* Returns a raised cosine: 1 at 0, 0 from 1 on. */
 static double raised_cosine(double share)
 {
     return share < 1.0 ? 0.5 + 0.5 * cos(PI * share) : 0.0;
 }
 
-/* ---- features ---- */
+/* ---- Features. */
 
-/* Distance from what an object covers of the ground, 0 within it. */
+/* Returns the distance from the ground that an object covers, 0 within it. */
 static double outside_of(const struct footprint *footprint, double x, double y)
 {
     const double dx = x - footprint->x_m;
@@ -177,8 +178,8 @@ static sonject_status find_object(const struct making *making, const char *name,
                           found == 0 ? "no" : "more than one");
 }
 
-/* The second harmonic narrows crests and widens troughs; beyond a quarter of the first there would
- * be a second crest in each trough. The mean stays 0 and trough to crest 2. */
+/* Returns the profile of ripples, of mean 0 and 2 from trough to crest. The second harmonic narrows
+ * crests and widens troughs. Above a quarter of the first it would add a crest in each trough. */
 static double ripple_profile(double cosine, double sharpness)
 {
     return cosine + 0.25 * sharpness * (2.0 * cosine * cosine - 1.0);
@@ -212,8 +213,7 @@ static void add_ripples_to_row(const struct relief *relief, const struct relief_
     }
 }
 
-/* Wanders of the crests are drawn in the order of the scene's rows, also where the view is
- * mirrored. */
+/* Adds ripples. Wanders are drawn in the scene's row order, also where the view is mirrored. */
 static sonject_status add_ripples(const struct making *making, const struct relief_feature *feature)
 {
     const struct relief *relief = making->relief;
@@ -265,7 +265,7 @@ static sonject_status add_feature(const struct making *making, const struct reli
     return SONJECT_OK;
 }
 
-/* Bilinear on a grid at fractional indices; 0 outside. */
+/* Interpolates a grid bilinearly at fractional indices; 0 outside. */
 static double mix_grid(const float *heights, uint32_t rows, uint32_t columns, double row,
                        double column)
 {
@@ -280,7 +280,7 @@ static double mix_grid(const float *heights, uint32_t rows, uint32_t columns, do
            along * ((1.0 - across) * (double)at[columns] + across * (double)at[columns + 1]);
 }
 
-/* What a patch's edge leaves of heights `inside` m from it. */
+/* Returns the factor of the patch's edge on heights `inside` m from it. */
 static double taper(double inside, double side)
 {
     const double width = fmin(RELIEF_TAPER_M, RELIEF_TAPER_SHARE * side);
@@ -317,7 +317,7 @@ static void finish_heights(const struct making *making)
         }
 }
 
-/* At point `at` of `count` points that lie `stride` apart; 0 at the ends, where all is level. */
+/* Returns the difference at point `at` of `count` points, `stride` apart; 0 at the level ends. */
 static double difference(const float *line, size_t stride, uint32_t at, uint32_t count)
 {
     const float *here = line + at * stride;
@@ -347,7 +347,7 @@ void relief_finish(struct relief *relief)
         }
 }
 
-/* By the cells' own edges, which no step between two points escapes. */
+/* Checks slopes along the cells' edges, which no step between two points escapes. */
 static sonject_status check_slopes(const struct making *making)
 {
     const struct relief *relief = making->relief;

@@ -8,7 +8,7 @@
 #include "base/report.h"
 
 #define GRID_SIZE_MAX (UINT32_C(1) << 24)
-#define OVERSHOOT     1.3 /* of irregular ripples where crests meet, over regular ones */
+#define OVERSHOOT     1.3 /* irregular ripples where crests meet, over regular ones */
 
 bool relief_grid_fits(uint64_t rows, uint64_t columns)
 {

@@ -72,8 +72,7 @@ static struct complex_number secant(const struct response_table *table, size_t i
         (table->values[i + 1].imaginary_part - table->values[i].imaginary_part) / step};
 }
 
-/* That of the parabola through a sample and its neighbours; of the first and last piece at the
- * ends. */
+/* Returns the slope of the parabola through a sample and its neighbours, or of the end piece. */
 static struct complex_number slope_at(const struct response_table *table, size_t i)
 {
     if (i == 0)
@@ -113,7 +112,7 @@ struct complex_number response_table_at(const struct response_table *table, doub
                 slope_b.imaginary_part)};
 }
 
-/* Four points of Gauss and Legendre: exact for the square of a cubic. */
+/* Integrates by four points of Gauss and Legendre, exact for the square of a cubic. */
 static double energy_of_piece(const struct response_table *table, double low, double high)
 {
     static const double points[2] = {0.33998104358485626, 0.86113631159405258};
@@ -154,7 +153,7 @@ double response_table_reach(const struct response_table *table, double share)
     return outside;
 }
 
-/* From the largest sample towards an end: where the energy has fallen to one half. */
+/* Returns where the energy has fallen to one half, from the largest sample towards an end. */
 static double half_power_point(const struct response_table *table, size_t peak, int direction)
 {
     size_t i = peak;

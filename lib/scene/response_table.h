@@ -1,6 +1,6 @@
-/* A measured response: complex samples over metres (or seconds), between which it is a cubic with
- * the slopes of the parabola through each sample and its neighbours; 0 outside. The largest sample
- * is 1: all are divided by it. */
+/* A measured response: complex samples over metres (or seconds). Between the samples it is a cubic
+ * with the slopes of the parabola through each sample and its neighbours; outside it is 0. All
+ * samples are divided by the largest one, which becomes 1. */
 #ifndef SONJECT_SCENE_RESPONSE_TABLE_H
 #define SONJECT_SCENE_RESPONSE_TABLE_H
 
@@ -24,28 +24,28 @@ struct response_table {
     bool is_time;                  /* positions are s, not m */
 };
 
-/* Takes a copy of samples in place of what the table held: at least two, positions rising from
- * below 0, the target's own place, to above it, not all 0. imaginary_part: NULL where it is 0.
- * Errors: MEMORY. */
+/* Replaces the table by a copy of samples: at least two, not all 0, at positions that rise from
+ * below 0, the target's own place, to above it. imaginary_part: NULL for 0. Errors: MEMORY. */
 sonject_status response_table_set(struct response_table *table, struct report *report,
                                   const double *positions, const double *real_part,
                                   const double *imaginary_part, size_t count, bool is_time);
 
 void response_table_clear(struct response_table *table);
 
-/* Of rising positions the last at or before x, but not the last of all: where x's piece begins. */
+/* Returns the index at which x's piece begins: the last of rising positions at or before x, but not
+ * the last of all. */
 size_t piece_at(const double *positions, size_t count, double x);
 
 struct complex_number response_table_at(const struct response_table *table, double position);
 
-/* Integral of the squared magnitude over positions from `low` to `high`. */
+/* Returns the integral of the squared magnitude over positions from `low` to `high`. */
 double response_table_energy(const struct response_table *table, double low, double high);
 
-/* Half width about 0 beyond which less than `share` of that integral lies. */
+/* Returns the half width about 0 beyond which less than `share` of the whole integral lies. */
 double response_table_reach(const struct response_table *table, double share);
 
-/* Distance between the points around the largest sample where the squared magnitude has fallen to
- * one half; the table's own length where it has not. */
+/* Returns the distance between the points on both sides of the largest sample where the squared
+ * magnitude has fallen to one half, or the table's end where it has not. */
 double response_table_width(const struct response_table *table);
 
 #endif

@@ -141,7 +141,7 @@ uint32_t scene_key_source(const struct scene *scene, const char *path)
     return SONJECT_SOURCE_DEFAULT;
 }
 
-/* Shortens path to the section that it lies in; to "" at last. */
+/* Shortens a path to the section around it, and at last to "". */
 static void go_out(char *path)
 {
     char *dot = strrchr(path, '.');
@@ -162,7 +162,7 @@ sonject_status scene_locate(const struct scene *scene, struct report *report, so
     for (; *name; go_out(name))
         for (size_t i = 0; i < scene->written.count; i++) {
             const struct written_key *key = &scene->written.keys[i];
-            const char *told = strrchr(key->place, ' '); /* "--set " or "set " is before it */
+            const char *told = strrchr(key->place, ' '); /* the key path after "--set " or "set " */
             const bool is_told = told && strcmp(told + 1, name) == 0;
             if (strcmp(key->path, name) == 0)
                 return report_failure(report, status, "%s%s%s: %s", key->place, is_told ? "" : ": ",

@@ -4,8 +4,8 @@
 #include <math.h>
 
 #define PI       3.14159265358979323846
-#define EXPONENT 3.25                   /* of the relief's spectrum */
-#define ALPHA    (0.5 * EXPONENT - 1.0) /* of its structure function, half of the power */
+#define EXPONENT 3.25                   /* exponent of the relief's spectrum */
+#define ALPHA    (0.5 * EXPONENT - 1.0) /* half the exponent of its structure function */
 #define DEGREES  (180.0 / PI)
 
 struct sediment sediment_of_grain_size(double phi)
@@ -35,16 +35,16 @@ struct sediment sediment_of_grain_size(double phi)
         attenuation = 8.0399 - 2.5228 * phi + 0.20098 * square;
     else
         attenuation = 0.9431 - 0.2041 * phi + 0.0117 * square;
-    /* at the handbook's own 1528 m/s */
+    /* the water's sound speed is the handbook's 1528 m/s */
     sediment.loss = attenuation * sediment.speed_ratio * 1.528 * log(10.0) / (40.0 * PI);
     sediment.volume = phi < 5.5 ? 0.002 : 0.001;
     const double relief_cm =
-        phi < 5.0 ? (2.03846 - 0.26923 * phi) / (1.0 + 0.076923 * phi) : 0.5; /* rms of a metre */
+        phi < 5.0 ? (2.03846 - 0.26923 * phi) / (1.0 + 0.076923 * phi) : 0.5; /* rms over a metre */
     sediment.strength = 0.00207 * relief_cm * relief_cm;
     return sediment;
 }
 
-/* Wavenumber into the sediment over the water's, upright part. */
+/* Returns the vertical wavenumber in the sediment over the water's wavenumber. */
 static double complex upright(const struct sediment *sediment, double grazing)
 {
     const double complex ratio = (1.0 + sediment->loss * I) / sediment->speed_ratio;
@@ -57,7 +57,7 @@ static double complex reflection(const struct sediment *sediment, double grazing
     return (y - 1.0) / (y + 1.0);
 }
 
-/* Small roughness by perturbation theory. wavenumber: 1/cm. */
+/* Returns the scattering of small roughness by perturbation theory. wavenumber: 1/cm. */
 static double of_ripples(const struct sediment *sediment, double wavenumber, double grazing)
 {
     const double density = sediment->density_ratio, across = cos(grazing), up = sin(grazing);
@@ -79,7 +79,7 @@ static double of_volume(const struct sediment *sediment, double wavenumber, doub
            (sediment->speed_ratio * log(10.0) * pow(cabs(root), 2.0) * cimag(root));
 }
 
-/* Mean over large slopes, by Gauss and Hermite. */
+/* Returns the mean over large slopes, by Gauss and Hermite. */
 static double over_slopes(const struct sediment *sediment, double wavenumber, double grazing,
                           double slope,
                           double (*scattering)(const struct sediment *, double, double))
@@ -94,7 +94,7 @@ static double over_slopes(const struct sediment *sediment, double wavenumber, do
     return mean;
 }
 
-/* Share of what slopes of that rms do not hide. */
+/* Returns the share of the ground that slopes of that rms do not hide. */
 static double lit_share(double grazing, double slope)
 {
     const double t = tan(grazing) / slope;
@@ -107,8 +107,8 @@ static double falling(double x)
     return 1.0 / (1.0 + exp(fmin(fmax(x, -40.0), 40.0)));
 }
 
-/* Near the vertical by Kirchhoff's approximation, whose integral over the structure function q is
- * approached by a fraction that is exact there. */
+/* Kirchhoff's approximation near the vertical, with a fraction that is exact there in place of the
+ * integral over the structure function q. */
 struct kirchhoff {
     double a, b, q;
 };
@@ -126,7 +126,7 @@ static struct kirchhoff kirchhoff_of(const struct sediment *sediment, double wav
     return k;
 }
 
-/* Relief of gravel and coarser, fitted to measurements. */
+/* Returns the scattering of gravel and coarser relief, fitted to measurements. */
 static double of_large_relief(const struct sediment *sediment, double grazing, double slope,
                               double upright_share)
 {

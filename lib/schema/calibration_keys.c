@@ -1,5 +1,5 @@
-/* A calibration under a scene: the file that input.calibration names has keys of scenes, which
- * count where the scene has none of its own. */
+/* The calibration that input.calibration names: a file with keys of scenes, which apply where the
+ * scene has none of its own. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,12 +15,12 @@ struct layer {
     struct reader *reader;
     struct tree *tree;
     struct tree calibration;
-    struct tree_place place; /* of the key that names the file */
-    struct key_path path;    /* in both */
+    struct tree_place place; /* place of the key that names the file */
+    struct key_path path;    /* path of the current key, the same in scene and calibration */
     struct growing_text taken;
 };
 
-/* Whatever is wrong with it is told where the scene names the file. */
+/* Sets a value's place to where the scene names the file, for messages. */
 static void move_place(struct tree_node *node, struct tree_place place)
 {
     node->place = place;
@@ -43,7 +43,8 @@ static void note_taken(struct layer *layer, const struct tree_node *node)
     }
 }
 
-/* A curve of the scene's own has no parameter of another's, nor a range of column 0 a nadir. */
+/* Returns whether a key of the calibration does not fit the scene's own keys: the parameter of
+ * another transfer curve, or a nadir beside the range of column 0. */
 static bool is_hidden(const struct layer *layer, const struct tree_node *scene, const char *key)
 {
     const char *path = layer->path.text;
@@ -53,7 +54,7 @@ static bool is_hidden(const struct layer *layer, const struct tree_node *scene, 
             strcmp(key, "nadir_column") == 0);
 }
 
-/* Moves what the scene lacks from the calibration's section into its own. */
+/* Moves the entries that the scene's section lacks from the calibration's section into it. */
 static sonject_status lay_under(struct layer *layer, struct tree_node *scene,
                                 struct tree_node *calibration)
 {
@@ -81,7 +82,7 @@ static sonject_status lay_under(struct layer *layer, struct tree_node *scene,
     return status;
 }
 
-/* The number of a text; NAN where it is none. */
+/* Returns the number that a text is, or NAN if the text is no number. */
 static double number_of_text(const struct tree_node *node)
 {
     const char *rest;
@@ -92,7 +93,7 @@ static double number_of_text(const struct tree_node *node)
                : NAN;
 }
 
-/* First returns of a whole swath; none where the file has not all of them as columns. */
+/* Takes the first returns of a whole swath, if the file has all of them as columns. */
 static sonject_status take_first_returns(struct report *report, const struct tree_node *measured,
                                          struct first_return_list *returns)
 {
@@ -117,7 +118,7 @@ static sonject_status take_first_returns(struct report *report, const struct tre
     return SONJECT_OK;
 }
 
-/* Whether the scene wants them, of which a long line has thousands. */
+/* Returns whether the scene needs first returns, of which a long line has thousands. */
 static bool asks_for_returns(const struct tree_node *scene)
 {
     const struct tree_entry *sonar = tree_find(scene, "sonar");
@@ -125,7 +126,7 @@ static bool asks_for_returns(const struct tree_node *scene)
     return altitude && is_word(&altitude->value, "first_return");
 }
 
-/* What it was measured on. */
+/* Takes the side and the altitudes that the calibration was measured on. */
 static void take_measured(struct scene *scene, const struct tree_node *measured)
 {
     const struct tree_entry *side = tree_find(measured, "side");
@@ -139,7 +140,7 @@ static void take_measured(struct scene *scene, const struct tree_node *measured)
         scene->calibrated_altitudes = number;
 }
 
-/* The version, and sections of scenes' keys; the rest goes under the scene's. */
+/* Checks version and sections, and lays the sections' keys under the scene's. */
 static sonject_status take_keys(struct layer *layer, const char *file)
 {
     static const char *const sections[] = {"input", "sonar", "injection"};
@@ -206,7 +207,7 @@ sonject_status take_calibration(struct reader *reader, struct tree *tree)
     const char *made = reader->made_calibration;
     char *file = NULL;
     if (!named || count_given(&input->value, "uniform synthetic") > 0)
-        return SONJECT_OK; /* refused with the section */
+        return SONJECT_OK; /* read_section refuses these combinations */
     if (is_word(&named->value, "auto")) {
         reader->scene->calibrates_itself = made == NULL;
         return made ? lay_file(reader, tree, named, made) : SONJECT_OK;

@@ -1,4 +1,4 @@
-/* What is made from the tables of keys: defaults, bounds, the list of all keys. */
+/* Functions made from the tables of keys: defaults, bounds, the list of all keys. */
 #include "schema/keys.h"
 
 #include <stdio.h>
@@ -8,11 +8,11 @@
 #include "base/text.h"
 #include "schema/scene_file.h"
 
-#define KEYS_LISTED 40 /* of a section, in a message */
+#define KEYS_LISTED 40 /* keys of a section that a message lists at most */
 
 static const struct quantity_text {
-    const char *units; /* as users may write them */
-    const char *si;    /* behind a number in a message */
+    const char *units; /* the units that users may write */
+    const char *si;    /* the unit after a number in a message */
 } quantity_texts[] = {
     [QUANTITY_NUMBER] = {"number", ""},
     [QUANTITY_FRACTION] = {"%, or a fraction", ""},
@@ -43,7 +43,7 @@ static bool has_bounds(const struct field *field)
     return field->least != 0.0 || field->most != 0.0;
 }
 
-/* How many values a word has, with those that no word stands for. */
+/* Returns how many values a word key has, including those without a word. */
 static uint32_t count_words(const struct field *field)
 {
     uint32_t count = 0;
@@ -68,7 +68,7 @@ static double number_of(const struct field *field, const void *structure)
                                         : value32(structure, field->offset);
 }
 
-/* As users are told it. */
+/* Returns the number in the unit that users read: degrees for angles, else SI. */
 static double shown(const struct field *field, double number)
 {
     return field->kind == FIELD_QUANTITY && field->quantity == QUANTITY_ANGLE ? number * 180.0 / PI
@@ -97,7 +97,7 @@ const struct section *field_below(const struct field *field, const void *structu
     if (!of || field->kind == FIELD_SPECIAL ||
         (field->read && (field->kind == FIELD_WORD || field->kind == FIELD_QUANTITY)))
         return NULL;
-    *below = structure; /* keys that are another way to write a value */
+    *below = structure; /* keys below that are another way to write the same value */
     if (field->kind == FIELD_SECTION || field->kind == FIELD_NAMED || field->kind == FIELD_ENTRIES)
         *below = (const char *)of + field->offset + index * field->entry_bytes;
     return field->section;
@@ -130,7 +130,7 @@ void section_defaults(const struct section *section, void *structure, struct sce
             set_preset(field, field->is_in_scene ? (void *)scene : structure);
         for (uint32_t k = 0; k < entries; k++) {
             const struct section *inner = field_below(field, structure, scene, k, &below);
-            if (inner) /* of structure, or of scene, both of which may be changed */
+            if (inner) /* below points into structure or scene, which both may be changed */
                 section_defaults(inner, (void *)(uintptr_t)below, scene);
         }
     }
@@ -148,7 +148,7 @@ static bool is_within(const struct field *field, double number)
            (field->bounds & BELOW_MOST ? number < field->most : number <= field->most);
 }
 
-/* "1...8 surfaces", "at least 0.01, or auto"; "" for no bounds. */
+/* Writes "1...8 surfaces" or "at least 0.01, or auto"; "" for no bounds. */
 static void tell_range(const struct field *field, char text[200])
 {
     const char *least_is = field->bounds & ABOVE_LEAST ? "above " : "at least ";
@@ -247,7 +247,7 @@ bool field_quantity(const struct field *field, enum quantity *quantity)
     return false;
 }
 
-/* Whether the section's choice names the key, which then has no default. */
+/* Returns whether the section's choice names the key. Such a key has no default. */
 static bool is_of_choice(const struct section *section, const char *key)
 {
     const char *choice = section->choice && !section->may_lack ? section->choice : "";
@@ -258,7 +258,7 @@ static bool is_of_choice(const struct section *section, const char *key)
     return false;
 }
 
-/* The default, as a scene file may say it; "" for none: one that is out of bounds is none, too. */
+/* Writes the default as scene files may say it; "" for none, or for one that is out of bounds. */
 static void tell_preset(const struct section *section, const struct field *field, char text[64])
 {
     const double preset = shown(field, field->preset);
@@ -285,7 +285,7 @@ static void tell_preset(const struct section *section, const struct field *field
             snprintf(text, 64, "%s", field->words[i]);
 }
 
-/* A section that may be written as a single value, too, has a unit. */
+/* Returns whether a key may be a single value. A section that may be one has a unit. */
 static bool has_value(const struct field *field)
 {
     return field->kind == FIELD_WORD || field->kind == FIELD_NAMED ||
@@ -325,7 +325,7 @@ static json_t *json_of_field(const char *prefix, const struct section *section,
                      json_or_null(is_bounded, json_number(field->most)));
 }
 
-/* Tables do not come back to themselves: parts within parts are listed as one key. */
+/* Tables do not refer to themselves: parts within parts are listed as one key. */
 static void add_json(json_t **keys, const char *prefix, const struct section *section)
 {
     for (size_t i = 0; i < section->count; i++) {
@@ -349,7 +349,7 @@ sonject_status section_keys_json(struct report *report, const struct section *se
     return *text ? SONJECT_OK : report_out_of_memory(report, "the keys");
 }
 
-/* ---- Whether there is a key. */
+/* ---- Finding a key. */
 
 const struct field *field_of(const struct section *section, const char *key, size_t length)
 {

@@ -1,5 +1,5 @@
-/* Materials: what surfaces do with sound, by name or key by key; the seabed's and the sea surface's
- * among them. */
+/* The keys of materials: how surfaces return sound, given by name or key by key. Seabed and sea
+ * surface are among them. */
 #include <math.h>
 
 #include "schema/keys.h"
@@ -7,25 +7,25 @@
 #include <stdio.h>
 #include <string.h>
 
-/* 1/pi written in decimal digits must not be refused for its last bit. */
+/* Tolerance for 1/pi written in decimal digits, whose last bit may be too large. */
 #define ENERGY_SLACK (1.0 + 1e-12)
 
 /* ---- Names. */
 
 struct named_material {
     const char *name;
-    double density_ratio, speed_ratio, loss; /* to sea water's 1025 kg/m3 and 1500 m/s */
-    double roughness_m;                      /* order of magnitude */
+    double density_ratio, speed_ratio, loss; /* ratios to sea water's 1025 kg/m3 and 1500 m/s */
+    double roughness_m;                      /* rms height, by order of magnitude */
     double lambert;
-    double grain_size_phi; /* of a sediment; NaN: it is none */
+    double grain_size_phi; /* mean grain size of a sediment; NaN: no sediment */
 };
 
-/* Objects: densities and compressional speeds of the order that handbooks of acoustics give; fluids
- * without shear waves, so that reflection is a little low between the critical angles. Sediments:
- * "APL-UW High-Frequency Ocean Environmental Acoustic Models Handbook", TR 9407 (1994), table 2, as
- * commonly tabulated; their Lambert part is Mackenzie's. */
+/* The known materials. Objects: densities and compressional speeds are of the order that handbooks
+ * of acoustics give. They are fluids without shear waves, so reflection is a little low between the
+ * critical angles. Sediments: "APL-UW High-Frequency Ocean Environmental Acoustic Models Handbook",
+ * TR 9407 (1994), table 2, as commonly tabulated; their Lambert part is Mackenzie's. */
 static const struct named_material materials[] = {
-    {"steel", 0.0, 0.0, 0.0, 0.0, 0.0, NAN}, /* what there is without any key */
+    {"steel", 0.0, 0.0, 0.0, 0.0, 0.0, NAN}, /* the defaults of material_section */
     {"concrete", 2.3, 2.1, 0.01, 1.0e-3, 0.063, NAN},
     {"rubber", 1.1, 1.03, 0.05, 0.5e-3, 0.02, NAN},
     {"wood", 0.9, 1.3, 0.02, 1.0e-3, 0.05, NAN},
@@ -38,7 +38,7 @@ static const struct named_material materials[] = {
     {"clay", 1.145, 0.9801, 0.00148, 1.0e-3, 1.9953e-3, 9.0},
 };
 
-/* Whether names are the same but for '_' and '-' in place of blanks. */
+/* Returns whether names are equal, where '_' and '-' may replace blanks. */
 static bool is_same_name(const char *given, const char *name)
 {
     for (; *name; given++, name++) {
@@ -107,7 +107,7 @@ sonject_status read_material_name(struct reader *reader, const struct tree_node 
     return SONJECT_OK;
 }
 
-/* The sediment's backscatter stays the seabed's own. */
+/* Takes all but lambert from the sediment, because the seabed has its own. */
 sonject_status read_sediment_name(struct reader *reader, const struct tree_node *node,
                                   void *structure)
 {
@@ -117,11 +117,11 @@ sonject_status read_sediment_name(struct reader *reader, const struct tree_node 
     return status;
 }
 
-/* ---- What a surface returns. */
+/* ---- The energy that a surface returns. */
 
-/* At normal incidence the rough part returns pi * lambert + glossy_albedo of the energy, whatever
- * the exponent. It must fit into what roughness can take from the smooth part; where nothing is
- * known of that but its angle-dependent limit, or there is none, into all of it. */
+/* Checks that the energy of the rough part fits into what roughness can take from the smooth part.
+ * At normal incidence the rough part returns pi * lambert + glossy_albedo, whatever the exponent. A
+ * fluid, whose limit depends on the angle, or no smooth part leaves room for all energy. */
 void relate_energy(struct check *check, const char *prefix, const sonject_material_params *material,
                    double own_lambert)
 {
@@ -152,7 +152,7 @@ void relate_energy(struct check *check, const char *prefix, const sonject_materi
 
 /* ---- Keys of materials. */
 
-/* The keys of fluid may change a named fluid; what is none yet needs them. */
+/* Requires density and speed of what is no fluid yet. The keys may also change a named fluid. */
 static sonject_status finish_fluid(struct reader *reader, const struct tree_node *node,
                                    void *structure)
 {
@@ -179,47 +179,47 @@ static sonject_status finish_material(struct reader *reader, const struct tree_n
 
 #define STRUCTURE sonject_material_params
 static const struct field glossy_fields[] = {
-    {"albedo", "fraction of the energy that the cone returns at most",
+    {"albedo", "largest fraction of the energy that the glossy cone returns",
      QUANTITY(glossy_albedo, NUMBER), .range = "0...1, and at most what lambert leaves", REQUIRED},
-    {"slope", "rms slope of the facets that make the cone", QUANTITY(glossy_slope, NUMBER),
+    {"slope", "rms slope of the facets that make the glossy cone", QUANTITY(glossy_slope, NUMBER),
      WITHIN(0.01, 1.0), .preset = 0.1},
 };
 static const struct section glossy_section = {ROWS(glossy_fields)};
 
 static const struct field fluid_fields[] = {
-    {"density", "ratio to the water's", QUANTITY(density_ratio, NUMBER), WITHIN(0.001, 100.0),
-     .per = " times the water's", .preset = 1.0},
-    {"speed", "of sound, ratio to the water's", QUANTITY(speed_ratio, NUMBER), WITHIN(0.01, 20.0),
-     .per = " times the water's", .preset = 1.0},
-    {"loss", "imaginary over real part of the wavenumber", QUANTITY(loss, NUMBER),
-     WITHIN(0.0, 1.0)},
+    {"density", "density, as a ratio to the water's", QUANTITY(density_ratio, NUMBER),
+     WITHIN(0.001, 100.0), .per = " times the water's", .preset = 1.0},
+    {"speed", "sound speed, as a ratio to the water's", QUANTITY(speed_ratio, NUMBER),
+     WITHIN(0.01, 20.0), .per = " times the water's", .preset = 1.0},
+    {"loss", "loss in the material: imaginary part of the wavenumber over its real part",
+     QUANTITY(loss, NUMBER), WITHIN(0.0, 1.0)},
 };
 static const struct section fluid_section = {ROWS(fluid_fields), .finish = finish_fluid};
 
 #define LAMBERT_RANGE                                                                              \
     .range = "0...reflection^2 / pi, or 1 / pi where there is no reflection, or it is a fluid's"
 
-/* What a material has beside a name, and what it is without keys. */
+/* The keys of a material beside its name, and their defaults. */
 #define MATERIAL_FIELDS(smooth, rough_m, mu)                                                       \
     {"reflection", "told by reflection or fluid", HIDDEN,                                          \
      WORD(reflection_kind) = {"constant", "fluid"}},                                               \
         {"reflection", "amplitude of the specular part, -1 to 1", QUANTITY(reflection, NUMBER),    \
          WITHIN(-1.0, 1.0), .preset = (smooth)},                                                   \
-        {"roughness", "rms height", QUANTITY(roughness_m, LENGTH), WITHIN(0.0, 1.0),               \
+        {"roughness", "rms roughness height", QUANTITY(roughness_m, LENGTH), WITHIN(0.0, 1.0),     \
          .preset = (rough_m)},                                                                     \
         {"lambert", "coefficient mu of the rough part", QUANTITY(lambert, LEVEL), .preset = (mu),  \
          LAMBERT_RANGE},                                                                           \
-        {"exponent", "of the rough part's cosines, 1 for Lambert's law",                           \
+        {"exponent", "exponent of the rough part's cosines; 1 is Lambert's law",                   \
          QUANTITY(lambert_exponent, NUMBER), WITHIN(1.0, 64.0), .preset = 1.0},                    \
-        {"glossy", "cone about the specular direction", SAME(glossy_section)},                     \
+        {"glossy", "glossy cone about the specular direction", SAME(glossy_section)},              \
     {                                                                                              \
-        "fluid", "what sound enters; gives the reflection at every angle", SAME(fluid_section),    \
+        "fluid", "fluid that sound enters; sets reflection at every angle", SAME(fluid_section),   \
             SETS(reflection_kind, SONJECT_REFLECTION_FLUID)                                        \
     }
 
-/* Names come first: the other keys change what they stand for. */
+/* Names are read first, because the other keys change the named values. */
 static const struct field material_fields[] = {
-    {"name", "of a known material", SPECIAL(read_material_name, "name")},
+    {"name", "name of a known material", SPECIAL(read_material_name, "name")},
     MATERIAL_FIELDS(0.9, 1.0e-3, 0.1),
 };
 const struct section material_section = {ROWS(material_fields), .finish = finish_material,
@@ -227,8 +227,8 @@ const struct section material_section = {ROWS(material_fields), .finish = finish
 
 static const struct field forward_fields[] = {
     {"sediment", "name of a known material", SPECIAL(read_sediment_name, "name")},
-    {"rule", "rough part from the model alone, or times the image's map", .kind = FIELD_WORD,
-     .is_in_scene = true, .offset = offsetof(struct scene, seabed.forward_rule),
+    {"rule", "rough part: from the model alone, or multiplied by the image's map",
+     .kind = FIELD_WORD, .is_in_scene = true, .offset = offsetof(struct scene, seabed.forward_rule),
      .words = {[SONJECT_FORWARD_MODEL] = "model", [SONJECT_FORWARD_MAP] = "map"}},
     MATERIAL_FIELDS(0.0, 0.0, NAN),
 };
@@ -236,10 +236,10 @@ const struct section forward_section = {ROWS(forward_fields), .finish = finish_m
                                         .bytes = sizeof(STRUCTURE)};
 
 static const struct field waves_fields[] = {
-    {"albedo", "fraction that the cone returns at most, by default what lambert leaves",
+    {"albedo", "largest fraction that the waves' cone returns; by default what lambert leaves",
      QUANTITY(glossy_albedo, NUMBER), .range = "0...1, and at most what lambert leaves",
      NONE_IF_NAN},
-    {"slope", "rms slope of the waves, which make the cone", QUANTITY(glossy_slope, NUMBER),
+    {"slope", "rms slope of the waves that make the glossy cone", QUANTITY(glossy_slope, NUMBER),
      WITHIN(0.01, 1.0), .preset = 0.2},
 };
 static const struct section waves_section = {ROWS(waves_fields)};
@@ -253,21 +253,21 @@ static void relate_surface(struct check *check, const void *structure)
     relate_energy(check, "", &material, NAN);
 }
 
-/* Air above water, as far as keys do not say other. */
+/* The defaults are those of air above water. */
 #define STRUCTURE sonject_surface_params
 static const struct field surface_fields[] = {
-    {"material", "of the surface", HIDDEN, PART(material, material_section)},
-    {"depth", "of the water: height of the surface over the mean seabed",
+    {"material", "material of the surface", HIDDEN, PART(material, material_section)},
+    {"depth", "water depth: height of the sea surface over the mean seabed",
      QUANTITY(water_depth_m, LENGTH), FROM_ZERO, REQUIRED},
-    {"reflection", "amplitude of the specular part, -1 to 1", QUANTITY(material.reflection, NUMBER),
-     WITHIN(-1.0, 1.0), .preset = -1.0},
+    {"reflection", "amplitude of the sea surface's specular part, -1 to 1",
+     QUANTITY(material.reflection, NUMBER), WITHIN(-1.0, 1.0), .preset = -1.0},
     {"roughness", "rms height of the waves", QUANTITY(material.roughness_m, LENGTH),
      WITHIN(0.0, 1.0)},
-    {"lambert", "coefficient mu of the rough part", QUANTITY(material.lambert, LEVEL),
+    {"lambert", "coefficient mu of the sea surface's rough part", QUANTITY(material.lambert, LEVEL),
      LAMBERT_RANGE},
-    {"exponent", "of the rough part's cosines, 1 for Lambert's law",
+    {"exponent", "exponent of the cosines of the sea surface's rough part; 1 is Lambert's law",
      QUANTITY(material.lambert_exponent, NUMBER), WITHIN(1.0, 64.0), .preset = 1.0},
-    {"glossy", "cone about the specular direction", PART(material, waves_section)},
+    {"glossy", "glossy cone about the specular direction", PART(material, waves_section)},
 };
 const struct section surface_section = {ROWS(surface_fields), .relations = relate_surface,
                                         .bytes = sizeof(STRUCTURE)};

@@ -1,4 +1,4 @@
-/* The keys of the water: one sound speed, layers or a profile, and its absorption. */
+/* The keys of the water: one sound speed, layers or a profile, and the absorption. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -54,7 +54,7 @@ NUMBERS_READER(read_heights, heights, QUANTITY_LENGTH, ", such as [0 m, 12 m, 15
 NUMBERS_READER(read_depths, depths, QUANTITY_LENGTH, ", such as [0 m, 12 m, 15 m]")
 NUMBERS_READER(read_speeds, speeds, QUANTITY_SPEED, ", such as [1490 m/s, 1500 m/s]")
 
-/* The message about entry `index` of the list that is the section's `key`. */
+/* Reports a message about entry `index` of the list that is the section's `key`. */
 static sonject_status refuse_entry(struct reader *reader, const struct tree_node *node,
                                    const char *key, size_t index, const char *what)
 {
@@ -68,7 +68,7 @@ static sonject_status refuse_entry(struct reader *reader, const struct tree_node
     return status;
 }
 
-/* Moves what the lists say into a table. */
+/* Moves the values of the lists into a table. */
 static sonject_status table_of_lists(struct reader *reader, const struct tree_node *node,
                                      const char *key, struct profile_text *text,
                                      struct profile_table *table)
@@ -146,10 +146,11 @@ static sonject_status finish_profile(struct reader *reader, const struct tree_no
 static const struct field profile_fields[] = {
     {"file", "table with columns height_m or depth_m, and sound_speed_mps", .kind = FIELD_FILE,
      MEMBER(file)},
-    {"heights", "over the mean seabed, list", SPECIAL(read_heights, "m, km, cm, mm")},
-    {"depths", "below the sea surface, list; needs surface.depth",
+    {"heights", "list of heights over the mean seabed", SPECIAL(read_heights, "m, km, cm, mm")},
+    {"depths", "list of depths below the sea surface; needs surface.depth",
      SPECIAL(read_depths, "m, km, cm, mm")},
-    {"sound_speeds", "at heights or depths, list", SPECIAL(read_speeds, "m/s, km/s")},
+    {"sound_speeds", "list of sound speeds at the heights or depths",
+     SPECIAL(read_speeds, "m/s, km/s")},
 };
 static const struct section profile_section = {
     ROWS(profile_fields), .choice = "file heights depths", .finish = finish_profile};
@@ -172,17 +173,17 @@ static sonject_status read_profile(struct reader *reader, const struct tree_node
 
 #define STRUCTURE struct water_layer
 static const struct field layer_fields[] = {
-    {"bottom", "height of the lower edge over the mean seabed", QUANTITY(bottom_m, LENGTH),
+    {"bottom", "height of the layer's lower edge over the mean seabed", QUANTITY(bottom_m, LENGTH),
      COORDINATE, REQUIRED},
-    {"sound_speed", "of the layer", QUANTITY(speed_mps, SPEED),
+    {"sound_speed", "sound speed of the layer", QUANTITY(speed_mps, SPEED),
      WITHIN(WATER_SPEED_MIN_MPS, WATER_SPEED_MAX_MPS), REQUIRED},
-    {"density", "of all layers or of none", QUANTITY(density, DENSITY), WITHIN(1e-6, 1e6),
-     NONE_IF_NAN},
+    {"density", "density of the layer; give it for all layers or for none",
+     QUANTITY(density, DENSITY), WITHIN(1e-6, 1e6), NONE_IF_NAN},
 };
 const struct section layer_section = {ROWS(layer_fields)};
 #undef STRUCTURE
 
-/* Densities stand at all layers or at none, and bottoms rise from the seabed. node: the list. */
+/* Checks that all or no layers have a density, and bottoms rise from the seabed. node: the list. */
 static sonject_status relate_layers(struct reader *reader, const struct tree_node *node,
                                     const struct water_layer *layers)
 {
@@ -244,15 +245,16 @@ static sonject_status finish_sea_water(struct reader *reader, const struct tree_
     return SONJECT_OK;
 }
 
-/* In these ranges the formula of sonject_absorption holds. */
+/* The ranges in which the formula of sonject_absorption holds. */
 #define STRUCTURE struct sea_water
 static const struct field sea_water_fields[] = {
-    {"temperature", "of sea water, degrees Celsius", QUANTITY(temperature_celsius, TEMPERATURE),
-     WITHIN(-2.0, 30.0), REQUIRED},
-    {"salinity", "per mille", QUANTITY(salinity_permille, NUMBER), WITHIN(0.0, 40.0),
-     .per = " per mille", REQUIRED},
-    {"depth", "below the sea surface", QUANTITY(depth_m, LENGTH), WITHIN(0.0, 5000.0), REQUIRED},
-    {"ph", "acidity", QUANTITY(ph, NUMBER), WITHIN(7.0, 9.0), .preset = 8.0},
+    {"temperature", "temperature of the sea water, degrees Celsius",
+     QUANTITY(temperature_celsius, TEMPERATURE), WITHIN(-2.0, 30.0), REQUIRED},
+    {"salinity", "salinity of the sea water, per mille", QUANTITY(salinity_permille, NUMBER),
+     WITHIN(0.0, 40.0), .per = " per mille", REQUIRED},
+    {"depth", "depth below the sea surface at which the absorption is taken",
+     QUANTITY(depth_m, LENGTH), WITHIN(0.0, 5000.0), REQUIRED},
+    {"ph", "acidity (pH) of the sea water", QUANTITY(ph, NUMBER), WITHIN(7.0, 9.0), .preset = 8.0},
 };
 static const struct section sea_water_section = {ROWS(sea_water_fields),
                                                  .finish = finish_sea_water};
@@ -278,18 +280,18 @@ static sonject_status read_absorption(struct reader *reader, const struct tree_n
 
 #define STRUCTURE sonject_medium_params
 static const struct field medium_fields[] = {
-    {"sound_speed", "of the water", QUANTITY(sound_speed_mps, SPEED),
+    {"sound_speed", "sound speed of the water", QUANTITY(sound_speed_mps, SPEED),
      WITHIN(WATER_SPEED_MIN_MPS, WATER_SPEED_MAX_MPS), .preset = 1500.0},
     {"reference_sound_speed",
-     "that the image processor assumed; by default the true one, around the seabed",
+     "sound speed that the image processor assumed; by default the true one, around the seabed",
      QUANTITY(reference_sound_speed_mps, SPEED), WITHIN(WATER_SPEED_MIN_MPS, WATER_SPEED_MAX_MPS),
      NONE_IF_ZERO},
-    {"absorption", "of the water: a number, or a section of what the sea water is like",
+    {"absorption", "absorption of the water: a number, or a section that describes the sea water",
      QUANTITY(absorption_db_per_m, ABSORPTION), WITHIN(0.0, 100.0), .section = &sea_water_section,
      .read = read_absorption},
-    {"layers", "list of level layers instead of sound_speed, from the seabed upwards",
+    {"layers", "list of horizontal layers from the seabed upwards, instead of sound_speed",
      .kind = FIELD_SPECIAL, .read = read_layers, .section = &layer_section, .is_list = true},
-    {"profile", "measured sound speeds instead of sound_speed", .kind = FIELD_SPECIAL,
+    {"profile", "profile of measured sound speeds, instead of sound_speed", .kind = FIELD_SPECIAL,
      .read = read_profile, .section = &profile_section},
 };
 const struct section medium_section = {ROWS(medium_fields), .choice = "sound_speed layers profile",

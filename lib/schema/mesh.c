@@ -1,4 +1,4 @@
-/* The keys of meshes: the file, and how its numbers are meant. */
+/* The keys of meshes: the file, and the meaning of its numbers. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,15 +6,15 @@
 #include "base/memory.h"
 #include "schema/keys.h"
 
-/* Lengths of targets. */
+/* The range of target lengths that a mesh without a unit may have. */
 #define LEAST_M 0.01
 #define MOST_M  100.0
 
-/* What is said about a mesh. */
+/* The values of a mesh's keys. */
 struct mesh_text {
     char *path;        /* owned; NULL: not given */
-    double unit_m;     /* m a unit of the file; 0: not given */
-    uint32_t nose, up; /* enum file_axis: which axis of the file that one of the object is */
+    double unit_m;     /* length of one unit of the file, m; 0: not given */
+    uint32_t nose, up; /* enum file_axis: axes of the file that become the object's nose and up */
     bool allows_open;
     double smooth_angle_rad;
 };
@@ -28,13 +28,13 @@ enum file_axis {
     AXIS_Z_REVERSED
 };
 
-/* 1, 2, 3, negative where reversed, as struct mesh_options has it. */
+/* Returns 1, 2 or 3, negative where reversed, as in struct mesh_options. */
 static int signed_axis(uint32_t axis)
 {
     return axis < AXIS_X_REVERSED ? (int)axis + 1 : -(int)(axis - AXIS_X_REVERSED) - 1;
 }
 
-/* Nose and up tell the third axis, own y = up x nose. False where both lie along one line. */
+/* Finds own y = up x nose from nose and up. Returns false where both lie along one line. */
 static bool turn_file_axes(const struct mesh_text *mesh, int axes[3])
 {
     const int nose = signed_axis(mesh->nose);
@@ -70,20 +70,21 @@ static sonject_status finish_mesh(struct reader *reader, const struct tree_node 
         [AXIS_Y_REVERSED] = "-y", [AXIS_Z_REVERSED] = "-z"                                         \
     }
 static const struct field mesh_fields[] = {
-    {"file", "of triangles: STL, OBJ or PLY", .kind = FIELD_FILE, MEMBER(path), REQUIRED},
-    {"unit", "of the file's numbers, by default m", LENGTH_UNIT(unit_m)},
-    {"nose", "axis of the file that is the object's nose", WORD(nose) = AXIS_WORDS},
-    {"up", "axis of the file that is up when level", WORD(up) = AXIS_WORDS, .preset = AXIS_Z},
-    {"open", "a mesh that is not watertight is taken as thin sheets; by default it is refused",
+    {"file", "mesh file of triangles: STL, OBJ or PLY", .kind = FIELD_FILE, MEMBER(path), REQUIRED},
+    {"unit", "unit of the mesh file's numbers; by default m", LENGTH_UNIT(unit_m)},
+    {"nose", "axis of the mesh file that points along the object's nose", WORD(nose) = AXIS_WORDS},
+    {"up", "axis of the mesh file that points up when level", WORD(up) = AXIS_WORDS,
+     .preset = AXIS_Z},
+    {"open", "true takes a mesh that is not watertight as thin sheets; by default it is refused",
      FLAG(allows_open)},
     {"smooth",
-     "facets that meet at less stand for one smooth surface to what scatters; by default none do",
+     "facets that meet at a smaller angle scatter as one smooth surface; by default none do",
      QUANTITY(smooth_angle_rad, ANGLE), WITHIN(0.0, PI)},
 };
 const struct section mesh_section = {ROWS(mesh_fields), .finish = finish_mesh};
 #undef STRUCTURE
 
-/* A file in mm whose unit nobody gave makes a target that no sonar sees. */
+/* Refuses a mesh without a unit whose size no sonar is for, such as a file in mm. */
 static sonject_status doubt_size(struct reader *reader, const struct tree_node *node,
                                  uint32_t number)
 {
@@ -100,7 +101,7 @@ static sonject_status doubt_size(struct reader *reader, const struct tree_node *
                         longest);
 }
 
-/* Into the scene; the message about a mesh that cannot be read gets its place in the scene file. */
+/* Loads a mesh into the scene. Messages about the file get its place in the scene file. */
 static sonject_status load(struct reader *reader, const struct tree_node *node,
                            const struct mesh_text *mesh, uint32_t *number)
 {
@@ -116,7 +117,7 @@ static sonject_status load(struct reader *reader, const struct tree_node *node,
         return mesh->unit_m > 0.0 ? status : doubt_size(reader, node, *number);
     if (status == SONJECT_ERROR_MEMORY)
         return report_out_of_memory(reader->report, mesh->path);
-    /* What is wrong in a file is one mistake, however many objects show it. */
+    /* A mistake in a file is reported once, however many objects show the mesh. */
     if (is_sound_in_file(reader, mesh->path))
         refuse_value(reader, node, "%s", report.message);
     mistakes_add(reader->tree->mistakes, reader->tree, &node->place, mesh->path, NULL);

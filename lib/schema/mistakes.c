@@ -1,5 +1,4 @@
-/* The mistakes of a file that is read to its end, in the order of their places, and how readers of
- * sections say them. */
+/* The mistakes of a file read to its end, ordered by place, and section readers' messages. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,13 +7,13 @@
 #include "base/text.h"
 #include "schema/keys.h"
 
-#define MISTAKES_MAX 1000 /* kept; no file needs to be told more about */
+#define MISTAKES_MAX 1000 /* mistakes that are kept; nobody reads more */
 
 struct mistake {
-    size_t order[5]; /* overrides behind the file; a line and a column of it; of a file it names */
-    char *file;      /* owned, with the two below */
+    size_t order[5]; /* override or not; number, or line and column; line, column in named file */
+    char *file;      /* owned; its memory holds the two below */
     const char *path;
-    const char *line; /* NULL: a mark */
+    const char *line; /* NULL: only marks the key as wrong */
 };
 
 static bool is_same(const struct mistake *mistake, const struct tree *tree, const char *path)
@@ -34,7 +33,7 @@ static void find_order(size_t order[5], const struct tree *tree, const struct tr
 {
     const bool is_named = tree->named_at.override || tree->named_at.line > 0;
     const struct tree_place *outer = is_named ? &tree->named_at : place;
-    size_t number = 0; /* of an override */
+    size_t number = 0; /* number of the override */
     while (number < tree->override_count && tree->override_paths[number] != outer->override)
         number++;
     order[0] = outer->override != NULL;
@@ -81,7 +80,7 @@ void mistakes_add(struct mistakes *mistakes, const struct tree *tree,
     mistakes->list[at] = added;
 }
 
-/* Whether a path is of a section or list in which the other one's key is. */
+/* Returns whether the outer path is that of a section or list that holds the inner path's key. */
 static bool holds(const char *outer, const char *inner)
 {
     const size_t length = strlen(outer);
@@ -99,7 +98,7 @@ bool mistakes_concern(const struct mistakes *mistakes, const struct tree *tree, 
     return false;
 }
 
-/* Joins lines to a message that has room left for the number of those that do not fit. */
+/* Joins the lines to one message, with room left for the number of those that do not fit. */
 static void join(const struct mistakes *mistakes, struct report *report)
 {
     const size_t room = sizeof report->message - 40;
@@ -143,7 +142,7 @@ sonject_status mistakes_tell(struct mistakes *mistakes, struct report *report,
     return status;
 }
 
-/* ---- What readers of sections say, and what they ask about keys. */
+/* ---- Messages of section readers, and their questions about keys. */
 
 static sonject_status refuse_at(const struct reader *reader, struct tree_place place,
                                 const char *format, va_list arguments)
@@ -163,7 +162,7 @@ sonject_status refuse_value(const struct reader *reader, const struct tree_node 
     return status;
 }
 
-/* Where the key of a section node is, or the section itself where it is not. */
+/* Returns the place of a section node's key, or of the section if the key is not there. */
 static struct tree_place place_of_key(const struct tree_node *node, const char *key)
 {
     struct tree_place place = node->place;
@@ -255,7 +254,7 @@ sonject_status refuse_relation(struct reader *reader, const struct tree_node *no
     return status;
 }
 
-/* The listener is the reader's first member. */
+/* Refuses what a check finds wrong. The listener is the reader's first member. */
 static void hear(struct check_listener *listener, const char *key, const char *others,
                  const char *what)
 {

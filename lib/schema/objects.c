@@ -1,5 +1,4 @@
-/* The keys of objects: a shape with its sizes, ends and surface, or parts, or a target's file;
- * and where it lies. */
+/* The keys of objects: a shape with sizes, ends and surface, parts, or a target's file; a place. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,17 +10,17 @@
 #include "schema/keys.h"
 #include "schema/scene_file.h"
 
-#define LEVELS_MAX 8 /* of lists of parts within lists */
+#define LEVELS_MAX 8 /* levels of lists of parts within lists */
 
-/* ---- The keys that a shape has wherever one is described: in an object, in a part of one, in the
- * file of a target. Each of their structures begins with a sonject_object_params. */
+/* ---- The keys of a shape, the same in an object, in a part and in a target's file. Each of their
+ * structures begins with a sonject_object_params. */
 
 #define STRUCTURE sonject_object_params
 
-/* {depth: } stands for a spherical end. */
+/* The section {depth: } of a spherical end. */
 #define END_SECTION(name, end)                                                                     \
     static const struct field name##_fields[] = {                                                  \
-        {"depth", "of a spherical end, at most half the diameter",                                 \
+        {"depth", "depth of the spherical end, at most half the diameter",                         \
          QUANTITY(end##_depth_m, LENGTH), WITHIN(0.0, HUGE_VAL), .bounds = ABOVE_LEAST,            \
          .range = "above 0 (write 'spherical' for a half sphere, 'flat' for none)",                \
          SETS(end, SONJECT_END_SPHERICAL), REQUIRED},                                              \
@@ -40,30 +39,30 @@ END_SECTION(tail_end, tail_end)
 
 #define SHAPE_WORD(NUMBER, name, traits) [SHAPE_##NUMBER] = #name,
 #define SHAPE_FIELDS                                                                               \
-    {"shape", "of the object or part; objects are at least half a wavelength large",               \
+    {"shape", "shape of the object or part; objects measure at least half a wavelength",           \
      WORD(shape) = {ALL_SHAPES(SHAPE_WORD)[SHAPE_PARTS] = ""}, .preset = SHAPE_SPHERE},            \
-        {"length", "overall along the nose", SIZE(length_m)},                                      \
-        {"width", "overall across the nose", SIZE(width_m)},                                       \
-        {"diameter", "overall; of cones below", SIZE(diameter_m)},                                 \
-        {"height", "overall when level; of a wedge at the tail", SIZE(height_m)},                  \
-        {"top_diameter", "of a truncated cone; 0: a cone", QUANTITY(top_diameter_m, LENGTH),       \
+        {"length", "overall length along the nose", SIZE(length_m)},                               \
+        {"width", "overall width across the nose", SIZE(width_m)},                                 \
+        {"diameter", "overall diameter; for cones, at the bottom", SIZE(diameter_m)},              \
+        {"height", "overall height when level; for a wedge, at the tail", SIZE(height_m)},         \
+        {"top_diameter", "top of a truncated cone; 0: a cone", QUANTITY(top_diameter_m, LENGTH),   \
          FROM_ZERO},                                                                               \
-        {"front_height", "of a wedge at its nose, at most its height",                             \
+        {"front_height", "height of a wedge at its nose, at most the height at the tail",          \
          QUANTITY(front_height_m, LENGTH)},                                                        \
-        {"nose_end", "of a cylinder: flat, open, spherical or {depth: }", END_FIELD(nose_end)},    \
-        {"tail_end", "of a cylinder: flat, open, spherical or {depth: }", END_FIELD(tail_end)},    \
+        {"nose_end", "cylinder's nose: flat, open, spherical or {depth: }", END_FIELD(nose_end)},  \
+        {"tail_end", "cylinder's tail: flat, open, spherical or {depth: }", END_FIELD(tail_end)},  \
     {                                                                                              \
-        "mesh", "of the shape mesh: its file's name, or a section",                                \
+        "mesh", "mesh for the shape mesh: its file's name, or a section",                          \
             .kind = FIELD_SPECIAL, .unit = "file name", .section = &mesh_section,                  \
             .read = read_mesh                                                                      \
     }
 
-/* Angles; what heading is counted from differs. */
+/* The angles. Objects and parts count heading from different axes. */
 #define TURN_FIELDS(heading_meaning)                                                               \
     {"heading", heading_meaning, QUANTITY(heading_rad, ANGLE)},                                    \
-        {"pitch", "raises the nose", QUANTITY(pitch_rad, ANGLE)},                                  \
+        {"pitch", "pitch angle, which raises the nose", QUANTITY(pitch_rad, ANGLE)},               \
     {                                                                                              \
-        "roll", "about the nose direction", QUANTITY(roll_rad, ANGLE)                              \
+        "roll", "roll angle about the nose direction", QUANTITY(roll_rad, ANGLE)                   \
     }
 
 #define SURFACE_FIELD(meant)                                                                       \
@@ -74,13 +73,13 @@ END_SECTION(tail_end, tail_end)
 
 #define STRUCTURE sonject_object_params
 static const struct field fouling_fields[] = {
-    {"albedo", "rms of what the rough part scatters, about the mean that the material says",
+    {"albedo", "rms of the energy that the rough part scatters, about the material's mean",
      QUANTITY(fouling.albedo_db, DECIBEL), WITHIN(0.0, 10.0)},
-    {"albedo_length", "over which that changes: exp(-(r / length)^2 / 2) is its autocorrelation",
+    {"albedo_length", "correlation length of the albedo: autocorrelation exp(-(r / length)^2 / 2)",
      QUANTITY(fouling.albedo_length_m, LENGTH), WITHIN(1e-3, LENGTH_MAX_M), .preset = 0.15},
-    {"relief", "rms height; tilts what scatters, and takes from smooth parts as roughness does",
+    {"relief", "rms relief height; tilts what scatters, and weakens smooth parts as roughness does",
      QUANTITY(fouling.relief_m, LENGTH), WITHIN(0.0, 1.0)},
-    {"relief_length", "likewise; at least twice the height",
+    {"relief_length", "correlation length of the relief (as albedo_length); at least twice relief",
      QUANTITY(fouling.relief_length_m, LENGTH), WITHIN(1e-3, LENGTH_MAX_M), .preset = 0.05},
 };
 static void relate_fouling(struct check *check, const void *structure)
@@ -95,7 +94,7 @@ static const struct section fouling_section = {ROWS(fouling_fields), .relations 
 
 #define FOULING_FIELD                                                                              \
     {                                                                                              \
-        "fouling", "what grows on it: random albedo and relief, in its own coordinates",           \
+        "fouling", "growth on the object: random albedo and relief, in its own coordinates",       \
             SAME(fouling_section)                                                                  \
     }
 
@@ -106,13 +105,13 @@ void object_init(sonject_object_params *object)
     section_defaults(&object_section, object, NULL);
 }
 
-/* By the sound: no shape's name begins with a u as in "under". */
+/* Returns the article by the first letter. No shape's name begins with a u as in "under". */
 static const char *article_of(const char *name)
 {
     return strchr("aeio", *name) ? "an" : "a";
 }
 
-/* That the section has no key of a shape: reason tells why. */
+/* Refuses every key of a shape in the section. reason: why there can be none. */
 static void refuse_shape_keys(struct reader *reader, const struct tree_node *node,
                               const char *reason)
 {
@@ -121,7 +120,7 @@ static void refuse_shape_keys(struct reader *reader, const struct tree_node *nod
             refuse_key(reader, node, shape_fields[i].key, "%s; remove it", reason);
 }
 
-/* That the section has the sizes of its shape, and no others; of parts none. */
+/* Checks that the section has the sizes of its shape and no others; with parts, no sizes at all. */
 static void check_shape_keys(struct reader *reader, const struct tree_node *node, uint32_t shape)
 {
     const struct shape *row = shape_of(shape);
@@ -140,8 +139,8 @@ static void check_shape_keys(struct reader *reader, const struct tree_node *node
     }
 }
 
-/* What the section itself says. Sizes say nothing where the shape is unknown; what another section
- * or file tells is checked there. */
+/* Checks the values that the section itself gives. Sizes are not checked where the shape is
+ * unknown, nor values of another section or file, which are checked there. */
 static sonject_status finish_shape(struct reader *reader, const struct tree_node *node,
                                    void *structure)
 {
@@ -159,29 +158,29 @@ static sonject_status finish_shape(struct reader *reader, const struct tree_node
     return check.status;
 }
 
-/* ---- Parts: a list of shapes, each with its place, or of groups of such. */
+/* ---- Parts: a list of shapes with their places, or of groups of shapes. */
 
-/* Where parts of a list are placed, in the object's own frame. */
+/* The frame that parts of a list are placed in, in the object's own frame. */
 struct frame {
     double axes[3][3]; /* rows: nose, own y, own z */
     double origin[3];  /* m */
 };
 
-/* Where a part's centre lies in its object or group, m: along the nose, its own y and z. */
+/* The place of a part's centre in its object or group, m: along the nose, own y and own z. */
 struct part_place {
     double along_m, across_m, up_m;
 };
 
-/* A part, or a group of parts, on its way into the scene. */
+/* A part, or a group of parts, while it is read. */
 struct part_text {
-    sonject_object_params shape; /* first: tables of shapes fill it; angles: the part's */
+    sonject_object_params shape; /* first: filled by tables of shapes; angles are the part's */
     struct part_place place;
     const struct frame *outer;
-    int level; /* of the list that it stands in, from 1 */
+    int level; /* level of the list that holds the part, from 1 */
     bool is_group;
 };
 
-/* A list of parts, and what they have of the object or group that they are in. */
+/* A list of parts, with frame, material and level from the object or group around it. */
 struct part_list {
     const struct frame *frame;
     const sonject_material_params *material;
@@ -245,8 +244,8 @@ static sonject_status read_part_list(struct reader *reader, const struct tree_no
     return read_list(reader, node, &parts, &list);
 }
 
-/* Appends a list of parts to the scene, as those of the object that will be the scene's next.
- * material: of parts that name none. */
+/* Appends a list of parts to the scene. They belong to the object that will be the scene's next.
+ * material: for parts that name none. */
 static sonject_status read_parts(struct reader *reader, const struct tree_node *node,
                                  const sonject_material_params *material)
 {
@@ -269,38 +268,39 @@ static sonject_status read_group(struct reader *reader, const struct tree_node *
 
 #define STRUCTURE struct part_place
 static const struct field part_place_fields[] = {
-    {"along", "along the object's nose", QUANTITY(along_m, LENGTH), COORDINATE},
-    {"across", "along its own y, to which heading turns the nose", QUANTITY(across_m, LENGTH),
-     COORDINATE},
-    {"up", "along its own z, up when level", QUANTITY(up_m, LENGTH), COORDINATE},
+    {"along", "place along the nose of the object or group", QUANTITY(along_m, LENGTH), COORDINATE},
+    {"across", "place along the y axis of the object or group, to which heading turns the nose",
+     QUANTITY(across_m, LENGTH), COORDINATE},
+    {"up", "place along the z axis of the object or group, which points up when level",
+     QUANTITY(up_m, LENGTH), COORDINATE},
 };
 static const struct section part_place_section = {ROWS(part_place_fields)};
 #undef STRUCTURE
 
-/* Keys are read in this order: what is in a group needs the group's pose and surface. */
+/* Keys are read in this order, because parts in a group need the group's pose and surface. */
 #define STRUCTURE sonject_object_params
 static const struct field part_fields[] = {
-    {"name", "of this part or group", LABEL(name)},
+    {"name", "name of this part or group", LABEL(name)},
     SHAPE_FIELDS,
-    {"at", "place of the centre in the object or group, by default its origin",
+    {"at", "place of the part's centre in the object or group; by default the origin",
      .kind = FIELD_SECTION, .section = &part_place_section,
      .offset = offsetof(struct part_text, place)},
-    TURN_FIELDS("of the part's nose, from that of the object or group towards its own y"),
+    TURN_FIELDS("heading of the nose, from the object's or group's nose towards its y axis"),
     SURFACE_FIELD("surface of the part; by default that of the object or group"),
-    {"parts", "instead of one shape: a group, placed and turned as one",
+    {"parts", "parts of a group, placed and turned as one, instead of one shape",
      SPECIAL(read_group, "list")},
 };
 const struct section part_section = {ROWS(part_fields), .choice = "shape parts",
                                      .finish = finish_shape};
 
-/* ---- Targets: files that describe one each. */
+/* ---- Targets: files that describe one target each. */
 
-/* A target on its way from its file into the scene. */
+/* A target while it is read from its file. */
 struct target_text {
-    sonject_object_params object;  /* first: tables of shapes fill it */
+    sonject_object_params object;  /* first member: tables of shapes fill it */
     char *file;                    /* owned; NULL: there is no file */
-    struct tree tree;              /* of the file */
-    const struct tree_node *parts; /* of the tree; NULL: the target has a shape */
+    struct tree tree;              /* tree of the file */
+    const struct tree_node *parts; /* node of the tree; NULL: the target has a shape */
 };
 
 static void target_text_clear(struct target_text *target)
@@ -310,7 +310,7 @@ static void target_text_clear(struct target_text *target)
     free(target->file);
 }
 
-/* Only noted: their surface may be told elsewhere, and read_target_parts reads them. */
+/* Notes the parts for read_target_parts, because the object may change their surface. */
 static sonject_status note_parts(struct reader *reader, const struct tree_node *node,
                                  void *structure)
 {
@@ -321,15 +321,16 @@ static sonject_status note_parts(struct reader *reader, const struct tree_node *
     return SONJECT_OK;
 }
 
-/* There is no key for another file: targets are described in one. */
+/* The keys of targets. There is none for another target's file. */
 static const struct field target_fields[] = {
     {"sonject_target", "version of the format, 1", SPECIAL(read_version, "whole number"), REQUIRED},
-    {"name", "of the target", LABEL(name)},
-    {"class", "label for training", LABEL(class_name)},
+    {"name", "name of the target", LABEL(name)},
+    {"class", "class label for training", LABEL(class_name)},
     SHAPE_FIELDS,
     SURFACE_FIELD("surface of the target: a material's name, or a section"),
     FOULING_FIELD,
-    {"parts", "instead of one shape: the target is their union", SPECIAL(note_parts, "list")},
+    {"parts", "parts, instead of one shape: the target is their union",
+     SPECIAL(note_parts, "list")},
 };
 static const struct section target_section = {ROWS(target_fields), .choice = "shape parts",
                                               .finish = finish_shape};
@@ -339,7 +340,7 @@ static struct reader reader_of_target(const struct reader *reader, const struct 
     return (struct reader){.report = reader->report, .tree = &target->tree, .scene = reader->scene};
 }
 
-/* Reads the file that the target names, all but its parts. */
+/* Reads the file that the target names, except its parts. */
 static sonject_status read_target_file(struct reader *reader, struct tree_place named_at,
                                        struct target_text *target)
 {
@@ -359,7 +360,7 @@ static sonject_status read_target_file(struct reader *reader, struct tree_place 
     return status;
 }
 
-/* Appends its parts, if it has any, to the scene; status: of all before. */
+/* Appends the target's parts, if any, to the scene. status: of the reading so far. */
 static sonject_status read_target_parts(struct reader *reader, const struct target_text *target,
                                         sonject_status status)
 {
@@ -373,30 +374,31 @@ static sonject_status read_target_parts(struct reader *reader, const struct targ
 
 /* ---- Objects. */
 
-static const struct field position_fields[] = {PLACE_FIELDS("as the image shows it", -1.0)};
+static const struct field position_fields[] = {PLACE_FIELDS("slant range in the image", -1.0)};
 static const struct section position_section = {ROWS(position_fields),
                                                 .choice = "along_track+slant_range row+column"};
 
 static const struct field burial_fields[] = {
-    {"fraction", "of the height that the object has in its pose, 0 to 1",
+    {"fraction", "buried fraction of the height that the object has in its pose, 0 to 1",
      QUANTITY(burial_fraction, NUMBER), WITHIN(0.0, 1.0),
      SETS(burial_kind, SONJECT_BURIAL_FRACTION)},
-    {"proud", "height of the highest point above the seabed", QUANTITY(proud_height_m, LENGTH),
-     FROM_ZERO, SETS(burial_kind, SONJECT_BURIAL_PROUD)},
+    {"proud", "height of the object's highest point above the seabed",
+     QUANTITY(proud_height_m, LENGTH), FROM_ZERO, SETS(burial_kind, SONJECT_BURIAL_PROUD)},
 };
 static const struct section burial_section = {ROWS(burial_fields), .choice = "fraction proud"};
 
 static const struct field level_fields[] = {
-    {"target_strength", "of its echo's peak, between pixels too, speckle averaged out, re 1 m^2",
+    {"target_strength",
+     "peak's target strength, between pixels too, speckle averaged out, re 1 m^2",
      QUANTITY(level_db, DECIBEL), WITHIN(-200.0, 200.0),
      SETS(level_kind, SONJECT_LEVEL_TARGET_STRENGTH)},
-    {"over_seabed", "its echo's peak over the local mean seabed", QUANTITY(level_db, DECIBEL),
+    {"over_seabed", "echo's peak level over the local mean seabed", QUANTITY(level_db, DECIBEL),
      WITHIN(-200.0, 200.0), SETS(level_kind, SONJECT_LEVEL_OVER_SEABED)},
 };
 static const struct section level_section = {ROWS(level_fields),
                                              .choice = "target_strength over_seabed"};
 
-/* Objects begin as the target that their file describes, which their own keys then change. */
+/* Fills the object from its target's file. The object's own keys then change it. */
 static sonject_status read_object_target(struct reader *reader, const struct tree_node *node,
                                          void *structure)
 {
@@ -404,7 +406,7 @@ static sonject_status read_object_target(struct reader *reader, const struct tre
     CHECK(read_existing_path(reader, node, &target->file));
     const sonject_status status = read_target_file(reader, node->place, target);
     if (target->tree.file && mistakes_concern(reader->tree->mistakes, &target->tree, ""))
-        mark_wrong(reader, node, ""); /* whatever the file says is told already */
+        mark_wrong(reader, node, ""); /* the file's mistakes are reported already */
     return status;
 }
 
@@ -424,32 +426,33 @@ static sonject_status finish_object(struct reader *reader, const struct tree_nod
     return finish_shape(reader, node, structure);
 }
 
-/* Keys are read in this order, whatever the file's: a target's file comes first, so that all other
- * keys change what it says; parts come last, when their surface is known. */
+/* Keys are read in this order, not the file's. A target's file comes first, so that all other keys
+ * change it. Parts come last, when their surface is known. */
 static const struct field object_fields[] = {
-    {"target", "file that describes the object instead of shape or parts",
+    {"target", "target file that describes the object, instead of shape or parts",
      SPECIAL(read_object_target, "file name")},
-    {"name", "of this object", LABEL(name)},
-    {"class", "label for training; by default the shape", LABEL(class_name)},
+    {"name", "name of this object", LABEL(name)},
+    {"class", "class label for training; by default the shape", LABEL(class_name)},
     SHAPE_FIELDS,
     {"mesh", "number in the scene", HIDDEN, COUNT32(mesh, 0, 0)},
     {"position",
-     "ground point under the centre: centre, {along_track: , slant_range: } or {row: , column: }",
+     "ground point under the object's centre: centre (of the patch), {along_track: , slant_range: "
+     "} or {row: , column: }",
      CENTRE_WORD, .section = &position_section},
-    TURN_FIELDS("from along-track towards range"),
+    TURN_FIELDS("heading of the nose, from along-track towards range"),
     {"burial", "kind", HIDDEN, WORD(burial_kind) = {"depth", "fraction", "proud"}},
-    {"burial", "depth of the lowest point below the seabed, or {fraction: } or {proud: }",
+    {"burial", "depth of the object's lowest point below the seabed, or {fraction: } or {proud: }",
      QUANTITY(burial_m, LENGTH), COORDINATE, .section = &burial_section},
     {"level",
-     "scales the echo to {target_strength: } or {over_seabed: }; by default shape, material "
-     "and seabed.lambert alone set it",
+     "level of the echo: physical (from shape, material, seabed.lambert), or scaled to "
+     "{target_strength: } or {over_seabed: }",
      WORD(level_kind) = {[SONJECT_LEVEL_PHYSICAL] = "physical",
                          [SONJECT_LEVEL_TARGET_STRENGTH] = "",
                          [SONJECT_LEVEL_OVER_SEABED] = ""},
      .section = &level_section},
     SURFACE_FIELD("surface of the object: a material's name, or a section"),
     FOULING_FIELD,
-    {"parts", "instead of one shape: the object is their union", .kind = FIELD_SPECIAL,
+    {"parts", "parts, instead of one shape: the object is their union", .kind = FIELD_SPECIAL,
      .unit = "list", .section = &part_section, .is_list = true, .read = read_object_parts},
 };
 const struct section object_section = {ROWS(object_fields), .choice = "shape parts target",

@@ -1,4 +1,4 @@
-/* Walks a section's table and fills its structure from the tree. */
+/* The reader of sections: walks a section's table and fills its structure from the tree. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,7 +56,7 @@ static sonject_status read_unit(struct reader *reader, const struct tree_node *n
     return SONJECT_OK;
 }
 
-/* Numbers that the type holds, but are out of bounds, are told so when all is read. */
+/* Reads a count. Counts that the type holds but are out of bounds are refused later. */
 static sonject_status read_count(struct reader *reader, const struct field *field,
                                  const struct tree_node *node, uint64_t *count)
 {
@@ -113,7 +113,7 @@ static sonject_status read_word(struct reader *reader, const struct field *field
     return refuse_word(reader, node, text, &list, near);
 }
 
-/* A number, or a word for one. */
+/* Reads a number, or a word for one. */
 static sonject_status read_number(struct reader *reader, const struct field *field,
                                   const struct tree_node *node, double *value)
 {
@@ -138,7 +138,7 @@ static sonject_status read_label(struct reader *reader, const struct tree_node *
     return SONJECT_OK;
 }
 
-/* The folder that an override's names of files are meant from; "" is where the user is. */
+/* Returns the folder for file names of an override; "": the user's working folder. */
 static const char *folder_of_override(const struct reader *reader, const char *override)
 {
     const struct tree *tree = reader->tree;
@@ -199,7 +199,7 @@ static sonject_status read_owned_text(struct reader *reader, const struct tree_n
     return *owned ? SONJECT_OK : report_out_of_memory(reader->report, "a text");
 }
 
-/* A section, for whose lack of keys nothing at all may stand. */
+/* Reads a section. An empty value is a section without keys. */
 static sonject_status read_subsection(struct reader *reader, const struct section *section,
                                       const struct tree_node *node, void *structure)
 {
@@ -207,7 +207,7 @@ static sonject_status read_subsection(struct reader *reader, const struct sectio
     return read_section(reader, section, tree_is_null(node) ? &empty : node, structure);
 }
 
-/* A list's next entry goes here. */
+/* The place of a list's next entry. */
 struct entries {
     const struct field *field;
     char *first;
@@ -280,10 +280,10 @@ static sonject_status read_value(struct reader *reader, const struct field *fiel
     case FIELD_SPECIAL:
         break;
     }
-    return SONJECT_OK; /* it is read elsewhere */
+    return SONJECT_OK; /* read elsewhere */
 }
 
-/* Whether a node is a word that stands for a number. */
+/* Returns whether a node is a word that stands for a number. */
 static bool is_word_of(const struct field *field, const struct tree_node *node)
 {
     for (size_t i = 0; field->kind == FIELD_QUANTITY && field->words[i]; i++)
@@ -306,7 +306,7 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
     return SONJECT_OK;
 }
 
-/* The key that was meant is wrong, too, so that nothing calls it missing. */
+/* Refuses an unknown key and marks the key that was meant, so that nothing calls it missing. */
 static sonject_status refuse_unknown(struct reader *reader, const struct section *section,
                                      const struct tree_entry *entry)
 {
@@ -349,7 +349,7 @@ static sonject_status find_missing(struct reader *reader, const struct section *
     return status;
 }
 
-/* "a, b and c" of "a b c"; "a and b, or c and d" of "a+b c+d". */
+/* Writes "a, b and c" for "a b c", and "a and b, or c and d" for "a+b c+d". */
 static void tell_choice(const char *choice, char text[200])
 {
     const bool is_of_sets = strchr(choice, '+') != NULL;
@@ -367,7 +367,7 @@ static void tell_choice(const char *choice, char text[200])
     text[length] = 0;
 }
 
-/* That one of the section's choice is there, and nothing of the others. */
+/* Checks that exactly one of the section's choice is there. */
 static sonject_status check_choice_given(struct reader *reader, const struct section *section,
                                          const struct tree_node *node)
 {
@@ -379,7 +379,7 @@ static sonject_status check_choice_given(struct reader *reader, const struct sec
     while (next_key(&rest, key)) {
         size_t keys = 1;
         for (char *plus; (plus = strchr(key, '+')) != NULL; keys++)
-            *plus = ' '; /* keys, separated by blanks */
+            *plus = ' '; /* blanks separate keys */
         begun += count_given(node, key) > 0;
         whole += count_given(node, key) == keys;
         are_right = are_right && are_sound(reader, key);
@@ -388,7 +388,7 @@ static sonject_status check_choice_given(struct reader *reader, const struct sec
     if (begun == 1 ? whole == 1 : begun == 0 && may_lack)
         return SONJECT_OK;
     if (!are_right && (begun == 0 || is_of_sets))
-        return SONJECT_ERROR_INPUT; /* one is there, misspelt */
+        return SONJECT_ERROR_INPUT; /* one is there, but misspelt or wrong */
     tell_choice(section->choice, told);
     if (is_of_sets)
         return refuse_value(reader, node, "needs %s; give one of these", told);
@@ -401,8 +401,8 @@ bool reading_ends(sonject_status status)
     return status != SONJECT_OK && status != SONJECT_ERROR_INPUT;
 }
 
-/* A message that was not the reader's own, such as that about a line of a table, is a mistake at
- * the node. */
+/* Returns the status after a step. A message that the reader did not make, such as one about a line
+ * of a table, becomes a mistake at the node. */
 static sonject_status settle(const struct reader *reader, const struct tree_node *node,
                              sonject_status before, sonject_status status)
 {

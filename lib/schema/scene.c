@@ -1,4 +1,4 @@
-/* The keys of the whole file, of its image, and of the injection. */
+/* The keys of the whole file, of its image and of the injection. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,8 +34,10 @@ static void relate_uniform(struct check *check, const void *structure)
 }
 
 static const struct field uniform_fields[] = {
-    {"rows", "track positions", COUNT32(uniform_rows, 1, SIDE_MAX), .per = " pixels", REQUIRED},
-    {"columns", "range cells", COUNT32(uniform_columns, 1, SIDE_MAX), .per = " pixels", REQUIRED},
+    {"rows", "number of rows (track positions)", COUNT32(uniform_rows, 1, SIDE_MAX),
+     .per = " pixels", REQUIRED},
+    {"columns", "number of columns (range cells)", COUNT32(uniform_columns, 1, SIDE_MAX),
+     .per = " pixels", REQUIRED},
 };
 static const struct section uniform_section = {ROWS(uniform_fields), .relations = relate_uniform};
 #undef STRUCTURE
@@ -49,22 +51,22 @@ static void relate_synthetic(struct check *check, const void *structure)
 
 /* The mean level leaves 14 dB to full scale for the targets' highlights. */
 static const struct field synthetic_fields[] = {
-    {"rows", "track positions", COUNT32(rows, 1, SIDE_MAX), .per = " pixels", .preset = 400,
-     REQUIRED},
-    {"columns", "range cells", COUNT32(columns, 1, SIDE_MAX), .per = " pixels", .preset = 400,
-     REQUIRED},
-    {"seed", "of the random seabed", COUNT64(seed, 0, 0), .preset = 1},
+    {"rows", "number of rows (track positions)", COUNT32(rows, 1, SIDE_MAX), .per = " pixels",
+     .preset = 400, REQUIRED},
+    {"columns", "number of columns (range cells)", COUNT32(columns, 1, SIDE_MAX), .per = " pixels",
+     .preset = 400, REQUIRED},
+    {"seed", "seed of the random seabed", COUNT64(seed, 0, 0), .preset = 1},
     {"complex", "complex pixels instead of amplitudes", FLAG(complex_pixels)},
-    {"speckle_shape", "shape of the K distribution, inf for Rayleigh amplitudes",
+    {"speckle_shape", "shape of the speckle's K distribution; inf gives Rayleigh amplitudes",
      QUANTITY(speckle_shape, NUMBER), WITHIN(0.01, HUGE_VAL), .preset = 10.0,
      .range = "at least 0.01, or inf for Rayleigh amplitudes"},
     {"texture_length", "correlation length of the speckle's texture",
      QUANTITY(texture_length_m, LENGTH), POSITIVE, .preset = 0.1},
-    {"ripple_wavelength", "from crest to crest of the sand ripples",
+    {"ripple_wavelength", "wavelength of the sand ripples, from crest to crest",
      QUANTITY(ripple_wavelength_m, LENGTH), POSITIVE, .preset = 0.6},
-    {"ripple_contrast", "of the ripples, 0 (none) to 1", QUANTITY(ripple_contrast, NUMBER),
-     WITHIN(0.0, 1.0), .preset = 0.6},
-    {"ripple_heading", "direction across the crests, from along-track towards range",
+    {"ripple_contrast", "contrast of the sand ripples, 0 (none) to 1",
+     QUANTITY(ripple_contrast, NUMBER), WITHIN(0.0, 1.0), .preset = 0.6},
+    {"ripple_heading", "direction across the ripples' crests, from along-track towards range",
      QUANTITY(ripple_heading_rad, ANGLE), .preset = 1.25},
     {"patch_contrast", "level step between sediment patches", QUANTITY(patch_contrast_db, DECIBEL),
      WITHIN(0.0, 100.0), .preset = 4.0},
@@ -77,7 +79,7 @@ static const struct section synthetic_section = {
     ROWS(synthetic_fields), .relations = relate_synthetic, .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
 
-/* A row spacing as a sonar's speed and ping rate make it. */
+/* The speed and ping rate of a sonar, which give the row spacing. */
 struct ping_spacing {
     double speed_mps;
     double ping_rate_hz;
@@ -85,9 +87,9 @@ struct ping_spacing {
 
 #define STRUCTURE struct ping_spacing
 static const struct field ping_spacing_fields[] = {
-    {"speed", "of the sonar over the ground", QUANTITY(speed_mps, SPEED), WITHIN(0.0, HUGE_VAL),
-     .bounds = ABOVE_LEAST, REQUIRED},
-    {"ping_rate", "pings, and so rows, a second", QUANTITY(ping_rate_hz, FREQUENCY),
+    {"speed", "speed of the sonar over the ground", QUANTITY(speed_mps, SPEED),
+     WITHIN(0.0, HUGE_VAL), .bounds = ABOVE_LEAST, REQUIRED},
+    {"ping_rate", "pings per second; each ping is one row", QUANTITY(ping_rate_hz, FREQUENCY),
      WITHIN(0.0, HUGE_VAL), .bounds = ABOVE_LEAST, REQUIRED},
 };
 static const struct section ping_spacing_section = {ROWS(ping_spacing_fields)};
@@ -112,7 +114,7 @@ static sonject_status read_first_range(struct reader *reader, const struct tree_
     reader->takes_first_range = is_word(node, "from_file");
     if (!reader->takes_first_range)
         return read_quantity(reader, node, QUANTITY_LENGTH, &geometry->first_slant_range_m);
-    geometry->first_slant_range_m = 0.0; /* until the table is read */
+    geometry->first_slant_range_m = 0.0; /* until the table of pings is read */
     return SONJECT_OK;
 }
 
@@ -132,7 +134,7 @@ static sonject_status finish_geometry(struct reader *reader, const struct tree_n
     return SONJECT_OK;
 }
 
-/* No first slant range is right for most images, so there is none until it is given. */
+/* first_slant_range has no default, because none is right for most images. */
 #define STRUCTURE sonject_geometry_params
 static const struct field geometry_fields[] = {
     {"row_spacing", "distance between track positions, or the speed and ping_rate that make it",
@@ -141,17 +143,17 @@ static const struct field geometry_fields[] = {
     {"column_spacing", "distance between range cells, in slant range",
      QUANTITY(column_spacing_m, LENGTH), POSITIVE, .preset = 0.025, REQUIRED},
     {"first_slant_range",
-     "slant range of column 0 of the whole swath, or of nadir_column, there 0 if not given; or "
-     "from_file, which is input.pings",
+     "slant range of the swath's column 0, or of nadir_column (by default 0 there); from_file "
+     "takes it from input.pings",
      QUANTITY(first_slant_range_m, LENGTH), FROM_ZERO, .preset = NAN, .read = read_first_range,
      .unit = "m, km, cm, mm, or from_file"},
     {"nadir_column",
-     "of an image of two sides, or whose range grows to the left: where range begins; port is what "
-     "lies to its left, starboard to its right",
+     "column where range begins, if the image has two sides or range grows to the left; port lies "
+     "left of it, starboard right",
      QUANTITY(nadir_column, NUMBER), WITHIN(0.0, INDEX_MAX), .per = " columns", NONE_IF_ZERO},
     {"first_along_track", "track position of row 0", QUANTITY(first_along_track_m, LENGTH),
      COORDINATE},
-    {"side", "of the track that the image shows",
+    {"side", "side of the track that the image shows",
      WORD(side) = {[SONJECT_SIDE_PORT] = "port", [SONJECT_SIDE_STARBOARD] = "starboard"}},
 };
 static const struct section geometry_section = {ROWS(geometry_fields), .finish = finish_geometry,
@@ -198,7 +200,7 @@ static sonject_status finish_transfer(struct reader *reader, const struct tree_n
 }
 
 static const struct field transfer_fields[] = {
-    {"kind", "how stored numbers came from amplitudes",
+    {"kind", "kind of function that made the stored numbers from amplitudes",
      WORD(kind) = {[SONJECT_TRANSFER_AMPLITUDE] = "amplitude",
                    [SONJECT_TRANSFER_INTENSITY] = "intensity",
                    [SONJECT_TRANSFER_DECIBEL] = "decibel",
@@ -209,7 +211,7 @@ static const struct field transfer_fields[] = {
      "dB per stored unit (decibel, 1e-6 to 1000), exponent (gamma, 0.01 to 100) or b (schlick, 1 "
      "to 1e6)",
      QUANTITY(parameter, NUMBER), .preset = 1.0},
-    {"offset", "level of a stored 0 (decibel, -1000 to 1000)", QUANTITY(offset, DECIBEL)},
+    {"offset", "level of a stored 0 (kind decibel: -1000 to 1000 dB)", QUANTITY(offset, DECIBEL)},
     {"full_scale", "largest value that the recorder stores; by default the pixel type's",
      QUANTITY(full_scale, NUMBER), WITHIN(0.0, 1e30), NONE_IF_ZERO},
 };
@@ -296,7 +298,7 @@ static sonject_status read_pings(struct reader *reader, const struct tree_node *
     return status;
 }
 
-/* The file is under the scene's keys already. */
+/* Checks that the key has a value. take_calibration has read the file already. */
 static sonject_status read_calibration(struct reader *reader, const struct tree_node *node,
                                        void *structure)
 {
@@ -319,13 +321,14 @@ static sonject_status finish_input(struct reader *reader, const struct tree_node
 
 #define STRUCTURE struct scene
 static const struct field input_fields[] = {
-    {"kind", "of the input", HIDDEN, WORD(input_kind) = {"memory", "file", "uniform", "synthetic"}},
+    {"kind", "input's kind", HIDDEN, WORD(input_kind) = {"memory", "file", "uniform", "synthetic"}},
     {"path", "image file", .kind = FIELD_PATH, MEMBER(input_path),
      SETS(input_kind, SONJECT_INPUT_FILE)},
-    {"channel", "of an XTF or JSF file: port, starboard, or its number there",
+    {"channel", "channel of an XTF or JSF file: port, starboard, or its number there",
      .kind = FIELD_SPECIAL, MEMBER(channel), .read = read_channel, .unit = "word or whole number"},
-    {"array", "in an HDF5 or MATLAB file of several: its name", TEXT(array)},
-    {"complex", "the file's two channels are real and imaginary part", FLAG(input_is_complex)},
+    {"array", "name of the array, in an HDF5 or MATLAB file that has several", TEXT(array)},
+    {"complex", "true: the file's two channels are real and imaginary part",
+     FLAG(input_is_complex)},
     {"uniform", "a swath of unit reflectivity", SAME(uniform_section),
      SETS(input_kind, SONJECT_INPUT_UNIFORM)},
     {"synthetic", "a swath that sonject makes", PART(synthetic, synthetic_section),
@@ -333,15 +336,15 @@ static const struct field input_fields[] = {
     {"geometry",
      "where the pixels lie: row_spacing, column_spacing and first_slant_range, or from_file",
      PART(geometry, geometry_section), .read = read_geometry, REQUIRED},
-    {"transfer", "what the file's numbers mean", PART(transfer, transfer_section)},
+    {"transfer", "meaning of the file's numbers", PART(transfer, transfer_section)},
     {"calibration",
      "file of sonject calibrate, whose keys count where the scene has none of its own; or auto: "
      "run "
      "and campaign make it",
      SPECIAL(read_calibration, "file name, or auto")},
     {"pings",
-     "of images whose file does not say it row by row: a table with columns row, altitude_m, and "
-     "first_slant_range_m, linear between its rows",
+     "table with columns row, altitude_m, and first_slant_range_m, where the file lacks these; "
+     "linear between its rows",
      SPECIAL(read_pings, "file name")},
 };
 const struct section input_section = {ROWS(input_fields), .choice = "path uniform synthetic",
@@ -350,10 +353,10 @@ const struct section input_section = {ROWS(input_fields), .choice = "path unifor
 
 #define STRUCTURE sonject_patch_params
 static const struct field patch_fields[] = {
-    {"row", "first row of the swath", COUNT64(first_row, 0, SWATH_INDEX_MAX)},
-    {"column", "first column of the swath", COUNT64(first_column, 0, SWATH_INDEX_MAX)},
-    {"rows", "track positions", COUNT64(rows, 1, SWATH_INDEX_MAX), REQUIRED},
-    {"columns", "range cells", COUNT64(columns, 1, SWATH_INDEX_MAX), REQUIRED},
+    {"row", "first row of the patch in the swath", COUNT64(first_row, 0, SWATH_INDEX_MAX)},
+    {"column", "first column of the patch in the swath", COUNT64(first_column, 0, SWATH_INDEX_MAX)},
+    {"rows", "number of rows (track positions)", COUNT64(rows, 1, SWATH_INDEX_MAX), REQUIRED},
+    {"columns", "number of columns (range cells)", COUNT64(columns, 1, SWATH_INDEX_MAX), REQUIRED},
 };
 static const struct section patch_section = {ROWS(patch_fields), .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
@@ -387,9 +390,9 @@ static const struct field match_fields[] = {
     {"response", "widths of the point response: the image's around the targets, or the sonar's",
      WORD(match_response) = {[SONJECT_MATCH_NOMINAL] = "nominal", [SONJECT_MATCH_IMAGE] = "image"},
      .preset = SONJECT_MATCH_IMAGE},
-    {"looks", "averaged in a magnitude pixel: image, or 1 to 64", QUANTITY(match_looks, NUMBER),
-     WITHIN(1.0, 64.0), .words = {"image"}, .word_values = {0.0}, .per = " looks",
-     .unit = "number, or image"},
+    {"looks", "looks averaged in a magnitude pixel: image, or 1 to 64",
+     QUANTITY(match_looks, NUMBER), WITHIN(1.0, 64.0), .words = {"image"}, .word_values = {0.0},
+     .per = " looks", .unit = "number, or image"},
     {"saturation", "amplitude that cuts highlights: the image's own, or the file's full scale",
      WORD(match_saturation) =
          {[SONJECT_MATCH_NOMINAL] = "full_scale", [SONJECT_MATCH_IMAGE] = "image"},
@@ -398,39 +401,40 @@ static const struct field match_fields[] = {
 static const struct section match_section = {ROWS(match_fields)};
 
 static const struct field injection_fields[] = {
-    {"mode", "keep the measured pixels around the target, or trace the patch anew",
+    {"mode", "keep the measured pixels around the target, or trace the whole patch",
      WORD(mode) =
          {[SONJECT_MODE_COMPOSITE] = "composite", [SONJECT_MODE_RESYNTHESISE] = "resynthesise"}},
     {"columns",
-     "rule of the track position that an echo of several interactions goes to, a column of the "
-     "paper's: the mean of first and last hit's, or the first hit's",
+     "track position (column, in the paper) of echoes of several interactions: mean of first and "
+     "last hit, or first hit",
      WORD(
          column_rule) = {[SONJECT_COLUMNS_FOCUSED] = "focused", [SONJECT_COLUMNS_PAPER] = "paper"}},
     {"noise_floor", "estimated or not", HIDDEN, FLAG(estimate_noise), .preset = 1},
-    {"noise_floor", "noise over the mean seabed, or estimate", QUANTITY(noise_floor_db, DECIBEL),
-     WITHIN(-HUGE_VAL, 0.0), .bounds = ABOVE_LEAST | BELOW_MOST,
+    {"noise_floor", "noise relative to the mean seabed, or estimate",
+     QUANTITY(noise_floor_db, DECIBEL), WITHIN(-HUGE_VAL, 0.0), .bounds = ABOVE_LEAST | BELOW_MOST,
      .range = "below 0 dB (the seabed's own level)", .preset = -25.0, .words = {"estimate"},
      .word_values = {-25.0}, .read = read_noise_floor, .unit = "dB, or estimate"},
     {"noise_floor_over",
-     "level of the seabed that noise_floor is over, of full scale or an amplitude of 1: noise is "
-     "the same everywhere; by default that about each pixel",
+     "seabed level that noise_floor refers to everywhere, re full scale or an amplitude of 1; by "
+     "default the level about each pixel",
      QUANTITY(noise_floor_over_db, DECIBEL), WITHIN(-200.0, 200.0), NONE_IF_NAN},
-    {"influence", "change over the seabed from which a pixel is the target's",
+    {"influence", "smallest change, relative to the seabed, that makes a pixel the target's",
      QUANTITY(influence_db, DECIBEL), WITHIN(-200.0, 0.0), .preset = -40.0},
     {"rays", "factor on the number of rays", QUANTITY(ray_scale, NUMBER),
      WITHIN(1.0 / 64.0, RAY_SCALE_MAX), .per = " times the usual number", .preset = 1.0},
     {"accuracy",
-     "standard error of the energies that targets change, which decides the number of rays instead "
-     "of rays",
+     "relative standard error of the energies that targets change; sets the number of rays in "
+     "place of rays",
      QUANTITY(accuracy, FRACTION), WITHIN(0.001, 1.0), NONE_IF_ZERO},
-    {"seed", "of all random numbers of the injection", COUNT64(seed, 0, 0), .preset = 1},
-    {"interactions", "surfaces that a path may meet, 1 to 8",
+    {"seed", "seed of all random numbers of the injection", COUNT64(seed, 0, 0), .preset = 1},
+    {"interactions", "largest number of surfaces that a path may meet, 1 to 8",
      COUNT32(interactions, 1, SCENE_INTERACTIONS_MAX), .per = " surfaces", .preset = 1},
-    {"estimator", "how paths to the source are found: all hits connected to it, or by chance",
+    {"estimator",
+     "search for paths to the source: connect each hit to it, or wait for rays to hit it by chance",
      WORD(estimator) = {[SONJECT_ESTIMATOR_CONNECT] = "connect",
                         [SONJECT_ESTIMATOR_BRUTE_FORCE] = "brute_force"}},
     {"order_energies", "also keep the energy of each number of interactions", FLAG(order_energies)},
-    {"match", "what targets take over from a measured magnitude image", SAME(match_section)},
+    {"match", "properties that targets take from a measured magnitude image", SAME(match_section)},
 };
 const struct section injection_section = {ROWS(injection_fields), .relations = relate_injection,
                                           .bytes = sizeof(STRUCTURE)};
@@ -447,7 +451,7 @@ sonject_status read_version(struct reader *reader, const struct tree_node *node,
                               "must be 1, the version of the format that is read here");
 }
 
-/* Geometry and altitude, where they are the input file's to tell. */
+/* Takes geometry and altitude from the input file, where the scene leaves them to the file. */
 static void take_recording(struct reader *reader)
 {
     struct report report = {{0}, NULL, NULL};
@@ -496,13 +500,14 @@ static sonject_status finish_scene(struct reader *reader, const struct tree_node
     return SONJECT_OK;
 }
 
-/* Keys are read in this order, whatever the file's: the water needs the sonar's frequency and the
- * surface's depth. */
+/* Keys are read in this order, not the file's, because the water needs the sonar's frequency and
+ * the surface's depth. */
 #define STRUCTURE struct scene
 static const struct field scene_fields[] = {
     {"sonject", "version of the format, 1", SPECIAL(read_version, "whole number"), REQUIRED},
-    {"band", "which of the bands this scene is", SPECIAL(NULL, "a band's name")},
-    {"bands", "by name, the keys in which each of several sonars differs from the rest of the file",
+    {"band", "name of the band, one of bands, that this scene is", SPECIAL(NULL, "a band's name")},
+    {"bands",
+     "sections by name, one per sonar, with the keys in which it differs from the rest of the file",
      SPECIAL(NULL, "sections of the scene's keys")},
     {"input", "where the image comes from: path, uniform or synthetic, and geometry",
      SAME(input_section), REQUIRED},

@@ -1,4 +1,4 @@
-/* Scene files, from their bytes to a scene: overrides, bands, and then the tables of keys. */
+/* Scene files, from bytes to a scene: overrides, bands, then the tables of keys. */
 #include "schema/scene_file.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "schema/keys.h"
 
-/* ---- Bands: several sonars in one file, each a name and the keys in which it differs. */
+/* ---- Bands: several sonars in one file. Each has a name and the keys in which it differs. */
 
 bool is_band_name(const char *text)
 {
@@ -18,7 +18,7 @@ bool is_band_name(const char *text)
     return text[0] && strlen(text) < SONJECT_NAME_CAPACITY && text[strspn(text, letters)] == '\0';
 }
 
-/* A band changes what follows, and has no bands of its own. */
+/* Checks a band, which may not hold the keys sonject, band and bands. */
 static sonject_status check_band(struct reader *reader, const struct tree_entry *band)
 {
     static const char *const others[] = {"sonject", "band", "bands"};
@@ -52,7 +52,7 @@ static sonject_status check_bands(struct reader *reader, const struct tree_node 
     return status;
 }
 
-/* What an override made, of the node or within it; NULL: nothing. */
+/* Returns the node, or one within it, that an override made; NULL: none. */
 static const struct tree_node *set_within(const struct tree_node *node)
 {
     const struct tree_node *set = node->place.override ? node : NULL;
@@ -61,8 +61,8 @@ static const struct tree_node *set_within(const struct tree_node *node)
     return set;
 }
 
-/* Moves the upper section's values into the lower one, but where overrides have set that; what they
- * take the place of goes the other way. */
+/* Swaps the upper section's values into the lower one, except where an override has set the lower
+ * value. */
 static sonject_status lay_over(struct reader *reader, struct tree *tree, struct tree_node *lower,
                                struct tree_node *upper)
 {
@@ -97,7 +97,7 @@ static void list_names(const struct tree_node *bands, struct word_list *list)
         list_word(list, bands->entries[i].key);
 }
 
-/* One a line, for free(); NULL where memory is out. */
+/* Returns the names, one per line, for free(); NULL: out of memory. */
 static char *join_names(const struct tree_node *bands)
 {
     struct growing_text text = {0};
@@ -107,7 +107,7 @@ static char *join_names(const struct tree_node *bands)
     return growing_text_end(&text);
 }
 
-/* The scene knows which band it is. */
+/* Keeps the band's name and all names in the scene. */
 static sonject_status keep_names(struct reader *reader, const struct tree_node *bands,
                                  const char *name)
 {
@@ -193,7 +193,7 @@ sonject_status scene_file_load(struct report *report, const char *path, char **t
     CHECK(file_read_whole(report, path, TREE_BYTES_MAX, text, bytes));
     if (strlen(*text) == *bytes)
         return SONJECT_OK;
-    /* Nothing behind a zero byte would be read; YAML has none, and says where it is. */
+    /* Text after a zero byte would be ignored. YAML has none, so its parser says where one is. */
     struct tree tree;
     tree_init(&tree, report, path);
     const sonject_status status = tree_parse(&tree, *text, *bytes);
@@ -203,7 +203,7 @@ sonject_status scene_file_load(struct report *report, const char *path, char **t
     return status != SONJECT_OK ? status : input_failure(report, path, "has a zero byte within it");
 }
 
-/* The place of every key, for what is found wrong when the image is known. */
+/* Notes the place of every key, for mistakes that show only when the image is known. */
 static sonject_status write_down(const struct tree *tree, const struct tree_node *node,
                                  struct key_path *path, struct scene *scene)
 {

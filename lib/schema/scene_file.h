@@ -1,4 +1,4 @@
-/* Scene files: what a scene is read from, and its reading. */
+/* Scene files: the source that a scene is read from, and its reading. */
 #ifndef SONJECT_SCHEMA_SCENE_FILE_H
 #define SONJECT_SCHEMA_SCENE_FILE_H
 
@@ -10,81 +10,78 @@
 #include "schema/tables.h"
 #include "schema/yaml_tree.h"
 
-/* The text of a scene file, *bytes long without the 0 at its end, to be given to free(). Errors:
- * INPUT (there is none, too large, a zero byte within it), STORAGE, MEMORY. */
+/* Reads the text of a scene file, *bytes long without the 0 at its end, for free(). Errors: INPUT
+ * (no such file, too large, a zero byte within it), STORAGE, MEMORY. */
 sonject_status scene_file_load(struct report *report, const char *path, char **text, size_t *bytes);
 
-/* A text, and what was set since by calls: values of keys, as overrides set them, and arrays in
- * place of files. Starts as all zeros. What scene_source_keep and the setting functions put there
- * is owned, for scene_source_clear; a source that is only read may borrow all. */
+/* The source of a scene: a text, and what calls have set since, as overrides of keys and as arrays
+ * in place of files. Starts as all zeros. scene_source_keep and the setting functions fill it with
+ * memory that scene_source_clear frees. A source that is only read may borrow all. */
 struct scene_source {
-    const char *path;       /* of the text's file, for messages and the names of files in it */
-    const char *text;       /* NULL: there is none, the scene is a campaign's */
+    const char *path; /* path of the text's file, for messages and for file names in the text */
+    const char *text; /* NULL: no text, because the scene is a campaign's */
     const char **overrides; /* "key.path=value" */
     size_t override_count;
-    size_t set_count; /* of them, the last ones: set by calls, not with the text */
-    /* Where the names of files in the first so many overrides are meant from; NULL: where the user
-     * is, as with all others. */
+    size_t set_count; /* number of the last overrides, which calls have set */
+    /* The folder for file names in the first moved_overrides overrides; NULL, and for all other
+     * overrides: the user's working folder. */
     const char *moved_folder;
     size_t moved_overrides;
     const char *made_calibration; /* file that stands for input.calibration: auto; NULL: none */
-    struct number_array *arrays;  /* by their names, which are their keys' values */
+    struct number_array *arrays;  /* arrays, whose names are their keys' values */
     size_t array_count;
     bool has_no_channels; /* the input is an image, whatever input.channel says */
-    bool takes_pixels;    /* the input may be pixels that a call is given: none of path, uniform and
-                             synthetic */
-    bool *are_relations;  /* told by a reading that fails with INPUT: that each value would do by
-                             itself, but not with the others; NULL: not told */
-    struct tree tree;     /* of text and overrides, while something is set; empty: not made */
+    bool takes_pixels;    /* a call may give pixels instead of path, uniform or synthetic */
+    bool *are_relations;  /* set if a reading fails with INPUT: each value would do by itself, but
+                             not with the others; NULL: not wanted */
+    struct tree tree;     /* tree of text and overrides, made when needed; empty: not made */
 };
 
-/* Takes the text over (for free(), also on failure) and copies the rest. Errors: MEMORY. */
+/* Takes the text (for free(), also on failure) and copies the rest. Errors: MEMORY. */
 sonject_status scene_source_keep(struct scene_source *source, struct report *report,
                                  const char *path, char *text, const char *const *overrides,
                                  size_t count);
 void scene_source_clear(struct scene_source *source);
 
-/* Sets a key, as an override does. On failure nothing is changed. Errors: INPUT (no such key, not a
+/* Sets a key, as an override does. On failure nothing changes. Errors: INPUT (no such key, not a
  * value), MEMORY. */
 sonject_status scene_source_set(struct scene_source *source, struct report *report, const char *key,
                                 const char *value);
 
-/* Sets a key whose value is the name of a file to an array in its place, copied; array->name is the
- * key. On failure nothing is changed. Errors: INPUT, MEMORY. */
+/* Sets a key whose value is the name of a file to a copy of an array; array->name is the key. On
+ * failure nothing changes. Errors: INPUT, MEMORY. */
 sonject_status scene_source_set_array(struct scene_source *source, struct report *report,
                                       const struct number_array *array);
 
-/* Reads it all. Of the scene only mesh_store counts before; on failure it is left empty but for
- * that. Errors:
- * INPUT, STORAGE, UNSUPPORTED (a mesh's format), MEMORY. */
+/* Reads a scene. Only scene->mesh_store is used before. On failure the scene is left empty but for
+ * that. Errors: INPUT, STORAGE, UNSUPPORTED (a mesh's format), MEMORY. */
 sonject_status scene_source_read(const struct scene_source *source, struct report *report,
                                  struct scene *scene);
 
-/* The text with its overrides as a tree, which is initialised. Errors: INPUT, MEMORY. */
+/* Parses the text with its overrides into an initialised tree. Errors: INPUT, MEMORY. */
 sonject_status scene_source_tree(const struct scene_source *source, struct tree *tree);
 
-/* The names of the bands that are left to be chosen, in the text's order, one a line; for free().
- * Errors: INPUT, MEMORY. */
+/* Returns in *names the bands to choose from, if none is chosen, in the text's order, one per line,
+ * for free(). Errors: INPUT, MEMORY. */
 sonject_status scene_source_bands(const struct scene_source *source, struct report *report,
                                   char **names);
 
-/* Makes source->tree where it is not there. Errors: INPUT, MEMORY. */
+/* Makes source->tree if it is not made. Errors: INPUT, MEMORY. */
 sonject_status scene_source_keep_tree(struct scene_source *source, struct report *report);
 
-/* Makes the names of files in source->tree absolute; arrays in place of files stay. Errors: MEMORY.
- */
+/* Makes file names in source->tree absolute. Arrays in place of files stay. Errors: MEMORY. */
 sonject_status name_files_absolutely(struct scene_source *source, struct report *report);
 
-/* What the scene says at a key, "" for all of it, as JSON, for free(); see sonject_scene_get.
+/* Writes the scene's value at a key, "" for all, as JSON, for free(); see sonject_scene_get.
  * Errors: INPUT (no such key), MEMORY. */
 sonject_status scene_source_get(struct scene_source *source, struct report *report, const char *key,
                                 char **json);
 
-/* The text with all that was set in its place and absolute names of files, a line a section; for
- * free(). Errors: INPUT, MEMORY. */
+/* Writes the text with all that was set and absolute file names, one section per line, for free().
+ * Errors: INPUT, MEMORY. */
 sonject_status scene_source_text(struct scene_source *source, struct report *report, char **text);
 
-/* Whether a band may have this name, which is a folder's. */
+/* Returns whether a band may have this name, which is a folder's name, too. */
 bool is_band_name(const char *text);
 
 #endif

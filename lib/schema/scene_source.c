@@ -1,4 +1,4 @@
-/* What calls set of a scene. */
+/* The source of a scene: the values that calls set, and the scene as text. */
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,15 +49,15 @@ sonject_status scene_source_keep_tree(struct scene_source *source, struct report
     return status;
 }
 
-/* Whether an override is of the key, or of one below it. */
+/* Returns whether an override is of the key or of a key below it. */
 static bool is_below(const char *override, const char *key, size_t length)
 {
     return strncmp(override, key, length) == 0 && strchr("=.[", override[length]);
 }
 
-/* Keeps what is set: at the place of an earlier value of the key, so that a list's entries stay in
- * order, and without what was set below it. No later override is of a section around it, whose
- * setting would have removed it. Takes the override over; there is room for one more. */
+/* Keeps an override in the place of an earlier value of the key, so that a list's entries stay in
+ * order, and removes values below the key. No later override sets a section around the key, because
+ * that removes the values within. Takes the override over. There is room for one more. */
 static void keep_override(struct scene_source *source, const char *override)
 {
     const char *key = override;
@@ -100,7 +100,7 @@ sonject_status scene_source_keep(struct scene_source *source, struct report *rep
     return SONJECT_OK;
 }
 
-/* "key=value", for free(). */
+/* Returns "key=value", for free(), or NULL if memory is out. */
 static char *join_override(const char *key, const char *value)
 {
     const size_t key_bytes = strlen(key);
@@ -113,7 +113,7 @@ static char *join_override(const char *key, const char *value)
     return override;
 }
 
-/* That the key is one, and the value's keys are; the tree has it then. */
+/* Checks that the key and the value's keys exist. The tree then has the value. */
 static sonject_status check_override(struct scene_source *source, struct report *report,
                                      const char *override)
 {
@@ -147,12 +147,12 @@ sonject_status scene_source_set(struct scene_source *source, struct report *repo
         keep_override(source, override);
         return SONJECT_OK;
     }
-    forget_tree(source); /* it may hold a part of the value */
+    forget_tree(source); /* the tree may hold a part of the value */
     free(override);
     return status;
 }
 
-/* A key whose value names a table, or a grid of heights, that may be given as an array. */
+/* Returns whether a key names a table, or a grid of heights, and so may be given as an array. */
 static bool takes_array(const char *key, bool *is_grid)
 {
     static const char *const of_tables[] = {"sonar.pulse.file",    "sonar.measured_response",

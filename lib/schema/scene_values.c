@@ -1,4 +1,4 @@
-/* What a scene says, read back key by key. */
+/* The values of a scene, read back key by key. */
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,17 +10,17 @@
 #include "schema/keys.h"
 #include "schema/scene_file.h"
 
-/* A value of the tree, and what the tables know of it. */
+/* A value of the tree, and what the tables know about the value. */
 struct spot {
     struct tree_node *node;
-    const struct field *field;     /* of its key; NULL: the scene, or a key that there is not */
-    const struct section *section; /* of the keys in it; NULL: none are known */
+    const struct field *field;     /* row of its key; NULL: the scene itself, or an unknown key */
+    const struct section *section; /* section of the keys within; NULL: none are known */
 };
 
-/* Stands for that of `bands`, whose keys are names, each with the keys of scenes. */
+/* Stands for the section `bands`, whose keys are names, each with the keys of scenes. */
 static const struct section names_of_bands;
 
-/* Those of a list are values of the list's key. */
+/* Returns the spot of an entry. A list's entries are values of the list's key. */
 static struct spot entry_of(const struct spot *spot, size_t index)
 {
     struct tree_entry *entry = &spot->node->entries[index];
@@ -36,7 +36,7 @@ static struct spot entry_of(const struct spot *spot, size_t index)
     if (spot->section == &scene_section && strcmp(entry->key, "bands") == 0)
         below.section = &names_of_bands;
     else if (spot->section == &part_section && strcmp(entry->key, "parts") == 0)
-        below.section = &part_section; /* its table does not come back to itself */
+        below.section = &part_section; /* the table of parts does not refer to itself */
     return below;
 }
 
@@ -54,9 +54,7 @@ static const struct number_array *array_of(const struct scene_source *source, co
     return find_array(&reader, name);
 }
 
-/* Whether a text names a file: not a table in memory, nor `auto`, which is a calibration to be
- * made.
- */
+/* Returns whether a text names a file: no array in memory, nor `auto`, a calibration to be made. */
 static bool is_file(const struct scene_source *source, const struct spot *spot)
 {
     const struct tree_node *node = spot->node;
@@ -66,8 +64,8 @@ static bool is_file(const struct scene_source *source, const struct spot *spot)
     return strcmp(spot->field->key, "calibration") != 0 || !is_word(node, "auto");
 }
 
-/* One of the text is meant from the text's folder, any other from where the user is. For free();
- * NULL where memory is out. */
+/* Returns an absolute name, for free(), or NULL if memory is out. A name in the text is relative to
+ * the text's folder, any other to the user's working folder. */
 static char *absolute_name(const struct scene_source *source, const struct tree_node *node)
 {
     char *folder = node->place.override ? copy_text("") : path_folder(source->path);
@@ -104,7 +102,7 @@ sonject_status name_files_absolutely(struct scene_source *source, struct report 
 
 /* ---- Values. */
 
-/* As it stands, where it is UTF-8. */
+/* Returns the text as it stands where it is UTF-8, else its printable form. */
 static json_t *json_as_it_is(const char *text)
 {
     json_t *value = json_string(text);
@@ -123,7 +121,7 @@ static json_t *json_of_quantity(enum quantity quantity, const char *text)
     return json_real(value);
 }
 
-/* A number by itself: whole ones stay so. */
+/* Returns a plain number. Whole numbers stay whole. */
 static json_t *json_of_number(const char *text)
 {
     uint64_t count;
@@ -195,8 +193,8 @@ static json_t *json_of(const struct scene_source *source, const struct spot *spo
 
 /* ---- Keys. */
 
-/* Goes down to what a step "heading" or "[0]" of a path names, length bytes long; false where
- * nothing is there. */
+/* Goes down to the entry that a step "heading" or "[0]" of a path names, length bytes long. Returns
+ * false if there is none. */
 static bool go_down(struct spot *spot, const char *step, size_t length)
 {
     for (size_t i = 0; i < spot->node->count; i++) {

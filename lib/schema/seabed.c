@@ -1,4 +1,4 @@
-/* The keys of the seabed: its strength, the surface for sound that goes on, and its relief. */
+/* The keys of the seabed: its backscatter, its surface for sound that goes on, and its relief. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,68 +14,69 @@
 
 #define STRUCTURE struct relief_feature
 static const struct field place_fields[] = {
-    PLACE_FIELDS("of the mean seabed there, as the image shows it", -INDEX_MAX)};
+    PLACE_FIELDS("slant range of the mean seabed there, as the image shows it", -INDEX_MAX)};
 static const struct section place_section = {ROWS(place_fields),
                                              .choice = "along_track+slant_range row+column"};
 
 #define POSITION_FIELD                                                                             \
     {                                                                                              \
-        "position", "of its middle: centre, {along_track: , slant_range: } or {row: , column: }",  \
+        "position", "middle's place: centre, {along_track: , slant_range: } or {row: , column: }", \
             CENTRE_WORD, .section = &place_section                                                 \
     }
 #define HEIGHT QUANTITY(height_m, LENGTH), WITHIN(0.0, RELIEF_HEIGHT_MAX_M), REQUIRED
 #define RADIUS QUANTITY(radius_m, LENGTH), POSITIVE, REQUIRED
 
 static const struct field ripples_fields[] = {
-    {"wavelength", "from crest to crest", QUANTITY(wavelength_m, LENGTH), POSITIVE, REQUIRED},
-    {"height", "from trough to crest", HEIGHT},
-    {"heading", "direction across the crests, from along-track towards range",
+    {"wavelength", "crest-to-crest wavelength", QUANTITY(wavelength_m, LENGTH), POSITIVE, REQUIRED},
+    {"height", "height of the ripples, from trough to crest", HEIGHT},
+    {"heading", "direction across the ripples' crests, from along-track towards range",
      QUANTITY(heading_rad, ANGLE)},
-    {"phase", "at along-track 0 and ground range 0; a crest is at 0", QUANTITY(phase_rad, ANGLE)},
-    {"sharpness", "of the crests, 0 (a sine) to 1 (narrow crests, wide troughs)",
+    {"phase", "phase of the ripples at along-track 0 and ground range 0; a crest is at phase 0",
+     QUANTITY(phase_rad, ANGLE)},
+    {"sharpness", "sharpness of the crests: 0 is a sine, 1 has narrow crests and wide troughs",
      QUANTITY(sharpness, NUMBER), WITHIN(0.0, 1.0)},
-    {"irregularity", "0 (straight crests) to 1 (they wander, fork and end)",
+    {"irregularity", "irregularity of the crests: 0 is straight, at 1 they wander, fork and end",
      QUANTITY(irregularity, NUMBER), WITHIN(0.0, 1.0)},
-    {"seed", "of the irregularity", COUNT64(seed, 0, 0)},
+    {"seed", "seed of the ripples' irregularity", COUNT64(seed, 0, 0)},
 };
 static const struct section ripples_section = {ROWS(ripples_fields)};
 
 static const struct field mound_fields[] = {
     POSITION_FIELD,
-    {"radius", "at which it ends, a raised cosine", RADIUS},
-    {"height", "of its top over the ground around", HEIGHT},
+    {"radius", "radius at which the mound, a raised cosine, ends", RADIUS},
+    {"height", "height of the mound's top over the ground around it", HEIGHT},
 };
 static const struct section mound_section = {ROWS(mound_fields)};
 
 static const struct field pit_fields[] = {
     POSITION_FIELD,
-    {"radius", "at which it ends, a raised cosine", RADIUS},
-    {"depth", "of its bottom under the ground around", HEIGHT},
+    {"radius", "radius at which the pit, a raised cosine, ends", RADIUS},
+    {"depth", "depth of the pit's bottom under the ground around it", HEIGHT},
 };
 static const struct section pit_section = {ROWS(pit_fields)};
 
 static const struct field scour_fields[] = {
-    {"object", "name of the one that it surrounds; by default all", LABEL(object)},
-    {"width", "from the object's outline to where it ends", QUANTITY(width_m, LENGTH), POSITIVE,
-     REQUIRED},
-    {"depth", "at and under the object, which rests on its bottom", HEIGHT},
+    {"object", "name of the object that the scour surrounds; by default all", LABEL(object)},
+    {"width", "width of the scour, from the object's outline to its end", QUANTITY(width_m, LENGTH),
+     POSITIVE, REQUIRED},
+    {"depth", "depth of the scour at and under the object, which rests on the bottom", HEIGHT},
 };
 static const struct section scour_section = {ROWS(scour_fields)};
 #undef STRUCTURE
 
-/* ---- Heights from an image file: where its pixels lie, and what its numbers mean. */
+/* ---- Heights from an image file: the places of its pixels and the meaning of its numbers. */
 
 enum positive_way {
     POSITIVE_UP,
     POSITIVE_DOWN
 };
 
-/* What is said about the file: a height is offset_m, and unit_m times the pixel up or down. */
+/* The values of the heights' keys. A height is offset_m plus or minus unit_m times the pixel. */
 struct heights_text {
     char *path;              /* owned */
-    char *array;             /* owned; in a file of several, its name */
-    double unit_m, offset_m; /* m a number of the file; height where that is 0 */
-    uint32_t positive;       /* enum positive_way: where larger numbers lie */
+    char *array;             /* owned; name of the array in a file of several */
+    double unit_m, offset_m; /* length of one unit of the file, m; height of a 0, m */
+    uint32_t positive;       /* enum positive_way: the direction of larger numbers */
     sonject_relief_params grid;
 };
 
@@ -83,17 +84,17 @@ struct heights_text {
 static const struct field heights_fields[] = {
     {"file", "image or array of one channel: rows along-track, columns in ground range",
      .kind = FIELD_FILE, MEMBER(path), REQUIRED},
-    {"array", "in an HDF5 or MATLAB file of several: its name", TEXT(array)},
-    {"unit", "of the file's numbers", LENGTH_UNIT(unit_m), REQUIRED},
-    {"positive", "where larger numbers lie: up (heights) or down (depths)",
+    {"array", "name of the array, in an HDF5 or MATLAB file that has several", TEXT(array)},
+    {"unit", "unit of the file's numbers", LENGTH_UNIT(unit_m), REQUIRED},
+    {"positive", "direction of larger numbers: up (heights) or down (depths)",
      WORD(positive) = {[POSITIVE_UP] = "up", [POSITIVE_DOWN] = "down"}},
-    {"offset", "height over the mean seabed where the file has 0", QUANTITY(offset_m, LENGTH),
-     COORDINATE},
+    {"offset", "height over the mean seabed that a 0 in the file stands for",
+     QUANTITY(offset_m, LENGTH), COORDINATE},
     {"row_spacing", "distance between rows", QUANTITY(grid.row_spacing_m, LENGTH), POSITIVE,
      REQUIRED},
     {"column_spacing", "distance between columns, horizontal",
      QUANTITY(grid.column_spacing_m, LENGTH), POSITIVE, REQUIRED},
-    {"first_ground_range", "of column 0, horizontal from the track",
+    {"first_ground_range", "ground range of column 0, horizontal from the track",
      QUANTITY(grid.first_ground_range_m, LENGTH), COORDINATE, REQUIRED},
     {"first_along_track", "track position of row 0", QUANTITY(grid.first_along_track_m, LENGTH),
      COORDINATE},
@@ -101,16 +102,16 @@ static const struct field heights_fields[] = {
 static const struct section heights_section = {ROWS(heights_fields)};
 #undef STRUCTURE
 
-/* The grid by itself, for its defaults and the scene's hash. */
+/* The grid of heights, for its defaults and the scene's hash. */
 #define STRUCTURE sonject_relief_params
 static const struct field relief_grid_fields[] = {
-    {"rows", "of heights", COUNT32(rows, 0, 0)},
-    {"columns", "of heights", COUNT32(columns, 0, 0)},
+    {"rows", "rows of heights", COUNT32(rows, 0, 0)},
+    {"columns", "columns of heights", COUNT32(columns, 0, 0)},
     {"row_spacing", "distance between rows", QUANTITY(row_spacing_m, LENGTH), .preset = 0.025},
     {"column_spacing", "distance between columns", QUANTITY(column_spacing_m, LENGTH),
      .preset = 0.025},
-    {"first_ground_range", "of column 0", QUANTITY(first_ground_range_m, LENGTH)},
-    {"first_along_track", "of row 0", QUANTITY(first_along_track_m, LENGTH)},
+    {"first_ground_range", "ground range of column 0", QUANTITY(first_ground_range_m, LENGTH)},
+    {"first_along_track", "track position of row 0", QUANTITY(first_along_track_m, LENGTH)},
 };
 const struct section relief_grid_section = {ROWS(relief_grid_fields), .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
@@ -122,9 +123,9 @@ static float height_of(const struct heights_text *text, double number)
     return (float)(fabs(height) > (double)FLT_MAX ? copysign(INFINITY, height) : height);
 }
 
-/* Heights of an array's numbers, or else of an image file's pixels, of which sizes that no relief
- * may have are refused before anything is held in memory. What is not a number stays so, and is
- * refused with the place where it stands. */
+/* Takes the heights of an array, or else of an image file's pixels. Sizes that no relief may have
+ * are refused before anything is held in memory. A pixel that is not a number is refused with its
+ * row and column. */
 static sonject_status take_heights(struct scene *scene, struct report *report,
                                    struct heights_text *text, const struct number_array *array,
                                    struct swath_file *file)
@@ -184,7 +185,7 @@ static sonject_status load_heights(struct reader *reader, struct report *report,
     return status;
 }
 
-/* Into the scene; the message about a file that cannot be read gets its place in the scene file. */
+/* Reads heights into the scene. Messages about the file get its place in the scene file. */
 static sonject_status read_relief_heights(struct reader *reader, const struct tree_node *node,
                                           void *structure)
 {
@@ -208,12 +209,12 @@ static sonject_status read_relief_heights(struct reader *reader, const struct tr
 
 #define STRUCTURE struct relief_feature
 static const struct field relief_fields[] = {
-    {"kind", "of feature", HIDDEN, WORD(kind) = {"ripples", "mound", "pit", "scour"}},
-    {"ripples", "of sand", SAME(ripples_section), SETS(kind, RELIEF_RIPPLES)},
+    {"kind", "kind of feature", HIDDEN, WORD(kind) = {"ripples", "mound", "pit", "scour"}},
+    {"ripples", "sand ripples", SAME(ripples_section), SETS(kind, RELIEF_RIPPLES)},
     {"mound", "a round rise", SAME(mound_section), SETS(kind, RELIEF_MOUND)},
     {"pit", "a round hollow", SAME(pit_section), SETS(kind, RELIEF_PIT)},
     {"scour", "hollows around objects", SAME(scour_section), SETS(kind, RELIEF_SCOUR)},
-    {"heights", "from a file", .kind = FIELD_SPECIAL, .section = &heights_section,
+    {"heights", "heights from a file", .kind = FIELD_SPECIAL, .section = &heights_section,
      .read = read_relief_heights},
 };
 const struct section relief_section = {ROWS(relief_fields),
@@ -227,7 +228,7 @@ static sonject_status read_feature(struct reader *reader, const struct tree_node
     (void)structure;
     memset(&feature, 0, sizeof feature);
     CHECK(read_section(reader, &relief_section, node, &feature));
-    return is_given(node, "heights") /* which are in the scene already */
+    return is_given(node, "heights") /* heights are in the scene already */
                ? SONJECT_OK
                : relief_features_append(&reader->scene->relief, reader->report, &feature);
 }
@@ -248,7 +249,7 @@ static void relate_seabed(struct check *check, const void *structure)
     relate_energy(check, "forward.", &seabed->forward, seabed->lambert);
 }
 
-/* ---- Sediments whose backscatter is modelled (scene/sediment.h). */
+/* ---- Sediments with a backscatter model (scene/sediment.h). */
 
 static sonject_status read_sediment(struct reader *reader, const struct tree_node *node,
                                     void *structure)
@@ -261,8 +262,9 @@ static sonject_status read_sediment(struct reader *reader, const struct tree_nod
 
 #define STRUCTURE sonject_seabed_params
 static const struct field sediment_fields[] = {
-    {"grain_size", "mean, in phi: -log2 of the diameter in mm", QUANTITY(grain_size_phi, NUMBER),
-     WITHIN(GRAIN_SIZE_LEAST_PHI, GRAIN_SIZE_MOST_PHI), NONE_IF_NAN, REQUIRED},
+    {"grain_size", "mean grain size in phi: -log2 of the diameter in mm",
+     QUANTITY(grain_size_phi, NUMBER), WITHIN(GRAIN_SIZE_LEAST_PHI, GRAIN_SIZE_MOST_PHI),
+     NONE_IF_NAN, REQUIRED},
 };
 static const struct section sediment_section = {ROWS(sediment_fields)};
 #undef STRUCTURE
@@ -277,31 +279,32 @@ static sonject_status finish_seabed(struct reader *reader, const struct tree_nod
     return SONJECT_OK;
 }
 
-/* 10^-2.7: Mackenzie's. 1/pi written in decimal digits must not be refused for its last bit. */
+/* The preset is Mackenzie's, 10^-2.7. The slack lets 1/pi in decimal digits pass. */
 #define STRUCTURE sonject_seabed_params
 static const struct field seabed_fields[] = {
-    {"lambert", "backscatter mu at normal incidence, -27 dB on Mackenzie's seabed",
+    {"lambert", "backscatter coefficient mu at normal incidence; -27 dB on Mackenzie's seabed",
      QUANTITY(lambert, LEVEL), WITHIN(0.0, (1.0 + 1e-12) / PI), .bounds = ABOVE_LEAST,
      .preset = 1.995262314968879e-3,
      .range = "above 0 and at most 1/pi (-4.97 dB), or the seabed returns more than it receives"},
     {"sediment",
-     "sets lambert to what it returns at the middle of the patch's seabed, by the model of APL-UW "
-     "TR 9407 (10 to 100 kHz): gravel, coarse sand, medium sand, fine sand, silt, clay or "
-     "{grain_size: }",
+     "sediment that sets lambert, by APL-UW TR 9407 (10 to 100 kHz) at the middle of the patch's "
+     "seabed: gravel, coarse sand, medium sand, fine sand, silt, clay or {grain_size: }",
      .kind = FIELD_NAMED, .section = &sediment_section, .read = read_sediment},
     {"map", "reflectivity that resynthesise takes from the image; composites weight shadows by it",
      WORD(map) = {[SONJECT_MAP_INTENSITY] = "intensity",
                   [SONJECT_MAP_DESPECKLED] = "despeckled",
                   [SONJECT_MAP_COHERENT] = "coherent"},
      .preset = SONJECT_MAP_INTENSITY},
-    {"level_radius", "of the local mean that lambert stands for", QUANTITY(level_radius_m, LENGTH),
-     POSITIVE, .preset = 3.0},
-    {"despeckle_radius", "of the despeckled map's local mean", QUANTITY(despeckle_radius_m, LENGTH),
-     POSITIVE, .preset = 0.1},
-    {"forward", "surface for sound that does not go straight back: a sediment's name, or a section",
+    {"level_radius", "radius of the local mean that lambert stands for",
+     QUANTITY(level_radius_m, LENGTH), POSITIVE, .preset = 3.0},
+    {"despeckle_radius", "radius of the despeckled map's local mean",
+     QUANTITY(despeckle_radius_m, LENGTH), POSITIVE, .preset = 0.1},
+    {"forward",
+     "seabed surface for sound that does not go straight back: a sediment's name, or a section",
      .kind = FIELD_NAMED, MEMBER(forward), .section = &forward_section, .read = read_sediment_name},
     {"relief",
-     "list of ripples, mounds, pits, scour and heights, added together; by default all is level",
+     "list of ripples, mounds, pits, scour and heights, which add up; by default the seabed is "
+     "flat",
      .kind = FIELD_SPECIAL, .section = &relief_section, .is_list = true, .read = read_relief},
 };
 const struct section seabed_section = {ROWS(seabed_fields), .relations = relate_seabed,

@@ -1,5 +1,5 @@
-/* The keys of the sonar: its array, pulse, measured response and motion; and those of the array
- * whose hydrophones are heard one by one. */
+/* The keys of the sonar: its array, pulse, measured response and motion; and the keys of the array
+ * whose hydrophones are computed one by one. */
 #include <stdlib.h>
 
 #include "scene/point_response.h"
@@ -10,7 +10,7 @@
 #define FREQUENCY_MAX_HZ 1e9
 #define TABLE_BYTES_MAX  (16 * 1024 * 1024)
 
-/* ---- Tables of samples: files of text with named columns. */
+/* ---- Tables of samples: text files with named columns. */
 
 enum {
     POSITION,
@@ -30,7 +30,7 @@ sonject_status read_number_table(struct reader *reader, const struct tree_node *
     return status;
 }
 
-/* Along the track, or for time_s not NULL in range or time. */
+/* Reads a response along the track (time_s NULL), or in range or time. */
 static sonject_status read_response_file(struct reader *reader, const struct tree_node *node,
                                          const char *position_m, const char *time_s,
                                          struct response_table *response)
@@ -107,7 +107,7 @@ static sonject_status finish_pulse(struct reader *reader, const struct tree_node
 
 #define TAYLOR_FIELDS                                                                              \
     {"sidelobes",                                                                                  \
-     "depth of the side lobes",                                                                    \
+     "depth of the side lobes below the main lobe",                                                \
      QUANTITY(taylor_sidelobe_db, DECIBEL),                                                        \
      WITHIN(1.0, 120.0),                                                                           \
      .preset = 35.0,                                                                               \
@@ -129,11 +129,11 @@ static const struct field pulse_window_fields[] = {
 static const struct section pulse_window_section = {ROWS(pulse_window_fields)};
 
 #define PULSE_WORD(NUMBER, word) #word,
-/* Kinds come first: only a table has a file to read. */
+/* The kind is read first, because only a table has a file to read. */
 static const struct field pulse_fields[] = {
-    {"kind", "what a point is in range; a chirp is a compressed linear sweep",
+    {"kind", "response of a point in range; a chirp is a compressed linear sweep",
      WORD(kind) = {PULSES(PULSE_WORD)}, REQUIRED},
-    {"window", "of a chirp's spectrum: rectangular, hann or {taylor: {sidelobes: , terms: }}",
+    {"window", "chirp's spectral window: rectangular, hann or {taylor: {sidelobes: , terms: }}",
      WORD(window) = {[SONJECT_PULSE_RECTANGULAR] = "rectangular",
                      [SONJECT_PULSE_HANN] = "hann",
                      [SONJECT_PULSE_TAYLOR] = ""},
@@ -149,26 +149,26 @@ const struct section pulse_section = {ROWS(pulse_fields), .finish = finish_pulse
 
 #define SINE_FIELDS                                                                                \
     {"wavelength",                                                                                 \
-     "of the sine, along-track",                                                                   \
+     "wavelength of the sine, along-track",                                                        \
      QUANTITY(wavelength_m, LENGTH),                                                               \
      WITHIN(SCALE_MIN_M, SCALE_MAX_M),                                                             \
      .preset = 1.0,                                                                                \
      REQUIRED},                                                                                    \
     {                                                                                              \
-        "phase", "of the sine at along-track 0", QUANTITY(phase_rad, ANGLE), WITHIN(-1e3, 1e3)     \
+        "phase", "sine's phase at along-track 0", QUANTITY(phase_rad, ANGLE), WITHIN(-1e3, 1e3)    \
     }
 
 #define STRUCTURE sonject_wave
 static const struct field sway_fields[] = {
-    {"amplitude", "of the sine", QUANTITY(amplitude, LENGTH), WITHIN(-SWAY_MAX_M, SWAY_MAX_M),
-     REQUIRED},
+    {"amplitude", "amplitude of the sine of sway", QUANTITY(amplitude, LENGTH),
+     WITHIN(-SWAY_MAX_M, SWAY_MAX_M), REQUIRED},
     SINE_FIELDS,
 };
 static const struct section sway_section = {ROWS(sway_fields)};
 
 static const struct field yaw_sine_fields[] = {
-    {"amplitude", "of the sine", QUANTITY(amplitude, ANGLE), WITHIN(-YAW_MAX_RAD, YAW_MAX_RAD),
-     REQUIRED},
+    {"amplitude", "amplitude of the sine of yaw", QUANTITY(amplitude, ANGLE),
+     WITHIN(-YAW_MAX_RAD, YAW_MAX_RAD), REQUIRED},
     SINE_FIELDS,
 };
 static const struct section yaw_sine_section = {ROWS(yaw_sine_fields)};
@@ -190,38 +190,39 @@ static sonject_status read_yaw_file(struct reader *reader, const struct tree_nod
 
 #define STRUCTURE sonject_motion_params
 static const struct field random_fields[] = {
-    {"rms", "of the sway", QUANTITY(random_rms_m, LENGTH), WITHIN(0.0, SWAY_MAX_M), REQUIRED},
-    {"correlation", "length, along-track", QUANTITY(random_correlation_m, LENGTH),
+    {"rms", "rms of the sway", QUANTITY(random_rms_m, LENGTH), WITHIN(0.0, SWAY_MAX_M), REQUIRED},
+    {"correlation", "along-track correlation length", QUANTITY(random_correlation_m, LENGTH),
      WITHIN(SCALE_MIN_M, SCALE_MAX_M), .preset = 1.0, REQUIRED},
-    {"seed", "of the random sway", COUNT64(seed, 0, 0)},
+    {"seed", "seed of the random sway", COUNT64(seed, 0, 0)},
 };
 static const struct section random_section = {ROWS(random_fields)};
 
 static const struct field random_yaw_fields[] = {
-    {"rms", "of the yaw", QUANTITY(yaw_random_rms_rad, ANGLE), WITHIN(0.0, YAW_MAX_RAD), REQUIRED},
-    {"correlation", "length, along-track", QUANTITY(yaw_random_correlation_m, LENGTH),
+    {"rms", "rms of the yaw", QUANTITY(yaw_random_rms_rad, ANGLE), WITHIN(0.0, YAW_MAX_RAD),
+     REQUIRED},
+    {"correlation", "along-track correlation length", QUANTITY(yaw_random_correlation_m, LENGTH),
      WITHIN(SCALE_MIN_M, SCALE_MAX_M), .preset = 1.0, REQUIRED},
-    {"seed", "of the random yaw", COUNT64(yaw_seed, 0, 0)},
+    {"seed", "seed of the random yaw", COUNT64(yaw_seed, 0, 0)},
 };
 static const struct section random_yaw_section = {ROWS(random_yaw_fields)};
 
 static const struct field yaw_fields[] = {
-    {"advance", "from ping to ping: what a ping's phase centres fill, half the array",
+    {"advance", "distance from ping to ping, which a ping's phase centres fill: half the array",
      QUANTITY(yaw_advance_m, LENGTH), WITHIN(SCALE_MIN_M, SWAY_MAX_M), REQUIRED},
-    {"bias", "of all pings, bow towards the imaged side", QUANTITY(yaw_bias_rad, ANGLE),
-     WITHIN(-YAW_MAX_RAD, YAW_MAX_RAD)},
-    {"sines", "list of them", ENTRIES(yaws, yaw_count, "sine", yaw_sine_section)},
-    {"random", "yaw of Gaussian autocorrelation", SAME(random_yaw_section)},
+    {"bias", "yaw of all pings; positive turns the bow towards the imaged side",
+     QUANTITY(yaw_bias_rad, ANGLE), WITHIN(-YAW_MAX_RAD, YAW_MAX_RAD)},
+    {"sines", "list of sines of yaw", ENTRIES(yaws, yaw_count, "sine", yaw_sine_section)},
+    {"random", "random yaw with a Gaussian autocorrelation", SAME(random_yaw_section)},
     {"file", "table with columns along_track_m and yaw_rad", SPECIAL(read_yaw_file, "file name")},
 };
 static const struct section yaw_section = {ROWS(yaw_fields)};
 
 static const struct field motion_fields[] = {
-    {"sway", "list of sines, across the track", ENTRIES(sways, sway_count, "sine", sway_section)},
-    {"random", "sway of Gaussian autocorrelation", SAME(random_section)},
+    {"sway", "list of sines of sway, across track",
+     ENTRIES(sways, sway_count, "sine", sway_section)},
+    {"random", "random sway with a Gaussian autocorrelation", SAME(random_section)},
     {"file", "table with columns along_track_m and sway_m", SPECIAL(read_sway_file, "file name")},
-    {"yaw", "of an array of hydrophones, whose heading the processor does not know",
-     SAME(yaw_section)},
+    {"yaw", "yaw of an array of hydrophones, which the processor does not know", SAME(yaw_section)},
 };
 static const struct section motion_section = {ROWS(motion_fields), .bytes = sizeof(STRUCTURE)};
 #undef STRUCTURE
@@ -280,17 +281,18 @@ static const struct field response_fields[] = {
 };
 static const struct section response_section = {ROWS(response_fields)};
 
-/* Turned so far that the beam stays on the imaged side. */
+/* The angles keep the beam on the imaged side. */
 static const struct field array_fields[] = {
-    {"length", "along the track; sets the beam", QUANTITY(array_length_m, LENGTH), POSITIVE,
-     REQUIRED},
-    {"height", "across; 0 hears all elevations alike", QUANTITY(array_height_m, LENGTH), FROM_ZERO},
-    {"heading", "of the long side, from along-track towards range",
+    {"length", "length of the array along the track, which sets the beam",
+     QUANTITY(array_length_m, LENGTH), POSITIVE, REQUIRED},
+    {"height", "height of the array across its length; 0 hears all elevations alike",
+     QUANTITY(array_height_m, LENGTH), FROM_ZERO},
+    {"heading", "heading of the array's long side, from along-track towards range",
      QUANTITY(array_heading_rad, ANGLE), WITHIN(-0.25 * PI, 0.25 * PI)},
-    {"pitch", "of the long side over the horizontal", QUANTITY(array_pitch_rad, ANGLE),
-     WITHIN(-0.25 * PI, 0.25 * PI)},
-    {"depression", "of the beam below the horizontal", QUANTITY(array_depression_rad, ANGLE),
-     WITHIN(0.0, 0.5 * PI)},
+    {"pitch", "pitch of the array's long side over the horizontal",
+     QUANTITY(array_pitch_rad, ANGLE), WITHIN(-0.25 * PI, 0.25 * PI)},
+    {"depression", "depression of the beam below the horizontal",
+     QUANTITY(array_depression_rad, ANGLE), WITHIN(0.0, 0.5 * PI)},
 };
 static const struct section array_section = {ROWS(array_fields)};
 
@@ -303,26 +305,27 @@ static const struct field sonar_fields[] = {
      "height of the track over the mean seabed; from_file, or first_return of the calibration",
      QUANTITY(altitude_m, LENGTH), POSITIVE, .preset = 10.0, .read = read_altitude,
      .unit = "m, km, cm, mm, from_file or first_return", REQUIRED},
-    {"resolution", "along-track; by default the row spacing",
+    {"resolution", "along-track resolution; by default the row spacing",
      QUANTITY(along_track_resolution_m, LENGTH), POSITIVE, NONE_IF_ZERO},
-    {"transducer", "side of the source, 0 for a point", QUANTITY(transducer_side_m, LENGTH),
+    {"transducer", "side length of the source; 0 for a point", QUANTITY(transducer_side_m, LENGTH),
      FROM_ZERO},
     {"response",
      "aspect weighting of a synthetic aperture: rectangular, hamming, taylor (-35 dB, 5 terms) or "
-     "{taylor: {sidelobes: , terms: }}; a real one has its array's beam",
+     "{taylor: {sidelobes: , terms: }}; a real aperture has its array's beam",
      WORD(response_window) = {[SONJECT_WINDOW_RECTANGULAR] = "rectangular",
                               [SONJECT_WINDOW_HAMMING] = "hamming",
                               [SONJECT_WINDOW_TAYLOR] = "taylor"},
      .preset = SONJECT_WINDOW_TAYLOR, .section = &response_section},
-    {"kind", "synthetic aperture, or the real one of a sidescan",
+    {"kind", "aperture: synthetic, or the real one of a sidescan",
      WORD(kind) = {[SONJECT_SONAR_SYNTHETIC] = "synthetic", [SONJECT_SONAR_REAL] = "real"}},
-    {"aperture", "full angle of the aspects that shadows and rough highlights take, auto or none",
+    {"aperture",
+     "full angle of aspects for shadows and rough highlights; auto: the response's, none: "
+     "broadside",
      QUANTITY(aperture_rad, ANGLE), WITHIN(0.0, 0.5 * PI), .preset = -1.0,
      .words = {"auto", "none"}, .word_values = {-1.0, 0.0}, .unit = "deg, auto or none"},
-    {"array", "of a real aperture", SAME(array_section)},
-    {"pulse", "what a point looks like in range; by default Gaussian",
-     OF_SCENE(pulse, pulse_section)},
-    {"measured_response", "along-track, a table with columns along_track_m, real, and imaginary",
+    {"array", "array of a real aperture", SAME(array_section)},
+    {"pulse", "response of a point in range; by default Gaussian", OF_SCENE(pulse, pulse_section)},
+    {"measured_response", "along-track response, a table of along_track_m, real, and imaginary",
      SPECIAL(read_cross_range, "file name")},
     {"motion", "residual motion of a synthetic aperture's sonar",
      OF_SCENE(motion.params, motion_section)},
@@ -347,17 +350,17 @@ static const struct field pings_fields[] = {
     {"count", "number of pings; by default as many as see the patch's whole aperture",
      COUNT32(pings, 1, UINT32_C(1) << 24), NONE_IF_ZERO},
     {"first",
-     "track position of the array's origin at ping 0; by default the pings are about the patch",
+     "track position of the array's origin at ping 0; by default pings are centred on the patch",
      QUANTITY(first_ping_m, LENGTH), COORDINATE, NONE_IF_NAN},
-    {"spacing", "way from ping to ping; by default half the array's length",
+    {"spacing", "distance from ping to ping; by default half the array's length",
      QUANTITY(ping_spacing_m, LENGTH), POSITIVE, NONE_IF_ZERO},
 };
 static const struct section pings_section = {ROWS(pings_fields)};
 
 static const struct field transmitter_fields[] = {
-    {"offset", "of its middle from the array's origin, along-track",
+    {"offset", "offset of the transmitter's middle from the array's origin, along-track",
      QUANTITY(transmitter_offset_m, LENGTH), COORDINATE},
-    {"length", "along-track, 0 for a point; by default twice the resolution",
+    {"length", "transmitter's along-track length, 0 for a point; by default twice the resolution",
      QUANTITY(transmitter_length_m, LENGTH), FROM_ZERO, NONE_IF_NAN},
 };
 static const struct section transmitter_section = {ROWS(transmitter_fields)};
@@ -365,36 +368,38 @@ static const struct section transmitter_section = {ROWS(transmitter_fields)};
 static const struct field hydrophones_fields[] = {
     {"count", "number of hydrophones", COUNT32(hydrophones, 1, 65536), .preset = 1},
     {"first",
-     "offset of the first one's middle from the array's origin; by default the array is about it",
+     "offset of the first hydrophone's middle from the array's origin; by default centred on it",
      QUANTITY(first_hydrophone_m, LENGTH), COORDINATE, NONE_IF_NAN},
-    {"spacing", "from middle to middle; by default the length",
+    {"spacing", "distance between the hydrophones' middles; by default the hydrophones' length",
      QUANTITY(hydrophone_spacing_m, LENGTH), POSITIVE, NONE_IF_ZERO},
-    {"length", "along-track, 0 for points; by default twice the resolution",
+    {"length", "length of a hydrophone along-track, 0 for a point; by default twice the resolution",
      QUANTITY(hydrophone_length_m, LENGTH), FROM_ZERO, NONE_IF_NAN},
 };
 static const struct section hydrophones_section = {ROWS(hydrophones_fields)};
 
 static const struct field elements_fields[] = {
-    {"pings", "where the array is", SAME(pings_section)},
-    {"transmitter", "what sends", SAME(transmitter_section)},
-    {"hydrophones", "what hears", SAME(hydrophones_section)},
-    {"form", "of the series: complex baseband, or real passband",
+    {"pings", "positions of the array, ping by ping", SAME(pings_section)},
+    {"transmitter", "transmitter of the array", SAME(transmitter_section)},
+    {"hydrophones", "hydrophones of the array", SAME(hydrophones_section)},
+    {"form", "form of the series: complex baseband, or real passband",
      WORD(form) = {[SONJECT_SERIES_BASEBAND] = "baseband", [SONJECT_SERIES_PASSBAND] = "passband"}},
-    {"pulse", "compressed, or the chirp that was sent",
+    {"pulse", "pulse of the series: compressed, or the chirp that was sent",
      WORD(pulse) = {[SONJECT_SERIES_COMPRESSED] = "compressed", [SONJECT_SERIES_CHIRP] = "chirp"}},
-    {"chirp", "its duration", QUANTITY(chirp_duration_s, TIME), WITHIN(1e-9, 100.0),
+    {"chirp", "duration of the chirp", QUANTITY(chirp_duration_s, TIME), WITHIN(1e-9, 100.0),
      .preset = 0.01},
-    {"sampling_rate", "by default twice the bandwidth, in passband with twice the frequency added",
+    {"sampling_rate",
+     "sampling rate; by default twice the bandwidth, in passband with twice the frequency added",
      QUANTITY(sampling_rate_hz, FREQUENCY), WITHIN(1.0, 1e10), NONE_IF_ZERO},
-    {"first_time", "of the first sample, after transmission; by default what the patch needs",
+    {"first_time", "time of the first sample after transmission; by default as the patch needs",
      QUANTITY(first_time_s, TIME), WITHIN(0.0, 3600.0), NONE_IF_NAN},
-    {"last_time", "of the last sample at most; by default what the patch needs",
+    {"last_time",
+     "latest time of the last sample after transmission; by default as the patch needs",
      QUANTITY(last_time_s, TIME), WITHIN(0.0, 3600.0), NONE_IF_NAN},
     {"source_level",
-     "rms, over 1 uPa at 1 m: series are pressures in Pa, less absorption; by default they are "
-     "ratios",
+     "rms source level re 1 uPa at 1 m; the series are then pressures in Pa, less absorption, by "
+     "default ratios",
      QUANTITY(source_level_db, DECIBEL), WITHIN(0.0, 300.0), NONE_IF_NAN},
-    {"aspect_limit", "echoes further off abeam are left out; by default none",
+    {"aspect_limit", "largest angle off abeam of echoes that are kept; by default all are kept",
      QUANTITY(aspect_limit_rad, ANGLE), WITHIN(0.0, 0.5 * PI), NONE_IF_ZERO},
 };
 const struct section elements_section = {ROWS(elements_fields), .relations = relate_elements,

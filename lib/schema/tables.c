@@ -1,4 +1,4 @@
-/* Tables of numbers, read line by line, and what profiles want of theirs. */
+/* Tables of numbers, read line by line, and the checks of sound-speed profiles. */
 #include "schema/tables.h"
 
 #include <math.h>
@@ -12,13 +12,13 @@
 #include "base/report.h"
 #include "base/text.h"
 
-/* A file on its way into rows of fields. */
+/* A file while it is read row by row. */
 struct row_reader {
     struct report *report;
     const char *file;    /* for messages */
-    const char *choices; /* of separators */
-    char separator;      /* 0: all of a line is one field */
-    size_t column_count; /* 0: the names are still to come */
+    const char *choices; /* separators to choose from */
+    char separator;      /* 0: a line is one field */
+    size_t column_count; /* 0: the names have not been read */
     table_row_function *take;
     void *user;
 };
@@ -28,7 +28,7 @@ static bool is_blank(char c)
     return c == ' ' || c == '\t' || c == '\r';
 }
 
-/* Takes the blanks off both ends. */
+/* Removes the blanks at both ends. */
 static char *trim(char *text)
 {
     size_t length = strlen(text);
@@ -39,8 +39,8 @@ static char *trim(char *text)
     return text;
 }
 
-/* Behind the quotes that a field begins with, in which a doubled one stands for one; the field
- * itself where there are none, or they do not end. */
+/* Returns the end of the quotes that a field begins with, in which a doubled quote stands for one,
+ * or the field itself if there are none or they do not end. */
 static char *behind_quotes(char *field)
 {
     char *end = field;
@@ -53,7 +53,7 @@ static char *behind_quotes(char *field)
     return end;
 }
 
-/* Takes the quotes off a trimmed field that is all in quotes. */
+/* Removes the quotes of a trimmed field that is all in quotes. */
 static char *unquote(char *field)
 {
     char *end = behind_quotes(field);
@@ -68,7 +68,7 @@ static char *unquote(char *field)
     return field;
 }
 
-/* Ends a line where a comment begins, which is not in a quoted field. */
+/* Ends a line where a comment begins outside of quoted fields. */
 static void cut_comment(char *line, const char *separators)
 {
     for (;;) {
@@ -82,8 +82,8 @@ static void cut_comment(char *line, const char *separators)
     *line = '\0';
 }
 
-/* Cuts a trimmed line into fields, whose number may exceed TABLE_FIELDS_MAX. Only fields between
- * other separators than blanks have quotes. */
+/* Cuts a trimmed line into fields, whose number may exceed TABLE_FIELDS_MAX. Fields may be in
+ * quotes unless blanks separate them. */
 static size_t split(char *line, char separator, char *fields[TABLE_FIELDS_MAX])
 {
     size_t count = 0;
@@ -104,7 +104,7 @@ static size_t split(char *line, char separator, char *fields[TABLE_FIELDS_MAX])
     return count;
 }
 
-/* The first of the choices that the line has; a blank serves in any case, 0 where none does. */
+/* Returns the first choice that the line has, or a blank if that is a choice, or else 0. */
 static char choose_separator(const char *line, const char *choices)
 {
     while (*choices && *choices != ' ' && !strchr(line, *choices))
@@ -112,7 +112,7 @@ static char choose_separator(const char *line, const char *choices)
     return *choices;
 }
 
-/* line: ended by 0, length bytes before that. */
+/* Takes one line. line: ended by 0, with length bytes before. */
 static sonject_status take_line(struct row_reader *reader, char *line, size_t length, size_t number)
 {
     static const char not_text[] = "not UTF-8 text; is this a table?";
@@ -189,14 +189,14 @@ sonject_status table_refuse(struct report *report, const char *file, size_t line
 
 #define NUMBER_SEPARATORS ";, "
 
-/* Rows on their way into a table. */
+/* A table while its rows are read. */
 struct table_reader {
     struct report *report;
     struct number_table *table;
-    size_t place[TABLE_COLUMNS_MAX]; /* of each known column; TABLE_FIELDS_MAX: not there */
+    size_t place[TABLE_COLUMNS_MAX]; /* field of each known column; TABLE_FIELDS_MAX: not there */
 };
 
-/* "height_m or depth_m, and sound_speed_mps" */
+/* Writes "height_m or depth_m, and sound_speed_mps". */
 static void list_names(const struct table_format *format, char *text, size_t capacity)
 {
     snprintf(text, capacity, "%s%s%s, and %s", format->names[0], format->names[1] ? " or " : "",
@@ -401,7 +401,7 @@ static bool is_within(struct profile_fault *fault, double value, double least, d
     return value >= least && value <= most;
 }
 
-/* Whether sample i >= 1 goes on in the direction of the first two. */
+/* Returns whether sample i >= 1 goes on in the direction of the first two. */
 static bool goes_on(const struct profile_table *table, size_t i, struct profile_fault *fault)
 {
     const double *position = table->positions_m;

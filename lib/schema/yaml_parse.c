@@ -1,4 +1,4 @@
-/* libyaml's events to a tree. */
+/* The parser that builds a tree from libyaml's events. */
 #include <string.h>
 
 #include <yaml.h>
@@ -22,7 +22,7 @@ static struct tree_place place_of(const struct builder *builder, yaml_mark_t mar
     return place;
 }
 
-/* libyaml tells only the offset of a byte that is not text. */
+/* Finds the place of a byte that is not text, of which libyaml gives only the offset. */
 static struct tree_place place_of_offset(const struct builder *builder, size_t offset)
 {
     struct tree_place place = {builder->override, 1, 1};
@@ -61,7 +61,7 @@ static sonject_status explain_parser(const struct builder *builder)
                         problem);
 }
 
-/* On success the event is the caller's, for yaml_event_delete. */
+/* Gets the next event. On success the event is the caller's, for yaml_event_delete. */
 static sonject_status next_event(struct builder *builder, yaml_event_t *event)
 {
     if (yaml_parser_parse(&builder->parser, event))
@@ -113,7 +113,7 @@ static sonject_status build_value(struct builder *builder, int depth, struct tre
     return status;
 }
 
-/* Entries of a list or of a section, to its end. After a failure the path stays where it was. */
+/* Builds a list's or section's entries, to its end. After a failure the path stays where it was. */
 static sonject_status build_entries(struct builder *builder, enum tree_kind kind, int depth,
                                     struct tree_node *node)
 {
@@ -217,7 +217,7 @@ sonject_status tree_parse(struct tree *tree, const char *text, size_t bytes)
     if (bytes > TREE_BYTES_MAX)
         return input_failure(tree->report, tree->file,
                              "larger than %d bytes; this is no scene file", TREE_BYTES_MAX);
-    /* libyaml skips the mark only where it chooses the encoding itself. */
+    /* libyaml skips the byte-order mark only where it chooses the encoding itself. */
     const size_t skipped = bytes >= 3 && memcmp(text, byte_order_mark, 3) == 0 ? 3 : 0;
     struct builder builder = {.tree = tree, .text = text + skipped};
     return parse(&builder, bytes - skipped, 0, &tree->root);

@@ -26,7 +26,7 @@ void tree_clear(struct tree *tree)
     tree_init(tree, tree->report, tree->file);
 }
 
-/* Trees are at most TREE_DEPTH_MAX deep, and so is this. */
+/* Clears a node by recursion, which is at most TREE_DEPTH_MAX deep. */
 void tree_node_clear(struct tree_node *node)
 {
     for (size_t i = 0; i < node->count; i++) {
@@ -84,7 +84,7 @@ bool tree_is_null(const struct tree_node *node)
 void tree_place_text(const struct tree *tree, struct tree_place place, char text[TREE_PLACE_TEXT])
 {
     char name[240];
-    size_t number = 0; /* of the override */
+    size_t number = 0; /* number of the override */
     while (number < tree->override_count && tree->override_paths[number] != place.override)
         number++;
     if (place.override)
@@ -95,7 +95,7 @@ void tree_place_text(const struct tree *tree, struct tree_place place, char text
                  place.line, place.column);
 }
 
-/* The key is left out where the override's own path says it already. */
+/* Leaves the key out of the message where the override's own path gives it already. */
 sonject_status tree_failure(const struct tree *tree, struct tree_place place, const char *path,
                             const char *format, ...)
 {
@@ -124,7 +124,7 @@ static size_t add_text(struct key_path *path, const char *text)
     return before;
 }
 
-/* Long keys are cut, so that at least the first few of a path fit. */
+/* Long keys are cut, so that at least the first few keys of a path fit. */
 size_t key_path_add(struct key_path *path, const char *key)
 {
     char part[64];
@@ -158,7 +158,7 @@ static bool is_plain_character(char c)
            (c && strchr("_./+-", c));
 }
 
-/* Fit to stand in flow style without quotes: words of letters, digits and a few signs. */
+/* Returns whether a text needs no quotes in flow style: only letters, digits and a few signs. */
 static bool is_plain(const char *text)
 {
     const size_t length = strlen(text);
@@ -223,14 +223,14 @@ sonject_status tree_override_text(struct report *report, const struct tree_node 
 
 #define HOW_TO_WRITE "not a key path; write it as 'objects[0].heading'"
 
-/* Deeper than any key of a scene, with room for the value below it. */
+/* The most steps of a path: deeper than any key of a scene, with room for the value below. */
 #define PATH_STEPS_MAX 24
 
 struct walk {
     struct tree *tree;
-    struct tree_place place; /* for what the override makes */
-    struct tree_node *node;  /* reached so far */
-    struct key_path path;    /* of it */
+    struct tree_place place; /* place of the values that the override makes */
+    struct tree_node *node;  /* the node reached so far */
+    struct key_path path;    /* path of that node */
     int steps;
 };
 
@@ -304,7 +304,7 @@ static sonject_status enter_index(struct walk *walk, const char *digits, size_t 
     return step_to(walk, index < walk->node->count ? &walk->node->entries[index] : NULL, NULL);
 }
 
-/* Follows the path, making what is not there. */
+/* Follows the path and makes the nodes that are missing. */
 static sonject_status follow(struct walk *walk, const char *path)
 {
     sonject_status status = SONJECT_OK;
@@ -332,7 +332,7 @@ static sonject_status follow(struct walk *walk, const char *path)
     return status;
 }
 
-/* Text without the blanks around it, for free(). */
+/* Returns the text without the blanks around it, for free(). */
 static char *trimmed(const char *text, size_t length)
 {
     while (length > 0 && (*text == ' ' || *text == '\t')) {
@@ -361,7 +361,7 @@ static sonject_status keep_path(struct tree *tree, const char *path, size_t leng
     return SONJECT_OK;
 }
 
-/* Sets the node to the value, which is not empty; takes ownership of it. */
+/* Sets the node to the value, which is not empty. Takes ownership of the value. */
 static sonject_status set_value(struct walk *walk, char *value)
 {
     sonject_status status = SONJECT_OK;
@@ -373,7 +373,7 @@ static sonject_status set_value(struct walk *walk, char *value)
     }
     status = tree_parse_value(walk->tree, walk->place.override, value, walk->steps, walk->node);
     free(value);
-    if (status != SONJECT_OK) /* nothing of it is read: the key is only known to be wrong */
+    if (status != SONJECT_OK) /* the value is not kept: the key is only known to be wrong */
         tree_node_clear(walk->node);
     if (status != SONJECT_OK && walk->tree->mistakes)
         mistakes_add(walk->tree->mistakes, walk->tree, &walk->place, walk->place.override, NULL);

@@ -40,7 +40,7 @@ static void init(struct shape_size *size, const sonject_object_params *object)
     set_end(&size->nose, object, object->nose_end, object->nose_end_depth_m);
     set_end(&size->tail, object, object->tail_end, object->tail_end_depth_m);
     size->bounding_radius_m =
-        fmax(size->half_length_m, /* tips and rims */
+        fmax(size->half_length_m, /* tips or rims */
              hypot(fmax(size->nose.joint_m, size->tail.joint_m), size->radius_m));
     size->least_radius_of_curvature_m = size->radius_m;
     if (size->nose.depth_m > 0.0 && size->tail.depth_m > 0.0)
@@ -55,7 +55,7 @@ static double end_extent(const struct end_size *end, double radius, double outwa
         const double sphere = (radius * radius / end->depth_m + end->depth_m) / 2.0;
         const double centre = end->joint_m + end->depth_m - sphere;
         const double length = hypot(along, across);
-        if (v * sphere >= length * (sphere - end->depth_m)) /* its normal meets the round end */
+        if (v * sphere >= length * (sphere - end->depth_m)) /* the normal meets the round end */
             return centre * v + sphere * length;
     }
     return end->joint_m * v + radius * across;

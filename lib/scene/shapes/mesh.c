@@ -1,4 +1,4 @@
-/* Triangles. */
+/* Meshes of triangles. */
 #include <math.h>
 
 #include "scene/shapes/shape.h"

@@ -1,4 +1,4 @@
-/* What all shapes have in common. */
+/* The functions that all shapes have in common. */
 #include "scene/shapes/shape.h"
 
 #include <math.h>
@@ -50,7 +50,7 @@ void shape_size_init(struct shape_size *size, const sonject_object_params *objec
     size->flat = shape->flat;
     if (shape->init)
         shape->init(size, object);
-    size->bounding_radius_m *= 1.0 + 1e-6; /* rounding to single precision must not cut */
+    size->bounding_radius_m *= 1.0 + 1e-6; /* margin for rounding to single precision */
 }
 
 void shape_size_init_in_scene(struct shape_size *size, const struct scene *scene,

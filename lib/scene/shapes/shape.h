@@ -1,6 +1,6 @@
 /* The sizes of an object in its own frame (x nose, z up when level, origin in the middle of its
- * overall sizes), how far it reaches, and what else differs from shape to shape: a file of this
- * folder fills a row for its shape (kernels/shapes/shapes.h lists them). */
+ * overall sizes), its extents, and all else that differs between shapes. Each file of this folder
+ * fills the row of its shape (kernels/shapes/shapes.h lists them). */
 #ifndef SONJECT_SCENE_SHAPES_SHAPE_H
 #define SONJECT_SCENE_SHAPES_SHAPE_H
 
@@ -14,32 +14,32 @@
 #include "mesh/mesh.h"
 #include "scene/scene.h"
 
-/* Counted outwards along the axis. */
+/* An end of a cylinder, counted outwards along the axis. */
 struct end_size {
-    double joint_m; /* where the straight part ends */
-    double depth_m; /* of the part of a sphere beyond it; 0: flat or open */
+    double joint_m; /* end of the straight part */
+    double depth_m; /* depth of the part of a sphere beyond the joint; 0: flat or open */
     bool is_open;
 };
 
-/* Which of them a shape has, the files in kernels/shapes say. */
+/* The sizes of a shape. The files in kernels/shapes say which of these a shape has. */
 struct shape_size {
-    double half_length_m; /* of the straight part for a capsule */
+    double half_length_m; /* for a capsule, of the straight part */
     double half_width_m, half_height_m;
-    double radius_m;      /* cones: below; torus: of the ring's middle line */
+    double radius_m;      /* cones: at the bottom; torus: of the ring's middle line */
     double top_radius_m;  /* cones */
     double ring_radius_m; /* torus: of the ring's section */
     double front_height_m;
     struct end_size nose, tail;
-    const struct mesh *mesh; /* of a mesh; borrowed from the scene */
-    /* Radii of a sphere about the origin and of a cylinder about the nose axis that hold it. */
+    const struct mesh *mesh; /* the mesh of the shape mesh; borrowed from the scene */
+    /* Radii of a sphere about the origin and of a cylinder about the nose that hold the shape. */
     double bounding_radius_m, radius_about_nose_m;
-    /* m; INFINITY where nothing is bent. Edges and tips do not count, nor what of a cone is nearer
-     * to its axis than this. It decides how dense the rays on it are. */
+    /* The least radius of curvature, m, which sets the density of rays; INFINITY where nothing is
+     * bent. Edges, tips, and a cone's part nearer to its axis than this do not count. */
     double least_radius_of_curvature_m;
-    uint32_t flat; /* bits of enum flat_axis: faces that it has; of a mesh not known: 0 */
+    uint32_t flat; /* bits of enum flat_axis: its faces; 0 for a mesh, where they are not known */
 };
 
-/* Keys that say what a shape is. */
+/* The keys that describe a shape. */
 enum shape_key {
     SHAPE_HAS_LENGTH = 1,
     SHAPE_HAS_WIDTH = 2,
@@ -51,69 +51,69 @@ enum shape_key {
     SHAPE_HAS_MESH = 128
 };
 
-/* Their names, up to a NULL. */
+/* The names of these keys, ended by a NULL. */
 extern const struct shape_key_name {
     const char *key;
     uint32_t bit;
 } shape_keys[];
 
-/* Own axes that flat faces stand across. */
+/* The own axes that flat faces are perpendicular to. */
 enum flat_axis {
     FLAT_ALONG_X = 1,
     FLAT_ALONG_Y = 2,
     FLAT_ALONG_Z = 4,
-    FLAT_WITH_CORNERS = 8 /* edges along the other two axes; else rims */
+    FLAT_WITH_CORNERS = 8 /* faces with edges along the other two axes; else with rims */
 };
 
-/* What a shape is. v: of any length. */
+/* The row of a shape. v: of any length. */
 struct shape {
     uint32_t needs;    /* bits of enum shape_key */
-    uint32_t may_have; /* besides those */
+    uint32_t may_have; /* bits of keys besides those */
     uint32_t flat;     /* bits of enum flat_axis: faces that it may have */
-    /* Relations between its sizes; NULL: none. */
+    /* Checks relations between its sizes; NULL: none. */
     void (*check)(struct check *check, const sonject_object_params *object);
-    /* Sizes and radii. Sizes come in halved; both bounding radii start at radius_m, the least
-     * radius of curvature at INFINITY. NULL: they stay so. */
+    /* Sets sizes and radii. Sizes come in halved. Both bounding radii start at radius_m, the least
+     * radius of curvature at INFINITY. NULL: all stay so. */
     void (*init)(struct shape_size *size, const sonject_object_params *object);
-    /* The largest p . v over its points p (its support function). */
+    /* Returns the largest p . v over its points p (its support function). */
     double (*extent)(const struct shape_size *size, const double v[3]);
-    /* What the device is told besides sizes, and as which shape; NULL: nothing. */
+    /* Sets the device's shape and values besides sizes; NULL: nothing to set. */
     void (*record)(struct object_record *record, const struct shape_size *size);
 };
 
 #define SHAPE_DECLARATION(NUMBER, name, traits) extern const struct shape shape_##name;
 ALL_SHAPES(SHAPE_DECLARATION)
 
-/* By its number, enum shape_kind; NULL for an unknown one. */
+/* Returns the row of a shape by its number, enum shape_kind; NULL for an unknown one. */
 const struct shape *shape_of(uint32_t shape);
 
-/* The sizes of an object; those of a mesh are not known without the scene. */
+/* Set the sizes of an object. The sizes of a mesh need the scene. */
 void shape_size_init(struct shape_size *size, const sonject_object_params *object);
 void shape_size_init_in_scene(struct shape_size *size, const struct scene *scene,
                               const sonject_object_params *object);
 
-/* What is borrowed. */
+/* Sets the sizes of a mesh, which is borrowed. */
 void shape_size_of_mesh(struct shape_size *size, const struct mesh *mesh);
 
-/* The largest p . v over the points p of a shape (its support function), v of any length. */
+/* Returns the largest p . v over a shape's points p (its support function), v of any length. */
 double shape_extent(const struct shape_size *size, uint32_t shape, const double v[3]);
 
-/* Whether no straight line from its surface outwards meets it again, as is_convex in
- * kernels/intersection.h. */
+/* Returns whether no straight line from its surface outwards meets the surface again, as is_convex
+ * in kernels/intersection.h. */
 bool shape_is_convex(const struct shape_size *size, uint32_t shape);
 
-/* The shape and its sizes in a record. */
+/* Sets the shape and its sizes in a record. */
 void shape_record_init(struct object_record *record, const struct shape_size *size, uint32_t shape);
 
-/* The slanting face of a record through two points of a profile, (across, up), seen from the left
- * of the way between. */
+/* Sets the slanting face of a record through two points of a profile, (across, up). The outward
+ * normal points to the right of the way from the first to the second. */
 void record_set_slant(struct object_record *record, double across, double up, double to_across,
                       double to_up);
 
-/* The radii of boxes and of what lies in them. */
+/* Sets the radii of boxes and of shapes that lie within boxes. */
 void shape_init_box(struct shape_size *size, const sonject_object_params *object);
 
-/* Whether an object's sizes fit each other. */
+/* Checks whether an object's sizes fit each other. */
 void check_shape(struct check *check, const sonject_object_params *object);
 
 #endif

@@ -19,7 +19,7 @@ static void init(struct shape_size *size, const sonject_object_params *object)
     size->radius_m -= size->ring_radius_m;
     size->bounding_radius_m = size->radius_m + size->ring_radius_m;
     size->radius_about_nose_m = size->bounding_radius_m;
-    /* of the ring's section, and of the hole's waist */
+    /* radii of the ring's section and of the hole's waist */
     size->least_radius_of_curvature_m =
         fmin(size->ring_radius_m, size->radius_m - size->ring_radius_m);
 }
