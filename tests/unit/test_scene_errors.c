@@ -41,8 +41,8 @@ TEST(test_missing_keys)
                                  "the mean seabed; from_file, or first_return of the calibration)"},
         {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry: {row_spacing: {speed: 2}, "
                "column_spacing: 1, first_slant_range: 40}\n" SONAR,
-         ":4:27: input.geometry.row_spacing.ping_rate: missing; add it (pings, and so rows, a "
-         "second)"},
+         ":4:27: input.geometry.row_spacing.ping_rate: missing; add it (pings per second; each "
+         "ping is one row)"},
         {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry: {row_spacing: {speed: 2, "
                "ping_rate: 0}, column_spacing: 1, first_slant_range: 40}\n" SONAR,
          ":4:49: input.geometry.row_spacing.ping_rate: must be above 0 Hz, not 0"},

@@ -87,7 +87,8 @@ TEST(test_what_is_refused)
          ":6:14: seabed.relief[0].heights: must be a section of 'key: value' lines, not a single "
          "value"},
         {RELIEF "  - heights: {file: heights.tif, first_ground_range: 0}\n",
-         ":6:14: seabed.relief[0].heights.unit: missing; add it (of the file's numbers)\n"
+         ":6:14: seabed.relief[0].heights.unit: missing; add it (unit of the file's "
+         "numbers)\n"
          ":6:14: seabed.relief[0].heights.row_spacing: missing; add it (distance between rows)\n"
          ":6:14: seabed.relief[0].heights.column_spacing: missing; add it (distance between "
          "columns, horizontal)"},

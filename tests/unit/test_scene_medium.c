@@ -126,7 +126,7 @@ TEST(test_what_is_wrong)
          ":5:11: medium.layers: must be a list, such as [{bottom: 0 m, sound_speed: 1490 m/s}, "
          "{bottom: 12 m, ...}]"},
         {LAYERS "    - {bottom: 0}\n",
-         ":6:7: medium.layers[0].sound_speed: missing; add it (of the layer)"},
+         ":6:7: medium.layers[0].sound_speed: missing; add it (sound speed of the layer)"},
         {LAYERS "    - {bottom: 1 m, sound_speed: 1500}\n",
          ":6:16: medium.layers[0].bottom: must be 0 m: the first layer lies on the seabed; not "
          "1 m"},

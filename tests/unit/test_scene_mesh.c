@@ -167,8 +167,9 @@ TEST(test_what_is_refused)
          ":5:40: objects[0].mesh: a sphere has none; remove it"},
         {SCENE "  - {shape: mesh, mesh: corner.obj, length: 1}\n",
          ":5:45: objects[0].length: a mesh has none; remove it"},
-        {MESH("{unit: mm}"), ":6:11: objects[0].mesh.file: missing; add it (of triangles: STL, OBJ "
-                             "or PLY)"},
+        {MESH("{unit: mm}"),
+         ":6:11: objects[0].mesh.file: missing; add it (mesh file of triangles: STL, "
+         "OBJ or PLY)"},
         {MESH("{file: corner.obj, unit: -1}"),
          ":6:36: objects[0].mesh.unit: must be a length of 1e-9 to 1e9 m, not -1 m"},
     };

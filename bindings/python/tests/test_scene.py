@@ -125,7 +125,7 @@ def test_tables_that_are_none_are_refused(make_scene):
 
 def test_the_types_of_keys_know_all_sections():
     assert set(keys.SceneKeys.__annotations__) >= set(KEYS) | {"medium", "seabed", "elements"}
-    assert "heading: from along-track towards range" in keys.Object.__doc__
+    assert "heading: heading of the nose, from along-track towards range" in keys.Object.__doc__
     assert {"class", "material", "parts"} <= set(keys.Object.__annotations__)
 
 
