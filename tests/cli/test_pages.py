@@ -375,6 +375,7 @@ FRAGMENTS = {
     "noise_floor: -25 dB": ("injection.", [], []),
     "injection.noise_floor_over: -20 dB": ("", [], []),
     "seabed.relief: [{scour: {width: 50 cm, depth: 5 cm}}]": ("", [], []),
+    "{over_seabed: 14 dB}": ("objects[0].level", [], []),
     "smooth: 40 deg": ("objects[0].mesh.", [ROCK], []),
     "open: true": ("objects[0].mesh.", [ROCK], []),
     "injection.accuracy: 2 %": ("", [], []),
