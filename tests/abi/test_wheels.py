@@ -67,7 +67,8 @@ def programs(wheel, unpacked):
 def command(wheel, programs, tmp_path_factory):
     """What runs the wheel's command here, as a list of words."""
     if wheel.stem.endswith("aarch64"):
-        return [shutil.which("qemu-aarch64"), "-L", "/usr/aarch64-linux-gnu", programs[1]]
+        # With Debian's arm64 libraries. With -L, the loader is of the cross compiler's glibc and the rest of Debian's.
+        return [shutil.which("qemu-aarch64"), programs[1]]
     if not is_of_windows(wheel):
         return [programs[1]]
     script = tmp_path_factory.mktemp("wine") / "sonject"
