@@ -80,8 +80,8 @@ struct move_prior {
     double contacts; /* number of real ones; with few, the campaign's spreads count more */
 };
 
-/* Finds the quantiles of real contacts: 5 to 95 % from 100 contacts, 20 to 80 % below 30. goals:
- * EXTENT_KINDS. Errors: MEMORY. */
+/* Finds the quantiles of real contacts: 5 to 95 % of 90 or more that show an extent, 20 to 80 %
+ * below 27. goals: EXTENT_KINDS. Errors: MEMORY. */
 sonject_status quantile_goals(struct report *report, const struct contact_extents *contacts,
                               size_t count, struct quantile_goal *goals);
 
