@@ -77,6 +77,8 @@ def test_headers_and_library_are_there(root, prefix):
     assert headers(prefix / "include") == sources
     assert (library_folder(prefix) / "cmake" / "sonject" / "sonjectConfig.cmake").exists()
     assert str(root) in " ".join(pkg_config_flags(root))
+    licence = prefix / "share" / "doc" / "sonject" / "LICENSE"
+    assert licence.read_bytes() == (SOURCE / "LICENSE").read_bytes()
 
 
 # What C++ needs no wrapper for: enough by itself, or in one that does more.
