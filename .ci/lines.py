@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Lines of what git tracks, by room: .ci/lines.py
+"""Counts the lines of tracked files by room: .ci/lines.py
 
-The total leaves Markdown, notebooks and pictures out.
+A room is a folder of lib or one of the other top folders. Markdown, notebooks and pictures are not
+counted.
 """
 
 import collections

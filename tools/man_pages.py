@@ -1,6 +1,6 @@
-"""Writes manual pages from the command's own help: man_pages.py COMMAND FOLDER VERB ...
+"""Writes manual pages from the command's help: man_pages.py COMMAND FOLDER VERB ...
 
-FOLDER gets sonject.1 and sonject-VERB.1 for each verb.
+The pages in FOLDER are sonject.1, and sonject-VERB.1 for each verb.
 """
 
 import pathlib
@@ -15,7 +15,7 @@ def told(command, *arguments):
 
 
 def roff(text):
-    """Text as it stands, whatever roff takes for a request or an escape."""
+    """Escapes a line so that roff prints it literally."""
     escaped = text.replace("\\", "\\e").replace("-", "\\-").replace("'", "\\(aq")
     return "\\&" + escaped if escaped.startswith((".", "\\(aq")) else escaped
 
@@ -30,8 +30,8 @@ def head(name, version, summary):
 
 
 def options(lines):
-    """Entries of lines "  -o, --output DIR    what it is", whose second column begins at 31 or
-    behind a longer first one."""
+    """Makes entries of lines "  -o, --output DIR    what it is". The second column begins at character
+    31, or after the first one if that is longer."""
     made = []
     for line in lines:
         column = line.index(" ", 30)

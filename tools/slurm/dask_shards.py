@@ -1,9 +1,9 @@
-"""The parts of a run or of a campaign as tasks of Dask, and then the whole:
+"""Computes the parts of a run or of a campaign as tasks of Dask, and merges them:
 
     dask_shards.py SCHEDULER K run|campaign FILE.yaml -o DIR [OPTION ...]
 
-SCHEDULER is the address that `dask scheduler` tells, K the number of parts. Workers are to be
-started with --nthreads 1, and to see this folder by the same path."""
+SCHEDULER is the address that `dask scheduler` prints, K the number of parts. Start workers with
+--nthreads 1. All workers must see this folder under the same path."""
 
 import os
 import subprocess
@@ -16,7 +16,7 @@ RETRIES = 3
 
 
 def trace(command, folder):
-    """On a worker. A part that was stopped goes on; one that fails is told apart by its message."""
+    """Runs a part on a worker. Continues a part that was stopped. Raises with the message of one that fails."""
     code = STOPPED
     while code == STOPPED:
         answer = subprocess.run(command, cwd=folder, stderr=subprocess.PIPE, text=True, check=False)
@@ -35,7 +35,7 @@ def main():
         for shard in range(1, shards + 1)
     ]
     with Client(address) as client:
-        # A part whose worker is lost goes to another one; pure=False: it is done each time.
+        # If a worker is lost, another one takes its part. With pure=False parts are computed each time.
         parts = client.map(trace, commands, folder=os.getcwd(), retries=RETRIES, pure=False)
         for part in as_completed(parts):
             part.result()
