@@ -3,8 +3,7 @@
 
 # The OpenCL driver keeps memory until the process ends.
 export LSAN_OPTIONS="suppressions=$PWD/.ci/leaks:print_suppressions=0"
-# The leak checker sometimes crashes when it reads thread storage that the driver's compiler has left
-# behind.
+# The leak checker sometimes crashes on thread storage that the driver's compiler has left behind.
 export ASAN_OPTIONS="intercept_tls_get_addr=0"
 export SONJECT_READERS="$PWD/build/readers/bin/python"
 

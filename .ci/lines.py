@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """Counts the lines of tracked files by room: .ci/lines.py
 
-A room is a folder of lib or one of the other top folders. Markdown, notebooks and pictures are not
-counted.
+A room is a folder of lib or another top folder. Markdown, notebooks and pictures are left out.
 """
 
 import collections

@@ -30,8 +30,8 @@ def head(name, version, summary):
 
 
 def options(lines):
-    """Makes entries of lines "  -o, --output DIR    what it is". The second column begins at character
-    31, or after the first one if that is longer."""
+    """Makes entries of lines "  -o, --output DIR    what it is". The second column begins at index
+    31, or after a longer first one."""
     made = []
     for line in lines:
         column = line.index(" ", 30)

@@ -1,5 +1,5 @@
-"""What the tests of the bindings share. The library is the one that SONJECT_LIBRARY names,
-the package that of the build: PYTHONPATH=build/bindings/python."""
+"""Fixtures of the bindings' tests. SONJECT_LIBRARY names the library. The package is the build's:
+PYTHONPATH=build/bindings/python."""
 
 import os
 import pathlib
@@ -54,7 +54,7 @@ def context():
 
 @pytest.fixture
 def complex_patch():
-    """Speckle of unit mean intensity."""
+    """Returns speckle of unit mean intensity."""
     random = numpy.random.default_rng(20240501)
     parts = random.standard_normal((2, ROWS, COLUMNS)) * numpy.sqrt(0.5)
     return (parts[0] + 1j * parts[1]).astype(numpy.complex64)
@@ -67,7 +67,7 @@ def amplitude_patch(complex_patch):
 
 @pytest.fixture
 def make_scene(context):
-    """The scene of KEYS with other sections."""
+    """Makes a scene of KEYS with other sections."""
 
     def make(**changes):
         return sonject.Scene(**{"context": context, **KEYS, **changes})
@@ -77,7 +77,7 @@ def make_scene(context):
 
 @pytest.fixture
 def campaign_folder(tmp_path):
-    """With CAMPAIGN as campaign.yaml, its scene, and a swath of speckle."""
+    """Makes a folder with CAMPAIGN as campaign.yaml, its scene, and a swath of speckle."""
     (tmp_path / "campaign.yaml").write_text(CAMPAIGN)
     (tmp_path / "scene.yaml").write_text(CAMPAIGN_SCENE)
     numbers = numpy.random.default_rng(7)

@@ -1,4 +1,4 @@
-"""Calibrations of arrays and files."""
+"""Tests of calibrations of arrays and files."""
 
 import json
 
@@ -9,7 +9,7 @@ import sonject
 
 
 def decibels(rows=320, columns=320):
-    """Grey levels of 0.3 dB, speckle of one look."""
+    """Returns speckle of one look in grey levels of 0.3 dB."""
     intensity = numpy.random.default_rng(4).exponential(size=(rows, columns))
     return numpy.clip(numpy.round((10 * numpy.log10(intensity) + 50) / 0.3), 0, 255).astype(numpy.uint8)
 

@@ -1,4 +1,4 @@
-"""Campaigns in memory and as files."""
+"""Tests of campaigns in memory and as files."""
 
 import pickle
 
@@ -36,7 +36,7 @@ def test_images_are_made_in_memory_in_any_order(campaign):
 
 
 def test_loaders_may_pickle_a_campaign(campaign, tmp_path, monkeypatch):
-    """And number its images as NumPy counts."""
+    """Images may be numbered by NumPy's integers."""
     _, swath = campaign
     monkeypatch.chdir(tmp_path)
     written = pickle.dumps(sonject.Campaign("campaign.yaml", {"images": 3, "empty": 0}))
@@ -65,7 +65,7 @@ def test_the_scene_of_an_image_is_one_to_inject(campaign):
     ("float32", "{kind: intensity}"),
 ])
 def test_images_in_memory_are_those_of_the_files(kind, curve, campaign_folder):
-    """With bright targets, which full scale cuts, and a row where nothing was heard."""
+    """Targets are so bright that full scale clips them, and one row is empty."""
     transfer = sonject.Transfer(curve)
     swath = transfer.from_amplitude(2 * numpy.load(campaign_folder / "swath.npy"), kind)
     swath[40] = 0
@@ -87,7 +87,7 @@ def test_images_in_memory_are_those_of_the_files(kind, curve, campaign_folder):
 
 
 def test_what_a_campaign_without_a_folder_lacks_is_made_by_one_with_a_folder(campaign_folder):
-    """As the message of images in memory says."""
+    """Follows the message that images in memory give."""
     numbers = numpy.random.default_rng(8)
     numpy.save(campaign_folder / "swath.npy", numbers.rayleigh(20, (300, 300)).astype(numpy.uint8))
     scene = campaign_folder / "scene.yaml"
@@ -103,7 +103,7 @@ def test_what_a_campaign_without_a_folder_lacks_is_made_by_one_with_a_folder(cam
 
 
 def test_what_did_not_fail_leaves_no_message(campaign, tmp_path):
-    """Be it seen too little, or drawn anew before it fitted."""
+    """Targets are seen too little, or are drawn anew until they are seen enough."""
     context = sonject.Context()
     for number, settings in enumerate([
             {"visible": {"highlight": "90 dB", "otherwise": "difficult"}},
@@ -139,7 +139,7 @@ def test_a_data_set_is_made_once(campaign, tmp_path):
 
 
 def test_a_data_set_stops_by_itself_and_one_image_is_made_alone(campaign, tmp_path):
-    # More images than are made side by side on any machine.
+    # No machine makes that many images side by side.
     whole = sonject.Campaign(tmp_path / "campaign.yaml", {"images": 100})
     folder = tmp_path / "set"
     with pytest.raises(sonject.Cancelled):
@@ -159,7 +159,7 @@ def test_mistakes_say_where(tmp_path, campaign):
 
 
 def test_a_campaign_is_fitted(tmp_path, campaign):
-    """A whole fit is in tests/cli/test_fit.py; this one stops when its first contacts are made."""
+    """A whole fit is in tests/cli/test_fit.py. This fit stops when its first contacts are made."""
     (tmp_path / "published.yaml").write_text(
         "contacts: 40\nquantiles: [0.1, 0.5, 0.9]\nhighlight_along: [20 cm, 30 cm, 40 cm]\n")
     files = [tmp_path / name for name in ("campaign.yaml", "published.yaml", "fitted.yaml")]

@@ -1,4 +1,4 @@
-"""Chips that data loaders ask for: forked and spawned workers, and threads, make what this process does."""
+"""Tests that forked and spawned workers, and threads, make the same chips for data loaders as this process."""
 
 import concurrent.futures
 import multiprocessing
@@ -33,7 +33,7 @@ def made_here(chips):
 
 @pytest.mark.parametrize("kind", POOLS)
 def test_workers_make_the_same_chips(chips, made_here, kind):
-    """Forked ones go on with the context that this process has used."""
+    """Forked workers go on with the context that this process has used."""
     with POOLS[kind]() as pool:
         for (image, masks), (image_here, masks_here) in zip(pool.map(chips.__getitem__, range(CHIPS)), made_here):
             assert (image == image_here).all() and (masks == masks_here).all()

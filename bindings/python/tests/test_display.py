@@ -1,4 +1,4 @@
-"""What interpreters and notebooks show."""
+"""Tests of the displays in interpreters and notebooks."""
 
 import base64
 import io
@@ -16,9 +16,9 @@ from conftest import COLUMNS, KEYS, ROWS
 
 
 def pixels_of(address):
-    """The grey levels of a PNG."""
+    """Returns the grey levels of a PNG."""
     png = base64.b64decode(address.partition("base64,")[2])
-    Image.open(io.BytesIO(png)).verify()  # which looks at the sums of its chunks
+    Image.open(io.BytesIO(png)).verify()  # checks the sums of its chunks
     image = Image.open(io.BytesIO(png))
     assert (image.format, image.mode) == ("PNG", "L")
     return numpy.array(image)
@@ -62,7 +62,7 @@ def test_a_notebook_shows_the_image_and_the_truth(make_scene, complex_patch):
     assert rows[1][6:] == [str(truth.highlight_pixels), str(truth.shadow_pixels)]
     assert "table" not in sonject.inject(complex_patch, make_scene(objects=[]))._repr_html_()
     result.close()
-    assert result._repr_html_() is not None  # what was asked for outlives it
+    assert result._repr_html_() is not None  # layers that were read outlive the result
     closed = sonject.inject(complex_patch, make_scene())
     closed.close()
     assert closed._repr_html_() is None
@@ -93,7 +93,7 @@ def test_a_notebook_shows_the_text_of_a_scene(make_scene):
 
 
 class Tqdm:
-    """What is used of tqdm."""
+    """The parts of tqdm that are used."""
 
     made: list = []
 

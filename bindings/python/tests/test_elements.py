@@ -1,4 +1,4 @@
-"""Element level: what the hydrophones hear, beamformed, is the image that sonject forms."""
+"""Tests of the element level: beamformed series of hydrophones are the image that sonject forms."""
 
 import dataclasses
 import json
@@ -82,8 +82,8 @@ ARRAYS = {
 @pytest.mark.parametrize("side", ["port", "starboard"])
 @pytest.mark.parametrize("name", ARRAYS)
 def test_a_point_focuses_where_it_is_with_its_level(context, name, side):
-    """A small smooth sphere: a / 2 at its nearest point. The cross-range response takes off
-    10 log10 of what a sphere of this radius loses by it, 0.03 dB (kernels/MATH.md)."""
+    """A small smooth sphere of radius a has the amplitude a / 2 at its nearest point. The cross-range
+    response takes 0.03 dB off a sphere of this radius (kernels/MATH.md)."""
     scene = scene_of(context, SMOOTH, elements=ARRAYS[name], side=side)
     series = sonject.element_series(PATCH, scene)
     layout = sonject.element_layout(scene, PATCH.shape)
@@ -99,7 +99,7 @@ def test_a_point_focuses_where_it_is_with_its_level(context, name, side):
 
 
 def compare(formed, image):
-    """Correlation, phase between them, and level of the second over the first in dB."""
+    """Returns correlation, phase between the two, rad, and level of the second over the first, dB."""
     product = numpy.vdot(formed, image)
     norms = numpy.linalg.norm(formed), numpy.linalg.norm(image)
     return abs(product) / (norms[0] * norms[1]), numpy.angle(product), decibels(norms[1] / norms[0])
@@ -110,10 +110,10 @@ def speckle_scene(context, elements):
 
 
 def test_speckle_is_the_images_own(context):
-    """A rough sphere on a seabed, realisation by realisation. What is left is what image formation
-    simplifies (kernels/MATH.md): far side lobes without curvature, and a response of one frequency;
-    as strips are as wide as the resolution, aspects beyond the aperture repeat those within, by the
-    mean relative distance of the pulse's frequencies from the centre: 0.19 dB."""
+    """Compares a rough sphere on a seabed realisation by realisation. Image formation simplifies
+    (kernels/MATH.md): far side lobes have no curvature, and the response is of one frequency. Strips
+    are as wide as the resolution, so aspects beyond the aperture repeat those within. They add 0.19 dB,
+    by the mean relative distance of the pulse's frequencies from the centre."""
     scene = speckle_scene(context, ARRAYS["one hydrophone"])
     formed = sonject.inject(PATCH, scene).field
     layout = sonject.element_layout(scene, PATCH.shape)
@@ -125,9 +125,9 @@ def test_speckle_is_the_images_own(context):
 
 
 def test_an_aperture_cut_at_the_target_leaves_less(context):
-    """Aspects are cut in the image's along-track spectrum, where W is a rectangle, instead of by
-    the distance from the pixel: the side lobes' curvature and most of the change with frequency go.
-    The array sees more aspects than the image takes."""
+    """Aspects are cut in the image's along-track spectrum, where W is a rectangle, and not by the
+    distance from the pixel. This removes the curvature of side lobes and most of the change with
+    frequency. The array sees more aspects than the image takes."""
     wider, fine, margin = 1.5, 2, 40 * SPACING
     array = {"hydrophones": {"length": 0.02}, "transmitter": {"length": 0.02},
              "pings": {"spacing": 0.0125, "count": 900}}
@@ -150,8 +150,8 @@ def test_an_aperture_cut_at_the_target_leaves_less(context):
 
 
 def test_a_rough_target_has_the_images_place_and_level(context):
-    """The same deviates as in the image, but what image formation simplifies still moves the peak
-    of a target of few cells by 0.2 dB rms either way: the mean of six."""
+    """The deviates are the image's. Simplified image formation still moves the peak of a target of few
+    cells by 0.2 dB rms either way, so the mean of six is tested."""
     levels = []
     for seed in range(1, 7):
         scene = scene_of(
@@ -180,7 +180,7 @@ def test_a_coherent_seabed_is_heard_as_it_is_drawn(context):
 
 
 def test_delays_are_those_of_the_processors_sound_speed(context):
-    """The sound is 2 % slower than the processor assumes: targets lie and count as in its image."""
+    """Sound is 2 % slower than the processor assumes. Targets have their place and level in its image."""
     scene = scene_of(context, SMOOTH, elements=ARRAYS["one hydrophone"],
                      medium={"sound_speed": 1470, "reference_sound_speed": 1500})
     layout = sonject.element_layout(scene, PATCH.shape)
@@ -205,13 +205,13 @@ def test_passband_is_baseband_on_its_carrier(context):
     carrier = numpy.exp(-2j * numpy.pi * 100e3 * sonject.element_layout(scene, PATCH.shape).times_s)
     assert passed.dtype == numpy.float32
     expected = (base * carrier).real
-    # single precision: of carrier and product
+    # the tolerance is single precision of carrier and product
     assert numpy.abs(passed - expected).max() <= 1e-6 * numpy.abs(base).max()
     assert numpy.abs(base).max() > 0
 
 
 def test_a_chirp_compresses_to_the_echo(context):
-    """A matched filter: peak at the echo's delay, with the chirp's energy times its level. The
+    """A matched filter peaks at the echo's delay, with the chirp's energy times the echo's level. The
     sphere's false echo, half a radius of sound behind, is 40 dB down."""
     duration = 2e-3
     chirped = few_pings(pulse="chirp", chirp=duration, sampling_rate=120e3)
@@ -272,8 +272,8 @@ def test_aspects_beyond_the_limit_are_left_out(context):
 
 
 def test_a_source_level_makes_pressures(context):
-    """The sonar equation: SL - absorption on the way there and back, at the water's own sound speed,
-    not the processor's; and sqrt(2) from rms to amplitude."""
+    """By the sonar equation, the level is SL - absorption on the way there and back, at the water's own
+    sound speed, not the processor's. A factor of sqrt(2) leads from rms to amplitude."""
     array = {"pings": {"count": 1}, "hydrophones": {"count": 2}}
     level, absorption, true_speed, assumed_speed = 217.0, 0.05, 1500.0, 1450.0
     medium = {"sound_speed": true_speed, "reference_sound_speed": assumed_speed,
@@ -281,12 +281,12 @@ def test_a_source_level_makes_pressures(context):
     scenes = [scene_of(context, SMOOTH, elements=elements, medium=medium)
               for elements in (array, array | {"source_level": level})]
     ratio, pressure = (sonject.element_series(PATCH, scene) for scene in scenes)
-    below = (FIRST_RANGE + MIDDLE[1] * SPACING) * true_speed / assumed_speed  # of the seabed there
+    below = (FIRST_RANGE + MIDDLE[1] * SPACING) * true_speed / assumed_speed  # slant range of the seabed, m
     altitude, centre = 10.0, 0.2 + RADIUS
     range_m = numpy.hypot(numpy.sqrt(below**2 - altitude**2), altitude - centre) - RADIUS
     expected = level - 120 + decibels(numpy.sqrt(2)) - 2 * absorption * range_m
     measured = decibels(numpy.abs(pressure).max() / numpy.abs(ratio).max())
-    # a bin off in range would be 0.002 dB, the processor's sound speed 0.07 dB
+    # an error of a bin in range would be 0.002 dB, the processor's sound speed 0.07 dB
     assert measured == pytest.approx(expected, abs=0.01)
 
 

@@ -1,4 +1,4 @@
-"""Lifetimes, files and the remaining calls."""
+"""Tests of lifetimes, files and the remaining calls."""
 
 import os
 import re
@@ -82,7 +82,7 @@ def test_log_errors_are_raised(amplitude_patch, make_scene):
 
 
 def test_the_log_tells_device_programs_and_noise_floor_and_progress_the_compiling(tmp_path):
-    # a process of its own, in which no other context has the programs, nor the driver's cache
+    # in a new process neither another context nor the driver's cache has the programs
     answer = run_python(
         "import numpy, sonject, sys\n"
         "with sonject.Context(device='pthread', log=lambda level, line: print(line)) as context:\n"
@@ -102,7 +102,7 @@ def test_the_log_tells_device_programs_and_noise_floor_and_progress_the_compilin
     ("None", True), ("lambda level, line: None", False),
     ("lambda level, line: level < logging.WARNING or print(line, file=sys.stderr)", True)])
 def test_notes_are_printed_unless_a_log_takes_them(log, is_printed, tmp_path):
-    """By inject and run alike, and without the lines that only tell what happens."""
+    """inject and run print the same notes, without the lines that only tell what happens."""
     answer = run_python(
         "import logging, numpy, sonject, sys\n"
         f"with sonject.Context(log={log}) as context:\n"
@@ -137,7 +137,7 @@ def test_a_missing_library_is_explained():
 
 
 def test_the_module_is_the_command_of_a_wheel():
-    """Which a package that was not installed lacks, and says so in a line."""
+    """A package that was not installed has no command, and says so in one line."""
     answer = run_python("import runpy, sys\nsys.argv = ['sonject', '--version']\nrunpy.run_module('sonject', run_name='__main__')")
     if (PACKAGE / "sonject").exists():
         assert (answer.returncode, answer.stdout) == (0, f"sonject {sonject.__version__}\n")

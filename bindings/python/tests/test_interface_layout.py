@@ -1,4 +1,4 @@
-"""What generate.py makes of the headers: against the C compiler, and where it does not understand."""
+"""Tests of generate.py: its structures against the C compiler, and headers that it does not understand."""
 
 import ctypes
 import os
@@ -21,7 +21,7 @@ STRUCTURES = {
 
 
 def layout_program():
-    """A C program that prints the size of each structure and the place of each field."""
+    """Returns a C program that prints the size of each structure and the place of each field."""
     lines = ["#include <stddef.h>", "#include <stdio.h>", "#include <sonject/sonject.h>"]
     lines.append("int main(void) {")
     for name, kind in STRUCTURES.items():

@@ -1,4 +1,4 @@
-"""Meshes of arrays."""
+"""Tests of meshes from arrays."""
 
 import numpy
 import pytest
@@ -21,7 +21,7 @@ def test_a_mesh_of_arrays_is_the_box_that_it_is(amplitude_patch, make_scene, tmp
     box = sonject.inject(amplitude_patch, scene).objects[0]
     for name in ("overall_length_m", "overall_width_m", "overall_height_m", "height_m"):
         assert getattr(mesh, name) == pytest.approx(getattr(box, name), abs=1e-6), name
-    # The same faces, met by the same rays: roundings of single precision move a few of some thousand.
+    # The same rays meet the same faces. Roundings of single precision move a few of some thousand.
     assert mesh.target_strength_db == pytest.approx(box.target_strength_db, abs=0.1)
     assert mesh.shadow == box.shadow
 

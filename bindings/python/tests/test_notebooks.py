@@ -1,5 +1,5 @@
-"""The notebooks are short, have no outputs and name what exists; the first runs as a program. All are
-run by test_notebooks_run.py, which needs Jupyter's client."""
+"""Tests that the notebooks are short, have no outputs and use only existing names, and that the first one
+runs. test_notebooks_run.py runs all of them, and needs Jupyter's client."""
 
 import ast
 import json
@@ -13,7 +13,7 @@ NOTEBOOKS = sorted((DOCUMENTS.parents[1] / "docs" / "notebooks").glob("*.ipynb")
 
 
 def cells(path, kind):
-    """The texts of the notebook's cells of that kind."""
+    """Returns the texts of the notebook's cells of that kind."""
     written = json.loads(path.read_text(encoding="utf-8"))["cells"]
     return ["".join(cell["source"]) for cell in written if cell["cell_type"] == kind]
 

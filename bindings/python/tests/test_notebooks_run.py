@@ -1,4 +1,4 @@
-"""The notebooks run from end to end; what they state they assert themselves."""
+"""Tests that the notebooks run from end to end. They assert their own statements."""
 
 import nbclient
 import nbformat

@@ -1,4 +1,4 @@
-"""The examples of the README and of the package's documentation run as they stand."""
+"""Tests that the examples of the README and of the package's documentation run as they stand."""
 
 import ast
 import logging
@@ -13,13 +13,13 @@ from conftest import DOCUMENTS, KEYS, PACKAGE
 README = (DOCUMENTS / "README.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```python\n(.*?)```", README, flags=re.S)
 SPANS = list(dict.fromkeys(re.findall(r"(?<!`)`([^`\n]+)`(?!`)", README)))
-# Run elsewhere: shells' by tests/cli/test_pages.py, pictures by test_plotting.py.
+# Spans that run elsewhere: those of shells in tests/cli/test_pages.py, pictures in test_plotting.py.
 ELSEWHERE = ("SONJECT_LIBRARY", "tools/scenes/KEYS.md", "PYTHONPATH", "sonject.plotting.draw_result(", "examples/", "tools/", "env/bin/")
 
 
 @pytest.fixture(scope="module")
 def names():
-    """What the README's program leaves, and what the text under it means by its words."""
+    """Returns the names that the README's first program leaves, and those of the package."""
     example = EXAMPLES[0]
     names = dict(vars(sonject))
     exec(compile(example, "README.md", "exec"), names)
@@ -43,7 +43,7 @@ def test_the_example_of_a_campaign_runs(campaign_folder, capsys, monkeypatch):
 
 
 def test_the_example_of_a_data_set_has_the_boxes_of_targets(campaign_folder, monkeypatch):
-    """Whose outermost pixels are those of the layer labels; clutter has none."""
+    """A box ends at the outermost pixels of the layer labels. Clutter has no box."""
     monkeypatch.chdir(campaign_folder)
     with open("campaign.yaml", "a", encoding="utf-8") as file:
         file.write("clutter: {number: 1, alone: 0.2, objects: [{class: stone, object: {shape: sphere, diameter: 25 cm}}]}\n")
@@ -65,7 +65,7 @@ def test_the_example_of_a_data_set_has_the_boxes_of_targets(campaign_folder, mon
 
 
 def calls():
-    """Spans that say more than a name."""
+    """Returns the spans that are more than a name."""
     found = [span for span in SPANS if not span.startswith(ELSEWHERE)]
     return [span for span in found if re.search(r"[(\[.]", span)]
 
@@ -109,12 +109,12 @@ def test_what_the_text_calls_can_be_called(names, span, tmp_path, monkeypatch):
     try:
         exec(span, {**names, **meant})
     except sonject.SonjectError as error:
-        if error.status is not sonject.Status.ERROR_UNSUPPORTED:  # run, without image files
+        if error.status is not sonject.Status.ERROR_UNSUPPORTED:  # run fails like this in a library without image files
             raise
 
 
 def test_names_in_the_text_exist(names):
-    """Of the package, of its classes, or of its functions' parameters."""
+    """Names may be those of the package, its classes, or its functions' parameters."""
     source = "".join(path.read_text(encoding="utf-8")
                      for path in PACKAGE.glob("*.py"))
     words = set(re.findall(r"\w+", source)) | {"float32", "complex64"}

@@ -1,4 +1,4 @@
-"""Tracing and image formation apart."""
+"""Tests of tracing and image formation as separate stages."""
 
 
 import numpy
@@ -32,7 +32,7 @@ def test_a_scene_in_memory_is_formed_with_the_scene_at_hand(tmp_path):
         assert sonject.run(scene, tmp_path / f"run {bandwidth_hz}")
         assert contents(formed) == contents(tmp_path / f"run {bandwidth_hz}")
     assert contents(tmp_path / "formed alone") == contents(tmp_path / f"run {30e3}")
-    # the bandwidth that came last was not the one of this folder's result
+    # the last bandwidth is not that of this folder's result
     folder = tmp_path / f"formed {30e3}"
     for write in (lambda **options: sonject.form(impulses, folder, scene=scene, **options),
                   lambda **options: sonject.run(make_scene(), folder, **options)):

@@ -1,4 +1,4 @@
-"""The example that trains a detector on a campaign."""
+"""Tests of the example that trains a detector on a campaign."""
 
 import pathlib
 import re
@@ -35,7 +35,7 @@ targets: [{class: ball, object: {shape: sphere, diameter: %s, burial: {fraction:
 
 @pytest.fixture
 def tell(tmp_path, monkeypatch, capsys):
-    """What the example says of a campaign of such levels and size."""
+    """Returns the example's output for a campaign of such levels (dB) and size, and the numbers in it."""
     for seed in (1, 2):
         seabed = {"rows": 300, "columns": 400, "seed": seed, "ripple_contrast": 0.1 * seed}
         made = sonject.Scene(sonar=SONAR, input={"synthetic": seabed, "geometry": GEOMETRY})
@@ -59,7 +59,7 @@ def test_it_finds_what_can_be_seen_and_nothing_else(tell):
     assert area - 3 * error > 0.9
     assert "\n40 images without a target cannot tell a false alarm rate below 7.2 % from none\nnone of these has clutter:" in text
     _, _, _, _, _, area, error, *_ = tell(-20, -10, "2 cm")
-    assert abs(area - 0.5) < 4 * max(error, 0.065)  # of a guess: that of 40 and 40
+    assert abs(area - 0.5) < 4 * max(error, 0.065)  # 0.065 is the error of a guess among 40 and 40
 
 
 def test_clutter_is_told(tell):

@@ -1,4 +1,4 @@
-"""Grey levels in arrays: their transfer functions both ways, and injections into them."""
+"""Tests of grey levels in arrays: transfer functions both ways, and injections into grey levels."""
 
 import json
 import math
@@ -112,7 +112,7 @@ def test_amplitudes_that_have_no_grey_level_are_refused(amplitudes, kind, error,
 
 
 def grey_levels(kind, curve, amplitudes):
-    """A picture with its faults: clipped pixels, a row where nothing was heard, steps of 16 bits."""
+    """Returns a picture with typical faults: clipped pixels, an empty row, steps of 16 bits."""
     if kind == "uint16":
         levels = 257 * sonject.Transfer(curve).from_amplitude(amplitudes, "uint8").astype("uint16")
     else:
@@ -157,7 +157,7 @@ def test_what_takes_an_image_takes_its_transfer(amplitude_patch, make_scene):
     result = sonject.inject(curve.from_amplitude(0.3 * amplitude_patch), make_scene(), transfer=curve)
     linear = curve.to_amplitude(result.image)
     assert result.transfer == curve
-    for measure in (sonject.measure, sonject.measure_contact):  # texts, in which NaN is NaN
+    for measure in (sonject.measure, sonject.measure_contact):  # compares texts, in which NaN equals NaN
         assert repr(measure(result.image, transfer=curve)) == repr(measure(linear))
     assert result._repr_html_().startswith("<img")
 
@@ -171,7 +171,7 @@ def test_no_element_hears_a_transfer(amplitude_patch, make_scene):
 
 
 def test_the_transfer_of_a_scene_is_that_of_its_file(amplitude_patch, make_scene):
-    """Grey levels without one are refused in words that do as they say."""
+    """Grey levels without a transfer function are refused, and the advice in the message works."""
     scene = make_scene()
     scene["input.transfer"] = {"kind": "gamma", "parameter": 2}
     grey = sonject.Transfer(scene["input.transfer"]).from_amplitude(0.3 * amplitude_patch)

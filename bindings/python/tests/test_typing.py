@@ -1,4 +1,4 @@
-"""The package's types hold, by a checker of others."""
+"""Tests the package's types with mypy."""
 
 import os
 import pathlib
