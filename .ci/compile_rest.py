@@ -1,7 +1,7 @@
-"""Compiles for warnings alone what a build folder has not built: compile_rest.py FOLDER
+"""Checks the sources that a build folder has not built for warnings: compile_rest.py FOLDER
 
-Takes each source's command from compile_commands.json, without making code: the tests that take
-long are compiled in a fraction of their build's time. Exits with 1 where a compiler complains.
+Takes each source's command from compile_commands.json and generates no code. Slow tests are checked
+in a fraction of their build's time. Exits with 1 if the compiler rejects a source.
 """
 
 import concurrent.futures
@@ -14,12 +14,12 @@ import sys
 
 
 def left_out(folder):
-    """(folder, command) of each source without an object file; once where programs share it."""
+    """Returns (folder, command) of each source without an object file. A shared source appears once."""
     commands = {}
     for entry in json.loads((folder / "compile_commands.json").read_text(encoding="utf-8")):
         directory = pathlib.Path(entry["directory"])
         command = shlex.split(entry["command"])
-        # what a program makes of it is in PROGRAM.p
+        # programs that share a source differ only in paths in PROGRAM.p
         key = tuple(word for word in command
                     if not word.endswith(".p") and ".p/" not in word)
         if not (directory / entry["output"]).exists():
@@ -28,7 +28,7 @@ def left_out(folder):
 
 
 def check(directory, command):
-    """What the compiler says, and whether it took the source."""
+    """Returns whether the compiler accepts the source, and the compiler's output."""
     checked = subprocess.run([*command, "-fsyntax-only"], cwd=directory, check=False,
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     return checked.returncode == 0, checked.stdout

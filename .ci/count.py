@@ -1,8 +1,8 @@
 """Counts the results in meson's test logs: count.py [--require SUITE ...] [--other NAME STATUS] -- LOG ...
 
-Prints what pytest skipped within a test, and why, what failed, and at the end "N passed, N failed,
-N skipped". --other: a check of another program, passed where its exit status is 0. A missing log and
-a required suite that no log mentions count as failed. Exits with 1 if anything failed.
+Prints which tests pytest skipped and why, which tests failed, and at the end "N passed, N failed, N
+skipped". --other: a check by another program, which passed if STATUS is 0. A missing log counts as
+failed, and so does a required suite that no log mentions. Exits with 1 if anything failed.
 """
 
 import argparse
@@ -15,7 +15,7 @@ PASSED = {"OK", "EXPECTEDFAIL"}
 
 
 def suites_of(name):
-    """Suites of a test that meson calls "project:suite+suite / name"."""
+    """Returns the suites of a test that meson calls "project:suite+suite / name"."""
     before, separator, _ = name.partition(" / ")
     if not separator:
         return set()
@@ -23,7 +23,7 @@ def suites_of(name):
 
 
 def read_log(path):
-    """(name, result, output) of each test in the log."""
+    """Yields (name, result, output) of each test in the log."""
     with open(path, encoding="utf-8") as file:
         for line in file:
             if line.strip():
@@ -32,7 +32,7 @@ def read_log(path):
 
 
 def skipped_within(output):
-    """What "pytest -rs" says that it skipped."""
+    """Returns the tests that "pytest -rs" reports as skipped, with reasons."""
     return re.findall(r"^SKIPPED (\[\d+\] .*)$", output, flags=re.M)
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Lines of what git tracks, by room: .ci/lines.py
+"""Counts the lines of tracked files by room: .ci/lines.py
 
-The total leaves Markdown, notebooks and pictures out.
+A room is a folder of lib or another top folder. Markdown, notebooks and pictures are left out.
 """
 
 import collections

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Words a sentence in Markdown pages: .ci/readability.py [PAGE ...]
+"""Counts the words per sentence in Markdown pages: .ci/readability.py [PAGE ...]
 
-Prints median and 90th percentile of each page; without arguments, of README.md, docs and the pages
-beside what they explain. Fails above the limits, and if README.md is longer than a reader will read.
+Prints median and 90th percentile of each page. The default pages are README.md, docs and the pages
+that lie beside the code they explain. Fails above the limits, or if README.md is too long for readers.
 """
 
 import math
@@ -15,14 +15,14 @@ PAGES = ["README.md", "docs/*.md", "bindings/python/README.md", "tools/slurm/REA
 MEDIAN, NINETIETH = 15, 28
 README_LINES, README_WORDS = 100, 900
 
-# What is not read as sentences: blocks of code, comments, tables, headings, pictures.
+# Text that is not read as sentences: blocks of code, comments, tables, headings, pictures.
 NOT_TEXT = re.compile(r"^```.*?^```|<!--.*?-->|^    .*?$|^\|.*?$|^#.*?$|!\[[^]]*\]\([^)]*\)", re.M | re.S)
 LIST_ITEM = re.compile(r"^ *(?:[-*]|\d+\.) ", re.M)
 SENTENCE_END = re.compile(r"(?<=[.!?])[)*\"]*\s+(?=[\"(*`]*[A-Z0-9`])")
 
 
 def sentences(text):
-    """All sentences, as lists of words. Items of lists begin one; a link counts as its text."""
+    """Returns all sentences as lists of words. A list item begins a sentence. A link counts as its text."""
     text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", NOT_TEXT.sub("\n\n", text))
     paragraphs = re.split(r"\n\s*\n", LIST_ITEM.sub("\n\n", text))
     found = [part.split() for each in paragraphs for part in SENTENCE_END.split(each)]
@@ -30,7 +30,7 @@ def sentences(text):
 
 
 def percentile(lengths, share):
-    """The smallest length that this share of them does not exceed."""
+    """Returns the smallest length that at least this share of the lengths does not exceed."""
     return sorted(lengths)[max(0, math.ceil(share * len(lengths)) - 1)]
 
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Misspelt words: .ci/spelling.py [FILE ...]
+"""Finds misspelt words: .ci/spelling.py [FILE ...]
 
-codespell looks for common ones in all that git tracks, or in the files: pages, comments, help and
-messages. Markdown pages are held to a British dictionary by hunspell, too; .ci/words has the words of
-the field that it lacks. Fails where a word is found, or one of that list is in no page.
+codespell looks for common mistakes in the named files, or in all tracked ones: pages, comments, help
+and messages. hunspell also checks Markdown pages against a British dictionary. .ci/words lists words
+of the field that the dictionary lacks. Fails if a word is misspelt, or if a listed word is in no page.
 """
 
 import pathlib
@@ -13,13 +13,13 @@ import sys
 
 TOP = pathlib.Path(__file__).resolve().parents[1]
 WORDS = TOP / ".ci" / "words"
-RARE = "fro,tread,trough"  # which codespell takes for mistakes
-# In tests of messages, and here.
+RARE = "fro,tread,trough"  # correct words that codespell takes for mistakes
+# Deliberate mistakes in tests of messages, and in this file.
 ON_PURPOSE = "bandwith,cilinder,compsite,diamter,frequncy,lenght,shpere,unifrom,widht"
 BINARY = {".png", ".mat"}
-# What is not read as words: blocks of code, code, targets of links, comments, addresses.
+# Text that is not read as words: blocks of code, code, targets of links, comments, addresses.
 NOT_TEXT = re.compile(r"^```.*?^```|^    .*?$|`[^`]*`|\]\([^)]*\)|<!--.*?-->|https?://\S+", re.M | re.S)
-# At least four letters or a capital and three; neither abbreviations nor symbols.
+# A word has at least four letters, or a capital and three. Abbreviations and symbols are left out.
 WORD = re.compile(r"(?<![\w.])[A-Z]?[a-z]{3,}(?![\w(])")
 
 
@@ -29,7 +29,7 @@ def tracked():
 
 
 def common_mistakes(names, *left_out):
-    """codespell's lines: FILE:LINE: word ==> words."""
+    """Returns codespell's lines, "FILE:LINE: word ==> words"."""
     if not names:
         return []
     answer = subprocess.run(["codespell", "-d", "-L", ",".join(left_out), *names], cwd=TOP, check=False,
@@ -40,7 +40,7 @@ def common_mistakes(names, *left_out):
 
 
 def unknown_words(text):
-    """Those of a page that the dictionary does not have."""
+    """Returns the words of a page that the dictionary does not have."""
     words = "\n".join(WORD.findall(NOT_TEXT.sub("\n", text)))
     answer = subprocess.run(["hunspell", "-d", "en_GB", "-i", "utf-8", "-l"], input=words, check=True, capture_output=True,
                             text=True)

@@ -1,8 +1,8 @@
-"""Makes docs/demo.png of the demo: before, after, and ground truth, side by side.
+"""Makes docs/demo.png: the demo's image before and after, and its ground truth, side by side.
 
     python3 docs/demo.py COMMAND PNG
 
-runs COMMAND, a built sonject. A pixel of the picture is the mean intensity of 2 x 2 of the image's.
+COMMAND is a built sonject. A pixel of the picture is the mean intensity of 2 x 2 pixels of the image.
 """
 
 import pathlib
@@ -19,7 +19,7 @@ WHITE = GREYS - 1
 
 
 def grey(amplitudes, darkest_db, brightest_db, step=1):
-    """Grey levels of an image of amplitudes, in dB, of the mean intensity of step x step pixels."""
+    """Returns grey levels, linear in dB, of the mean intensity of step x step pixels of amplitude."""
     rows, columns = (size // step for size in amplitudes.shape)
     pixels = amplitudes[: rows * step, : columns * step].astype(numpy.float64) ** 2
     level = 10 * numpy.log10(pixels.reshape(rows, step, columns, step).mean(axis=(1, 3)) + 1e-12)
@@ -28,7 +28,7 @@ def grey(amplitudes, darkest_db, brightest_db, step=1):
 
 
 def save(picture, panels, colours=()):
-    """Panels of as many rows, of grey levels and above them numbers of colours, side by side as a PNG."""
+    """Writes panels with equal numbers of rows side by side as a PNG. Values from GREYS on number the colours."""
     gap = numpy.full((len(panels[0]), GAP), WHITE, numpy.uint8)
     row = [each for panel in panels for each in (gap, panel)][1:]
     made = Image.fromarray(numpy.hstack(row), "P")

@@ -1,10 +1,10 @@
-"""Makes the pictures of docs/gallery.md by doing what that page says.
+"""Makes the pictures of docs/gallery.md by following that page.
 
     python3 docs/gallery.py FOLDER
 
-Scenes of the page get the names of their first lines. Its Python runs in one namespace, as a reader
-would type it, in a folder that has the project's tools and bindings. SONJECT_LIBRARY and PYTHONPATH
-say which build does the work.
+The first line of each scene of the page names the scene's file. The page's Python runs in one
+namespace, as a reader would type it. The current folder then has the project's tools and bindings.
+SONJECT_LIBRARY and PYTHONPATH choose the build.
 """
 
 import os

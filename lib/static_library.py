@@ -1,7 +1,7 @@
 """Makes the static library: static_library.py OUTPUT OBJCOPY AR ARCHIVE... -- COMPILER...
 
-All archives together become one object file of which only the interface's names stay global, so that
-nothing of it, and of the C++ in it, meets the names of a program that links it.
+All archives become one object file, in which only the names of the interface stay global. Other names,
+and those of C++, cannot clash with names of a program that links the library.
 """
 
 import pathlib
@@ -18,7 +18,7 @@ def main():
     made.unlink(missing_ok=True)
     with tempfile.TemporaryDirectory(dir=made.resolve().parent) as folder:
         whole = pathlib.Path(folder) / "sonject.o"
-        # Groups that linkers fold with those of other files would take names that are local here.
+        # Linkers merge section groups with those of other files, and could drop names that are local here.
         subprocess.run([*compiler, "-r", "-nostdlib", "-Wl,--force-group-allocation",
                         "-Wl,--whole-archive", *archives, "-o", whole], check=True)
         subprocess.run([objcopy, "--localize-hidden", "--wildcard", "--keep-global-symbol=sonject_*",

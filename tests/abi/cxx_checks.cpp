@@ -1,4 +1,4 @@
-/* What sonject.hpp promises beyond the C interface. Prints "all right", or what is not. */
+/* Checks of what sonject.hpp promises beyond the C interface. Prints "all right", or failures. */
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -47,7 +47,7 @@ static void check_errors(const sonject::context &context)
     expect(std::stod(scene.get("sonar.altitude")) == 0.1, "what was set is read back");
     expect(scene.get("objects[0].material") == "\"steel\"", "texts as JSON");
     expect(scene.get("objects[1]") == "null", "what is not there is null");
-    scene.set("injection.seed", UINT64_C(9007199254740993)); /* which no double holds */
+    scene.set("injection.seed", UINT64_C(9007199254740993)); /* no double holds this number */
     expect(scene.get("injection.seed") == "9007199254740993", "whole numbers keep digits");
     scene.set("injection.interactions", 2);
     scene.set("injection.order_energies", true);
@@ -129,7 +129,7 @@ static void check_results(const sonject::context &context)
     }
 }
 
-/* A host's threads; here the caller's alone. */
+/* Replaces a host's threads and runs the task on the caller's thread alone. */
 static void run_tasks(void *calls, std::uint32_t count, sonject_task_function task, void *argument)
 {
     *static_cast<std::uint32_t *>(calls) += count;
@@ -246,7 +246,7 @@ static void check_files(const sonject::context &context)
     }
 }
 
-/* What a file's numbers mean is said as in scenes. */
+/* The transfer function of a file is stated as in scenes. */
 static void check_transfer(const sonject::context &context)
 {
     sonject::scene seabed = scene_with_ball(context);

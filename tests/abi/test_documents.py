@@ -1,4 +1,4 @@
-"""What the documents name exists: functions, files, scenes, what links lead to. And they can be read."""
+"""Tests of the documents: functions, files and link targets that they name exist, and pages are readable."""
 import os
 import pathlib
 import re
@@ -11,7 +11,7 @@ import pytest
 
 SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
 FOLDERS = ("kernels", "lib", "include", "tools", "tests", "bindings")
-# All that is under the project's own version control, apart from what builds leave.
+# All tracked pages. Pages that builds leave in other folders are not among them.
 DOCUMENTS = sorted({"README.md", "CONTRIBUTING.md", "CHANGELOG.md",
                     *(str(path.relative_to(SOURCE)) for folder in (*FOLDERS, "docs")
                       for path in (SOURCE / folder).rglob("*.md"))})
@@ -51,7 +51,7 @@ def test_every_file_that_documents_name_exists():
 
 
 def anchors(document):
-    """Those of a page's headings."""
+    """Returns the anchors of a page's headings."""
     text = re.sub(r"^```.*?^```", "", (SOURCE / document).read_text(encoding="utf-8"), flags=re.S | re.M)
     headings = re.findall(r"^#+ (.*)$", text, flags=re.M)
     return {re.sub(r"[^\w -]", "", heading).strip().lower().replace(" ", "-") for heading in headings}
@@ -124,6 +124,6 @@ def test_the_reference_of_the_interface_is_made_without_warnings(tmp_path):
     pages = "".join(path.read_text() for path in folder.glob("*.html"))
     for name in (SOURCE / "tests" / "abi" / "symbols.txt").read_text().split():
         assert f"{name}()</h2>" in pages, name
-    # what stands before a declaration and what stands behind one
+    # doxygen keeps comments before a declaration and comments behind one
     assert "Forgets" not in pages and "Puts the scene's objects into a patch" in pages
     assert "of the centre over the mean seabed" in pages

@@ -1,5 +1,4 @@
-"""The installed library: what is installed where, and that programs find it by pkg-config and by
-CMake."""
+"""Tests of the installed library: its files, and programs that find it by pkg-config and by CMake."""
 import os
 import pathlib
 import re
@@ -16,13 +15,13 @@ EXAMPLE = SOURCE / "bindings" / "cxx" / "examples" / "train_on_the_fly.cpp"
 PAGE = (SOURCE / "docs" / "embedding.md").read_text(encoding="utf-8")
 PACKAGE = SOURCE / "bindings" / "python" / "sonject"
 MODULES = {f"sonject/{path.name}" for path in PACKAGE.iterdir() if path.suffix in (".py", ".typed")}
-MODULES |= {f"sonject/{name}.py" for name in ("_interface", "_classes", "enumerations", "keys")}  # made
+MODULES |= {f"sonject/{name}.py" for name in ("_interface", "_classes", "enumerations", "keys")}  # generated
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
 
 
 @pytest.fixture(scope="module")
 def root(tmp_path_factory):
-    """Where DESTDIR put an installation."""
+    """Installs the build and returns the folder for DESTDIR."""
     folder = tmp_path_factory.mktemp("root")
     subprocess.run(["meson", "install", "-C", BUILD, "--no-rebuild", "--quiet"], check=True,
                    env={**os.environ, "DESTDIR": str(folder)}, stdout=subprocess.DEVNULL)
@@ -31,7 +30,7 @@ def root(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def prefix(root):
-    """The same, as a prefix that nothing was configured for."""
+    """Returns the prefix inside that folder. No file was configured for this prefix."""
     return next(root.rglob("sonject.hpp")).parent.parent
 
 
@@ -44,7 +43,7 @@ def pkg_config_flags(root):
 
 
 def pkg_config_static(prefix):
-    """Flags of sonject-static, whose file is made to name the prefix where it now is."""
+    """Returns the flags of sonject-static, with its variable `prefix` set to the present prefix."""
     installed = next(prefix.rglob("sonject-static.pc"))
     return subprocess.run(["pkg-config", f"--define-variable=prefix={prefix}", "--cflags", "--libs",
                            "sonject-static"], capture_output=True, text=True, check=True,
@@ -57,7 +56,7 @@ def library_folder(prefix):
 
 
 def start(program, prefix):
-    """Its output."""
+    """Runs the program and returns its output."""
     answer = subprocess.run([program, "short"], capture_output=True, text=True, check=False,
                             cwd=program.parent,
                             env={**os.environ, "LD_LIBRARY_PATH": str(library_folder(prefix))})
@@ -81,7 +80,7 @@ def test_headers_and_library_are_there(root, prefix):
     assert licence.read_bytes() == (SOURCE / "LICENSE").read_bytes()
 
 
-# What C++ needs no wrapper for: enough by itself, or in one that does more.
+# Functions without a wrapper of their own: the C function is enough, or another wrapper covers it.
 LEFT_TO_C = {"sonject_absorption"}
 
 
@@ -93,7 +92,7 @@ def test_cxx_has_every_function():
     assert functions - used == LEFT_TO_C
 
 
-# The example at the head of the header, in a program.
+# A program around the example at the head of sonject.hpp.
 HEAD = """\
 #include <cstdio>
 #include <sonject.hpp>
@@ -120,7 +119,7 @@ def test_the_example_of_the_header_runs(root, prefix, tmp_path):
 
 
 def block(language):
-    """The one of docs/embedding.md in that language."""
+    """Returns the only block of docs/embedding.md in that language."""
     (found,) = re.findall(rf"^```{language}\n(.*?)^```", PAGE, flags=re.S | re.M)
     return found
 
@@ -191,7 +190,7 @@ endforeach()
     assert re.findall(r"^-- ([\d.]+): (\w+)$", told, re.M) == [("0.1", "1"), ("0.2", "0"), ("1", "0")]
 
 
-# A program with names of its own that functions of the library have, too.
+# A program whose variables have the names of internal functions of the library.
 STATIC = """\
 #include <stdio.h>
 #include <string.h>
@@ -294,7 +293,7 @@ def command(prefix):
 
 @pytest.fixture
 def convert(prefix, tmp_path):
-    """Runs the installed command's conversion, with a library that has no other file beside it."""
+    """Converts by the installed command, with a library that has no other file beside it."""
     program = prefix / "bin" / "sonject"
     folder = tmp_path / "library"
     (folder / "sonject").mkdir(parents=True)
@@ -316,7 +315,7 @@ def test_images_need_the_decoder_of_this_library(convert, prefix, tmp_path, prog
     (installed,) = prefix.rglob("sonject-decoder")
     decoder = tmp_path / "library" / "sonject" / "sonject-decoder"
     assert convert("a.npy", "b.npy").returncode == 0
-    assert convert("a.npy", "a.png").returncode == 0  # neither of which decodes any
+    assert convert("a.npy", "a.png").returncode == 0  # both calls decode no image
     if program:
         decoder.write_text(program)
         decoder.chmod(0o755)
@@ -336,7 +335,7 @@ def test_the_library_needs_neither_opencl_nor_cxx(prefix):
 
 
 def read_page(path):
-    """What a reader sees; no warnings."""
+    """Returns the page as a reader sees it. groff must give no warnings."""
     if not shutil.which("groff"):
         pytest.skip("groff is not installed")
     answer = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-rLL=100n", "-P-c", "-P-b", "-P-u",

@@ -1,4 +1,4 @@
-"""The library's outer face: exported symbols, headers that compile alone, sizes of structures."""
+"""Tests of the library's interface: exported symbols, headers that compile alone, sizes of structures."""
 import os
 import pathlib
 import re
@@ -36,7 +36,7 @@ def test_exports_are_the_declared_functions():
 
 
 def compile_alone(header, language, source):
-    """Twice, so that it has to guard itself."""
+    """Compiles a program that includes the header twice, so the header needs an include guard."""
     is_c = language == "c99"
     source.write_text(f"#include <sonject/{header.name}>\n"
                       f"#include <sonject/{header.name}>\nint main(void) {{ return 0; }}\n")

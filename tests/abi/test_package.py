@@ -1,4 +1,4 @@
-"""What is built once more: the library without HDF5, the Python package by pip, the first command."""
+"""Tests of further builds: the library without HDF5, the Python package by pip, tools/first-run.sh."""
 import os
 import pathlib
 import shutil
@@ -14,7 +14,7 @@ from test_release import VERSION
 
 READERS = os.environ.get("SONJECT_READERS")
 OPTIONS = ["-Dhdf5=disabled", "-Dtests=disabled", "-Dstatic=disabled", "-Dbuildtype=debug", "-Db_sanitize=none"]
-# What pip asks meson-python for. The build folder is said, so that none is made among the sources.
+# The call that pip makes of meson-python. It names a build folder outside the sources.
 BUILD_WHEEL = """\
 import sys, mesonpy
 mesonpy.build_wheel(sys.argv[1], {"build-dir": sys.argv[2], "setup-args": sys.argv[3:]})
@@ -38,7 +38,8 @@ def build_library(folder):
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
-    """The folder of its build: by pip, where SONJECT_READERS names a Python with meson-python."""
+    """Builds in a new folder and returns it. pip's way is used if SONJECT_READERS names a Python that has
+    meson-python."""
     folder = tmp_path_factory.mktemp("built")
     if READERS:
         build_wheel(folder)
@@ -62,7 +63,7 @@ def wheel(built):
 
 @pytest.fixture
 def installed(wheel, tmp_path):
-    """Where pip put the package."""
+    """Returns the folder of the package that pip installed."""
     subprocess.run([READERS, "-m", "pip", "-q", "install", "--no-index", "--no-deps", "--target",
                     tmp_path, wheel], check=True)
     return tmp_path

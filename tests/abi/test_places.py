@@ -1,4 +1,4 @@
-"""What is added often is added in few places: CONTRIBUTING.md shows how, and this counts."""
+"""Tests that frequent additions touch few places, by the examples in CONTRIBUTING.md."""
 import os
 import pathlib
 import re
@@ -7,8 +7,8 @@ import subprocess
 import pytest
 
 SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
-# Folders that a change touches, a test beside those of its like among them; a format's files. A
-# key's member stands in lib/scene/params.h, for what the key is there for.
+# The number of folders that a change touches, with the folder of its test; for a format, of files.
+# lib/scene/params.h is not counted: a key's member is there for the purpose of the key.
 PLACES = {"shape": 3, "key": 1, "format": 2, "material": 1, "pulse": 1, "verb": 1}
 
 
@@ -31,7 +31,7 @@ def test_the_change_that_is_shown_fits_and_touches_few_places(what):
 
 
 def files_with(pattern):
-    """Of the code without tests, by their paths from the root."""
+    """Returns the files of code outside tests that match, as paths from the root."""
     return {str(path.relative_to(SOURCE)) for folder in ("kernels", "lib", "tools", "include")
             for path in (SOURCE / folder).rglob("*")
             if path.suffix in (".c", ".h", ".cl", ".cpp", ".build")
@@ -46,7 +46,7 @@ def test_shapes_are_named_where_they_are_made():
     shapes = rows("kernels/shapes/shapes.h", r"ROW\((\w+), (\w+)")
     assert len(shapes) > 10
     for number, name in shapes:
-        if name in ("sphere", "mesh", "user"):  # what objects are by themselves; and no formulas
+        if name in ("sphere", "mesh", "user"):  # the default shape, and shapes without formulas
             continue
         named = files_with(rf"SHAPE_{number}\b|\bshape_{name}\b|\b{name}\.[ch]\b"
                            rf"|\b{name}_(interval|spans|normal)\b")
@@ -57,7 +57,7 @@ def test_shapes_are_named_where_they_are_made():
 def test_verbs_formats_and_materials_are_named_in_their_rows_and_files():
     for verb in rows("tools/verbs.h"):
         assert files_with(rf"\b{verb}_verb\b|tools/{verb}\.c\b") <= {f"tools/{verb}.c"}, verb
-    for name in ("npy", "mat"):  # those that nothing else is made of
+    for name in ("npy", "mat"):  # formats that no other format is based on
         assert name in rows("lib/swath/swath_format.h")
         assert files_with(rf"\b{name}_format\b|swath/{name}\.c\b") == {f"lib/swath/{name}.c"}
     materials = re.findall(r'^    \{"([a-z ]+)", \d', (SOURCE / "lib/schema/materials.c").read_text(

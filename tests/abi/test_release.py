@@ -1,5 +1,5 @@
-"""What a release is made of: its version, CITATION.cff, and the sources by tools/release.sh. Its wheels are
-tested in test_wheels.py."""
+"""Tests of a release: its version, CITATION.cff, and the sources by tools/release.sh. test_wheels.py tests
+its wheels."""
 import datetime
 import hashlib
 import os
@@ -41,8 +41,8 @@ def test_pages_name_wheels_of_this_version():
 
 
 def make_clone(clone):
-    """A repository of what is here, whose changelog has a section of this version, tagged as such. Returns what
-    runs git in it."""
+    """Makes a repository of the present files and tags it with this version. Its changelog has a section of
+    this version. Returns a function that runs git in the repository."""
     variables = {**os.environ, "GIT_CONFIG_GLOBAL": os.devnull}
     for who in ("AUTHOR", "COMMITTER"):
         variables.update({f"GIT_{who}_NAME": "someone", f"GIT_{who}_EMAIL": "someone@example.org",
@@ -80,7 +80,7 @@ def release(git, *words):
 
 
 def assert_sums(folder):
-    """SHA256SUMS has all other files of a release."""
+    """Asserts that SHA256SUMS lists all other files of a release."""
     sums = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.iterdir() if path.name != "SHA256SUMS"}
     lines = (folder / "SHA256SUMS").read_text().splitlines()
     assert lines == [f"{sums[name]}  {name}" for name in sorted(sums)]

@@ -1,4 +1,4 @@
-"""The validation report says what the physics tests said."""
+"""Tests that the validation report repeats the results of the physics tests."""
 import json
 import os
 import pathlib

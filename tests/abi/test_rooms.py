@@ -1,4 +1,4 @@
-"""The rooms of lib: each calls those below it alone, as the linker sees it."""
+"""Tests that each room, a folder of lib, calls only the rooms below it, as the linker sees it."""
 import os
 import pathlib
 import re
@@ -8,12 +8,12 @@ LIB = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "lib"
 ARCHIVE = pathlib.Path(os.environ["SONJECT_LIBRARY"]).parent / "libsonject_internal.a"
 
 ROOMS = ["api", "dataset", "inject", "measure", "elements", "form", "trace", "schema", "swath",
-         "scene", "mesh", "medium", "image", "device", "base"]  # each sees what follows
+         "scene", "mesh", "medium", "image", "device", "base"]  # each may call the rooms after it
 
 
 def symbols_of_rooms():
-    """What each room's objects define and what they ask for. The library's parts that are objects
-    of no room are made by the build: the kernels' text."""
+    """Returns the symbols that the rooms define, and (room, symbol) for each symbol that a room
+    needs. Objects of no room are skipped: the build makes them, such as the kernels' text."""
     defined, wanted = {}, []
     listing = subprocess.run(["nm", "--print-file-name", ARCHIVE], check=True, capture_output=True,
                              text=True).stdout
@@ -41,7 +41,7 @@ def test_no_room_calls_one_above_it():
 
 
 def test_one_folder_knows_the_operating_system():
-    """Its macros, and headers that C does not have; the interface asks how Windows exports."""
+    """Searches for macros of a system and headers beyond C's. export.h may ask for Windows' exports."""
     names = r"_(POSIX|XOPEN|GNU|BSD|DEFAULT)_[A-Z_]*SOURCE|_WIN(32|64)|__(linux|unix|APPLE)|" \
             r"<(unistd|fcntl|dirent|dlfcn|poll|sched|spawn|windows|io|sys/\w+)\.h>"
     found = {str(path.relative_to(LIB.parent)) for folder in ("lib", "tools", "include", "kernels")

@@ -1,4 +1,4 @@
-"""Every file of tests that is there is run."""
+"""Tests that meson runs every test file of the command."""
 
 import os
 import pathlib

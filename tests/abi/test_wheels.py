@@ -1,4 +1,4 @@
-"""Wheels of a release, by tools/wheels.sh: that they need nothing, hold the licences, and give the build's bits."""
+"""Tests of a release's wheels, made by tools/wheels.sh: needed libraries, licences, and the bits of results."""
 import functools
 import os
 import pathlib
@@ -22,9 +22,9 @@ BYTES_MAX = 15_000_000
 GLIBC = (2, 28)
 
 
-@functools.cache  # pytest makes a fixture again where the tests between ask for another machine's
+@functools.cache  # pytest makes a fixture again after tests for another machine
 def build(machine):
-    """The wheel of a release that has it alone."""
+    """Makes a release with this machine's wheel alone and returns the wheel."""
     clone = SOURCE / "build-wheels" / machine
     shutil.rmtree(clone, ignore_errors=True)
     answer = release(make_clone(clone), f"v{VERSION}", machine)
@@ -65,7 +65,7 @@ def programs(wheel, unpacked):
 
 @pytest.fixture(scope="module")
 def command(wheel, programs, tmp_path_factory):
-    """What runs the wheel's command here, as a list of words."""
+    """Returns the words that start the wheel's command here."""
     if wheel.stem.endswith("aarch64"):
         # With Debian's arm64 libraries. With -L, the loader is of the cross compiler's glibc and the rest of Debian's.
         return [shutil.which("qemu-aarch64"), programs[1]]
@@ -75,7 +75,7 @@ def command(wheel, programs, tmp_path_factory):
     script.write_text(f'#!/bin/sh\nWINEDEBUG=-all WINEPREFIX={script.parent / "prefix"} exec wine {programs[1]} "$@"\n',
                       encoding="utf-8")
     script.chmod(0o755)
-    subprocess.run([script, "--version"], check=True, capture_output=True)  # the first time Wine says what it sets up
+    subprocess.run([script, "--version"], check=True, capture_output=True)  # Wine's first start prints its setup
     return [script]
 
 
@@ -90,7 +90,7 @@ def test_a_wheel_holds_package_programs_examples_and_licences(wheel, unpacked):
 
 
 def test_its_programs_need_the_system_alone(wheel, programs):
-    """An old glibc, or what Windows has."""
+    """The programs need only an old glibc, or libraries that Windows has."""
     for program in programs:
         if is_of_windows(wheel):
             listing = subprocess.run(["objdump", "-p", program], check=True, capture_output=True, text=True).stdout
@@ -116,7 +116,7 @@ def demo(tmp_path_factory):
 
 
 def test_its_command_gives_the_bits_of_the_build(wheel, command, demo, tmp_path):
-    """On the best instruction set of this processor, or under qemu."""
+    """The command runs on the best instruction set of this processor, or under qemu."""
     if not wheel.stem.endswith("aarch64"):
         drivers = [subprocess.run([one, "devices"], check=True, capture_output=True, text=True).stdout.splitlines()[1]
                    for one in (COMMAND, *command)]
@@ -129,9 +129,9 @@ FROZEN = SOURCE / "tests" / "frozen"
 
 @pytest.mark.parametrize("wheel", ["win_amd64"], indirect=True)
 def test_windows_gives_the_builds_files(command, tmp_path):
-    """Of all frozen scenes, but of HDF5. Messages end their lines otherwise.
-    Colours of pictures and bent rays come from the C library's own logarithms and cosines: rays may
-    change a pixel in ten thousand."""
+    """Compares the files of all frozen scenes without HDF5. Messages have other line ends.
+    Colours of pictures and bent rays come from the C library's own logarithms and cosines. Bent rays
+    may change one byte in ten thousand."""
     scenes = set(re.findall(r"^\[(\w+)\]", (FROZEN / "scenes.txt").read_text(encoding="utf-8"), re.M))
     answer = subprocess.run([sys.executable, FROZEN / "outputs.py", COMMAND, *command, "--keep", tmp_path / "kept", "--scenes",
                              ",".join(sorted(scenes - {"convert", "formats"}))],

@@ -1,4 +1,4 @@
-"""A Slurm of three nodes on this machine, apart from any that runs here already."""
+"""A Slurm cluster of three nodes on this machine, apart from any cluster that already runs here."""
 
 import os
 import pathlib
@@ -9,7 +9,7 @@ import subprocess
 import time
 
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "scontrol", "sinfo", "squeue")
-# Where Debian has daemons, which not everybody's PATH names.
+# Debian has daemons in folders that are not in every PATH.
 PATH = os.environ.get("PATH", "") + ":/usr/sbin:/sbin"
 NODES = ("node1", "node2", "node3")
 POLL_S = 0.02
@@ -50,7 +50,7 @@ PartitionName=all Nodes=ALL Default=YES State=UP
 
 
 def why_not():
-    """What keeps a cluster from being started here; None: nothing."""
+    """Returns the reason why no cluster can start here, or None."""
     absent = [name for name in PROGRAMS if not shutil.which(name, path=PATH)]
     if absent:
         return "not installed: " + ", ".join(absent)
@@ -58,7 +58,7 @@ def why_not():
 
 
 def wait_for(what, found, polls_at_once=1):
-    """What found() gives as soon as that is true; looks so many times as often as elsewhere."""
+    """Polls until found() gives something true and returns that. polls_at_once raises the polling rate."""
     for _ in range(POLLS_MOST * polls_at_once):
         answer = found()
         if answer:
@@ -76,13 +76,13 @@ def free_ports(count):
 
 
 def processes_with(*variables):
-    """Process numbers of all whose environment holds each of the "NAME=value"."""
+    """Returns the numbers of all processes whose environment holds each "NAME=value"."""
     wanted = {variable.encode() for variable in variables}
     found = []
     for path in pathlib.Path("/proc").glob("[0-9]*/environ"):
         try:
             held = path.read_bytes().split(b"\0")
-        except OSError:  # has ended
+        except OSError:  # the process has ended
             continue
         if wanted.issubset(held):
             found.append(int(path.parent.name))
@@ -90,7 +90,7 @@ def processes_with(*variables):
 
 
 def send(process, number):
-    """A signal; whether there still is such a process."""
+    """Sends a signal and returns whether the process still exists."""
     try:
         os.kill(process, number)
     except ProcessLookupError:
@@ -104,8 +104,8 @@ def kill(processes):
 
 
 class Cluster:
-    """Daemons that write to a folder of their own, with a short name since sockets are in it. The
-    environment, whose PATH finds them, is also that of jobs."""
+    """The daemons of a cluster. They write to their own folder, whose name is short since it holds
+    sockets. Daemons are found by the environment's PATH, and jobs get the same environment."""
 
     def __init__(self, folder, environment):
         self.folder = pathlib.Path(folder)
@@ -116,7 +116,7 @@ class Cluster:
         self.environment = {**kept, "SLURM_CONF": f"{self.folder}/slurm.conf"}
 
     def start(self):
-        self.folder.chmod(0o755)  # munged wants no less
+        self.folder.chmod(0o755)  # munged demands these permissions
         (self.folder / "state").mkdir()
         (self.folder / "slurm.conf").write_text(CONFIGURATION.format(
             folder=self.folder, host=socket.gethostname().split(".")[0], ports=free_ports(4)))
@@ -127,7 +127,7 @@ class Cluster:
         self.wait_for("three idle nodes", lambda: self.nodes("idle") == set(NODES))
 
     def wait_for(self, what, found):
-        """Of daemons; fails as soon as one has ended."""
+        """Waits for found(), and fails as soon as a daemon has ended."""
         wait_for(what, lambda: self.none_ended() and found())
 
     def none_ended(self):
@@ -148,7 +148,7 @@ class Cluster:
         self.start_daemon(node, "slurmd", "-D", "-c", "-N", node)
 
     def start_daemon(self, name, *command):
-        """Jobs are nice as their daemons are, so that tests see in time what they do."""
+        """Starts a daemon at a low priority. Jobs inherit the priority, so tests observe them in time."""
         with open(self.folder / f"{name}.log", "wb") as log:
             self.daemons[name] = subprocess.Popen(
                 ["nice", "-n", "5", *command], env=self.environment, cwd=self.folder,
@@ -171,7 +171,7 @@ class Cluster:
                               capture_output=True, timeout=120, check=False, **options)
 
     def call(self, *command, **options):
-        """Runs one of Slurm's commands; what it says."""
+        """Runs one of Slurm's commands and returns its output."""
         answer = self.try_call(*command, **options)
         assert answer.returncode == 0, (command, answer.stderr)
         return answer.stdout
@@ -180,16 +180,16 @@ class Cluster:
         return set(self.try_call("sinfo", "-h", "-N", "-t", states, "-o", "%N").stdout.split())
 
     def job(self, name):
-        """What Slurm tells of a job or of one task of an array."""
+        """Returns Slurm's values for a job or for one task of an array."""
         told = self.call("scontrol", "--oneliner", "show", "job", name)
         return dict(word.split("=", 1) for word in told.split() if "=" in word)
 
     def queue(self, job):
-        """What is left of a job."""
+        """Returns squeue's lines for the rest of a job."""
         return self.try_call("squeue", "--noheader", f"--jobs={job}").stdout
 
     def start_again(self, name):
-        """Lets a requeued task start soon, once it is there; the node is up to Slurm. A node takes
-        a task for killed that starts within the second in which it was ended there before."""
+        """Waits for a requeued task and lets it start 2 s later on any node. A node takes a task for
+        killed if the task starts in the same second in which it ended there before."""
         wait_for("a requeued task", lambda: self.job(name)["Reason"] == "BeginTime")
         self.call("scontrol", "update", f"jobid={name}", "StartTime=now+2")

@@ -1,4 +1,4 @@
-"""What the tests of the command share. SONJECT_COMMAND names the command."""
+"""Fixtures and helpers of the command's tests. SONJECT_COMMAND names the command."""
 
 import json
 import os
@@ -41,8 +41,8 @@ COMMAND = os.environ.get("SONJECT_COMMAND", "")
 
 @pytest.fixture(scope="session")
 def environment(tmp_path_factory):
-    """The environment of commands: a fresh home, but the compiled kernels of whoever tests, since
-    compiling them takes longer than all else."""
+    """Returns the environment of commands. The home is new, but the cache of compiled kernels is the
+    tester's, since compiling them takes longest."""
     caches = os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache"
     home = tmp_path_factory.mktemp("home")
     return {**os.environ, "HOME": str(home), "XDG_CACHE_HOME": str(caches)}
@@ -50,8 +50,8 @@ def environment(tmp_path_factory):
 
 @pytest.fixture
 def sonject(tmp_path, environment):
-    """Runs the command in a fresh folder; changes: of the environment, None removes. sonject.done runs
-    what must succeed."""
+    """Runs the command in a new folder. changes: environment variables, of which None removes one.
+    sonject.done also asserts success."""
 
     def run(*arguments, changes=None, timeout=300, folder=".", **options):
         variables = {**environment, **(changes or {})}
@@ -77,7 +77,7 @@ def sonject(tmp_path, environment):
 
 
 def make_swath():
-    """Rayleigh amplitudes, rms 0.1."""
+    """Returns Rayleigh amplitudes with an rms of 0.1."""
     random = numpy.random.default_rng(20240502)
     return random.rayleigh(0.1 / numpy.sqrt(2), (ROWS, COLUMNS)).astype(numpy.float32)
 
@@ -89,13 +89,13 @@ def swath():
 
 @pytest.fixture
 def sides(request):
-    """Samples of port and starboard, of the size that the module says."""
+    """Returns samples of port and starboard, ROWS x COLUMNS of the test's module each."""
     random, size = numpy.random.default_rng(7), (request.module.ROWS, request.module.COLUMNS)
     return [random.rayleigh(2000.0, size).astype(numpy.uint16) for _ in range(2)]
 
 
 def write_scene(folder, swath):
-    """A scene file with a sphere on a float32 swath."""
+    """Writes a scene file with a sphere on a float32 swath and returns its path."""
     (folder / "swath.tif").write_bytes(images.tiff_bytes(swath))
     path = folder / "scene.yaml"
     path.write_text(SCENE)
@@ -108,19 +108,19 @@ def scene(tmp_path, swath):
 
 
 def files_below(folder):
-    """All files in the folder, none if it is not there. A command may be at work in it."""
+    """Returns all files below the folder, or none if the folder is missing. Commands may be writing there."""
     return sorted(pathlib.Path(place, name) for place, _, names in os.walk(folder) for name in names)
 
 
 def page_data(folder, name="report.html"):
-    """What the folder's page shows."""
+    """Returns the data that the folder's page shows."""
     page = (folder / name).read_text(encoding="utf-8")
     return json.loads(page.split('<script type="application/json" id="data">')[1].split("</script>")[0])
 
 
 def assert_refused(answer, code, *words, mistakes=1):
-    """One line on stderr for each mistake, the first of which holds the words, nothing on stdout, the
-    exit code."""
+    """Asserts the exit code, one line on stderr for each mistake, and nothing on stdout. The first line
+    has the words."""
     assert answer.returncode == code, answer.stderr
     lines = answer.stderr.splitlines()
     assert len(lines) == mistakes, answer.stderr

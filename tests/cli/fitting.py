@@ -1,4 +1,4 @@
-"""Campaigns on seabeds that sonject makes, to fit and to be found by a fit."""
+"""Campaigns on synthetic seabeds: one to fit, and one whose draws a fit must find."""
 
 import json
 
@@ -13,7 +13,7 @@ input:
 sonar: {frequency: 300 kHz, bandwidth: 20 kHz, altitude: 8 m, resolution: 6 cm, response: hamming}
 """
 
-# Each kind's draws, lowest and highest: what a user starts with, and what the contacts are made by.
+# Lowest and highest draws, m and dB: those that a user starts with, and those that made the contacts.
 START = {"length": (1.4, 3.2), "width": (0.8, 1.8), "height": (0.4, 0.9)}
 HIDDEN = {"length": (0.9, 2.0), "width": (0.45, 1.0), "height": (0.25, 0.6), "level": (9, 19), "floor": -15}
 
@@ -52,7 +52,7 @@ def make_seabeds(sonject, rows=300, columns=500, numbers=(1, 2)):
 
 
 def campaign(draws, images, seed, rows=96, columns=160, shapes=("box", "ellipsoid"), more=""):
-    """more: other keys of all objects."""
+    """Returns the text of a campaign. more: other keys of all objects."""
     level = draws.get("level")
     floor = draws.get("floor")
     return CAMPAIGN.format(
@@ -66,7 +66,7 @@ def campaign(draws, images, seed, rows=96, columns=160, shapes=("box", "ellipsoi
 
 
 def drawn(folder):
-    """Medians of what the images of a data set show: length, width, proud height, level and floor."""
+    """Returns medians over a data set's images: length, width and proud height in m, level and floor in dB."""
     values = []
     for path in sorted((folder / "all" / "truth").glob("*.json")):
         truth = json.loads(path.read_text())
@@ -76,7 +76,7 @@ def drawn(folder):
     return numpy.median(numpy.array(values, float), axis=0)
 
 
-WINDOW = (48, 80)  # rows and columns that a detector looks at
+WINDOW = (48, 80)  # rows and columns of a detector's window
 CELL = 4
 
 
@@ -88,7 +88,7 @@ def _features(image, row, column):
 
 
 def target_windows(folder, random):
-    """Features of windows about the labels of a data set, a few pixels off."""
+    """Returns features of windows around the labels of a data set, moved by up to 3 pixels."""
     windows = []
     labels = json.loads((folder / "all" / "coco.json").read_text())
     names = {image["id"]: image["file_name"] for image in labels["images"]}

@@ -1,4 +1,4 @@
-"""Just enough writers of image files, so that the tests need no image library."""
+"""Small writers and a reader of image files, so that the tests need no image library."""
 
 import struct
 import zlib
@@ -9,9 +9,9 @@ _FORMATS = {"u": 1, "f": 3}  # TIFF's SampleFormat
 
 
 def tiff_bytes(pixels, width=None, height=None, deflated=False):
-    """A little-endian TIFF of (rows, columns) or (rows, columns, channels).
+    """Returns a little-endian TIFF of (rows, columns) or (rows, columns, channels).
 
-    width, height: what the header says instead of the truth.
+    width, height: false sizes for the header.
     """
     pixels = numpy.ascontiguousarray(pixels)
     rows, columns = pixels.shape[:2]
@@ -48,7 +48,7 @@ def tiff_bytes(pixels, width=None, height=None, deflated=False):
 
 
 def png_bytes(pixels, description=b""):
-    """An 8 bit grey PNG of (rows, columns)."""
+    """Returns an 8 bit grey PNG of (rows, columns)."""
     rows, columns = pixels.shape
     lines = b"".join(b"\0" + row.astype(numpy.uint8).tobytes() for row in pixels)
 
@@ -67,7 +67,7 @@ def png_bytes(pixels, description=b""):
 
 
 def read_tiff(path):
-    """Pixels of an uncompressed TIFF in strips, of either byte order."""
+    """Returns the pixels of an uncompressed TIFF in strips, of either byte order."""
     content = path.read_bytes()
     order = {b"II": "<", b"MM": ">"}[content[:2]]
     assert struct.unpack_from(order + "H", content, 2) == (42,)

@@ -4,14 +4,14 @@ import numpy
 
 ROWS, COLUMNS = 768, 800
 WIDTH = 1.5  # half-power width of the response, pixels
-LEVEL_DB = 2.0  # of the seabed's level, standard deviation
-# of each kind: parameter, and median amplitude of the seabed over full scale
+LEVEL_DB = 2.0  # standard deviation of the seabed's level, dB
+# each kind's parameter, and the seabed's median amplitude over full scale
 KINDS = {"amplitude": (None, 0.12), "intensity": (None, 0.25), "gamma": (1.7, 0.08),
          "schlick": (3.0, 0.2), "decibel": (None, 0.1)}
 
 
 def _smooth(noise, deviation):
-    """Convolved with a Gaussian of that standard deviation, round the edges."""
+    """Convolves with a Gaussian of that standard deviation, pixels. Opposite edges are joined."""
     rows = numpy.fft.fftfreq(noise.shape[0])[:, None]
     columns = numpy.fft.fftfreq(noise.shape[1])[None, :]
     weights = numpy.exp(-2 * (numpy.pi * deviation) ** 2 * (rows**2 + columns**2))
@@ -19,15 +19,15 @@ def _smooth(noise, deviation):
 
 
 def _field(random, shape):
-    """Circular Gaussian, of mean square 1, as a Gaussian response of that width makes it."""
+    """Returns a circular Gaussian field of mean square 1, as a Gaussian response of WIDTH makes it."""
     noise = random.standard_normal(shape) + 1j * random.standard_normal(shape)
     field = _smooth(noise, WIDTH / (2 * numpy.log(2) ** 0.5))
     return field / numpy.mean(numpy.abs(field) ** 2) ** 0.5
 
 
 def speckle(seed, textures=None, gain_db=0.0, schlick=1.0):
-    """Numbers of one level, of a K distribution of half the shape that textures says, of a gain that rises
-    over the columns, by a Schlick curve."""
+    """Returns numbers of one level by a Schlick curve. Intensities are K distributed with the shape
+    textures / 2. The gain changes by gain_db over the columns."""
     random = numpy.random.default_rng(seed)
     shape = (512, 600)
     intensity = numpy.abs(_field(random, shape)) ** 2 * 10 ** (gain_db / 10 * numpy.arange(600) / 600)
@@ -39,8 +39,8 @@ def speckle(seed, textures=None, gain_db=0.0, schlick=1.0):
 
 
 def sidescan(shadow_db=None, water_db=-30.0, water=100, seed=1):
-    """Amplitudes of a waterfall of two sides, the nadir in its middle: water to the first return, seabed, and
-    shadows of stones of 6 to 14 pings in it, so much darker than what is about them; None: no shadow."""
+    """Returns amplitudes of a waterfall of two sides with the nadir in the middle. Water reaches up to the
+    first return. Shadows of stones, 6 to 14 pings long, differ by shadow_db from the seabed; None: no shadow."""
     random = numpy.random.default_rng(seed)
     shape = (480, 1000)
     level = _smooth(random.standard_normal(shape), 40.0).real
@@ -56,10 +56,10 @@ def sidescan(shadow_db=None, water_db=-30.0, water=100, seed=1):
 
 
 class Made:
-    """numbers: stored, 8 or 16 bits; the rest is what a calibration is to find."""
+    """A made swath. `numbers` are its stored pixels of 8 or 16 bits. A calibration must find the rest."""
 
     def __init__(self, kind, looks=1, share=0.9, floor_db=-25.0, seed=1, bits=16, water=None):
-        """share: of the type's largest number that is the ceiling. water: first returns of the rows,
+        """share: the ceiling over the type's largest number. water: the first return of each row, in
         columns from the left."""
         self.kind, self.looks = kind, looks
         self.parameter, level = KINDS[kind]
@@ -99,13 +99,13 @@ class Made:
         self.floor_db = 10 * numpy.log10(noise / numpy.median(seabed + noise))
 
 
-# Largest standard errors, over the value; of the floor in dB.
+# The largest allowed standard errors, as shares of the value. The noise floor's is in dB.
 LIMITS = {"parameter": 0.05, "looks": 0.1, "noise_floor": 1.0, "response_along_track": 0.05,
           "response_range": 0.05}
 
 
 def deviations(made, measured):
-    """What was found less what is so, in standard errors, and whether these are small enough."""
+    """Returns for each estimate its error in standard errors, and its standard error over the limit."""
     found = {
         "looks": (measured["looks"], made.looks),
         "noise_floor": (measured["noise_floor"], made.floor_db),

@@ -1,4 +1,4 @@
-"""Measured sonar images that the project does not ship, and what is read out of them."""
+"""Readers of measured sonar images, which the project does not ship."""
 
 import os
 import pathlib
@@ -13,7 +13,7 @@ FOLDER = pathlib.Path(os.environ.get("SONJECT_MEASURED_IMAGES", ROOT.parent / "s
 
 
 def measured(name):
-    """The path of a measured image; skips the test where there is none."""
+    """Returns the path of a measured image, or skips the test if the image is missing."""
     path = FOLDER / name
     if not path.exists():
         pytest.skip(f"{path} is not there: measured images are not shipped; "
@@ -22,18 +22,18 @@ def measured(name):
 
 
 def read_png(path):
-    """Pixels of an 8 bit PNG: grey, numbers of colours, or (rows, columns, 3)."""
+    """Returns the pixels of an 8 bit PNG: grey levels, palette numbers, or (rows, columns, 3)."""
     image = Image.open(path)
     assert image.mode in ("L", "P", "RGB")
     return numpy.array(image)
 
 
 def read_xtf(path):
-    """Samples of the port channel, rows of pings, columns from near to far, and their altitudes.
+    """Returns the samples of the port channel, a row for each ping, from near to far, and altitudes, m.
 
-    After Triton Imaging's description of the XTF format: a file header of 1024 bytes, then packets;
-    sonar packets (kind 0) have a header of 256 bytes and for each channel one of 64 and its
-    samples.
+    The layout follows Triton Imaging's description of the XTF format. Packets follow a file header of
+    1024 bytes. Sonar packets (kind 0) have a header of 256 bytes, and for each channel a header of 64
+    bytes and its samples.
     """
     content = path.read_bytes()
     position, pings, altitudes = 1024, [], []

@@ -16,7 +16,7 @@ EXPLICIT = "{row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.07
 
 
 def write_scene(folder, name, channel="", more="", geometry="from_file", altitude="from_file"):
-    """Of the folder's file of that name."""
+    """Writes a scene of the recording of that name and returns its path."""
     path = folder / f"{name}.yaml"
     more += f"channel: {channel}," if channel != "" else ""
     path.write_text(SCENE.format(name=name, more=more, geometry=geometry, altitude=altitude))
@@ -28,7 +28,7 @@ def _put(block, place, layout, *values):
 
 
 def file_header(kinds, sample_bytes=2, unipolar=1, units=0):
-    """kinds: of the channels; units: 0 for metres, 3 for degrees."""
+    """Returns an XTF file header. kinds: one for each channel. units: 0 for metres, 3 for degrees."""
     block = bytearray(1024)
     _put(block, 0, "BB", 0x7B, 1)
     _put(block, 164, "HH", units, len(kinds))
@@ -39,7 +39,7 @@ def file_header(kinds, sample_bytes=2, unipolar=1, units=0):
 
 
 def ping(lines, slant_range=30.0, altitude=6.0, position=(0.0, 0.0), number=0):
-    """lines: (channel's number, samples as stored) of one ping."""
+    """Returns one ping of an XTF file. lines: (number of the channel, samples as stored)."""
     body = b""
     for channel, samples in lines:
         head = bytearray(64)
@@ -57,16 +57,16 @@ def ping(lines, slant_range=30.0, altitude=6.0, position=(0.0, 0.0), number=0):
 
 
 def note(text=b"a note of the operator"):
-    """A packet that is no ping."""
+    """Returns a packet that is no ping."""
     body = text.ljust(256 - 14, b"\0")
     return struct.pack("<HBBHHHI", 0xFACE, 1, 0, 0, 0, 0, 14 + len(body)) + body
 
 
 def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), altitudes=None, silent=(), **options):
-    """Rows x columns of 16 bit samples a side, column 0 next to the track, and a sub-bottom channel
-    and notes between them. row_spacing: or where each row lies along the track. Port's samples go into the file from far to near, as recorders do. empty:
-    rows whose pings have neither position nor altitude. altitudes: of the rows, where they differ.
-    silent: rows whose pings have no samples."""
+    """Returns an XTF file with a sub-bottom channel and notes between the pings. port, starboard: rows x
+    columns of 16 bit samples, column 0 next to the track. Port is stored from far to near, as recorders
+    do. row_spacing: a number, or each row's place along the track, m. empty: rows whose pings have neither
+    position nor altitude. altitudes: one for each row, m. silent: rows whose pings have no samples."""
     data = file_header([SUBBOTTOM, PORT, STARBOARD], units=options.pop("units", 0))
     for row, (left, right) in enumerate(zip(port, starboard)):
         lines = [
@@ -90,7 +90,7 @@ def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), altitudes=None, silent
 
 
 def jsf_message(kind, body, subsystem=0, channel=0):
-    """A message of a JSF file, after EdgeTech's published description of the format."""
+    """Returns a message of a JSF file, after EdgeTech's published description of the format."""
     head = bytearray(16)
     _put(head, 0, "HBBHBBBB", 0x1601, 11, 0, kind, 0, subsystem, channel, 0)
     _put(head, 12, "I", len(body))
@@ -99,9 +99,9 @@ def jsf_message(kind, body, subsystem=0, channel=0):
 
 def jsf_ping(samples, channel, subsystem=20, number=0, spacing=0.15, speed=1500.0, delay=0, altitude=6.0,
              position=(0.0, 0.0), units=1, heading=None, weight=3, kind=None, packet=1, valid=0x49):
-    """samples: unsigned 16 bit envelopes, or pairs of signed 16 bits; port's too from near to far.
-    delay: samples before the first. position: in the units' own numbers. valid: position, heading and
-    altitude."""
+    """Returns one side's ping. samples: unsigned 16 bit envelopes or pairs of signed 16 bits, from near to
+    far on both sides. delay: samples before the first one. position: in the numbers of `units`. valid:
+    the flags of position, heading and altitude."""
     block = bytearray(240)
     count = len(samples)
     if kind is None:
@@ -122,8 +122,8 @@ def jsf_ping(samples, channel, subsystem=20, number=0, spacing=0.15, speed=1500.
 
 
 def jsf_bytes(port, starboard, row_spacing=0.1, subsystems=(20,), empty=(), weights=None, **options):
-    """Rows of both sides, (columns) or (columns, 2), with a sub-bottom profiler's pings and other
-    messages between them. empty: rows whose pings have no samples. weights: of the rows."""
+    """Returns a JSF file of both sides, whose rows are (columns) or (columns, 2). Pings of a sub-bottom
+    profiler and other messages lie between. empty: rows without samples. weights: one for each row."""
     kind = "<u2" if port.ndim == 2 else "<i2"
     data = jsf_message(182, bytes(40))
     for row in range(len(port)):

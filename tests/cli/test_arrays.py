@@ -1,4 +1,4 @@
-"""HDF5 and MATLAB arrays as input, in the eyes of h5py and scipy."""
+"""Tests of HDF5 and MATLAB arrays as input. h5py and scipy write and read the files."""
 
 import json
 
@@ -25,7 +25,7 @@ def assert_target_is_there(before, after):
 
 
 def others(group):
-    """All that a file holds but the image: values, attributes, types and storage."""
+    """Returns all that a file holds except the image's values: values, attributes, types and storage."""
     found = {}
 
     def note(name, thing):
@@ -86,7 +86,7 @@ def test_named_arrays_are_measured_and_drawn(sonject, tmp_path, swath):
 
 
 def write_matlab_73(path, image, compression=None):
-    """As MATLAB's -v7.3 lays it out: columns are together, so HDF5 sees the transpose."""
+    """Writes an image as MATLAB's -v7.3 does. Columns are contiguous, so HDF5 sees the transpose."""
     with h5py.File(path, "w", userblock_size=512) as file:
         pairs = image.T
         if image.dtype.kind == "c":
@@ -137,7 +137,7 @@ def test_matlab_5(sonject, tmp_path, swath, kind, compressed):
 
 
 def test_the_same_pixels_give_the_same_image(sonject, tmp_path, swath, scene):
-    """A float32 TIFF, an HDF5 of the same in float64, the transpose as MATLAB keeps it."""
+    """The same pixels are in a float32 TIFF, in float64 in HDF5, and transposed as MATLAB keeps them."""
     double = swath.astype("f8")
     with h5py.File(tmp_path / "line.h5", "w") as file:
         file["image"] = double

@@ -1,4 +1,4 @@
-"""Scenes and images that cannot be used: exit code 3, one line, nothing written."""
+"""Tests of unusable scenes and images: exit code 3, one line for each mistake, nothing written."""
 
 import os
 import struct
@@ -11,7 +11,7 @@ from conftest import COLUMNS, ROWS, assert_refused, files_below
 
 
 def refuse(sonject, scene, code, *words, options=()):
-    """Both verbs refuse, and leave nothing behind."""
+    """Asserts that check and run refuse the scene and leave no files behind."""
     before = files_below(scene.parent)
     assert_refused(sonject("check", scene, *options), code, *words)
     assert_refused(sonject("run", scene, "-o", "result", *options), code, *words)
@@ -135,7 +135,7 @@ def test_what_the_image_refuses_has_a_place(sonject, scene):
 
 
 def test_an_image_whose_pixels_are_cut_short(sonject, scene, swath):
-    # The directory stands before the pixels, so only reading them finds out.
+    # The directory stands before the pixels, so only reading the pixels shows that they are cut.
     content = images.tiff_bytes(swath)
     (start,) = struct.unpack_from("<I", content, 4)
     directory = bytearray(content[start:])

@@ -1,7 +1,7 @@
-"""Targets in measured images: is what was put in like what is there?
+"""Tests that targets injected into measured images look like measured targets.
 
-Ranges of measured images: amplitude contrast of seabed 0.46 to 0.60 (sub-Rayleigh sidescan less),
-shadows 15 to 30 dB below the seabed around them, highlights of objects peak 12 to 20 dB above it.
+In measured images the amplitude contrast of seabed is 0.46 to 0.60 (less in sub-Rayleigh sidescan).
+Shadows lie 15 to 30 dB below the seabed around them. Highlights of objects peak 12 to 20 dB above it.
 """
 
 import json
@@ -20,8 +20,8 @@ OBJECTS = (
     "shape: sphere, diameter: 0.6 m, burial: 8 cm",
 )
 
-# The pictures' frequency is not published. At 300 kHz, as sonars of their kind have, 2.5 cm pixels
-# take aspects of 5.7 degrees; at 100 kHz they would take 17, and the small sphere's shadow would fill.
+# The frequency of the pictures is not published. Sonars of this kind use 300 kHz, where 2.5 cm pixels
+# need aspects over 5.7 degrees. At 100 kHz they would need 17, and the small sphere's shadow would fill.
 SONAR = "{frequency: 300 kHz, bandwidth: 30 kHz, altitude: 10 m}"
 
 # Plain parts of three pictures: patch (row, column, rows, columns) and the objects' pixels.
@@ -58,7 +58,7 @@ def decibels(ratio):
 
 
 def inner(mask, pixels):
-    """The mask without so many pixels at its edges."""
+    """Returns the mask without that many pixels at its edges."""
     for _ in range(pixels):
         smaller = mask.copy()
         smaller[1:] &= mask[:-1]
@@ -74,7 +74,7 @@ def contrast(values):
 
 
 def judge(before, after, folder, patch):
-    """Numbers of each object, against the seabed's own energy where it stands."""
+    """Returns measures of each object, relative to the energy of the seabed around it before the run."""
     labels = read_png(folder / "labels.png")
     shadow = read_png(folder / "shadow.png") > 0
     highlight = read_png(folder / "highlight.png") > 0
@@ -100,15 +100,15 @@ def measure(sonject, image, transfer="amplitude", *masks):
 
 
 def check_objects(numbers, shallowest=-14.5):
-    """Half a dB beyond the shadows' range: a sphere's is so narrow that the response fills it."""
+    """Allows shadows half a dB above the measured range: the response fills the narrow shadow of a sphere."""
     for number in numbers:
         assert -30 <= number["shadow_db"] <= shallowest, number
         assert 12 <= number["peak_db"] <= 20, number
 
 
-PATCH, MARGIN = 12, 6  # pixels: of a side, and around it, with which a patch's level is compared
-PAIRS = 2  # of untouched patches for each of the band, on opposite sides of it
-FARTHEST = 10  # patches off, where those are looked for
+PATCH, MARGIN = 12, 6  # pixels: the side of a patch, and the margin for comparing its level
+PAIRS = 2  # pairs of untouched patches for each patch of the band, on opposite sides
+FARTHEST = 10  # largest distance of untouched patches, in patches
 STEP = 3  # pixels between the places where patches may begin
 FOLDS = 5
 INNER = slice(MARGIN, MARGIN + PATCH)
@@ -118,22 +118,22 @@ OFFSETS = sorted(((PATCH * down, PATCH * right) for down in range(FARTHEST + 1)
 
 
 def window(plane, row, column):
-    """Of a plane that has been padded: the patch that begins there, and what is around it."""
+    """Returns the patch that begins at (row, column), with its margin. The plane is padded by the margin."""
     return plane[row : row + PATCH + 2 * MARGIN, column : column + PATCH + 2 * MARGIN]
 
 
 def find_groups(influence, labels):
-    """Patches of what changed around the targets, and the nearest untouched ones of the same outline in pairs
-    on opposite sides, so that what changes evenly across the seabed counts for nothing: pixels inside, pixels
-    around, and places, that of the injected patch first. Where little changes, dark pixels change first: gaps
-    are closed, or the band would have a level of its own before anything was put in."""
+    """Returns groups of (pixels inside, pixels around, places). The first place has a patch of the band that
+    changed around the targets. The others have the nearest untouched patches of the same outline. These lie
+    in pairs on opposite sides, so even changes across the seabed cancel. Where little changes, dark pixels
+    change first. Gaps are closed, or the band would have another level even before the injection."""
     square = numpy.ones((3, 3), bool)
     closed = ndimage.binary_closing(numpy.pad(influence, MARGIN, "edge"), square, 3)[MARGIN:-MARGIN, MARGIN:-MARGIN]
     band = numpy.pad(closed & ~ndimage.binary_dilation(labels, square), MARGIN)
     untouched = numpy.pad(~(closed | labels), MARGIN)
     free = untouched.copy()
     groups = []
-    for least in (130, 72, 30):  # whole patches first, then what is left of the band
+    for least in (130, 72, 30):  # whole patches first, then the rest of the band
         sums = numpy.lib.stride_tricks.sliding_window_view(
             band[MARGIN:-MARGIN, MARGIN:-MARGIN], (PATCH, PATCH))[::STEP, ::STEP].sum((2, 3))
         for row, column in (STEP * numpy.argwhere(sums >= least)).tolist():
@@ -160,8 +160,8 @@ def find_groups(influence, labels):
 
 
 def describe(pixels, inside, around):
-    """Level over the surroundings, contrast, skewness, and of neighbours along either axis correlation and mean
-    step."""
+    """Returns a patch's level over its surroundings, contrast and skewness, and the correlation and mean step
+    of neighbours along either axis."""
     mean = pixels[inside].mean()
     values = pixels / mean - 1
     spread = values[inside].std()
@@ -174,7 +174,7 @@ def describe(pixels, inside, around):
 
 
 def describe_groups(amplitudes, groups):
-    """Of each group a row for each patch, from the group's mean on, so that only what differs near by is left."""
+    """Yields the features of each group, a row for each patch, less the group's mean. Local differences remain."""
     padded = numpy.pad(amplitudes, MARGIN)
     for inside, around, places in groups:
         told = numpy.array([describe(window(padded, *place), inside, around) for place in places])
@@ -182,7 +182,7 @@ def describe_groups(amplitudes, groups):
 
 
 def area_under_curve(features, folds, injected):
-    """Of Fisher's discriminant, which learns from the other parts of the image than the one it judges."""
+    """Returns the area under the ROC curve of Fisher's discriminant, learnt from other parts than it judges."""
     right = []
     for fold in range(FOLDS):
         here = folds == fold
@@ -196,8 +196,8 @@ def area_under_curve(features, folds, injected):
 
 
 def seam(groups, shuffles=100):
-    """How well a classifier tells injected background from untouched seabed near it: 0.5 chance, 1 always.
-    The standard error is the scatter when any patch of each group is called the injected one."""
+    """Returns how well a classifier tells injected background from untouched seabed near it (0.5: by chance,
+    1: always), and a standard error: the scatter when a random patch of each group counts as injected."""
     counts = [len(group) for group in groups]
     features = numpy.concatenate(groups)
     folds = numpy.repeat(numpy.arange(len(groups)) * FOLDS // len(groups), counts)
@@ -217,7 +217,7 @@ def groups_of_run(folder, *planes):
 
 
 def check_seam(before, after):
-    """Not told from the seabed better than the seabed tells itself, by two standard errors."""
+    """Asserts that the classifier succeeds no more often than before the injection, plus two standard errors."""
     (own, _), (found, error) = seam(before, 1), seam(after)
     print(f"seam {found:.3f} +- {error:.3f}, before {own:.3f}, {len(after)} patches")
     assert found <= max(0.55, own) + 2 * error
@@ -247,8 +247,8 @@ def test_sonar_pictures(sonject, tmp_path):
 
 
 def test_seams_are_seen(sonject, tmp_path):
-    """Among plain speckle nothing is told; what is put into the band then is: 1 dB, a third more contrast, or
-    less than a pixel's blur."""
+    """Plain speckle shows no seam. Flaws of the band are seen: 1 dB, a third more contrast, or a blur of less
+    than a pixel."""
     random = numpy.random.default_rng(2)
     before = abs(ndimage.gaussian_filter(random.normal(size=(500, 560)) + 1j * random.normal(size=(500, 560)), 0.6))
     (tmp_path / "bed.tif").write_bytes(tiff_bytes(before.astype(numpy.float32)))
@@ -281,27 +281,27 @@ def test_sidescan(sonject, tmp_path):
         positions, path="port.tif", patch=patch, row_spacing="12 cm",
         column_spacing="2.928 cm", first_range="1.5 cm", transfer="",
         sonar=f"{{frequency: 600 kHz, bandwidth: 30 kHz, altitude: {altitude:.2f} m, "
-              "response: rectangular}"))  # whose side lobes leave a band to judge
+              "response: rectangular}"))  # its side lobes leave a band to judge
     sonject.done("run", "scene.yaml", "-o", "out", "--quiet")
     out = tmp_path / "out"
     before, after = (
         numpy.frombuffer(file.read_bytes(), "<u2", samples.size, 8).reshape(samples.shape) / 65535
         for file in (tmp_path / "port.tif", out / "image.tif"))
-    assert after.max() == before.max() == 32767 / 65535  # cut where the sonar cuts
+    assert after.max() == before.max() == 32767 / 65535  # clipped where the sonar clips
     numbers = judge(before, after, out, patch)
     seabed = measure(sonject, out / "image.tif", "amplitude", "--targets", out / "influence.png")
     print(json.dumps({"image": "sidescan", "objects": numbers, "seabed": seabed}))
-    # averaged by the sonar: below Rayleigh's 0.523, and as it was
+    # The sonar averages: the contrast is below Rayleigh's 0.523, and must stay as it was.
     assert seabed["amplitude_contrast"] == pytest.approx(
         measure(sonject, "port.tif")["amplitude_contrast"], abs=0.02)
-    check_objects(numbers, shallowest=-14)  # five to eight pings wide
+    check_objects(numbers, shallowest=-14)  # shadows are five to eight pings wide
     check_seam(*groups_of_run(out, before, after))
 
 
 @pytest.mark.parametrize("looks", [1, 4])
 @pytest.mark.parametrize("over", [None, -20])
 def test_noise_follows_the_seabed_or_does_not(sonject, tmp_path, over, looks):
-    """On sand that is 20 dB brighter than mud shadows are brighter; over one level they are as dark."""
+    """Shadows are brighter on sand, which is 20 dB above mud. With noise over one level they are equally dark."""
     scales = numpy.repeat([1.0, 0.1], 200)[:, None]
     pixels = numpy.random.default_rng(5).rayleigh(scales / 2**0.5, (400, 300)).astype(numpy.float32)
     (tmp_path / "image.tif").write_bytes(tiff_bytes(pixels))
@@ -321,13 +321,13 @@ objects:
     shadow = inner(read_png(tmp_path / "out" / "shadow.png") > 0, 4)
     levels = [decibels((image[rows][shadow[rows]] ** 2).mean()) for rows in (slice(0, 200), slice(200, 400))]
     if over is None:
-        assert levels[0] - levels[1] > 15  # the seabed's level is a mean over metres, which mixes both
+        assert levels[0] - levels[1] > 15  # below 20, since the seabed's level is a mean over metres of both
     else:
-        assert levels == pytest.approx([-35, -35], abs=0.3)  # speckle's error of over 1000 pixels
+        assert levels == pytest.approx([-35, -35], abs=0.3)  # the error of speckle over 1000 pixels or more
 
 
 def test_shadows_over_relief_are_dark_all_over(sonject, tmp_path):
-    """Of a real aperture: what an object hides is formed by the same responses as the seabed."""
+    """The aperture is real. The seabed that an object hides is formed by the same responses as all seabed."""
     (tmp_path / "scene.yaml").write_text("""\
 sonject: 1
 input:

@@ -1,6 +1,6 @@
-"""The pages in a browser: scripts run without an error, pictures load, and what is clicked does what it says.
+"""Tests of the pages in a browser: scripts run without errors, pictures load, and controls do what they say.
 
-Screenshots are left in build/screenshots."""
+Screenshots stay in build/screenshots."""
 
 import functools
 import html
@@ -22,9 +22,9 @@ from test_report import HOSTILE, data_set  # noqa: F401, a fixture
 from test_run import DEMO
 
 SCREENSHOTS = SOURCE / "build" / "screenshots"
-# What the site's search tells, if it is ready before the browser ends.
+# Lines that the site's search prints if it is ready before the browser ends.
 NEWS = ("All search scripts loaded, building Lunr index", "Lunr index built, search ready")
-# When all is there: loads what waits to be looked at, does the test's own part, and leaves what that finds.
+# Runs the test's own script in the loaded page and leaves its result there. sizes() loads lazy images.
 PROBE = """
 <script>
 const find = selector => [...document.querySelectorAll(selector)];
@@ -54,7 +54,7 @@ addEventListener("load", async () => {
 
 @pytest.fixture(name="look")
 def fixture_look(tmp_path):
-    """Opens a page in the browser; what the script finds there, without a word on the console."""
+    """Opens a page in the browser and returns the script's result. Nothing may appear on the console."""
     browser = shutil.which("chromium")
     if not browser:
         pytest.skip("chromium is not installed")
@@ -84,7 +84,7 @@ def fixture_look(tmp_path):
 
 
 def test_errors_are_seen(look, tmp_path):
-    """By a page that has one."""
+    """A missing picture has no width, and an error in a script fails the check."""
     page = tmp_path / "page.html"
     page.write_text('<!DOCTYPE html>\n<body><img src="nowhere.png"></body>')
     assert look(page, "return sizes();", "broken") == [["nowhere.png", 0]]
@@ -123,7 +123,7 @@ def test_the_page_of_a_run(sonject, tmp_path, look):
     for text, key, digits in (("slant range, m", "slant_range_m", 2), ("target strength, dB", "target_strength_db", 1)):
         assert found["rows"][text] == [f"{each[key]:.{digits}f}" for each in truth["objects"]]
     assert found["rows"]["class"] == [each["class"] for each in truth["objects"]]
-    assert found["rows"]["altitude_m"] == ["10", "scene"] and len(found["rows"]["2"]) == 3  # of two interactions
+    assert found["rows"]["altitude_m"] == ["10", "scene"] and len(found["rows"]["2"]) == 3  # the row of two interactions
     row, column = (truth["patch"][side] / 2 for side in ("rows", "columns"))
     row_there, column_there = map(float, re.match(r"row ([\d.]+), column ([\d.]+), along track ", found["place"]).groups())
     assert abs(row_there - row) <= 2 and abs(column_there - column) <= 2
@@ -157,7 +157,7 @@ def test_the_page_of_a_data_set(data_set, look):  # noqa: F811
 
 
 def test_images_that_no_browser_shows_are_drawn(sonject, tmp_path, look):
-    """TIFF; and of many images there are so many at once."""
+    """The page draws TIFF images by itself, at most 60 at once."""
     sonject.done("seabed", "-o", "seabed.tif", "--rows", "300", "--columns", "400")
     sonject.done("campaign", SOURCE / "tools" / "campaigns" / "minefield.yaml", "-o", "set", "--set", "images=70",
                  "--set", "swaths=[{path: seabed.tif}]", "--set", "splits={all: 1}", "--set", "clutter.number=0")
@@ -196,7 +196,7 @@ def test_the_site_has_no_dead_links_and_is_shown(look):
     answer = subprocess.run(["sh", SOURCE / "tools" / "site.sh"], check=False, capture_output=True, text=True)
     assert answer.returncode == 0, answer.stdout + answer.stderr
     start = pathlib.Path(answer.stdout.splitlines()[-1])
-    # its search is a worker, which a page that is a file may not start
+    # the site's search is a worker, which a page opened as a file may not start
     handler = functools.partial(http.server.SimpleHTTPRequestHandler, directory=start.parent)
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()

@@ -1,4 +1,4 @@
-"""sonject calibrate: what a swath tells of itself."""
+"""Tests of sonject calibrate, which measures a swath's properties on the swath itself."""
 
 import json
 import re
@@ -21,8 +21,8 @@ def calibrated(sonject, *arguments):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_made_swath_tells_what_made_it(kind, sonject, tmp_path):
-    """One of test_calibration_matrix.py's cases of each curve: five estimates within 4 standard errors,
-    beyond which one of 3,000 swaths lies."""
+    """For each curve, tests one case of test_calibration_matrix.py: five estimates are within 4 standard
+    errors. One swath of 3,000 lies beyond."""
     made = Made(kind, looks=1 if kind == "decibel" else 2)
     numpy.save(tmp_path / "made.npy", made.numbers)
     found = calibrated(sonject, "made.npy")
@@ -48,7 +48,7 @@ def test_the_same_swath_tells_the_same_in_every_form(sonject, tmp_path):
 
 
 def test_texture_is_told_where_there_is_some(sonject, tmp_path):
-    """Of plain tiles, so that the shape is above the whole swath's, 3 and 6, and has their order."""
+    """The shape is measured on plain tiles. It is above the whole swath's, 3 and 6, and in the same order."""
     shapes = []
     for textures in (6, 12, None):
         numpy.save(tmp_path / "made.npy", speckle(3, textures=textures))
@@ -65,12 +65,12 @@ def test_gain_against_range_is_told(sonject, tmp_path):
     is_told = numpy.isfinite(decibels)
     assert len(decibels) == 18 and is_told.sum() > 15 and numpy.median(errors[is_told]) < 0.3
     off = (decibels + 6 * columns / 600)[is_told]
-    # a band has some 8 of 144 tiles, each of 300 independent pixels: 0.1 dB
+    # The error is 0.1 dB: a band has some 8 of 144 tiles, each of 300 independent pixels.
     assert abs(off - numpy.median(off)).max() < 0.6
 
 
 def test_curves_that_one_level_cannot_tell_apart_are_named(sonject, tmp_path):
-    """A Schlick curve of the parameter 3 is nearly a power over the spread of speckle; not over many levels."""
+    """Over speckle's spread, a Schlick curve of the parameter 3 is nearly a power. Over many levels it is not."""
     numpy.save(tmp_path / "one.npy", speckle(3, schlick=3))
     one = calibrated(sonject, "one.npy")["measured"]["transfer"]
     assert one["kind"] == "schlick" and one["parameter"]["value"] == pytest.approx(4, abs=1)
@@ -82,7 +82,7 @@ def test_curves_that_one_level_cannot_tell_apart_are_named(sonject, tmp_path):
 
 
 def test_a_misfit_tells_what_no_law_of_speckle_explains(sonject, tmp_path):
-    """Amplitudes above the middle are stretched: a curve of no family."""
+    """Amplitudes above the middle are stretched, so the curve is of no known family."""
     plain = speckle(3)
     bent = numpy.where(plain < 7000, plain, numpy.clip(3.0 * plain - 14000, 0, 65535)).astype(numpy.uint16)
     told = []
@@ -129,7 +129,7 @@ def test_what_is_not_there_is_not_seen_and_the_reason_told(sonject, tmp_path):
 
 
 def test_water_columns_of_one_side_and_two(sonject, tmp_path):
-    """Speckle knows the first return of a ping to a sample, and the nadir, from 768, much better."""
+    """Speckle shows the first return of a ping to a sample, and the nadir, from 768 pings, much better."""
     rows = numpy.arange(ROWS)
     water = numpy.round(120 + 40 * numpy.sin(rows / 90)).astype(int)
     right = Made("amplitude", water=water, seed=5).numbers
@@ -154,7 +154,7 @@ def test_water_columns_of_one_side_and_two(sonject, tmp_path):
             assert found["input"]["geometry"] == {"nadir_column": nadir["value"]}
         else:
             assert "one side" in told["nadir_column"]["not_seen"]
-        if sides.endswith("left"):  # of wide swaths, too, to the half
+        if sides.endswith("left"):  # to half a column, also for wide swaths
             assert found["input"]["geometry"] == {"nadir_column": numbers.shape[1] - 0.5}
 
 
@@ -172,7 +172,7 @@ def test_shadows_tell_the_noise_floor_and_the_water_column_does_not(sonject, tmp
 
 
 def test_first_returns_of_long_swaths_are_told_of_some_pings(sonject, tmp_path):
-    """So few that a scene can read them."""
+    """Every third ping is told, so few that a scene can read them."""
     water = numpy.where(numpy.arange(41000) < 30000, 60, 70)
     random = numpy.random.default_rng(3)
     numbers = random.rayleigh(30, (len(water), 160)) * (numpy.arange(160) >= water[:, None])
@@ -184,7 +184,7 @@ def test_first_returns_of_long_swaths_are_told_of_some_pings(sonject, tmp_path):
 
 
 def test_yaml_says_what_json_says(sonject, tmp_path):
-    """Read by a scene, which test_calibration_key.py does; here by its lines."""
+    """Compares lines of the YAML. test_calibration_key.py reads the YAML by a scene."""
     numpy.save(tmp_path / "made.npy", Made("decibel").numbers)
     found = calibrated(sonject, "made.npy")
     answer = sonject("calibrate", "made.npy", "-o", "made.yaml", "--picture", "made.png")
@@ -198,7 +198,7 @@ def test_yaml_says_what_json_says(sonject, tmp_path):
     assert (tmp_path / "made.png").read_bytes()[:4] == b"\x89PNG"
 
 
-# More of the input, the altitude, objects.
+# The gaps take more keys of the input, the altitude, and objects.
 LINE_SCENE = """\
 sonject: 1
 input: {path: line.xtf, %s, geometry: from_file}
@@ -208,7 +208,7 @@ objects: [%s]
 
 
 def water_line(folder, share):
-    """A line whose recorded altitudes are that share of its first returns."""
+    """Writes a line whose recorded altitudes are that share of its first returns."""
     first = numpy.linspace(100, 140, ROWS)
     made = Made("amplitude", water=first).numbers
     (folder / "line.xtf").write_bytes(xtf_bytes(made, made, altitudes=share * first * 30 / COLUMNS, slant_range=30.0))
@@ -224,7 +224,7 @@ def test_altitudes_that_first_returns_deny_are_told(sonject, tmp_path, share, to
     if told is None:
         return
     assert all(re.search(told, text) for text in texts)
-    assert ["write sonar.altitude: first_return" in text for text in texts] == [False, True]  # no scene has it yet
+    assert ["write sonar.altitude: first_return" in text for text in texts] == [False, True]  # calibrate knows of no scene
     by_returns = sonject.done("check", "scene.yaml", "--set", "sonar.altitude=first_return").stdout
     assert "the recorded altitude" not in by_returns
     assert altitude_of(by_returns) == pytest.approx(120 * 30 / COLUMNS, rel=0.02)  # the ball is in the middle
@@ -235,7 +235,7 @@ def altitude_of(checked):
 
 
 def test_altitudes_by_first_returns_are_those_at_the_objects(sonject, tmp_path):
-    """100 columns at the first ping, 140 at the last; the recorded ones are far off."""
+    """First returns go from 100 columns at the first ping to 140 at the last. Recorded altitudes are far off."""
     water_line(tmp_path, 0.5)
     for side in ("port", "starboard"):
         sonject.done("calibrate", "line.xtf", "--channel", side, "-o", f"{side}.yaml")
@@ -266,7 +266,7 @@ def test_both_sides_first_returns_begin_at_the_nadir(sonject, tmp_path):
         "5 cm, side: port}}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: first_return}\nobjects: []\n")
     columns = numpy.mean(calibrated(sonject, "both.npy")["measured"]["first_return"])
     assert columns == pytest.approx(120, abs=1)
-    # to the centre of the first pixel of the seabed, which check tells in three digits
+    # measured to the centre of the seabed's first pixel; check prints three digits
     assert altitude_of(sonject.done("check", "scene.yaml").stdout) == pytest.approx((columns + 0.5) * 0.05, abs=0.006)
 
 
@@ -311,8 +311,8 @@ def test_bad_input_is_refused(sonject, tmp_path):
 
 
 def plain_parameter(image):
-    """The Schlick parameter that gives the amplitudes of the plainer half of an image's tiles, in the
-    median, the contrast of one look."""
+    """Returns the Schlick parameter that gives the plainer half of an image's tiles the median contrast of
+    one look."""
     side, part = 32, 8
     rows, columns = (size // side for size in image.shape)
     tiles = image[: rows * side, : columns * side].astype(float).reshape(rows, side, columns, side)
@@ -339,15 +339,15 @@ def test_a_measured_curve_is_what_plain_patches_need(name, sonject):
 
 
 def test_measured_decibels_a_grey_level(sonject):
-    """0.378: by the contrast of plain patches (and 16 bits of amplitude on 255 levels)."""
+    """The contrast of plain patches gives 0.378. So do 16 bits of amplitude on 255 levels."""
     found = calibrated(sonject, measured("sas/hisas2040_wreck_6079x3578.jpg"))["input"]["transfer"]
     assert found["kind"] == "decibel"
     assert found["parameter"] == pytest.approx(0.378, rel=0.03)
 
 
 def test_measured_clipping_and_first_returns(sonject):
-    """The recorded altitudes of this line are those of another sensor, 10 to 60 samples short of where
-    both sides' seabed begins, so that the sides are held to each other."""
+    """Compares the sides with each other. The line's recorded altitudes come from another sensor and are
+    10 to 60 samples short of both sides' seabed."""
     path = measured("sidescan/scotsman-iver2.xtf")
     found = [calibrated(sonject, path, "--channel", side) for side in ("port", "starboard")]
     samples, _ = read_xtf(path)

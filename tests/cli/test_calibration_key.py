@@ -1,5 +1,5 @@
-"""input.calibration: a scene takes from a calibration what it does not say itself, and tells what came
-from where; auto makes one."""
+"""Tests of input.calibration: a scene takes values that it lacks from a calibration, and reports the source
+of each value. `auto` makes a calibration."""
 
 import json
 import os
@@ -128,7 +128,7 @@ def test_shadows_of_a_patch_tell_its_floor_and_the_water_column_does_not(sonject
         (tmp_path / "scene.yaml").write_text(text.replace(
             "{row: 300, column: 300, rows: 96, columns: 128}", "{row: 0, column: 540, rows: 480, columns: 460}"))
         floor = run_document(sonject, tmp_path, "--overwrite")[0]["noise_floor_db"]
-        # of ten shadows or more, each known to 2 dB by the seabed's texture and speckle
+        # the floor of ten or more shadows, each known to 2 dB because of the seabed's texture and speckle
         assert floor == ({"value": pytest.approx(-14, abs=1.3), "from": "patch"} if shadow_db else
                          {"value": pytest.approx(-22.5), "from": "fallback"})
 
@@ -168,7 +168,7 @@ def test_auto_makes_one_and_keeps_it(sonject, tmp_path):
     again = sonject("run", "scene.yaml", "-o", "out")
     assert again.returncode == 0 and "calibration made" not in again.stderr
     assert (tmp_path / "out" / "calibration.yaml").stat().st_mtime_ns == made.st_mtime_ns
-    # what a scene says by that file is the same
+    # a scene that names the file gives the same image
     by_name = sonject("run", "scene.yaml", "-o", "named", "--set",
                       "input.calibration=out/calibration.yaml")
     assert by_name.returncode == 0, by_name.stderr
@@ -230,7 +230,7 @@ def test_campaigns_make_one_for_each_swath(sonject, tmp_path):
         "scene": 0, "calibration": 4, "patch": 0, "default": 0, "fallback": 0, "file": 0}
     assert {path.name for path in (tmp_path / "whole" / "calibrations").iterdir()} == {
         "0.yaml", "0.png", "1.yaml", "1.png"}
-    # whoever goes on has the numbers that the images there have, and another campaign has none of them
+    # Going on restores the numbers of the existing images. Another campaign removes the calibrations.
     calibration = tmp_path / "whole" / "calibrations" / "0.yaml"
     calibration.write_text(calibration.read_text().replace("noise_floor: -", "noise_floor: -1"))
     for record in (tmp_path / "whole").glob("*/records/*.json"):

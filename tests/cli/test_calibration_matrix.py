@@ -1,5 +1,5 @@
-"""Calibrations of made swaths: all curves x 1 to 4 looks x three ceilings x noise floors, within three
-standard errors in 95 % of the cases, and these small. Six minutes."""
+"""Tests calibrations of made swaths: all curves x 1 to 4 looks x three ceilings x three noise floors. In 95 %
+of the cases estimates are within three standard errors, and these are small. Takes six minutes."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Campaigns: what the data set holds, and that it is the same however it came about."""
+"""Tests of campaigns: the data set's contents, which are the same however the set was made."""
 
 import ctypes
 import hashlib
@@ -69,7 +69,7 @@ TARGETS = ['ball, "big"/<b>', "rod ÅÄ&"]
 
 @pytest.fixture(scope="module")
 def ground(tmp_path_factory):
-    """A folder with swaths, their scene and a campaign."""
+    """Makes a folder with swaths, their scene and a campaign."""
     folder = tmp_path_factory.mktemp("campaign")
     numbers = numpy.random.default_rng(20261122)
     for i in range(3):
@@ -93,14 +93,14 @@ def command(ground, environment):
 
 @pytest.fixture(scope="module")
 def whole(ground, command):
-    """The data set that one run makes."""
+    """Makes the data set in one run and returns its folder."""
     answer = command("campaign", "campaign.yaml", "-o", "whole")
     assert (answer.returncode, answer.stderr) == (0, "sonject: the data set is in whole\n")
     return ground / "whole"
 
 
 def contents(folder):
-    """Of all files but the one that tells times."""
+    """Returns the bytes of all files, by name, without the file of times."""
     return {
         str(path.relative_to(folder)): path.read_bytes()
         for path in files_below(folder)
@@ -132,8 +132,8 @@ def test_every_image_has_its_files(whole):
 
 
 def test_what_is_avoided_is_shown_and_what_is_left_is_told(command, whole):
-    """Of rows and columns at which chips may begin: those from which one reaches within 2 pixels of the box are left out. Its
-    frame, the one orange thing in the picture, has 20 of 110 rows, and 70 of 150 columns, and a pixel more to either side."""
+    """No chip begins at a row and column from which it reaches within 2 pixels of the box. The box's frame is the only orange
+    part of the picture. It covers 20 of 110 rows and 70 of 150 columns, and a pixel more to either side."""
     rows, columns = numpy.mgrid[:ROWS - CHIP + 1, :COLUMNS - CHIP + 1]
     left = numpy.mean((rows >= 20 + 2) | (columns + CHIP <= 80 - 2))
     told = command("check", "campaign.yaml")
@@ -154,12 +154,12 @@ def test_no_swath_is_in_two_splits_and_classes_are_balanced_in_each(whole):
         splits.setdefault(record["swath"]["hash"], set()).add(record["split"])
     assert sorted(map(len, splits.values())) == [1, 1, 1]
     assert set.union(*splits.values()) == {"train", "test"}
-    # five images a split: one is empty, the others have one of two targets
+    # each split has five images: one is empty, the others have one of two targets
     for split in ("train", "test"):
         targets = [record["target"] for record in records(whole) if record["split"] == split]
         assert {name: targets.count(name) for name in [None, *TARGETS]} == {
             None: 1, TARGETS[0]: 2, TARGETS[1]: 2}
-        # and come mixed, so that shards and the first images have all
+        # targets are mixed, so shards and the first images have all of them
         assert sum(one != other for one, other in zip(targets, targets[1:])) > 1
 
 
@@ -191,7 +191,7 @@ def test_an_image_without_objects_is_the_swath(whole, ground):
 
 
 def test_the_influence_is_all_that_differs_from_the_swath(whole, ground):
-    """Each changed pixel is in it, and those of the masks are."""
+    """The influence has all changed pixels and all pixels of the masks."""
     for record in records(whole):
         place = record["swath"]
         influence = read_png(whole / of_image(record, "influence", ".png")) > 0
@@ -243,10 +243,10 @@ def test_the_report_has_the_values_of_a_key_by_their_units(whole):
 
 
 def test_trainers_of_yolo_find_images_and_labels(whole):
-    """By the rules of Ultralytics: folders are meant from data.yaml's, labels lie where `images` is `labels`."""
+    """By the rules of Ultralytics, paths begin at data.yaml's folder, and `labels` replaces `images` in a label's path."""
     card = [line.split(": ", 1) for line in (whole / "data.yaml").read_text().splitlines() if line[0] != "#"]
     folders = dict(card[: [entry[0] for entry in card].index("names:")])
-    # there is no split for validation: that of tests serves
+    # there is no split for validation, so the test split serves
     assert folders == {"train": "train/images", "val": "test/images", "test": "test/images"}
     for folder in folders.values():
         found = sorted((whole / folder).iterdir())
@@ -257,7 +257,7 @@ def test_trainers_of_yolo_find_images_and_labels(whole):
 
 
 def test_clutter_need_not_be_labelled(ground, command, whole):
-    """Labels are then those of targets alone; truth, masks and the report's counts stay."""
+    """Without labelled clutter there are only labels of targets. Truth, masks and the report's counts stay."""
     done = command("campaign", "campaign.yaml", "-o", "unlabelled", "--set", "clutter.labelled=false")
     assert done.returncode == 0, done.stderr
     bare = ground / "unlabelled"
@@ -300,7 +300,7 @@ def test_a_run_says_once_which_images_validate_without_a_split_of_theirs(ground,
 
 
 def test_images_that_cut_what_they_show_are_noted(ground, command):
-    """Of 10 images of 64 columns one cuts its shadow, which `whole` says nothing of; of 16 columns most do."""
+    """One of 10 images of 64 columns cuts its shadow, which `whole` does not note. With 16 columns most images do."""
     done = command("campaign", "campaign.yaml", "-o", "narrow", "--set", "empty=0", "--set", "images=4",
                    "--set", "chip={rows: 64, columns: 16}")
     assert done.returncode == 0, done.stderr
@@ -309,7 +309,7 @@ def test_images_that_cut_what_they_show_are_noted(ground, command):
 
 
 def test_croissant_lists_files_and_records(whole):
-    """What mlcroissant asks for besides was tried with it: it finds no error, and reads all records."""
+    """Further rules of mlcroissant are not tested here. They were tried: it finds no error and reads all records."""
     card = json.loads((whole / "croissant.json").read_text())
     assert card["conformsTo"] == "http://mlcommons.org/croissant/1.0"
     files = {entry["@id"]: entry for entry in card["distribution"] if entry["@type"] == "cr:FileObject"}
@@ -328,11 +328,11 @@ def test_croissant_lists_files_and_records(whole):
                for kind in ("fileObject", "fileSet") if kind in field.get("source", {})}
     assert sources == {"train/coco.json", "test/coco.json", "train/images", "test/images"}
     assert [(entry["classes/id"], entry["classes/name"]) for entry in card["recordSet"][0]["data"]] == [
-        *enumerate([*TARGETS, "stone"], 1)]  # as in COCO
+        *enumerate([*TARGETS, "stone"], 1)]  # numbers as in COCO
 
 
 def test_images_without_targets_come_as_often_as_asked(ground, command):
-    """In each split, and the report says so. Clutter that is alone is one object at least."""
+    """The shares hold in each split, and the report shows them. Clutter without a target is at least one object."""
     done = command("campaign", "campaign.yaml", "-o", "shares", "--set", "images=20", "--set", "empty=0.1", "--set",
                    "clutter.alone=0.3", "--set", "clutter.number=0", "--set", "outputs=[]", "--set", "labels=[yolo]",
                    "--set", "targets[0].class=155")
@@ -346,11 +346,11 @@ def test_images_without_targets_come_as_often_as_asked(ground, command):
     assert (page["images"], page["empty"], page["clutter_alone"]) == (20, 0.1, 0.3)
     assert [[split[key] for key in ("name", "images", "empty", "clutter_alone")] for split in page["splits"]] == [
         ["train", 10, 1, 3], ["test", 10, 1, 3]]
-    assert '  0: "155"\n' in (ground / "shares" / "data.yaml").read_text()  # a name, no number
+    assert '  0: "155"\n' in (ground / "shares" / "data.yaml").read_text()  # a name, not a number
 
 
 def test_the_report_counts_what_is_not_seen(ground, command):
-    """As truth of each image does."""
+    """The report counts as many unseen objects as the images' truth."""
     done = command("campaign", "campaign.yaml", "-o", "unseen", "--set", "outputs=[]", "--set", "labels=[]", "--set",
                    "targets=[{class: ball, object: {shape: sphere, diameter: 5 cm, burial: {proud: 3 mm}, level: {over_seabed: -30 dB}}}]",
                    "--set", "draw={seabed.lambert: {uniform: [-30 dB, -24 dB]}}", "--set", "clutter.number=1")
@@ -401,7 +401,7 @@ def test_shards_and_merge_are_one_run(command, whole, ground):
 
 
 def wait_for_files(process, folder, count):
-    """Until the folder has so many files, or the process has ended."""
+    """Waits until the folder has that many files or the process has ended."""
     end = time.monotonic() + 300
     while process.poll() is None and len(files_below(folder)) < count:
         assert time.monotonic() < end
@@ -423,7 +423,7 @@ def test_killed_four_times_it_goes_on(command, ground, environment, whole):
 
 
 def stop_after_an_image(ground, environment, name):
-    """Sends SIGTERM once the folder has the files of one image and more; code and message."""
+    """Sends SIGTERM once the folder has more than one image's files. Returns exit code and message."""
     process = subprocess.Popen([COMMAND, "campaign", "campaign.yaml", "-o", name], cwd=ground,
                                env=environment, stderr=subprocess.PIPE, text=True)
     wait_for_files(process, ground / name, 15)
@@ -433,7 +433,7 @@ def stop_after_an_image(ground, environment, name):
 
 
 def test_sigterm_keeps_finished_images(ground, environment, whole):
-    # Where this process has to wait for the machine, that one may be done before the signal.
+    # On a busy machine the command may be done before the signal is sent.
     for attempt in range(5):
         folder = ground / f"stopped{attempt}"
         code, message = stop_after_an_image(ground, environment, folder.name)
@@ -445,7 +445,7 @@ def test_sigterm_keeps_finished_images(ground, environment, whole):
 
 
 def test_it_stops_by_itself(command, ground):
-    # More images than are made side by side on any machine.
+    # No machine makes that many images side by side.
     arguments = ("campaign", "campaign.yaml", "--set", "images=100", "-o")
     assert command(*arguments, "all_at_once").returncode == 0
     made = [0]
@@ -455,7 +455,7 @@ def test_it_stops_by_itself(command, ground):
             85, "sonject: stopped; run the same command again\n")
         made.append(len(records(ground / "timed")))
         assert made[-2] < made[-1] < 100
-    # What is lost of an image is made again.
+    # Lost files of an image are made again.
     before = contents(ground / "timed")
     for kind in ("masks", "images"):
         next((ground / "timed").glob(f"*/{kind}/*.png")).unlink()
@@ -465,7 +465,7 @@ def test_it_stops_by_itself(command, ground):
 
 
 def test_the_first_image_that_fails_is_told(command, ground):
-    # Images are made side by side: those before it are there, whichever ended first.
+    # Images are made side by side. Those before the failed image are there, whichever ended first.
     for attempt in range(3):
         folder = ground / f"failing{attempt}"
         for image in (24, 25, 26):
@@ -516,7 +516,7 @@ def test_another_campaign_leaves_nothing_behind_once_it_is_overwritten(command, 
 
 @pytest.fixture
 def damaged(whole, ground, tmp_path_factory):
-    """A copy of the data set, to be damaged."""
+    """Makes a copy of the data set that tests may damage."""
     folder = ground / tmp_path_factory.mktemp("copy").name
     shutil.copytree(whole, folder)
     return folder
@@ -540,7 +540,7 @@ def test_what_was_changed_is_named_by_merge_and_made_again(command, damaged, who
                 words = [f"missing: {record['id']};"]
             assert_refused(command("merge", damaged.name), 3, "1 of 10 images", *words)
             path.write_bytes(sound)
-    # five images of which another file is gone, or changed
+    # five images, each with another file changed or missing
     for number, (each, path) in enumerate(zip(records(damaged), paths)):
         change = harm if number % 2 else pathlib.Path.unlink
         change(damaged / of_image(each, path.parent.name, path.suffix))
@@ -560,7 +560,7 @@ def test_documents_that_were_changed_are_made_again(command, damaged, whole):
 
 
 def test_records_are_believed_as_they_were_written_alone(command, damaged):
-    """Changed in a word, or another image's."""
+    """A record is refused if a value has changed or if it is another image's."""
     first, second = [each for each in records(damaged) if each["annotations"]][:2]
     path = damaged / of_image(first, "records", ".json")
     sound = path.read_text()
@@ -582,7 +582,7 @@ class Digest(ctypes.Structure):
 
 
 def hashed(record):
-    """The record's text with the hash that the command would give it."""
+    """Returns the record's text with the hash that the command would give it."""
     jansson, xxhash = ctypes.CDLL("libjansson.so.4"), ctypes.CDLL("libxxhash.so.0")
     jansson.json_loads.restype, jansson.json_dumps.restype = ctypes.c_void_p, ctypes.c_char_p
     jansson.json_dumps.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
@@ -594,7 +594,7 @@ def hashed(record):
 
 
 def test_records_with_a_hash_of_their_own_do_no_harm(command, damaged):
-    """What somebody wrote who knows how."""
+    """The records are forged with a valid hash."""
     record = next(each for each in records(damaged) if each["annotations"])
     path = damaged / of_image(record, "records", ".json")
     del record["xxh3"]
@@ -619,8 +619,8 @@ RING = ('targets=[{class: ring, object: {shape: torus}, draw: {diameter: {unifor
 
 
 def test_values_that_do_not_go_together_are_drawn_anew(ground, command):
-    """A torus must be more than twice as wide as it is high: of these a third is not. Both ends of
-    the draws do not go together, nor do those that a design has."""
+    """A torus must be more than twice as wide as it is high. A third of these draws is not, and the
+    largest width and height do not go together either."""
     settings = ["--set", RING % "0.5 m", "--set", "empty=0", "--set", "images=12"]
     done = command("campaign", "campaign.yaml", "-o", "anew", *settings)
     assert done.returncode == 0, done.stderr
@@ -676,7 +676,7 @@ def test_a_place_where_no_target_is_seen_is_left_after_eight_draws(ground, comma
 
 @pytest.mark.parametrize("otherwise", ["difficult", "redraw"])
 def test_targets_are_seen_as_they_are_to_be(ground, command, otherwise):
-    """Or are marked difficult, which says so of no other."""
+    """Targets that are seen too little are drawn anew, or they alone are marked difficult."""
     visible = f"visible={{highlight: 6 dB, shadow: -1 dB, otherwise: {otherwise}}}"
     done = command("campaign", "campaign.yaml", "-o", otherwise, "--set", visible, *FAINT)
     assert done.returncode == 0, done.stderr
@@ -706,7 +706,7 @@ def test_targets_are_seen_as_they_are_to_be(ground, command, otherwise):
 @pytest.mark.parametrize("settings, rows, columns", [
     (["chip.rows=all", "chip.columns=all"], ROWS, COLUMNS), (["chip.columns=all", "chip.edge=3"], CHIP, COLUMNS - 6)])
 def test_images_may_be_whole_swaths_with_several_targets(ground, command, settings, rows, columns):
-    """Which keep away from contacts and the water column, here of 40 columns."""
+    """Targets keep away from contacts and from the water column, here 40 columns wide."""
     name = f"all{rows}"
     done = command("campaign", "campaign.yaml", "-o", name, *[part for text in [
         *settings, "targets_per_image={choice: [3, 5]}", "chip.spread=1", "empty=0.1",
@@ -749,7 +749,7 @@ def test_images_with_a_contact_across_the_line_lie_where_objects_may(ground, com
 
 
 def test_of_several_targets_the_faint_ones_alone_are_drawn_anew(ground, command):
-    """Where they are not, they alone are difficult. All else stays where it is."""
+    """If faint targets are not drawn anew, they alone are difficult. All other targets stay in place."""
     visible = "visible={highlight: 6 dB, shadow: -1 dB, otherwise: %s}"
     levels, are_seen, places = {}, {}, {}
     for otherwise in ("difficult", "redraw"):
@@ -772,14 +772,14 @@ def test_of_several_targets_the_faint_ones_alone_are_drawn_anew(ground, command)
     assert all(map(all, last[1])) and not all(map(all, first[1]))
     kept = [[old == new for old, new in zip(*pair)] for pair in zip(first[0], last[0])]
     assert all(is_kept <= was_seen for each in zip(kept, first[1]) for is_kept, was_seen in zip(*each))
-    # but where a new place hides the other
+    # a seen target changes only if the new place of another one hides it
     assert sum(map(sum, kept)) >= 0.8 * sum(map(sum, first[1]))
     stayed = [[old == new for old, new in zip(places["difficult", i], places["redraw", i])] for i in range(12)]
     assert stayed == kept
 
 
 def test_objects_may_lie_at_the_border(ground, command):
-    """Boxes are cut there, and say so."""
+    """Boxes are cut at the border and marked as truncated."""
     done = command("campaign", "campaign.yaml", "-o", "border", "--set", "chip.spread=1", "--set", "images=24")
     assert done.returncode == 0, done.stderr
     cut = 0
@@ -794,16 +794,16 @@ def test_objects_may_lie_at_the_border(ground, command):
             is_at_edge = column == 0 or row == 0 or column + columns == CHIP or row + rows == CHIP
             assert each["truncated"] <= is_at_edge
             cut += each["truncated"]
-    # of a chip's area more than a half is less than an object and its shadow from an edge
+    # in more than half of a chip's area, an edge is nearer than the length of an object and its shadow
     assert cut >= 6
     assert len(places) >= 24
-    for axis in zip(*places):  # of uniform numbers 10 % lie so near to each end
+    for axis in zip(*places):  # 10 % of uniform numbers lie that near to each end
         assert 0 <= min(axis) < 0.1 * CHIP and 0.9 * CHIP < max(axis) <= CHIP - 1
 
 
 def coded_shares(image, blocks, table):
-    """Of blocks of 8 x 8, the share of coefficients of the discrete cosine transform that lie at multiples of the
-    table, as they do where a JPEG was decoded; rounding to grey levels moves them by 0.29, five of which are allowed."""
+    """Returns for each 8 x 8 block the share of its discrete cosine transform that lies at multiples of the table, as in a
+    decoded JPEG. Rounding to grey levels moves coefficients by 0.29, five times of which is allowed."""
     angles = numpy.pi * numpy.outer(numpy.arange(8), 2 * numpy.arange(8) + 1) / 16
     cosines = numpy.cos(angles) * numpy.where(numpy.arange(8) > 0, 0.5, 8**-0.5)[:, None]
     levels = [cosines @ (image[row : row + 8, column : column + 8] - 128) @ cosines.T for row, column in blocks]
@@ -812,12 +812,12 @@ def coded_shares(image, blocks, table):
 
 @pytest.mark.parametrize("quality", [40, 75])
 def test_images_of_a_jpeg_are_coded_as_it_is(ground, command, quality):
-    """Injected blocks have been through the same coding as the input's, so that nothing but the target tells them; what
-    was not injected comes out of the second coding as it was. Without loss injected blocks have no such past."""
+    """Injected blocks are coded like the input's, so only the target betrays them. Other blocks survive the second coding
+    unchanged. In lossless images, injected blocks were never coded."""
     pillow = pytest.importorskip("PIL.Image")
     numbers = numpy.random.default_rng(20261126)
     amplitudes = numbers.rayleigh(1, (200, 260))
-    levels = 140 + 80 * numpy.log10(amplitudes + numpy.roll(amplitudes, 1, 0))  # a quarter of a dB each
+    levels = 140 + 80 * numpy.log10(amplitudes + numpy.roll(amplitudes, 1, 0))  # a quarter of a dB for each level
     source = ground / f"coded{quality}.jpg"
     pillow.fromarray(levels.clip(1, 255).astype("u1")).save(source, quality=quality)
     swath = numpy.array(pillow.open(source)).astype(float)
@@ -846,7 +846,7 @@ def test_images_of_a_jpeg_are_coded_as_it_is(ground, command, quality):
             blocks = [(-place["row"] % 8 + 8 * i, -place["column"] % 8 + 8 * j) for i in range(7) for j in range(7)]
             cut = [(block, image[block[0] : block[0] + 8, block[1] : block[1] + 8],
                     influence[block[0] : block[0] + 8, block[1] : block[1] + 8]) for block in blocks]
-            # but blocks that the range of grey levels cuts
+            # blocks that the range of grey levels clips do not count
             inside = [block for block, part, changed in cut if changed.all() and 0 < part.min() and part.max() < 255]
             outside = [block for block, _, changed in cut if not changed.any()]
             found["input"] += coded_shares(before, blocks, table)
@@ -886,7 +886,7 @@ def test_images_of_all_of_a_jpeg_begin_where_its_blocks_do(ground, command, sett
 
 
 def test_a_value_may_be_a_ratio_of_another(ground, command):
-    """In the unit of that one; a ratio may be of a ratio."""
+    """The value takes the other one's unit. A ratio may refer to a ratio."""
     body = ("targets=[{class: box, object: {shape: box}, draw: {length: {uniform: [40 cm, 80 cm]}, "
             "width: {of: length, uniform: [0.3, 0.6]}, height: {of: width, log_uniform: [0.5, 1]}}}]")
     done = command("campaign", "campaign.yaml", "-o", "ratio", "--set", body, "--set", "empty=0")
@@ -912,7 +912,7 @@ TABLE = ["--set", "targets=[{class: body, object: {height: 25 cm}, draw: {table:
 
 
 def test_a_row_of_a_table_is_drawn_whole(ground, command):
-    """As often as its weight says; what it leaves out is the object's, and common draws give way to its columns."""
+    """A row is drawn as often as its weight says. Empty cells keep the object's values. Columns replace common draws."""
     (ground / "bodies.csv").write_text(BODIES)
     common = ["--set", 'draw={"objects[].heading": 77 deg}']
     done = command("campaign", "campaign.yaml", "-o", "bodies", *TABLE, *common)
@@ -997,7 +997,7 @@ def test_a_random_design_draws_each_key_by_itself(command, ground):
 
 
 def test_the_example_runs_as_it_says(ground, environment):
-    """Every twentieth image of it."""
+    """Makes every twentieth image of the example."""
     seabeds, campaign = comment_commands("tools/campaigns/minefield.yaml")
     (ground / "tools").symlink_to(SOURCE / "tools")
     (ground / "sonject").symlink_to(COMMAND)
@@ -1009,14 +1009,14 @@ def test_the_example_runs_as_it_says(ground, environment):
     assert sorted(record["id"] for record in records(ground / "minefield")) == [1, 21, 41]
 
 
-# Of the targets: how many may be in an image, lengths in metres from the smallest row to the largest.
+# Largest number of targets in an image, and smallest and largest length in the table, m.
 STARTS = {"bottom_mines": (1, 0.98, 3.25), "uxo": (1, 0.24, 2.22), "drums": (3, 0.585, 0.88), "crab_pots": (1, 0.9, 1.24),
           "tyres": (1, 0.55, 1.04), "boulders": (7, 0.26, 1.8), "wreck_debris": (4, 0.5, 6)}
 
 
 @pytest.mark.parametrize("start", STARTS)
 def test_starting_campaigns_run_as_they_say(ground, environment, start):
-    """And are short, with what their tables say of sizes."""
+    """Starting campaigns are short, and targets have the sizes of their tables."""
     text = (SOURCE / "tools" / "campaigns" / f"{start}.yaml").read_text()
     assert text.count("\n") <= 80
     folder = ground / f"start_{start}"
@@ -1033,7 +1033,7 @@ def test_starting_campaigns_run_as_they_say(ground, environment, start):
     found = records(data)
     targets = [record["targets"] for record in found]
     assert len(found) == 6 and max(targets) <= most and (max(targets) > 1) == (most > 1)
-    assert targets.count(0) == 1  # the one that is to be empty
+    assert targets.count(0) == 1  # the image that must be empty
     seabed = images.read_tiff(folder / "seabed.tif")
     for record in found:
         truths = json.loads((data / of_image(record, "truth", ".json")).read_text())["objects"]
@@ -1044,7 +1044,7 @@ def test_starting_campaigns_run_as_they_say(ground, environment, start):
         for truth in truths[: record["targets"]]:
             longer = max(truth["dimensions"].values())
             assert shortest - 1e-6 <= longer <= 1.05 * longest
-            # what shows of it, with its shadow, is about as long along the track, and is in the image
+            # target and shadow in the image are about as long along the track as the target
             box = truth["box"]
             assert truth["visible"] and 0 < box["length_m"] <= 1.2 * longer + 0.3
             assert changed[box["row"] : box["row"] + box["rows"], box["column"] : box["column"] + box["columns"]].mean() > 0.25
@@ -1100,7 +1100,7 @@ def test_bad_campaigns_are_refused_with_a_line(command, ground, changes, where, 
 
 @pytest.fixture(scope="module")
 def lines(ground):
-    """One line as an XTF file, and as a JSF file of two frequencies; and their scene."""
+    """Writes one line as an XTF file and as a JSF file of two frequencies, and their scene."""
     numbers = numpy.random.default_rng(4)
     sides = [numbers.rayleigh(3000, (ROWS, COLUMNS)).clip(1, 30000).astype("<u2") for _ in range(2)]
     (ground / "line.xtf").write_bytes(recordings.xtf_bytes(*sides))
@@ -1127,7 +1127,7 @@ def test_the_sides_of_a_line_are_two_swaths(ground, command, lines, name, one, o
 
 
 @pytest.mark.parametrize("name, one, other", [
-    ("line.xtf", "port", "port"), ("line.xtf", "port", 1), ("line.jsf", 0, 2)])  # the same, or its other frequency
+    ("line.xtf", "port", "port"), ("line.xtf", "port", 1), ("line.jsf", 0, 2)])  # the same side, or its other frequency
 def test_a_side_of_a_line_is_in_no_two_splits(command, lines, name, one, other):
     assert_refused(command("campaign", "campaign.yaml", "-o", "hostile", *of_line(name, one, other)), 3,
                    "1 different swaths are too few for 2 splits")
@@ -1164,7 +1164,7 @@ targets:
   - {class: ball, weight: 1, draw: {sonar.altitude: 3}}
 clutter: {number: 51, objects: [{class: stone, object: {shape: sphere, diameter: 20 cm}}]}
 """
-# In the order of their lines.
+# The messages of MISTAKEN, in the order of its lines.
 TOLD = [
     ("sonject_campaign", "must be 1"), ("images", "whole number"), ("chip.rows", "16...8192"),
     ("empty", "0...1"), ("outputs", "did you mean 'shadow'?"),

@@ -1,5 +1,5 @@
-"""A campaign of 10,000 draws over all shapes, with ranges that nobody thought about: it never stops,
-and tells what it drew anew and why. Two minutes; a share of the draws by SONJECT_CARELESS_IMAGES."""
+"""Tests a campaign of 10,000 draws over all shapes with careless ranges. It never stops, and reports what it
+drew anew and why. Takes two minutes. SONJECT_CARELESS_IMAGES sets another number of draws."""
 
 import json
 import os
@@ -47,6 +47,6 @@ def test_a_careless_campaign_never_stops(tmp_path):
     anew = [record["drawn_anew"] for record in records if "drawn_anew" in record]
     assert len(records) == IMAGES
     print(f"{len(anew)} of {IMAGES} images drawn anew, {max(each['times'] for each in anew)} times at most")
-    # a torus has a hole in half of the draws, and what is above 1.2 m is larger than the chip
+    # a torus has a hole in half of the draws, and objects above 1.2 m are larger than the chip
     assert 0.2 * IMAGES < len(anew) < 0.6 * IMAGES
     assert page_data(tmp_path / "out")["drawn_anew"] == len(anew)

@@ -1,4 +1,4 @@
-"""sonject convert: sonar formats to rasters and back, nothing guessed and nothing cut."""
+"""Tests of sonject convert: sonar formats to rasters and back, without guesses or cut values."""
 
 import os
 import struct
@@ -17,13 +17,13 @@ ALTITUDE, SPACING = 6.0, 30.0 / COLUMNS
 
 @pytest.fixture
 def line(tmp_path, sides):
-    """line.xtf: port and starboard of 30 m, 10 cm a ping, 6 m up."""
+    """Writes line.xtf: port and starboard to 30 m, 10 cm between pings, at an altitude of 6 m."""
     (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides))
     return tmp_path / "line.xtf"
 
 
 def interlaced_png(pixels):
-    """Adam7, of 16 bits, with a description as other programs write it."""
+    """Returns a 16 bit PNG interlaced by Adam7, with a description as other programs write it."""
     rows = len(pixels)
     passes = [(0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4), (1, 0, 2, 2), (0, 1, 1, 2)]
     lines = [pixels[row, x::across].astype(">u2").tobytes()
@@ -56,7 +56,7 @@ def test_a_recording_goes_through_rasters_and_back(sonject, tmp_path, line, side
                  b"sonject:first_slant_range_m=0.125\n", b"sonject:altitude_m=6\n",
                  b"sonject:side=port\n", b"sonject:range_axis=slant"):
         assert note in told
-    assert b"frequency" not in told  # the recording's is not known
+    assert b"frequency" not in told  # the recording does not tell it
     sonject.done("convert", "a.tif", "b.png")
     assert b"sonject:altitude_m=6\n" in (tmp_path / "b.png").read_bytes()
     answer = sonject.done("convert", "b.png", "c.npy")
@@ -81,7 +81,7 @@ objects: [{{name: ball, shape: sphere, diameter: 1 m}}]
 
 
 def write_taken(folder, name, channel=""):
-    """A scene that leaves geometry and altitude to the file."""
+    """Writes a scene that takes geometry and altitude from the file."""
     (folder / "taken.yaml").write_text(TAKEN.format(name, channel))
     return "taken.yaml"
 
@@ -142,7 +142,7 @@ objects: [{{name: ball, shape: sphere, diameter: 1 m}}]
 
 
 def check_injection(sonject, folder, name, before, extension):
-    """The image of a run, which differs from the input's samples within the patch alone."""
+    """Asserts that a run changes the input's samples within the patch alone. Returns the command's answer."""
     (folder / "scene.yaml").write_text(IMAGE.format(name))
     answer = sonject.done("run", "scene.yaml", "-o", "out")
     image = folder / "out" / ("image" + extension)
@@ -202,7 +202,7 @@ def test_ground_range_and_back(sonject, tmp_path, line, sides):
     assert numpy.array_equal(ground, sides[0][:, nearest])
     sonject.done("convert", "g.tif", "s.tif", "--range-axis", "slant")
     back = images.read_tiff(tmp_path / "s.tif")
-    # far out a column of the one is a column of the other
+    # at far range each column of the one image is a column of the other
     first = COLUMNS - back.shape[1]
     assert 0 < first <= ALTITUDE / SPACING + 1
     offset = ALTITUDE / SPACING - 0.5

@@ -1,4 +1,4 @@
-"""sonject elements: series of an array from a scene's own image."""
+"""Tests of sonject elements, which makes series of an array from a scene's own image."""
 
 import json
 import math
@@ -28,7 +28,7 @@ def test_files_hold_the_series(sonject, scene, tmp_path):
     ground = math.sqrt((25 + 0.025 * (COLUMNS - 1) / 2) ** 2 - 10**2)
     nearest = math.hypot(ground, 10 - 0.25) - 0.25
     assert abs(peak * 1500 / 2 - nearest) < 0.5 * 0.025
-    # more than a quarter of the wavelength of 15 mm
+    # the resolution is just above a quarter of the wavelength of 15 mm
     sonject.done("elements", scene, "-o", "fine", "--set", "sonar.resolution=4 mm")
     sonject.done("elements", scene, "-o", "real", "--set", "elements.form=passband")
     assert numpy.load(tmp_path / "real" / "series.npy").dtype == numpy.float32

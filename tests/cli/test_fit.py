@@ -1,4 +1,4 @@
-"""sonject fit: a campaign moves towards the contacts that it is given, and says what it did."""
+"""Tests of sonject fit, which moves a campaign towards given contacts and reports its changes."""
 
 import json
 import re
@@ -14,8 +14,8 @@ import images
 import recordings
 
 
-# So rough that targets have no glints, whose rays would be nine tenths of all work. The nightly
-# fit_closed_loop has them.
+# Targets are so rough that they have no glints, whose rays would be nine tenths of all work. The nightly
+# fit_closed_loop has glints.
 ROUGH = ", material: {roughness: 5 mm}"
 
 
@@ -33,7 +33,7 @@ def test_a_fit_comes_nearer_to_its_contacts(sonject, folder):
     sonject.done("fit", "start.yaml", "contacts/all/coco.json", "-o", "fitted.yaml", "--quiet")
     text = (folder / "fitted.yaml").read_text()
     start = (folder / "start.yaml").read_text()
-    # it is the user's own file, comments and all, with other numbers
+    # the result is the user's own file, with its comments and other numbers
     assert [line.split("#")[1] for line in start.splitlines() if "#" in line] == [
         line.split("#")[1] for line in text.splitlines()[1:] if "#" in line]
     assert text.startswith("# Fitted by sonject")
@@ -43,7 +43,7 @@ def test_a_fit_comes_nearer_to_its_contacts(sonject, folder):
     print(hidden, before, after)
     for kind in range(5):
         assert abs(after[kind] - hidden[kind]) < abs(before[kind] - hidden[kind])
-    # 30 contacts tell sizes to some 15 %, levels to 2 dB: no such median was off by more
+    # 30 contacts give sizes to some 15 % and levels to 2 dB, and no such median was off by more
     assert all(abs(after[:3] / hidden[:3] - 1) < 0.3)
     assert all(abs(after[3:] - hidden[3:]) < 3)
     page = page_data(folder, "fitted.html")
@@ -67,7 +67,7 @@ def test_a_fit_comes_nearer_to_its_contacts(sonject, folder):
      "start.yaml: is the campaign that is fitted; choose another name"),
     ("image,row,column,rows,columns\nseabed_1.tif,5,5,9,20\n", "../{here}/start.yaml",
      "start.yaml: is the campaign that is fitted; choose another name"),
-    # in the same folder by another name, so that what is wrong is the contacts
+    # the same folder by another name, so only the contacts are wrong
     ("image,row,column,rows,columns\nseabed_1.tif,5,5,9,20\n", "../{here}/fitted.yaml",
      "contacts.csv: has 1 contacts; a fit needs 10 or more"),
     ("image,row,column,rows,columns\nseabed_1.tif,5,5,9,20\n", "out/fitted.yaml",
@@ -91,7 +91,7 @@ def test_contacts_of_a_class_are_fitted(sonject, folder):
 
 
 def test_bright_points_tell_no_heights(sonject, folder):
-    """They have no shadows. Nor do they tell sizes that nothing draws."""
+    """Bright points have no shadows. Sizes that nothing draws are not fitted."""
     points = images.read_tiff(folder / "seabed_1.tif").copy()
     contacts = "image,row,column,rows,columns,class\n"
     for row in range(20, 280, 20):
@@ -122,7 +122,7 @@ sonar: {frequency: 300 kHz, bandwidth: 20 kHz, altitude: 5 m, resolution: 6 cm, 
 
 
 def inject_contacts(sonject, folder, side, ranges):
-    """Puts twelve boxes into a side of line.tif at these ranges; labels of highlights and shadows."""
+    """Puts twelve boxes into a side of line.tif at these slant ranges, m. Returns CSV lines of their boxes."""
     objects = [f"{{name: box, shape: box, length: {1.2 + i / 40} m, width: 0.7 m, height: 0.45 m, heading: {40 * i} deg, "
                f"level: {{over_seabed: 15 dB}}{ROUGH}, position: {{along_track: {2 + 4 * i} m, slant_range: {r} m}}}}"
                for i, r in enumerate(ranges)]
@@ -136,7 +136,7 @@ def inject_contacts(sonject, folder, side, ranges):
 
 
 def test_contacts_are_measured_side_by_side(sonject, tmp_path):
-    """Those of either side of a line, which lie at other ranges there; chips lie where they do."""
+    """Each side of the line has contacts at other ranges. Chips of a side lie at the ranges of its contacts."""
     fitting.make_seabeds(sonject, 1000, 600)
     sides = [images.read_tiff(tmp_path / f"seabed_{number}.tif") for number in (1, 2)]
     (tmp_path / "line.tif").write_bytes(images.tiff_bytes(numpy.hstack([sides[0][:, ::-1], sides[1]])))
@@ -151,13 +151,13 @@ def test_contacts_are_measured_side_by_side(sonject, tmp_path):
     text = (tmp_path / "fitted.yaml").read_text()
     limits = numpy.array([(float(a), float(b)) for a, b in re.findall(
         r"range_over_altitude: \[([\d.]+), ([\d.]+)\]", text)])
-    # a label's middle is that of highlight and shadow, some 0.2 behind the highlight
+    # a label covers highlight and shadow, and its middle lies some 0.2 behind the highlight
     expected = [(1.8, 4.8), (1.8, 2.8), (3.2, 4.8)]
     assert limits == pytest.approx(numpy.array(expected) + 0.2, abs=0.25)
     (length,) = (draw["after"] for draw in page_data(tmp_path, "fitted.html")["draws"]
                  if draw["key"] == "targets[0].draw.length")
     middle = numpy.sqrt(numpy.prod([float(end.split()[0]) for end in length]))
-    assert middle == pytest.approx(1.34, rel=0.2)  # 24 contacts tell it to some 15 %; it was 2.1
+    assert middle == pytest.approx(1.34, rel=0.2)  # 24 contacts give it to some 15 %; the start is 2.1
     sonject.done("campaign", "fitted.yaml", "-o", "data", "--set", "images=20", "--quiet")
     for path in (tmp_path / "data" / "all" / "records").glob("*.json"):
         swath = json.loads(path.read_text())["swath"]
@@ -167,7 +167,7 @@ def test_contacts_are_measured_side_by_side(sonject, tmp_path):
 
 
 def test_contacts_of_a_recording_are_on_one_of_its_sides_or_on_chips(sonject, tmp_path):
-    """Twelve stones on the starboard side, and twelve targets on the campaign's own chips, which are TIFF without channels."""
+    """Contacts are twelve stones on the starboard side, and twelve targets on the campaign's chips, TIFF without channels."""
     sides = [Made("amplitude", water=numpy.full(ROWS, 100), seed=seed).numbers for seed in (1, 2)]
     contacts = "image,row,column,rows,columns,side\n"
     for row in range(60, 780, 60):
@@ -190,4 +190,4 @@ def test_contacts_of_a_recording_are_on_one_of_its_sides_or_on_chips(sonject, tm
     unmatched = page_data(tmp_path, "fitted.html")["unmatched"]  # stones of one size beside drawn targets
     assert unmatched and f"{len(unmatched)} of the contacts' measures are not matched by injected ones" in done.stderr
     found = [sum(extent["bins"]) for extent in page_data(tmp_path, "fitted.html")["fit"] if extent]
-    assert min(found) > 18, found  # of 24: the port side shows none of the stones
+    assert min(found) > 18, found  # there are 24 contacts, and the port side shows none of the stones

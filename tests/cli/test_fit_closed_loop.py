@@ -1,6 +1,6 @@
-"""Fits to contacts that a hidden campaign has made, against what its images show, from 10, 30 and 100
-contacts: 20 tries each, SONJECT_FIT_TRIES of them; and what a detector learns from the fitted campaign.
-Two hours on two cores."""
+"""Tests fits to 10, 30 and 100 contacts of a hidden campaign against the values of its images. There are 20
+tries each, or SONJECT_FIT_TRIES. Also tests a detector that learns from the fitted campaign. Takes two hours
+on two cores."""
 
 import os
 
@@ -13,10 +13,10 @@ from sklearn.preprocessing import StandardScaler
 import fitting
 
 TRIES = int(os.environ.get("SONJECT_FIT_TRIES", "20"))
-IMAGES = 400  # that tell a distribution's medians, to a tenth of what is allowed
+IMAGES = 400  # they give a distribution's medians to a tenth of the tolerance
 
 
-# sizes to a share (widths, which contacts of all headings tell worse, to twice that), levels to so many dB
+# Tolerances: sizes to a share, widths to twice that since contacts of all headings show them worse, levels to dB.
 @pytest.mark.parametrize("contacts, share, decibels", [(100, 0.1, 1), (30, 0.15, 1.5), (10, 0.2, 2)])
 def test_fits_find_what_made_their_contacts(sonject, tmp_path, contacts, share, decibels):
     fitting.make_seabeds(sonject, 600, 800)
@@ -64,7 +64,7 @@ FALSE_ALARMS = 0.01
 
 
 def share_found(training, seabed, targets, other_seabed):
-    """Of targets, at that share of false alarms on other seabed, by logistic regression."""
+    """Returns the share of targets that logistic regression finds, with FALSE_ALARMS on other seabed."""
     detector = make_pipeline(StandardScaler(), LogisticRegression(C=0.01, max_iter=2000))
     detector.fit(numpy.concatenate([training, seabed]), [1] * len(training) + [0] * len(seabed))
     threshold = numpy.quantile(detector.decision_function(other_seabed), 1 - FALSE_ALARMS)

@@ -1,4 +1,4 @@
-"""sonject init: a scene to begin with, from an image and a few answers."""
+"""Tests of sonject init, which writes a first scene from an image and a few answers."""
 
 import json
 import os
@@ -47,7 +47,7 @@ def test_a_wrong_answer_is_asked_for_again(sonject, image):
 
 
 def test_range_may_grow_to_the_left(sonject, image):
-    """Then shadows fall to the left, and the last column is the nearest."""
+    """Shadows fall to the left, and the last column is the nearest."""
     answer = init(sonject, "swath.npy", "--campaign", answers=["5 cm", "2.5 cm", "44 m left", *ANSWERS[3:]])
     assert answer.returncode == 0, answer.stderr
     scene = image.with_suffix(".yaml").read_text()
@@ -83,7 +83,7 @@ def test_an_array_makes_a_sidescan_and_the_scene_may_lie_elsewhere(sonject, imag
 
 
 def test_what_the_file_tells_is_not_asked_for(sonject, image):
-    """A geometry without an altitude."""
+    """The file tells a geometry without an altitude."""
     sonject.done("convert", "swath.npy", "swath.tif", "--row-spacing", "0.025", "--column-spacing", "0.025",
                  "--first-range", "44")
     answer = init(sonject, "swath.tif", answers=ANSWERS[3:])
@@ -100,7 +100,7 @@ def test_a_recording_tells_the_geometry(sonject, tmp_path, typed):
     assert answer.returncode == 0, answer.stderr
     assert "(from_file: as recorded, 7 m in the mean; or a number) [from_file]: " in answer.stderr
     scene = (tmp_path / "line.yaml").read_text()
-    assert "bandwidth: 10 kHz # c / 2 over the column spacing" in scene  # of 400 columns to 30 m
+    assert "bandwidth: 10 kHz # c / 2 over the column spacing" in scene  # 400 columns reach 30 m
     assert "channel: port" in scene and "geometry: from_file" in scene and "altitude: from_file" in scene
 
 
@@ -113,13 +113,13 @@ def test_an_answer_from_a_file_that_does_not_tell_it_is_asked_for_again(sonject,
 
 @pytest.mark.parametrize("share, level", [(1, 15), (0.35, None)])
 def test_the_level_is_a_little_over_the_ceiling(sonject, tmp_path, share, level):
-    """By the calibration, in whole dB: 2 dB, since the place is darker than most."""
+    """The level is the calibration's ceiling in whole dB, and 2 dB more since the place is darker than most."""
     made = Made("amplitude")
     numpy.save(tmp_path / "swath.npy", numpy.minimum(made.numbers, round(share * made.ceiling)))
     answer = init(sonject, "swath.npy", answers=ANSWERS)
     assert answer.returncode == 0, answer.stderr
     found = json.loads(sonject.done("calibrate", "swath.npy", "--json").stdout)["measured"]["ceiling_over_seabed"]
-    mean = 20 * numpy.log10(KINDS["amplitude"][1] / share)  # of the seabed's level, over full scale
+    mean = 20 * numpy.log10(KINDS["amplitude"][1] / share)  # the seabed's level over full scale, dB
     assert found["value"] == pytest.approx(-mean, abs=4 * found["standard_error"] + LEVEL_DB / 4)
     told = float(re.search(r"level: {over_seabed: (\d+) dB}", (tmp_path / "swath.yaml").read_text())[1])
     assert told == (level or numpy.floor(found["value"] + 2)) <= 15
@@ -137,17 +137,17 @@ def test_altitude_by_first_returns_is_what_enter_takes(sonject, tmp_path):
     assert float(re.search(r"altitude (\S+) m", answer.stdout)[1]) == pytest.approx(shown, rel=0.01)
 
 
-# ---- Targets of one's own, and campaigns.
+# ---- Targets of the user's own, and campaigns.
 
 def write_mesh(folder, side=400):
-    """A tetrahedron, its numbers in mm."""
+    """Writes a tetrahedron with coordinates in mm."""
     (folder / "rock.obj").write_text(
         "".join(f"v {x} {y} {z}\n" for x, y, z in ((0, 0, 0), (side, 0, 0), (0, side, 0), (0, 0, side))) +
         "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
 
 
 def write_line(folder):
-    """Both sides of a recording, a water column before each."""
+    """Writes both sides of a recording, each with a water column."""
     water = numpy.full(ROWS, 100)
     sides = [Made("amplitude", water=water, seed=seed).numbers for seed in (1, 2)]
     (folder / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=100 * 30 / COLUMNS * numpy.ones(ROWS)))
@@ -176,7 +176,7 @@ def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
 
 
 def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
-    """All but the last, which needs scikit-learn: test_train_detector.py runs that."""
+    """Runs all commands but the last, which needs scikit-learn: test_train_detector.py runs that one."""
     page = (pathlib.Path(os.environ["SONJECT_SOURCE"]) / "docs" / "first_detector.md").read_text()
     begin, run, check, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
     write_mesh(tmp_path)
@@ -185,7 +185,7 @@ def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     begin = [word.replace("my_mine.stl", "my_mine.obj") for word in begin]
     answer = init(sonject, *begin[2:], answers=["first_return", "600 kHz", "", "0.25 deg", "mm", ""])
     assert answer.returncode == 0, answer.stderr
-    assert "array: {length: 0.508 m}" in (tmp_path / "line.yaml").read_text()  # 0.886 wavelengths over it
+    assert "array: {length: 0.508 m}" in (tmp_path / "line.yaml").read_text()  # 0.886 wavelengths over 0.25 degrees
     sonject.done(*run[1:])
     assert re.findall(r"line.xtf, (\w+): .* leave [1-9][0-9.]* % of the places", sonject.done(*check[1:]).stderr) == ["port", "starboard"]
     sonject.done(*campaign[1:], "--set", "images=10")
@@ -194,7 +194,7 @@ def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
 
 
 def test_chips_hold_a_shadow_on_either_side(sonject, tmp_path):
-    """Half as long again as a cylinder's of 0.5 m at three quarters of the range."""
+    """Either side has room for 1.5 times the shadow of a cylinder of 0.5 m at three quarters of the range."""
     write_line(tmp_path)
     answer = init(sonject, "line.xtf", "--channel", "port", "--campaign", answers=["", "100 kHz", "30 kHz", ""])
     assert answer.returncode == 0, answer.stderr
@@ -204,7 +204,7 @@ def test_chips_hold_a_shadow_on_either_side(sonject, tmp_path):
 
 
 def test_the_target_lies_where_the_seabed_is_plain_and_rather_dark(sonject, image):
-    """The calibration's place, which has more room under the ceiling than the mean that is told."""
+    """The target lies at the calibration's place, which is further below the ceiling than the reported mean."""
     assert init(sonject, "swath.npy", answers=ANSWERS).returncode == 0
     row, column = map(int, re.search(r"position: {row: (\d+), column: (\d+)}", image.with_suffix(".yaml").read_text()).groups())
     assert COLUMNS / 3 <= column < 2 * COLUMNS / 3
@@ -216,7 +216,7 @@ def test_the_target_lies_where_the_seabed_is_plain_and_rather_dark(sonject, imag
 
 
 def test_the_target_lies_where_the_altitude_is_a_usual_one(sonject, tmp_path):
-    """Of pings whose first returns grow from 1 to 4 times, at those within 15 % of the median one."""
+    """First returns grow fourfold over the pings. The target lies at a ping within 15 % of the median."""
     water = numpy.linspace(60, 240, ROWS)
     numpy.save(tmp_path / "swath.npy", Made("amplitude", water=water.astype(int)).numbers)
     answer = init(sonject, "swath.npy", answers=["5 cm", "5 cm", "5 mm", "", "100 kHz", "30 kHz", ""])
@@ -238,8 +238,8 @@ def test_both_sides_of_an_image_are_two_swaths(sonject, tmp_path):
 
 
 def test_places_along_the_track_are_as_the_pictures_axes_have_them(sonject, tmp_path):
-    """Which are those of all pings' mean spacing, 10 cm, though the first half sails slowly and the other fast: chips'
-    middles are right, and rows 5 from them, 10 % of 48, by 5 cm each. A line that ends where it began has no such axis."""
+    """Places use the mean spacing of all pings, 10 cm, though the first half is slow and the second fast. Middles of chips
+    are right, and rows 5 from them, 10 % of 48, are off by 5 cm each. A line that ends where it began has no such axis."""
     sides = [Made("amplitude", water=numpy.full(ROWS, 100), seed=seed).numbers for seed in (1, 2)]
     along = numpy.cumsum(numpy.where(numpy.arange(ROWS) < ROWS / 2, 0.05, 0.15))
     (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, row_spacing=along, altitudes=numpy.full(ROWS, 5.0)))

@@ -1,4 +1,4 @@
-"""The scripts of tools/slurm on a Slurm of their own, and the commands that its README.md gives."""
+"""Tests the scripts of tools/slurm and the commands of its README.md on a Slurm cluster of their own."""
 
 import os
 import pathlib
@@ -21,7 +21,7 @@ from test_run import RESULTS, contents
 SCRIPTS = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "tools" / "slurm"
 README = (SCRIPTS / "README.md").read_text(encoding="utf-8")
 COMMANDS = re.findall(r"^    (.*)$", README, re.M)
-# So many rays that a part is traced in two slices, and that there is time to end it in the second.
+# Enough rays for tracing a part in two slices, with time to end it in the second.
 MANY_RAYS = "injection: {rays: 512}\n"
 TOLD_OFTEN = "--verbose --checkpoint 1e-9"
 
@@ -37,7 +37,7 @@ targets: [{class: ball, object: {shape: sphere, diameter: 0.3 m}}]
 
 
 def documented(*words):
-    """The README's first command that holds all the words."""
+    """Returns the README's first command that has all the words."""
     return next(line for line in COMMANDS if all(word in line for word in words))
 
 
@@ -47,7 +47,7 @@ def checkpoints(folder, shard):
 
 @pytest.fixture(scope="module")
 def named(environment, tmp_path_factory):
-    """An environment in which the command is called by its name."""
+    """Returns an environment in which PATH finds the command by its name."""
     folder = tmp_path_factory.mktemp("path")
     (folder / "sonject").symlink_to(COMMAND)
     return {**environment, "PATH": f"{folder}:{cluster.PATH}"}
@@ -55,8 +55,8 @@ def named(environment, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def slurm(named):
-    """Slurm's daemons. Their folder is in /tmp, since what TMPDIR names may allow no programs, such
-    as a job's script."""
+    """Starts Slurm's daemons. Their folder is in /tmp, since programs such as a job's script may be
+    forbidden in TMPDIR."""
     reason = cluster.why_not()
     if reason:
         pytest.skip(reason)
@@ -72,7 +72,7 @@ def slurm(named):
 
 @pytest.fixture
 def project(scene, tmp_path):
-    """A folder as the README has it in mind."""
+    """Makes a folder as the README expects it."""
     (tmp_path / "tools").mkdir()
     (tmp_path / "tools" / "slurm").symlink_to(SCRIPTS)
     return tmp_path
@@ -80,7 +80,7 @@ def project(scene, tmp_path):
 
 @pytest.fixture
 def whole(sonject, scene, project):
-    """What a run in one go leaves."""
+    """Returns the files of a run in one go."""
     scene.write_text(scene.read_text() + MANY_RAYS)
     sonject.done("run", scene, "-o", "whole", "--quiet")
     return contents(project / "whole")
@@ -106,14 +106,14 @@ class Parts:
         return (self.folder / f"slurm-{self.array}_{shard}.out").read_text()
 
     def renderer(self, shard):
-        """The process number of a task's sonject, None before it runs."""
+        """Returns the process number of a task's sonject, or None before it runs."""
         variables = (f"SLURM_ARRAY_JOB_ID={self.array}", f"SLURM_ARRAY_TASK_ID={shard}")
         found = cluster.processes_with(self.slurm.mark, *variables)
         return next((process for process in found if is_sonject(process)), None)
 
     def freeze(self, *shards):
-        """Stops tasks' sonjects as soon as each has kept its first slice. Their process numbers;
-        None where one had kept more by then, since this process had to wait for the machine."""
+        """Stops the tasks' sonjects as soon as each has saved its first slice. Returns their process
+        numbers, or None if one had saved more by then because this process waited for the machine."""
         stopped = {}
 
         def are_stopped():
@@ -131,7 +131,7 @@ class Parts:
         return [stopped[shard] for shard in shards] if in_time else None
 
     def withdraw(self, shards):
-        """As if these parts had never been begun."""
+        """Cancels the job and removes its files, as if these parts had never begun."""
         self.slurm.try_call("scancel", self.array, self.merge)
         cluster.kill(self.stopped)
         wait_for("the end of an array", lambda: not (self.slurm.queue(self.array) or
@@ -141,13 +141,13 @@ class Parts:
                 path.unlink()
 
     def merge_early(self):
-        """Has the merge started and put back while tasks are left."""
+        """Lets Slurm start the merge while tasks are left, and waits until the merge is put back."""
         self.slurm.call("scontrol", "update", f"jobid={self.merge}", "dependency=")
         wait_for("a merge that is put back", lambda: self.slurm.job(self.merge)["Restarts"] == "1")
         assert self.slurm.queue(self.array)
 
     def is_merged(self):
-        """A merge that has gone back into the queue is not held there for two minutes."""
+        """Returns whether the merge has ended. Spares a requeued merge the two minutes in the queue."""
         merge = self.slurm.job(self.merge)
         put_back = merge["Restarts"]
         if (merge["Reason"] == "BeginTime" and not self.slurm.queue(self.array)
@@ -157,14 +157,14 @@ class Parts:
         return merge["JobState"] in ("COMPLETED", "FAILED")
 
     def wait(self):
-        """For the end of the merge, what it says and its exit code."""
+        """Waits for the end of the merge. Returns its output and its exit code."""
         wait_for("the merge", self.is_merged)
         code = int(self.slurm.job(self.merge)["ExitCode"].split(":")[0])
         return (self.folder / f"slurm-{self.merge}.out").read_text(), code
 
 
 def start_and_freeze(slurm, folder, tasks, *shards):
-    """The parts of a run, and the process numbers of those that are stopped after one slice."""
+    """Returns the parts of a run, and the process numbers of those that are stopped after one slice."""
     for _ in range(5):
         parts = Parts(slurm, folder, tasks)
         processes = parts.freeze(*shards)
@@ -175,7 +175,7 @@ def start_and_freeze(slurm, folder, tasks, *shards):
 
 
 def has_stopped(process):
-    """Once a signal has stopped a process; False if it has ended instead."""
+    """Waits until a signal has stopped the process. Returns False if the process has ended instead."""
 
     def state():
         try:
@@ -188,7 +188,7 @@ def has_stopped(process):
 
 
 def was_asked_to_end(process):
-    """Whether SIGTERM waits for a stopped process, or it was continued."""
+    """Returns true if SIGTERM waits for a stopped process, or if the process runs on or has ended."""
     try:
         told = pathlib.Path(f"/proc/{process}/status").read_text()
     except OSError:
@@ -200,7 +200,7 @@ def was_asked_to_end(process):
 def is_sonject(process):
     try:
         return os.path.samefile(f"/proc/{process}/exe", COMMAND)
-    except OSError:  # has ended
+    except OSError:  # the process has ended
         return False
 
 
@@ -218,7 +218,7 @@ def test_evicted_and_killed_parts_go_on_and_missing_ones_are_named(slurm, projec
     for shard in (1, 3):
         assert parts.task(shard)["Restarts"] == "1"
         assert parts.log(shard).count("goes on with what is in out/work") == 1
-    # The others, one asked to stop as Slurm does before the time limit.
+    # The other parts. One is asked to stop, as Slurm does before the time limit.
     parts, (asked,) = start_and_freeze(slurm, project, "2,4", 2)
     parts.merge_early()
     slurm.call("scancel", "--batch", "--signal=USR1", f"{parts.array}_2")

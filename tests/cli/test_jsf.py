@@ -1,4 +1,4 @@
-"""EdgeTech's JSF files as input: read, injected into and written back."""
+"""Tests of EdgeTech's JSF files as input: they are read, injected into and written back."""
 
 import json
 import os
@@ -18,7 +18,7 @@ ROWS, COLUMNS = 60, 200
 
 
 def messages(data):
-    """(place, type, subsystem, channel, body) of each."""
+    """Yields (place, type, subsystem, channel, body) of each message."""
     place = 0
     while place < len(data):
         mark, kind, subsystem, channel, size = struct.unpack_from("<H2xHxBB3xI", data, place)
@@ -28,7 +28,7 @@ def messages(data):
 
 
 def samples_of(data, side, subsystem=20):
-    """Envelopes or pairs of a channel, and where they lie in the file."""
+    """Returns the envelopes or pairs of a channel, and their places in the file."""
     lines, places = [], []
     for place, kind, found, channel, body in messages(data):
         if (kind, found, channel) == (80, subsystem, side):
@@ -40,7 +40,7 @@ def samples_of(data, side, subsystem=20):
 
 
 def changed_samples(before, after, side, pair=1):
-    """Rows and columns of samples whose bytes differ; no other byte may."""
+    """Returns rows and columns of samples whose bytes differ. Asserts that no other byte differs."""
     _, places = samples_of(before, side)
     differ = numpy.flatnonzero(numpy.frombuffer(before, "u1") != numpy.frombuffer(after, "u1"))
     rows = numpy.searchsorted(places, differ, "right") - 1
@@ -70,7 +70,7 @@ def analytic(random, scale):
 
 
 def test_analytic_signals_are_complex_pixels(sonject, tmp_path):
-    """As a TIFF of the same floats, rounded."""
+    """The result is as for a TIFF of the same floats, rounded."""
     random = numpy.random.default_rng(3)
     port, starboard = analytic(random, 1500.0), analytic(random, 1500.0)
     (tmp_path / "line.jsf").write_bytes(recordings.jsf_bytes(port, starboard))
@@ -91,7 +91,7 @@ def test_analytic_signals_are_complex_pixels(sonject, tmp_path):
 
 @pytest.mark.parametrize("is_analytic", [False, True])
 def test_pings_are_weighed(sonject, tmp_path, sides, is_analytic):
-    """A ping's samples times 2^-N; the steps of the finest are 1, and what 16 bits cannot hold is cut."""
+    """A ping of weight N has samples in units of 2^-N. The finest steps are 1. 16 bits clip larger values."""
     random = numpy.random.default_rng(5)
     weights = random.integers(-2, 3, ROWS)
     weights[:2] = -2, 2
@@ -124,11 +124,11 @@ def test_pings_are_weighed(sonject, tmp_path, sides, is_analytic):
 
 
 def test_geometry_is_the_pings(sonject, tmp_path, sides):
-    """Ranges by the first ping's sound speed and what it waits; positions in any of three units."""
+    """Ranges follow from the first ping's sound speed and delay. Positions are in any of three units."""
     step = 0.1 / (1852 * 60) * 600000
     for units, places in ((1, [(100 * row, 5) for row in range(ROWS)]), (3, [(5, row) for row in range(ROWS)]),
                           (2, [(9.0, 600000 * 60 + step * row) for row in range(ROWS)])):
-        # what units a position is in that is not valid does not count
+        # the units of an invalid position do not count
         data = b"".join(recordings.jsf_ping(line, 1, speed=1450.0 + row / 100, delay=20, position=place,
                                             units=units if row else 3 - units % 2, spacing=0.145,
                                             valid=0x49 if row else 0x48)
@@ -140,7 +140,7 @@ def test_geometry_is_the_pings(sonject, tmp_path, sides):
 
 
 def test_headings_place_targets(sonject, tmp_path, sides):
-    """Abeam to port of a sonar that looks east while it moves north east."""
+    """The target is abeam to port of a sonar that heads east while it moves north east."""
     (tmp_path / "line.jsf").write_bytes(recordings.jsf_bytes(*sides, heading=90.0))
     sonject.done("run", write_scene(tmp_path, "line.jsf", "port"), "-o", "out")
     found = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"][0]
@@ -150,14 +150,14 @@ def test_headings_place_targets(sonject, tmp_path, sides):
 
 
 def test_what_is_not_valid_is_not_there(sonject, tmp_path, sides):
-    """By the pings' own flags."""
+    """The pings' own flags say which values are valid."""
     for valid, words in ((0x48, "fewer than two of its pings have a position"), (0x09, "has no altitudes")):
         (tmp_path / "line.jsf").write_bytes(recordings.jsf_bytes(*sides, valid=valid))
         assert_refused(sonject("check", write_scene(tmp_path, "line.jsf", "port")), 3, words)
     (tmp_path / "line.jsf").write_bytes(recordings.jsf_bytes(*sides, heading=90.0, valid=0x41))
     sonject.done("run", write_scene(tmp_path, "line.jsf", "port"), "-o", "out")
     found = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"][0]
-    # by the track's course, which has 3 to the east for 4 to the north
+    # without a heading, the track's course counts: 3 to the east for 4 to the north
     assert found["position"]["easting_m"] == pytest.approx(
         1000.0 + 0.06 * found["row"] - 0.8 * found["ground_range_m"], abs=0.01)
 

@@ -1,4 +1,4 @@
-"""Labels of a run: boxes and masks in every format, contact records, places on the map."""
+"""Tests of a run's labels: boxes and masks in every format, contact records, places on the map."""
 
 import csv
 import json
@@ -15,8 +15,8 @@ import recordings
 from measured_images import read_png
 from conftest import COMMAND, COLUMNS, ROWS, assert_refused
 
-# Boxes as long as they are wide would hide rows and columns that are swapped. The second target
-# stands in the first one's shadow, the third one's leaves the patch, the fourth is buried.
+# Square boxes would hide swapped rows and columns. The second target stands in the first one's shadow.
+# The third target's shadow leaves the patch. The fourth target is buried.
 SCENE = """\
 sonject: 1
 input:
@@ -36,7 +36,7 @@ CLASSES = ['x<&>y, "q"', "sphere"]
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory, environment):
-    """A run's folder with all labels."""
+    """Makes a run with all labels and returns its folder."""
     place = tmp_path_factory.mktemp("labels")
     random = numpy.random.default_rng(4)
     swath = random.rayleigh(0.1, (ROWS, COLUMNS)).astype(numpy.float32)
@@ -53,7 +53,7 @@ def read_json(path):
 
 @pytest.fixture(scope="module")
 def seen(folder):
-    """{number of the object: its pixels} of what labels.png shows."""
+    """Returns {number of the object: mask of its pixels} from labels.png."""
     masks = numpy.zeros((ROWS, COLUMNS), numpy.uint8)
     for annotation in read_json(folder / "coco.json")["annotations"]:
         masks += annotation["object_id"] * decoded(annotation["segmentation"])
@@ -69,7 +69,7 @@ def decoded(segmentation):
 
 
 def box_of(mask):
-    """(row, column, rows, columns) of the pixels that are set."""
+    """Returns (row, column, rows, columns) of the pixels that are set."""
     rows, columns = numpy.nonzero(mask)
     return (rows.min(), columns.min(), numpy.ptp(rows) + 1, numpy.ptp(columns) + 1)
 
@@ -133,7 +133,7 @@ def test_truth_says_where_boxes_lie_and_what_is_seen(folder, seen):
     assert box["ground_range_m"] == pytest.approx(math.sqrt(near**2 - 100))
     assert box["ground_width_m"] == pytest.approx(
         math.sqrt((near + 0.025 * box["columns"]) ** 2 - 100) - math.sqrt(near**2 - 100))
-    # The bar along the track is 1.6 m long: 32 rows, and one or two where sound spills over.
+    # The bar along the track is 1.6 m long: 32 rows, and one or two more into which its echo spills.
     assert box["rows"] in (32, 33, 34)
     assert bar["dimensions"] == {"length_m": 1.6, "width_m": 0.2, "height_m": 0.3}
     taken = seen[2] & (read_png(folder / "highlight.png") > 0)
@@ -240,7 +240,7 @@ def test_unknown_labels_are_refused(sonject, tmp_path, asked):
     assert not (tmp_path / "out").exists()
 
 
-# Where a vehicle was at each ping, and what a contact abeam of it must then be told to be.
+# The side, units of positions, recorded heading in degrees, and heading abeam of which contacts must lie, rad.
 EAST = math.radians(89.0)
 TRACKS = {
     "east across the date line, to starboard": ("starboard", 3, None, EAST),
@@ -250,8 +250,8 @@ TRACKS = {
 
 
 def metres_per_degree(latitude):
-    """Of longitude and latitude on the WGS 84 ellipsoid, by the distance of points of its surface
-    in space."""
+    """Returns the metres per degree of longitude and of latitude on the WGS 84 ellipsoid, from distances in
+    space between points of its surface."""
 
     def point(longitude, latitude):
         a, e2 = 6378137.0, 1 - (1 - 1 / 298.257223563) ** 2
@@ -272,14 +272,14 @@ def test_contacts_lie_abeam_of_the_recorded_track(sonject, tmp_path, case):
     origin = (179.99999, -40.0) if units else (500000.0, 4000000.0)
 
     def at(along, abeam, bearing):
-        """So far along the track (which runs east by north), and so far abeam of the bearing."""
+        """Returns the position that far along the track, which runs east by north, and abeam of the bearing."""
         turn = bearing + (math.pi / 2 if side == "starboard" else -math.pi / 2)
         x = along * math.sin(EAST) + abeam * math.sin(turn)
         y = along * math.cos(EAST) + abeam * math.cos(turn)
         return origin[0] + x / scale[0], origin[1] + y / scale[1]
 
-    # Positions are recorded every fourth ping only, and repeated in between; two are missing, one of
-    # them with its heading.
+    # Positions are recorded at every fourth ping and repeated in between. Two are missing, one of them
+    # with its heading.
     data = recordings.file_header([recordings.PORT if side == "port" else recordings.STARBOARD],
                                   units=units)
     samples = numpy.random.default_rng(3).rayleigh(2000.0, (60, 200)).astype("<u2")

@@ -1,4 +1,4 @@
-"""bindings/matlab in Octave: its image, masks and truth are the command's, its errors the command's messages."""
+"""Tests of bindings/matlab in Octave: image, masks and truth are the command's, errors are its messages."""
 
 import json
 import re
@@ -33,7 +33,7 @@ objects: [{name: b\u00e4ll, shape: sphere, diameter: 0.5}]
 
 @pytest.fixture
 def octave(tmp_path, environment, monkeypatch):
-    """Runs a program in the folder of the test and returns what it prints; no folder of its own may be left."""
+    """Runs a program in the test's folder and returns its output. Asserts that no temporary folder is left."""
     temporary = tmp_path / "it's temporary"
     temporary.mkdir()
 
@@ -65,7 +65,7 @@ def assert_same_masks(masks, folder):
         expected = image_of(folder / f"{name}.png")
         assert expected.any()
         mask = getattr(masks, name)
-        # both tell a mask of one bit from one of 255
+        # a mask may be read as one bit or as 255
         assert numpy.array_equal(mask, expected if name == "labels" else expected != 0), name
 
 

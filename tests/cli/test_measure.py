@@ -1,4 +1,4 @@
-"""sonject measure: an image's statistics as JSON."""
+"""Tests of sonject measure, which prints an image's statistics as JSON."""
 
 import json
 import re
@@ -38,14 +38,14 @@ def test_arrays_are_measured_as_images_are(sonject, tmp_path):
     (tmp_path / "mask.png").write_bytes(png_bytes(mask))
     of_image = told(sonject("measure", write(tmp_path / "bed.tif", bed), "--targets", "mask.png"))
     assert told(sonject("measure", "bed.npy", "--targets", "mask.npy")) == of_image
-    bed[mask > 0] = 1  # what is hidden does not count
+    bed[mask > 0] = 1  # masked pixels do not count
     assert told(sonject("measure", write(tmp_path / "other.tif", bed), "--targets", "mask.png")) == of_image
     assert told(sonject("measure", "other.tif")) != of_image
 
 
 def test_speckle_is_measured_and_transfer_undone(sonject, tmp_path):
-    """Of 3 looks: 80 blocks of 1024 values know the squared intensity contrast to sqrt(20 / 1024) / 3,
-    their median to 1.25 / sqrt(80) of that: 2 %."""
+    """The speckle has 3 looks. Each of 80 blocks of 1024 values gives the squared intensity contrast to
+    sqrt(20 / 1024) / 3. Their median has 1.25 / sqrt(80) of that error: 2 %."""
     write(tmp_path / "bed.tif", speckle(3))
     write(tmp_path / "decibels.tif", (20 * numpy.log10(speckle(3))).astype(numpy.float32))
     plain = told(sonject("measure", "bed.tif"))["seabed"]
@@ -68,7 +68,7 @@ def test_channels_are_measured_as_images_are(sonject, tmp_path):
         image = told(sonject("measure", *options, f"{side}.tif"))
         for contact in channel.get("contacts", []) + image.get("contacts", []):
             for key in [key for key in contact if key == "image" or key.endswith("_m") or key.startswith("axis_")]:
-                del contact[key]  # metres are told by the recording alone
+                del contact[key]  # only the recording gives metres
         assert channel == image
     for code, words, arguments in (
             (3, ["line.xtf", "1 (port), 2 (starboard)"], ["line.xtf"]),
@@ -91,7 +91,7 @@ def test_images_that_do_not_fit(sonject, tmp_path):
 
 
 def test_steps_of_grey_are_kept(sonject, tmp_path):
-    """Eight bits in a file of sixteen stay multiples of 256, in a run with a target too."""
+    """Eight bits in a file of sixteen stay multiples of 256, also in a run with a target."""
     grey = numpy.clip(speckle() * 600, 0, 200).astype(numpy.uint16) * 256
     write(tmp_path / "swath.tif", grey)
     (tmp_path / "scene.yaml").write_text(
@@ -116,7 +116,7 @@ def test_steps_of_grey_are_kept(sonject, tmp_path):
     assert run["blending"] == truth["blending"]
 
 
-# Highlight and shadow of unequal rows and columns, somewhere off the middle.
+# Highlight and shadow (row, column, rows, columns). Their sides differ, and they lie off the middle.
 HIGHLIGHT, SHADOW = (70, 150, 21, 12), (70, 162, 21, 55)
 
 
@@ -130,7 +130,7 @@ def contact(seed=1, shadow_columns=55):
 
 
 def test_lengths_of_a_contact(sonject, tmp_path):
-    """Sharp edges in speckle: means over 12 rows or columns and more know them to a pixel or two."""
+    """Means over 12 or more rows or columns show sharp edges in speckle to a pixel or two."""
     write(tmp_path / "image.tif", contact())
     spacing = ["--row-spacing", "0.1", "--column-spacing", "0.05"]
     box = "60,140,41,90"
@@ -173,11 +173,11 @@ def add_contact(pixels, row, column, rows, gain, shadow):
 
 
 def test_contacts_are_looked_for(sonject, tmp_path):
-    """The brightest first; what is faint is none. A gap between highlight and shadow is told, and that a
-    shadow leaves the image."""
+    """The brightest contact comes first, and faint ones are left out. The result shows a gap between highlight
+    and shadow, and a shadow that leaves the image."""
     pixels = speckle(seed=7)
     add_contact(pixels, 40, 60, 21, 20, 50)
-    pixels[40:61, 76:118] /= 0.05  # the shadow goes away, and comes again further off
+    pixels[40:61, 76:118] /= 0.05  # the shadow moves further off
     pixels[40:61, 80:118] *= 0.05
     add_contact(pixels, 120, 150, 21, 10, 50)
     add_contact(pixels, 200, 290, 21, 6, 50)
@@ -203,8 +203,8 @@ def test_contacts_are_looked_for(sonject, tmp_path):
 
 
 def test_first_return_is_no_contact(sonject, tmp_path):
-    """Behind the transmitted pulse, a water column 40 dB darker than the seabed, at whose wandering
-    end a line is 14 dB brighter, here and there broken. Only what lies on the seabed is found."""
+    """The water column behind the transmitted pulse is 40 dB darker than the seabed. A line at its wandering
+    end is 14 dB brighter and broken in places. Only the contact on the seabed is found."""
     pixels = speckle(seed=3)
     line = (60 + 25 * numpy.sin(numpy.arange(ROWS) / 40)).astype(int)
     columns = numpy.arange(COLUMNS)
@@ -253,7 +253,7 @@ def test_a_run_notes_what_nobody_would_see(sonject, tmp_path, change, note):
     (24, 255, numpy.uint8), (24, 200, numpy.uint8), (24, 15, numpy.uint8), (10, 255, numpy.uint8),
     (24, None, numpy.float32)])
 def test_highlights_at_the_ceiling_are_told(sonject, tmp_path, level, ceiling, stored):
-    """Of the file's numbers, or of the picture that keeps below them; float numbers have none."""
+    """The ceiling is the file's largest number, or a lower one that the picture keeps. Floats have none."""
     swath = numpy.random.default_rng(6).rayleigh(2 if ceiling == 15 else 30, (128, 128))
     full_scale = f"transfer: {{kind: amplitude, full_scale: {ceiling}}}, " if ceiling == 15 else ""
     if ceiling == 200:
@@ -276,7 +276,7 @@ def test_highlights_at_the_ceiling_are_told(sonject, tmp_path, level, ceiling, s
     if ceiling is None:
         assert room is None
         return
-    if ceiling == 255:  # 1600 squares of speckle: 0.5 dB are 5 standard errors
+    if ceiling == 255:  # 0.5 dB are 5 standard errors of 1600 squares of speckle
         around = (numpy.minimum(swath, 255)[60:100, 60:100] ** 2).mean()
         assert room == pytest.approx(10 * numpy.log10(255**2 / around), abs=0.5)
     if share > 0.1:
@@ -287,7 +287,7 @@ def test_highlights_at_the_ceiling_are_told(sonject, tmp_path, level, ceiling, s
 
 
 def test_the_water_column_is_nobodys_seabed(sonject, tmp_path):
-    """Its darkness, within 24 pixels of the target, would drown every shadow. First return: column 40."""
+    """The water column, within 24 pixels of the target and up to column 40, would drown every shadow."""
     swath = numpy.random.default_rng(5).rayleigh(30, (128, 160))
     swath[:, :40] = 1
     write(tmp_path / "swath.tif", swath.astype(numpy.float32))

@@ -1,4 +1,4 @@
-"""Meshes in scenes: what the command says about them."""
+"""Tests of the command's messages about meshes in scenes."""
 
 import pytest
 
@@ -25,7 +25,7 @@ objects:
 
 @pytest.fixture
 def mesh(tmp_path, scene):
-    """The file that the scene shows twice."""
+    """Writes the mesh that the scene shows twice and returns its path."""
     scene.write_text(SCENE[: SCENE.index("objects:")] + OBJECTS)
     (tmp_path / "shapes").mkdir()
     path = tmp_path / "shapes" / "rock.obj"

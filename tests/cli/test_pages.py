@@ -1,6 +1,6 @@
-"""What README and pages tell a reader to type is typed here: commands, scenes, fragments of scene
-files, programs in Python, and mistakes for their messages. What is new in a page fails until it can
-be run. C and C++ are in tests/abi/test_installed.py, MATLAB's language is in test_matlab.py."""
+"""Runs what README and pages tell a reader to type: commands, scenes, fragments of scene files, programs
+in Python, and mistakes for their messages. New text in a page fails until it can be run. C and C++ are
+in tests/abi/test_installed.py, MATLAB's language is in test_matlab.py."""
 
 import json
 import os
@@ -22,7 +22,7 @@ BUILD = pathlib.Path(COMMAND).resolve().parent.parent
 GALLERY = "docs/gallery.md"
 SCENES = sorted(f"tools/scenes/{path.name}" for path in (SOURCE / "tools" / "scenes").glob("*.yaml"))
 
-# What takes the place of a command that stands for many, in the order in which they are run.
+# Documented commands with placeholders, and the commands that are run instead, in this order.
 TYPED = {
     "sonject run SCENE.yaml -o DIR": "sonject run scene.yaml -o whole",
     "sonject run SCENE.yaml -o DIR --shard I/K":
@@ -63,7 +63,7 @@ TYPED = {
         "-o data); sbatch --dependency=afterany:$array tools/slurm/merge.sh data; "
         "cmp data/all/coco.json whole_set/all/coco.json",
 }
-# Commands that are run elsewhere: the file that does so, and a word of it there.
+# Commands that are run elsewhere: the file that runs them, and a word of that file.
 ELSEWHERE = {
     r"sh tools/first-run\.sh|meson setup build &&": ("tests/abi/test_package.py", "first-run.sh"),
     r"env/bin/pip install \.$": ("tests/abi/test_package.py", "mesonpy.build_wheel"),
@@ -82,7 +82,7 @@ ELSEWHERE = {
     r"python3 bindings/python/examples/train_detector": ("bindings/python/tests/test_train_detector.py", "train_detector"),
     r"sonject fit ": ("tests/cli/test_fit.py", '"fit"'),
     r"parallel |sbatch |scontrol |array=.* run |RequeueExit": ("tests/cli/test_job_scripts.py", "documented("),
-    # which is said there
+    # these are not run, as the README says
     r"condor_submit |dask |python3 tools/slurm/dask": ("tools/slurm/README.md", "It does not run those for HTCondor and Dask"),
 }
 
@@ -97,7 +97,7 @@ swaths: [{path: swath.tif}]
 targets: [{class: ball, object: {shape: sphere, diameter: 0.3 m}}]
 """
 
-# Runs what Slurm's would put into its queue, at once.
+# Replaces Slurm's sbatch and runs at once what that would queue.
 SBATCH = """\
 #!/bin/bash
 tasks=
@@ -131,7 +131,7 @@ TO_TYPE += [text for text in dict.fromkeys([*typed_by(PAGES), *OF_SCENES])
 
 @pytest.fixture(scope="module")
 def project(tmp_path_factory, environment):
-    """A folder like the project's, with what the commands expect to find, and how to type there."""
+    """Makes a folder like the project's with all files that commands expect. Returns it and a runner of lines."""
     folder = tmp_path_factory.mktemp("project")
     programs = folder / "programs"
     programs.mkdir()
@@ -174,7 +174,7 @@ def project(tmp_path_factory, environment):
 
 
 def stl_of_a_box(width, length, height):
-    """In text, of twelve triangles: x, y and z are its sides."""
+    """Returns an STL file, in text, of twelve triangles. The sides are along x, y and z."""
     corners = [(x, y, z) for x in (0, width) for y in (0, length) for z in (0, height)]
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     triangles = [each for a, b, c, d in faces for each in ((a, b, c), (a, c, d))]
@@ -184,7 +184,7 @@ def stl_of_a_box(width, length, height):
 
 
 def own_scene():
-    """The scene of the README for a swath of one's own."""
+    """Returns the README's scene for a swath of the user's own."""
     return blocks("README.md", "yaml")[0]
 
 
@@ -214,9 +214,9 @@ def test_what_is_typed_instead_is_for_commands_that_are_there():
 def test_commands_do_what_they_should(project, command):
     folder, type_in = project
     line = TYPED.get(command, command)
-    # the examples with few rays
+    # the examples run with few rays
     type_in(line + " --set injection.rays=0.1" * ("run tools/scenes/" in line))
-    if "--shard" not in line:  # all else leaves results alone
+    if "--shard" not in line:  # other commands leave no work folder
         assert not list(folder.glob("*/work"))
 
 
@@ -247,7 +247,7 @@ def test_blocks_of_code_are_in_languages_that_tests_run():
             assert not any(blocks(page, each) for each in ("c", "cpp", "cmake", "matlab")), page
 
 
-# docs/gallery.py runs that page's Python, each block after those before it.
+# docs/gallery.py runs the gallery's Python, whose blocks build on each other.
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "python") and page != GALLERY])
 def test_python_runs(project, page, monkeypatch):
     folder, _ = project
@@ -257,7 +257,7 @@ def test_python_runs(project, page, monkeypatch):
 
 
 def with_sections(scene, block):
-    """The scene with the sections of the block instead of its own."""
+    """Returns the scene, with its sections replaced by those of the block."""
     sections = re.findall(r"^\w+:.*\n(?: .*\n)*", scene, flags=re.M)
     new = re.findall(r"^(\w+):", block, flags=re.M)
     return "".join(each for each in sections if each.split(":")[0] not in new) + block
@@ -273,7 +273,7 @@ def test_scenes_and_sections_of_them_are_taken(project, page, number):
     (folder / "block.yaml").write_text(block)
     if block.startswith("sonject_campaign:"):
         type_in(f"sonject campaign block.yaml -o block{number} --set images=6")
-    elif block.startswith("quantiles:"):  # which are read before the device is asked for
+    elif block.startswith("quantiles:"):  # quantiles are read before the device is looked for
         answer = subprocess.run([COMMAND, "fit", "campaign.yaml", "block.yaml", "-o", "fitted.yaml", "--device", "none"],
                                 cwd=folder, text=True, capture_output=True, check=False)
         assert answer.returncode == 4, answer.stderr
@@ -284,7 +284,7 @@ def test_scenes_and_sections_of_them_are_taken(project, page, number):
         type_in("sonject check block.yaml" + band)
 
 
-# How the mistakes are made whose messages the page lists.
+# The messages that docs/messages.md explains, and commands with the mistakes that cause them.
 MISTAKES = {
     "unknown key; did you mean ...": "sonject check scene.yaml --set sonar.altitud=3",
     "missing; add it ...": "sonject check scene.yaml --set 'sonar={frequency: 100 kHz, bandwidth: 30 kHz}'",
@@ -341,8 +341,8 @@ def test_the_picture_of_the_demo_is_what_the_command_makes(tmp_path):
 
 
 def test_the_gallery_shows_what_its_page_makes(tmp_path):
-    """The images have the same bits everywhere; a last bit in NumPy's logarithm would change a grey level only at
-    the border between two, which no pixel is that close to."""
+    """Images have the same bits everywhere. The last bit of NumPy's logarithm could change a grey level only at the
+    border between two levels, and no pixel is that close to one."""
     from PIL import Image
 
     subprocess.run([sys.executable, SOURCE / "docs" / "gallery.py", tmp_path], check=True)
@@ -359,8 +359,8 @@ def test_the_gallery_shows_what_its_page_makes(tmp_path):
 
 
 ROCK = f"objects=[{{shape: mesh, mesh: {{file: {SOURCE}/tools/targets/rock.obj, unit: cm}}}}]"
-# Where a fragment of a page belongs: the key that it is the value of, "" where it tells that
-# itself, and what else the scene needs before or behind it.
+# The place of each fragment: the key whose value it is, or a prefix ("" or ending in a dot) if the
+# fragment names its key. Then the settings that the scene needs before and after it.
 FRAGMENTS = {
     "{speed: 2 m/s, ping_rate: 20 Hz}": ("input.geometry.row_spacing", [], []),
     "{kind: amplitude}": ("input.transfer", [], []),
@@ -387,7 +387,7 @@ FRAGMENTS = {
     "sonar.kind: real": ("", ["sonar.array={length: 1 m}"], []),
     "aperture: none": ("sonar.", [], []),
 }
-# A campaign's, what needs a calibration, and what ends where a value would begin.
+# Fragments of campaigns, those that need a calibration, and those that end before their value.
 OTHER_FRAGMENTS = {
     "labels: [yolo]", "target:", "visible: {highlight: 1.2 dB, shadow: -2.3 dB}", "chip.spread: 1",
     "chip: {rows: all, columns: all}", "draw: {table: bodies.csv}", "{file: bodies.csv, weight: count}", "{of: length, uniform: [0.5, 1]}",

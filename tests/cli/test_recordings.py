@@ -1,4 +1,4 @@
-"""XTF files and NumPy arrays as input: read, injected into and written back."""
+"""Tests of XTF files and NumPy arrays as input: they are read, injected into and written back."""
 
 import json
 import os
@@ -38,13 +38,13 @@ def test_a_channel_is_as_its_pixels_in_a_tiff(sonject, tmp_path, sides, side):
     assert numpy.array_equal(recordings_pixels(before, side), pixels)
     assert numpy.array_equal(injected, as_tiff)
     assert (injected != pixels).sum() > 50
-    # nothing but samples of that channel's patch has changed
+    # only samples of that channel's patch have changed
     changed = numpy.flatnonzero(numpy.frombuffer(before, "u1") != numpy.frombuffer(after, "u1"))
     assert set(changed) <= set(sample_places(before, side, (10, 50), (60, 180)))
 
 
 def packets(data):
-    """(place, kind, bytes) of each packet."""
+    """Yields (place, kind, bytes) of each packet."""
     place = 1024
     while place < len(data):
         size = int.from_bytes(data[place + 10:place + 14], "little")
@@ -53,7 +53,7 @@ def packets(data):
 
 
 def line_places(data, side):
-    """Where each ping's samples of the side begin in a file of xtf_bytes."""
+    """Returns the places where each ping's samples of the side begin in a file of xtf_bytes."""
     step = 0 if side == "port" else 64 + 2 * COLUMNS
     return [place + 256 + 64 + 14 + 64 + step for place, kind, _ in packets(data) if kind == 0]
 
@@ -82,7 +82,7 @@ def test_degrees_are_metres_on_the_ground(sonject, tmp_path, sides):
 
 
 def test_empty_pings_change_no_geometry(sonject, tmp_path, sides):
-    """Of the patch's rows 10 to 49, some or all; then the pings around them tell it."""
+    """Some or all of the patch's rows 10 to 49 are empty. The pings around them then tell the geometry."""
     scene = write_scene(tmp_path, "line.xtf", channel="port")
     answers = set()
     for rows in ((), {10}, {49}, set(range(10, 49)), set(range(5, 55))):
@@ -104,13 +104,12 @@ def test_a_geometry_that_is_not_told_is_refused_at_its_key(sonject, tmp_path, si
     assert_refused(sonject("check", scene), 3, f":2:{column}: input.geometry: ", words)
 
 
-# Of each size of number both orders of bytes.
+# Each size of number has both orders of bytes.
 @pytest.mark.parametrize("kind, order", [("u1", "<"), ("u2", "<"), ("i2", ">"), ("u4", ">"), ("i4", "<"),
                                          ("f4", ">"), ("f8", "<"), ("f8", ">"), ("c8", "<"),
                                          ("c16", ">")])
 def test_arrays_come_back_as_they_were(sonject, tmp_path, sides, kind, order):
-    """In their own type and order, every bit of untouched samples kept, of which floats hold some
-    24 only."""
+    """Arrays keep type and order. Untouched samples keep every bit, although floats hold only 24."""
     pixels = sides[0] / 19999.0
     if kind[0] in "ui":
         pixels = pixels * numpy.iinfo(kind).max
@@ -201,20 +200,20 @@ def test_other_arrays_are_refused(sonject, tmp_path, array, words):
 
 
 def test_a_measured_line_works_from_its_first_pixel(sonject, tmp_path):
-    """Its first ping is empty, and its first columns are nearer than the pulse reaches."""
+    """The line's first ping is empty, and its first columns are nearer than the pulse's reach."""
     (tmp_path / "line.xtf").write_bytes(measured(LINE).read_bytes())
     scene = write_scene(tmp_path, "line.xtf", channel="starboard")
     options = ["--set", "patch={row: 0, column: 0, rows: 100, columns: 900}", "--set",
                "sonar.bandwidth=25 kHz"]
     sonject.done("run", scene, "-o", "out", *options)
-    # 99 pings with positions against 99 of 100: within a step of the recorder's positions
+    # 99 pings with positions against 99 of 100 give the same length to a step of the recorder's positions
     lengths = [float(re.search("([0-9.]+) m along-track", sonject("check", scene, *options, *more)
                                .stdout)[1]) for more in ([], ["--set", "patch.row=1"])]
     assert lengths[0] == pytest.approx(lengths[1], abs=0.3)
 
 
 def test_a_measured_line_is_read_by_others(sonject, tmp_path):
-    """The Iver2's line, injected into at 10 to 28 m to port, in the eyes of pyxtf."""
+    """pyxtf reads the Iver2's line after an injection at 10 to 28 m to port."""
     line = measured(LINE)
     reader = os.environ.get("SONJECT_READERS")
     if not reader:
@@ -269,7 +268,7 @@ def test_of_a_whole_line_the_altitude_is_that_at_the_objects(sonject, tmp_path, 
     told = rf"the altitude goes from {altitudes[15]:.2f} to {altitudes[45]:.2f} m"
     assert told in sonject.done("check", "two.yaml").stdout
     assert told in sonject.done("run", "two.yaml", "-o", "two").stderr
-    # a chosen patch is its user's
+    # the mean altitude of a patch counts if the user has chosen the patch
     chosen = text.replace("objects: [{", "objects: [{position: {row: 45, column: 120}, ")
     (tmp_path / "chosen.yaml").write_text(chosen)
     sonject.done("run", "chosen.yaml", "-o", "chosen")
@@ -322,7 +321,7 @@ targets: [{class: ball, object: {shape: sphere, diameter: 0.4 m}}]
 
 @pytest.mark.parametrize("kind", ["xtf", "jsf"])
 def test_pings_without_samples_make_no_row_and_are_named(sonject, tmp_path, sides, kind):
-    """The image has the others' rows, by whose numbers truth and patch go."""
+    """The image has only the other pings' rows. Truth and patch count these rows."""
     gone = {3, 20, 21, 59}
     make = recordings.xtf_bytes if kind == "xtf" else recordings.jsf_bytes
     options = {"silent": gone} if kind == "xtf" else {"empty": gone}
@@ -341,8 +340,8 @@ def test_pings_without_samples_make_no_row_and_are_named(sonject, tmp_path, side
 
 
 def test_empty_rows_stay_as_they_are_and_are_named(sonject, tmp_path, sides):
-    """Rows that hold nothing but 0, in a recording or any image. A row that is dark in the patch
-    alone is none of them."""
+    """Empty rows hold nothing but 0, in a recording or any image. A row that is dark only in the patch
+    is not empty."""
     pixels = sides[0]
     pixels[[10, 11, 28, 30, 31, 55]] = 0
     pixels[29, 60:180] = 0
@@ -368,7 +367,7 @@ def test_empty_rows_stay_as_they_are_and_are_named(sonject, tmp_path, sides):
         assert [rows.min(), numpy.ptp(rows) + 1, columns.min(), numpy.ptp(columns) + 1] == [
             box[side] for side in ("row", "rows", "column", "columns")]
         assert found[f"{key}_pixels"] == len(rows)
-    # levels and floors are measured where something was heard
+    # levels and floors are measured outside the empty rows
     shown = pixels.copy()
     shown[10] = shown[11] = pixels[12]
     shown[28], shown[30], shown[31] = pixels[27], pixels[29], pixels[29]

@@ -1,4 +1,4 @@
-"""report.html of runs and data sets: what it shows is what the files beside it say, and it needs no other."""
+"""Tests of report.html of runs and data sets: it agrees with the files beside it and needs no other file."""
 
 import html.parser
 import json
@@ -17,7 +17,7 @@ HOSTILE = "</script><b>&\"'é<!--"
 
 
 class Page(html.parser.HTMLParser):
-    """Checks that what is opened is closed, and keeps addresses and scripts."""
+    """A parser that asserts that all tags are closed, and keeps addresses and texts."""
 
     VOID = {"meta", "link", "input", "img", "br"}
 
@@ -44,12 +44,12 @@ class Page(html.parser.HTMLParser):
 
 
 def check_page(folder):
-    """Well-formed, one file, and nothing of its data is markup; the data."""
+    """Asserts that the page is well-formed, needs no other file and has no markup in its data. Returns the data."""
     text = (folder / "report.html").read_text(encoding="utf-8")
     assert text.startswith('<!DOCTYPE html>\n<html lang="en">')
     page = Page(text)
     assert not page.addresses
-    # a name of XML's is all that looks like a host
+    # only a name of XML's looks like a host
     assert set(re.findall(r"\w+://[^\"'\s]*", text)) == {"http://www.w3.org/2000/svg"}
     data, _ = page.texts["script"]
     assert "<" not in data and json.loads(data) == page_data(folder)
@@ -87,7 +87,7 @@ def test_the_page_knows_the_panels_of_the_quicklook(sonject, scene, tmp_path, sw
     swath = swath[window]
     up = before.shape[0] // look["rows"]
     assert before.shape[:2] == tuple(up * side for side in swath.shape) and look["row_spacing_m"] == 0.025
-    # grey rises with the amplitude, on the same scale before and after; what did not change is white
+    # grey rises with the amplitude, on the same scale before and after; the difference is white where nothing changed
     small = before[up // 2 :: up, up // 2 :: up, 0]
     order = numpy.argsort(swath, axis=None)
     assert (numpy.diff(small.ravel()[order]) >= 0).all() and small.min() == 0 and small.max() == 255
@@ -145,7 +145,7 @@ def test_a_calibration_is_linked_where_it_was_made(sonject, scene, tmp_path):
 
 @pytest.fixture
 def data_set(sonject, tmp_path):
-    """A campaign of ten images."""
+    """Makes a campaign of ten images and returns its folder."""
     numbers = numpy.random.default_rng(20261122)
     for i in range(3):
         (tmp_path / f"swath{i}.png").write_bytes(images.png_bytes(numbers.rayleigh(30, (110, 150)).clip(1, 255)))
@@ -179,7 +179,7 @@ def test_the_page_of_a_data_set_says_what_truth_says(data_set):
     assert sum(sum(split.values()) for split in counts.values()) > 5
     records = [json.loads(path.read_text()) for path in data_set.glob("*/records/*.json")]
     assert page["cut"] == sum(any(each["truncated"] for each in record["annotations"]) for record in records)
-    # images of the contact sheet lie where it says, in one row after the other
+    # images of the contact sheet lie where the page says, row by row
     assert page["sheet"]["images"] == list(range(10)) and page["chips"] == 0 and not (data_set / "chips").exists()
     sheet = read_png(data_set / "contact_sheet.png")
     empty = next(row for row in page["rows"] if not row[4])
@@ -189,14 +189,13 @@ def test_the_page_of_a_data_set_says_what_truth_says(data_set):
 
 
 def place(sheet, cell):
-    """Where a picture of images has a cell, as the page finds it."""
+    """Returns where a picture of images has a cell, as the page computes it."""
     return sheet["gap"] + cell % sheet["across"] * sheet["width"], sheet["gap"] + cell // sheet["across"] * sheet["height"]
 
 
 @pytest.mark.parametrize("rows, columns, height", [(32, 64, 32), (24, 150, 28), ("all", 64, 110)])
 def test_captions_stand_under_their_chips(sonject, data_set, tmp_path, rows, columns, height):
-    """Which are not square, but no more than five times as wide as high; where they have all rows of swaths, those of
-    this one are 110."""
+    """Chips are not square, but at most five times as wide as high. With all rows of a swath they have 110 here."""
     make(sonject, tmp_path, f"chip={{rows: {rows}, columns: {columns}, spread: 0}}", "targets[0].class=ball")
     sheet = read_png(tmp_path / "wide" / "contact_sheet.png")
     page = page_data(tmp_path / "wide")["sheet"]
@@ -206,7 +205,7 @@ def test_captions_stand_under_their_chips(sonject, data_set, tmp_path, rows, col
     ink = numpy.flatnonzero((band < 128).all(axis=2).any(axis=1))
     assert 2 <= ink[0] <= 6  # the row under the chip may hold a box's frame, which is not black
     assert 10 <= ink[-1] - ink[0] <= 14 and ink[-1] < 20
-    if rows != "all":  # a swath may have more of them than the image shown
+    if rows != "all":  # another swath may have more rows than this one
         assert len(band) == 28
 
 
@@ -216,7 +215,7 @@ def make(sonject, folder, *settings):
 
 
 def test_chips_are_drawn_to_scale_and_names_whole(sonject, data_set, tmp_path):
-    """Rows are four times as long as columns; the name, which has no place in one line, is that of all targets."""
+    """Rows are four times as long as columns. The targets' class name is too long for one line."""
     (tmp_path / "scene.yaml").write_text(SCENE.replace("row_spacing: 2.5 cm", "row_spacing: 10 cm"))
     chip, name = "chip={rows: 20, columns: 64, spread: 0}", "mine_of_a_long_name"
     short, long = (make(sonject, tmp_path, chip, f"targets[0].class={each}", "images=24") for each in (name[:4], name))

@@ -1,4 +1,4 @@
-"""Whole runs: what they leave, and what happens when they are stopped."""
+"""Tests of whole runs: their files, and what happens when they are stopped."""
 
 import json
 import math
@@ -35,12 +35,12 @@ RESULTS = {
     "run.json",
 }
 DEMO = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "tools" / "scenes" / "demo.yaml"
-# So many rays that signals arrive while it traces.
+# Enough rays for signals to arrive during tracing.
 SLOW = ["--set", "injection.rays=512"]
 
 
 def contents(folder):
-    """{name: bytes} of the results but run.json, which holds times."""
+    """Returns {name: bytes} of the results without run.json, which holds times."""
     return {
         path.name: path.read_bytes() for path in files_below(folder) if path.name != "run.json"
     }
@@ -76,9 +76,9 @@ def test_energies_of_orders_make_up_the_energy_and_do_not_stay(sonject, scene, t
         assert all(energy.dtype == numpy.float32 for energy in energies)
         assert all(energy.shape == (ROWS, COLUMNS) for energy in energies)
         total = images.read_tiff(folder / "energy.tif")
-        # A pixel is formed of some 200 energies in single precision, each order by itself and all
-        # together; as all are positive, roundings of 2^-24 add up to at most 200 of them, to
-        # about their square root as they come.
+        # A pixel is the sum of some 200 energies in single precision, once for each order and once
+        # for all orders. All energies are positive, so roundings add up to at most 200 x 2^-24.
+        # Random roundings add up to about the square root of 200.
         assert numpy.allclose(sum(energies), total, rtol=64 * 2.0**-24, atol=0)
         options = json.loads((folder / "run.json").read_text())["options"]
         assert options["interactions"] == interactions and options["estimator"] == "connect"
@@ -132,7 +132,7 @@ def alter(path):
 
 
 def alter_unseen(path):
-    """Of the same size and time."""
+    """Alters the file, but keeps its size and time."""
     time_ns = path.stat().st_mtime_ns
     alter(path)
     os.utime(path, ns=(time_ns, time_ns))
@@ -178,7 +178,7 @@ def test_bands_go_to_folders_of_their_names(sonject, scene, tmp_path):
 
 
 def test_a_sediment_is_the_lambert_that_it_tells(sonject, scene, tmp_path):
-    """Medium sand at 100 kHz: -29.8 dB at 10 deg, -24.2 dB at 20 deg by the model's handbook (table 3)."""
+    """The model's handbook (table 3) has medium sand at 100 kHz: -29.8 dB at 10 deg, -24.2 dB at 20 deg."""
     sonject.done("run", scene, "-o", "sand", "--set", "seabed.sediment=medium sand", "--quiet")
     numbers = json.loads((tmp_path / "sand" / "truth.json").read_text())["numbers"]
     told = numbers["seabed_lambert_db"]["value"]
@@ -196,7 +196,7 @@ def test_a_sediment_is_the_lambert_that_it_tells(sonject, scene, tmp_path):
 
 
 def test_a_level_is_over_the_seabed_at_the_echos_range(sonject, scene, tmp_path):
-    """Lambert's law at the grazing angle of the seabed there, which is not that of the ball's centre."""
+    """Lambert's law is taken at the grazing angle of the seabed there, not at that of the ball's centre."""
     sonject.done("run", scene, "-o", "out", "--set", "seabed.lambert=-27 dB", "--quiet")
     (ball,) = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"]
     ranges = [ball["highlight"]["slant_range_m"] + part * ball["highlight"]["width_m"] for part in (0, 1)]
@@ -248,8 +248,8 @@ def test_an_unknown_device_is_named(sonject, scene, tmp_path):
 
 
 def limit_file_size():
-    """Like a disk that is full after what a driver writes of a program that it knows: writing beyond
-    fails."""
+    """Makes writing fail beyond 2 MiB of a file, as on a full disk. The driver's files of a program that it
+    knows are smaller."""
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (2**21, 2**21))
 
@@ -258,7 +258,7 @@ def test_a_limit_on_file_sizes_leaves_nothing_half(sonject, scene, tmp_path):
     uniform = f"uniform: {{rows: 5000, columns: {COLUMNS}}}"  # 2.6 MB of pixels
     patch = f"patch: {{row: 2000, column: 0, rows: {ROWS}, columns: {COLUMNS}}}\n"
     scene.write_text(scene.read_text().replace("path: swath.tif", uniform) + patch)
-    # The first run fills the driver's cache, which is not what this is about.
+    # The first run fills the driver's cache, which is not tested here.
     sonject.done("run", scene, "-o", "first")
     answer = sonject("run", scene, "-o", "result", preexec_fn=limit_file_size)
     assert_refused(answer, 5, "result")
@@ -278,8 +278,8 @@ def start_at_a_terminal(arguments, folder, variables):
 
 
 def start_and_wait_for_the_bar(arguments, folder, variables):
-    """Returns once the bar tells of tracing: one of reading comes before where the image takes long
-    to read."""
+    """Returns once the bar shows tracing. A bar of reading may come before, if the image takes long to
+    read."""
     process, mine = start_at_a_terminal(arguments, folder, variables)
     seen = b""
     end = time.monotonic() + 120
@@ -306,9 +306,9 @@ def read_rest(terminal):
 
 
 def stop_at_the_bar(arguments, output, folder, variables, *numbers):
-    """Sends signals to the command once its bar is drawn; its exit code and what it says then. It
-    is begun anew, without its output, where it was done before a signal came: this process may have
-    to wait for the machine."""
+    """Sends signals to the command once its bar is drawn. Returns its exit code and the text after that.
+    This process may have to wait for the machine. If the command is done before a signal, its output is
+    removed and it starts again."""
     for _ in range(5):
         process, terminal = start_and_wait_for_the_bar(arguments, folder, variables)
         for number in numbers:
@@ -327,7 +327,7 @@ def stop_at_the_bar(arguments, output, folder, variables, *numbers):
 
 @pytest.fixture
 def cold(tmp_path, environment):
-    """The driver's cache is empty."""
+    """Returns an environment in which the driver's cache is empty."""
     return {**environment, "XDG_CACHE_HOME": str(tmp_path), "POCL_CACHE_DIR": str(tmp_path / "pocl")}
 
 
@@ -361,14 +361,14 @@ def test_a_signal_while_the_driver_compiles_stops_a_run(scene, tmp_path, cold):
 )
 def test_signals_stop_a_run(scene, tmp_path, environment, number, code, words):
     arguments = ["run", scene, "-o", "result", *SLOW]
-    # schedulers send SIGTERM to a script, which hands it on, and to all
+    # schedulers send SIGTERM to all processes, and the script hands it on, too
     numbers = [number] * (2 if number == signal.SIGTERM else 1)
     result = tmp_path / "result"
     answer, text = stop_at_the_bar(arguments, result, tmp_path, environment, *numbers)
     assert answer == code, text
     assert words in text
     assert not (tmp_path / "result" / "run.json").exists()
-    (kept,) = files_below(tmp_path / "result")  # what was traced
+    (kept,) = files_below(tmp_path / "result")  # the rays that were traced
     assert kept.parent.name == "work" and kept.suffix == ".sums"
 
 

@@ -1,4 +1,4 @@
-"""Runs that are shared out, stopped and gone on with: always the files of a run in one go."""
+"""Tests of runs that are split, stopped and continued. Their files are always those of a run in one go."""
 
 import json
 import random
@@ -12,7 +12,7 @@ from conftest import COMMAND, assert_refused, files_below, make_swath, write_sce
 from test_run import RESULTS, contents
 from test_stages import command
 
-# So many that a launch is cut in slices, between which a run stops.
+# Enough rays to cut a launch into slices, between which a run can stop.
 MANY_RAYS = ["--set", "injection.rays=128"]
 
 
@@ -22,7 +22,7 @@ def checkpoints(folder):
 
 @pytest.fixture(scope="module")
 def wholes(tmp_path_factory, environment):
-    """What a run in one go leaves, and one of many rays."""
+    """Returns the files of a run in one go, and those of one with many rays."""
     folder = tmp_path_factory.mktemp("whole")
     write_scene(folder, make_swath())
     found = []
@@ -50,7 +50,7 @@ def test_what_shards_lack_is_named_and_the_rest_is_a_run(sonject, scene, tmp_pat
     assert stopped.returncode == 85
     command(sonject, "run", scene, "-o", "result", "--shard", "4/4")
     assert_refused(sonject("merge", "result"), 3, "missing of 4 shards: 2 (not finished);")
-    # Another process does the whole shard meanwhile, and one does again what is there.
+    # Another process finishes the shard meanwhile. Running the shard again changes nothing.
     other = tmp_path / "other"
     command(sonject, "run", scene, "-o", "other", "--shard", "2/4")
     (complete,) = checkpoints(other)
@@ -66,7 +66,7 @@ def test_what_shards_lack_is_named_and_the_rest_is_a_run(sonject, scene, tmp_pat
                   ["run", scene, "-o", "result", "--shard", "1/4"]):
         answer = sonject(*again)
         assert answer.returncode == 0 and "already" in answer.stderr
-    # a merged folder is looked at, too
+    # merge checks a merged folder, too
     (folder / "shadow.png").rename(tmp_path / "away")
     assert_refused(sonject("merge", "result"), 3, "result: is merged already, but shadow.png")
     (tmp_path / "away").rename(folder / "shadow.png")
@@ -82,7 +82,7 @@ def test_what_is_not_a_shard_of_the_run_is_refused(sonject, scene, tmp_path, who
     sound = first.read_bytes()
     changed = bytearray(sound)
     changed[len(sound) // 2] ^= 1
-    for bad in (sound[: len(sound) // 2], bytes(changed)):  # others in tests/unit/test_sums_file.c
+    for bad in (sound[: len(sound) // 2], bytes(changed)):  # tests/unit/test_sums_file.c has others
         first.write_bytes(bad)
         assert_refused(sonject("merge", "result"), 3, first.name, "damaged, or cut short")
         assert second.exists() and not (tmp_path / "result" / "run.json").exists()
@@ -91,7 +91,7 @@ def test_what_is_not_a_shard_of_the_run_is_refused(sonject, scene, tmp_path, who
     old.write_bytes(b"sonject stint 2\n" + sound[16:])
     assert_refused(sonject("merge", "result"), 3, old.name, "trace again")
     old.rename(first)
-    # A shard that is run again traces what was damaged.
+    # Running a shard again replaces a damaged file.
     answer = sonject("run", scene, "-o", "result", "--shard", "1/2", "--verbose")
     assert answer.returncode == 0 and "was damaged: it is traced again" in answer.stderr
     assert first.read_bytes() == sound
@@ -100,7 +100,7 @@ def test_what_is_not_a_shard_of_the_run_is_refused(sonject, scene, tmp_path, who
     answer = sonject("run", scene, "-o", "result", "--shard", "1/2")
     assert_refused(answer, 3, first.name, "another shard's")
     first.write_bytes(sound)
-    # Another scene's: merged, and run into the same folder.
+    # A shard of another scene cannot be merged, and no run goes on with it.
     command(sonject, "run", scene, "-o", "other", "--shard", "1/2", "--seed", "9")
     foreign = checkpoints(tmp_path / "other")[0].read_bytes()
     first.write_bytes(foreign)
@@ -148,7 +148,7 @@ def test_what_a_run_of_another_scene_left_is_dropped(sonject, scene, tmp_path, w
 
 
 def test_killed_shards_go_on_with_what_they_had_kept(scene, tmp_path, environment, sonject, wholes):
-    """Killed each time once it has kept some more, or is done, by chance a little later."""
+    """Kills each process at a random moment after it has saved another slice or is done."""
     chance = random.Random(5)
     folder = tmp_path / "result"
     for shard in ("1/2", "2/2"):
@@ -205,7 +205,7 @@ def test_shards_of_bands_are_merged_at_once(sonject, scene, tmp_path):
 
 
 def test_an_accuracy_takes_as_many_rays_in_shards_and_stages(sonject, scene, tmp_path):
-    """Pilots tell the number of rays before anything is shared out."""
+    """Pilot runs decide the number of rays before the work is split."""
     asked = ["--set", "injection.accuracy=4 %"]
     answer = sonject("run", scene, "-o", "one", "--verbose", *asked)
     assert answer.returncode == 0

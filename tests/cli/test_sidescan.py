@@ -1,5 +1,5 @@
-"""Sidescan as it comes: images whose geometry changes from row to row, two sides in one, and what lies
-under the sonar."""
+"""Tests of everyday sidescan: images whose geometry changes from row to row, two sides in one image, and
+the water column."""
 
 import csv
 import json
@@ -33,14 +33,14 @@ def write_scene(folder, geometry=GEOMETRY, altitude="from_file", patch=PATCH, mo
 
 @pytest.fixture
 def line(tmp_path):
-    """Amplitudes of line.tif, whose file says nothing of its geometry."""
+    """Writes line.tif, which does not tell its geometry, and returns its amplitudes."""
     pixels = numpy.random.default_rng(7).rayleigh(2000.0, (ROWS, COLUMNS)).astype(numpy.uint16)
     (tmp_path / "line.tif").write_bytes(images.tiff_bytes(pixels))
     return pixels
 
 
 def test_altitudes_come_from_a_table_of_pings(sonject, tmp_path, line):
-    """Linear between the table's rows; the patch's mean, of 6 m at row 0 to 9 m at row 20 and on."""
+    """The patch's mean counts. Altitudes are linear between the table's rows: 6 m at row 0, 9 m from row 20 on."""
     (tmp_path / "pings.csv").write_text("row, altitude_m\n0, 6.0\n20, 9.0\n59, 9.0\n")
     heights = numpy.interp(numpy.arange(10, 50), [0, 20, 59], [6, 9, 9])
     assert f"altitude {heights.mean():.3g} m" in sonject.done("check", write_scene(tmp_path)).stdout
@@ -52,7 +52,7 @@ def test_altitudes_come_from_a_table_of_pings(sonject, tmp_path, line):
 
 
 def test_altitudes_of_a_table_are_those_at_the_objects(sonject, tmp_path, line):
-    """Without a patch; one that changes from object to object is told."""
+    """Without a patch, the altitudes at the objects count. A note tells if they differ."""
     (tmp_path / "pings.csv").write_text("row, altitude_m\n0, 6.0\n20, 9.0\n59, 9.0\n")
     scene = write_scene(tmp_path)
     scene.write_text(scene.read_text().replace(f"patch: {PATCH}\n", ""))
@@ -64,7 +64,7 @@ def test_altitudes_of_a_table_are_those_at_the_objects(sonject, tmp_path, line):
 
 
 def test_first_slant_ranges_come_from_a_table_of_pings(sonject, tmp_path, line):
-    """Their mean over the patch, where they stay within a column."""
+    """The mean over the patch counts, if all ranges are within a column of it."""
     geometry = GEOMETRY.replace("0.075 m", "from_file")
     (tmp_path / "pings.csv").write_text("row altitude_m first_slant_range_m\n0 6 5.0\n59 6 5.295\n")
     first = 5.0 + 0.295 * 29.5 / 59 + 60 * 0.15
@@ -135,7 +135,7 @@ def records(folder):
 
 
 def test_grey_images_are_the_line_as_it_is_converted(sonject, tmp_path, line):
-    """But for what a target changes; fit does not take them for the line's own numbers."""
+    """Grey images equal the converted line except where a target changes them. fit refuses their levels."""
     (tmp_path / "pings.csv").write_text("row,altitude_m\n0,6\n59,6\n")
     text = CAMPAIGN + "grey: [-50 dB, -20 dB]\noutputs: [influence]\n"
     sonject.done("campaign", write_campaign(tmp_path, text), "-o", "data", "--quiet")
@@ -206,7 +206,7 @@ objects:
 
 @pytest.fixture
 def waterfall(tmp_path):
-    """Port and starboard from the nadir outwards, and both in one image, port mirrored at its left."""
+    """Writes port and starboard from the nadir outwards, and both in one image, port mirrored at its left."""
     random = numpy.random.default_rng(11)
     sides = [random.rayleigh(2000.0, (ROWS, columns)).astype(numpy.uint16) for columns in (204, 196)]
     (tmp_path / "both.tif").write_bytes(images.tiff_bytes(numpy.hstack([sides[0][:, ::-1], sides[1]])))
@@ -216,7 +216,7 @@ def waterfall(tmp_path):
 
 
 def run_sides(sonject, folder, side):
-    """The same injection into the image of two sides, and into that of one; their folders."""
+    """Makes the same injection into the image of one side and into that of two. Returns the folders."""
     one, both = folder / "one.yaml", folder / "both.yaml"
     one.write_text(TWO_SIDED.format(path=f"{side}.tif", geometry="first_slant_range: 0.075 m", side=side, column=60,
                                     at=100))
@@ -229,13 +229,13 @@ def run_sides(sonject, folder, side):
 
 
 def mirrored(side, column, columns=1):
-    """Where columns of the side's own image lie in that of both."""
+    """Returns the first of a side's columns as a column of the image of both sides."""
     return 204 - column - columns if side == "port" else 204 + column
 
 
 @pytest.mark.parametrize("side", ["port", "starboard"])
 def test_a_side_of_two_is_as_one_by_itself(sonject, tmp_path, waterfall, side):
-    """Pixels, masks, boxes and labels in the image's own pixels, to the last bit."""
+    """Pixels and masks agree to the last bit. Boxes and labels are in the image's own pixels."""
     one, both = run_sides(sonject, tmp_path, side)
     before = images.read_tiff(tmp_path / "both.tif")
     turn = slice(None, None, -1) if side == "port" else slice(None)
@@ -286,7 +286,7 @@ def test_a_side_of_two_is_as_one_by_itself(sonject, tmp_path, waterfall, side):
 
 
 def test_images_of_a_port_half_say_where_they_lie(sonject, tmp_path, waterfall):
-    """patch.tif, whose range grows to the left, is read as such."""
+    """energy.tif, whose range grows to the left, is read as such."""
     _, both = run_sides(sonject, tmp_path, "port")
     told = (both / "energy.tif").read_bytes()
     for note in (b"sonject:nadir_column=119\n", b"sonject:first_slant_range_m=9.075\n", b"sonject:side=port\n"):
@@ -359,7 +359,7 @@ sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: 6 m, resolution: 0.1 m
 
 @pytest.mark.parametrize("side", ["port", "starboard"])
 def test_campaigns_cut_images_out_of_a_side(sonject, tmp_path, waterfall, side):
-    """As they lie in it, away from the contacts of the image's own pixels."""
+    """Images are cut as they lie in the side, away from contacts, which are in the image's own pixels."""
     (tmp_path / "base.yaml").write_text(f"""\
 sonject: 1
 input: {{path: both.tif, geometry: {{row_spacing: 0.1 m, column_spacing: 0.15 m, nadir_column: 203.5, side: {side}}}}}
@@ -396,7 +396,7 @@ targets: [{class: ball, object: {shape: sphere, diameter: 0.5 m}}]
 
 @pytest.mark.parametrize("side", ["port", "starboard"])
 def test_images_are_limited_in_range_over_altitude(sonject, tmp_path, waterfall, side):
-    """Wherever the sonar is; they may begin in the water column, up to whose edge targets lie."""
+    """The limits hold at any altitude. Images may begin in the water column, and targets lie up to its edge."""
     (tmp_path / "pings.csv").write_text("row,altitude_m\n0,4\n30,7\n59,5\n")
     (tmp_path / "base.yaml").write_text(f"""\
 sonject: 1
@@ -435,7 +435,7 @@ targets: [{class: ball, object: {shape: sphere, diameter: 0.4 m}}]
 
 
 def test_objects_of_whole_swaths_are_limited_in_range_over_altitude(sonject, tmp_path, line):
-    """Over those of the image's rows, whatever those of others; not where there is no such range."""
+    """The altitudes of the image's rows count, not those of others. No image has rows without such ranges."""
     (tmp_path / "pings.csv").write_text("row,altitude_m\n0,4\n40,7\n41,40\n59,40\n")
     text = CAMPAIGN.replace("columns: 60", "columns: all, spread: 1, range_over_altitude: [1.5, 2.5]")
     sonject.done("campaign", write_campaign(tmp_path, text.replace("images: 12", "images: 24")), "-o", "data")
@@ -444,7 +444,7 @@ def test_objects_of_whole_swaths_are_limited_in_range_over_altitude(sonject, tmp
         truth = json.loads((tmp_path / "data/all/truth" / f"{record['id']:08}.json").read_text())["objects"][0]
         first, last = 4 + 3 / 40 * (record["swath"]["row"] + numpy.array([0, 15]))
         assert last < 7.01
-        # the object's column is that of its middle, whose highlight is nearer
+        # the object's column is that of its middle, and its highlight is nearer
         assert 1.5 * last - 0.5 <= truth["slant_range_m"] <= 2.5 * first + 0.5
         ranges.append(truth["slant_range_m"])
     assert min(ranges) < 9 and max(ranges) > 12
@@ -461,11 +461,11 @@ def test_targets_in_layered_water_stay_behind_the_water_column(sonject, tmp_path
 
 
 def test_contacts_of_a_port_half_are_measured_as_others(sonject, tmp_path, waterfall):
-    """By truth, by boxes, and where they are looked for; boxes are in the image's own pixels."""
+    """Contacts are measured by truth, by boxes and by search. Boxes are in the image's own pixels."""
     for folder in run_sides(sonject, tmp_path, "port"):
         (tmp_path / f"{folder.name}.json").write_bytes((folder / "truth.json").read_bytes())
     one = json.loads((tmp_path / "one.json").read_text())["objects"]
-    # the halves alone, since what the other shows is seabed, too
+    # the half alone, since the other half would count as seabed, too
     pixels = images.read_tiff(tmp_path / "both" / "image.tif")[:, :204]
     (tmp_path / "half.tif").write_bytes(images.tiff_bytes(numpy.ascontiguousarray(pixels)))
     (tmp_path / "turned.tif").write_bytes(images.tiff_bytes(numpy.ascontiguousarray(pixels[:, ::-1])))
@@ -494,7 +494,7 @@ def test_contacts_of_a_port_half_are_measured_as_others(sonject, tmp_path, water
 
 
 def test_a_measured_line_of_two_sides_is_as_its_recording(sonject, tmp_path):
-    """The Iver2's port and starboard side by side, with its altitudes in a table."""
+    """Compares the Iver2's recording with an image of both its sides, with the altitudes in a table."""
     line = measured("sidescan/scotsman-iver2.xtf")
     (tmp_path / "line.xtf").write_bytes(line.read_bytes())
     sides = []

@@ -1,4 +1,4 @@
-"""Tracing and image formation apart: the same files as a run leaves, and images of other responses."""
+"""Tests of tracing and image formation as separate stages: a run's files, and images of other responses."""
 
 import json
 import os
@@ -24,7 +24,7 @@ PARTS = """\
 """
 
 
-# The response is the sonar's, whatever the image's speckle looks like.
+# The response is the sonar's, and not measured on the image's speckle.
 NOMINAL = ["--set", "injection.match={response: nominal}"]
 
 
@@ -35,7 +35,7 @@ def command(sonject, *arguments, **options):
 
 @pytest.fixture(scope="module")
 def traced(tmp_path_factory, environment):
-    """A folder with a scene, its impulses and what a run makes of it."""
+    """Makes a folder with a scene, its impulses and its run."""
     folder = tmp_path_factory.mktemp("traced")
     write_scene(folder, make_swath())
     scene = folder / "scene.yaml"  # a sinc reaches farther than other responses
@@ -46,7 +46,7 @@ def traced(tmp_path_factory, environment):
 
 
 def compare_with_run(sonject, folder, scene, *options):
-    """The result of the stages with a run's."""
+    """Asserts that the stages leave the result of a run."""
     command(sonject, "run", scene, "-o", "run", *options)
     command(sonject, "trace", scene, "-o", "impulses.sums", *options)
     command(sonject, "form", "impulses.sums", "-o", "formed")
@@ -111,7 +111,7 @@ def test_the_same_trace_is_the_same_file(sonject, traced):
     assert (traced / "impulses.sums").read_bytes() == (traced / "again.sums").read_bytes()
     command(sonject, "form", "again.sums", "-o", "same", folder=traced)
     assert contents(traced / "same") == contents(traced / "run")
-    # the same inputs, so finished
+    # inputs are the same, so the result counts as finished
     for again in (["form", "again.sums"], ["run", "scene.yaml", *NOMINAL]):
         assert "already" in sonject.done(*again, "-o", "same", folder=traced).stderr
 
@@ -127,7 +127,7 @@ def test_another_pulse_needs_no_new_trace(sonject, traced):
 
 
 def test_where_the_fine_grid_is_the_same_another_bandwidth_gives_a_runs_bits(sonject, traced):
-    # 4 bins a pixel, 13 bins of margin and 27 glint bins a pixel for both
+    # both bandwidths have 4 bins and 27 glint bins a pixel, and 13 bins of margin
     other = ["--set", "sonar.bandwidth=29.9 kHz"]
     command(sonject, "form", "impulses.sums", "-o", "formed near", *other, folder=traced)
     command(sonject, "run", "scene.yaml", "-o", "near", *other, *NOMINAL, folder=traced)
@@ -146,11 +146,11 @@ def test_other_responses_give_a_runs_image_but_for_the_noise_of_rays(sonject, tr
     bright = first > 1e-3 * first.max()
     by_seed = numpy.median(abs(second[bright] / first[bright] - 1))
     by_stages = numpy.median(abs(formed[bright] / first[bright] - 1))
-    # The traced grid is no coarser, so its rays differ no more than those of two seeds do; half as
-    # much again leaves room for the spread of two medians over thousands of pixels. Bins d wide, an
-    # eighth of the resolution, widen the squared pulse's variance v by d^2/6, v = 11.5 d^2, and the
-    # traced ones by a quarter of that: 1.1 % in all, which changes the energy at a distance t by
-    # (t^2/v - 1)/2 of it, 1.3 % at the median of t down to the -30 dB of what is bright.
+    # The traced grid is no coarser, so its rays differ no more than those of two seeds. The factor 1.5
+    # leaves room for the spread of two medians over thousands of pixels. Bins of width d, an eighth of
+    # the resolution, widen the squared pulse's variance v = 11.5 d^2 by d^2/6, the traced ones by a
+    # quarter of that. The variances differ by 1.1 %, and energies at a distance t by (t^2/v - 1)/2 of
+    # that: 1.3 % at the median of t among pixels above -30 dB.
     assert 0 < by_seed < 0.2 and by_stages < 1.5 * by_seed + 0.013
     assert abs(formed.sum() / first.sum() - 1) < 0.02
 
@@ -216,7 +216,7 @@ def test_damaged_files_are_refused(sonject, traced, tmp_path):
     whole = (traced / "impulses.sums").read_bytes()
     changed = bytearray(whole)
     changed[len(whole) // 2] ^= 4
-    # more ways in tests/unit/test_sums_file.c
+    # tests/unit/test_sums_file.c has more ways
     for name, content in {"cut": whole[: len(whole) // 2], "changed": bytes(changed),
                           "text": b"sonject: 1\n" * 100}.items():
         (tmp_path / "damaged.sums").write_bytes(content)

@@ -1,4 +1,4 @@
-"""Options, help and the standard streams."""
+"""Tests of options, help and the standard streams."""
 
 import os
 import pathlib
@@ -154,7 +154,7 @@ def test_check_prints_to_stdout(sonject, scene):
 
 @pytest.mark.parametrize("side", ["port", "starboard"])
 def test_the_plan_of_check_lies_as_the_image(sonject, scene, side):
-    """An object of row 12 of 96 is in the plan's first eighths, its shadow beyond it."""
+    """An object at row 12 of 96 is in the first eighths of the plan. Its shadow lies beyond it."""
     told = sonject.done("check", scene, "--set", f"input.geometry.side={side}", "--set",
                         "objects[0].position={row: 12, column: 20}").stdout
     plan = [line for line in told.splitlines() if line.startswith("  |")]

@@ -1,4 +1,4 @@
-"""Conversions."""
+"""Tests of conversions."""
 
 import numpy
 import pytest

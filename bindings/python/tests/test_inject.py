@@ -1,4 +1,4 @@
-"""Injection into arrays."""
+"""Tests of injection into arrays."""
 
 import ctypes
 import gc
@@ -250,7 +250,7 @@ def test_the_file_of_a_scene_is_for_runs(make_scene, tmp_path):
 
 
 def test_calls_release_the_global_lock():
-    library = _library.load()  # ctypes holds the lock during calls of a PyDLL alone
+    library = _library.load()  # ctypes holds the lock only during calls of a PyDLL
     assert isinstance(library, ctypes.CDLL) and not isinstance(library, ctypes.PyDLL)
 
 
@@ -304,7 +304,7 @@ def test_a_contact_is_measured():
     box = sonject.Box(40, 50, 41, 80)
     by_box = sonject.measure_contact(image, box, row_spacing_m="10 cm", column_spacing_m=0.05)
     found = sonject.measure_contact(image)
-    # a pixel at each edge: edges between pixels, in speckle, and without any point response
+    # the tolerance is a pixel at each edge: edges lie between pixels, in speckle, without a point response
     assert by_box.shadow_range_pixels == pytest.approx(40, abs=2)
     assert by_box.highlight_along_pixels == pytest.approx(21, abs=2)
     assert 0 < by_box.shadow_range_error_pixels < 1 and by_box.dim_range_pixels == 0

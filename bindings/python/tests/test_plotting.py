@@ -1,4 +1,4 @@
-"""Pictures, drawn by the Python that has matplotlib."""
+"""Tests of pictures, drawn by the Python that has matplotlib."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""Scenes of dictionaries, arrays and numbers."""
+"""Tests of scenes of dictionaries, arrays and numbers."""
 
 import copy
 import math

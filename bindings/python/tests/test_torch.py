@@ -1,4 +1,4 @@
-"""The data set in PyTorch's own loader."""
+"""Tests of the data set in PyTorch's own loader."""
 
 import torch.utils.data
 

@@ -2,7 +2,7 @@
 
 usage: native.py ENTRY.cl OUTPUT.c
 
-The file is compiled once for each instruction set, with -DNATIVE_PROGRAM=name of its table.
+Each instruction set and variant compiles the file once. -DNATIVE_PROGRAM names the table of kernels.
 """
 import pathlib
 import re
@@ -10,7 +10,7 @@ import sys
 
 
 def arguments_of(text):
-    """The types of a kernel's arguments; its buffers are pointers."""
+    """Yields the types of a kernel's arguments. Buffers are pointers."""
     for argument in " ".join(text.replace("__global", "").split()).split(","):
         yield re.fullmatch(r"\s*(.*?)\s*\b\w+\s*", argument).group(1)
 

@@ -1,8 +1,8 @@
-"""Flattens OpenCL sources: each local include is put in once, with #line marks for build logs.
+"""Flattens OpenCL sources: replaces each local include by its file once, with #line marks for build logs.
 
 usage: embed.py OUTPUT.c OUTPUT.d KERNEL_FOLDER ENTRY.cl...
 
-OUTPUT.d names all files that went in, as a rule of make.
+OUTPUT.d lists all files that were read, as a rule of make.
 """
 import pathlib
 import re
@@ -26,8 +26,8 @@ def flatten(folder, name, seen, lines):
 def main():
     output, rule, folder, entries = *sys.argv[1:3], pathlib.Path(sys.argv[3]), sys.argv[4:]
     used = set()
-    # C99 promises literals of 4095 characters, every compiler takes longer ones: an array of numbers
-    # would take as long to compile as a kernel
+    # C99 promises literals of 4095 characters, but every compiler takes longer ones. An array of numbers
+    # would take as long to compile as a kernel.
     parts = ['#pragma GCC diagnostic ignored "-Woverlength-strings"', '#include "device/device.h"', ""]
     table = []
     for index, entry in enumerate(entries):
