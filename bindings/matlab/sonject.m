@@ -26,7 +26,7 @@ function [injected, truth, masks] = sonject(pixels, scene, varargin)
 %                                    'first_slant_range', '30 m');
 %      scene.objects = {struct('shape', 'sphere', 'diameter', '0.5 m', 'material', 'steel')};
 %      pixels = single(0.1 * abs(randn(128, 160) + 1i * randn(128, 160)));
-%      [injected, truth, masks] = sonject(pixels, scene, 'objects[0].burial', '10 cm');
+%      [injected, truth, masks] = sonject(pixels, scene, 'injection.noise_floor', '-18 dB');
 %      disp([truth.objects.target_strength_db, sum(masks.shadow(:))])
 
 folder = tempname();

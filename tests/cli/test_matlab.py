@@ -138,14 +138,15 @@ def test_mistakes_are_errors_with_the_commands_lines(octave, scene, tmp_path):
 def test_a_recording_is_refused(octave, scene, tmp_path):
     samples = numpy.full((96, 128), 100, "<u2")
     (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(samples, samples))
-    said = octave(f"try, sonject('line.xtf', '{scene}', 'input.channel', 'port', 'input.transfer.kind', 'amplitude'), "
+    said = octave(f"try, sonject('line.xtf', '{scene}', 'input.channel', 'port', 'input.transfer.kind', 'amplitude', "
+                  "'injection.noise_floor', '-18 dB'), "
                   "catch failure, disp(failure.message), end")
     assert said == "the image is written as .xtf, which is not read here: run the command\n"
 
 
 def test_notes_are_warnings(octave, scene):
     said = octave(f"sonject([], '{scene}', 'objects[0].diameter', '10 cm', 'objects[0].burial', '9 cm', "
-                  "'objects[0].level.target_strength', '-120 dB');")
+                  "'objects[0].level.target_strength', '-120 dB', 'injection.noise_floor', '-18 dB');")
     assert said.startswith("warning: 'ball' drowns in the seabed: ") and "note" not in said
 
 
