@@ -119,8 +119,7 @@ static inline const char *shape_words(void)
     return words + strlen(", ");
 }
 
-/* Expects a refusal. message: each line after the file name, such as ":2:3: sonar.altitude: ...".
- */
+/* Expects a refusal. message: each line after the file name, as ":2:3: sonar.altitude: ...". */
 static inline void expect_scene_refused(const char *text, const char *message)
 {
     char expected[REPORT_CAPACITY] = "";
