@@ -1,5 +1,5 @@
 /* Calls that fail on purpose. The linker sends the library's own calls of memory, OpenCL and files
- * here (meson.build), and fault_take_jansson jansson's. Other calls go on to the real function. */
+ * here (meson.build). fault_take_jansson adds jansson's. Others go on to the real function. */
 #ifndef SONJECT_TESTS_FAULTS_H
 #define SONJECT_TESTS_FAULTS_H
 

@@ -1,6 +1,6 @@
-/* Tests that the library stands the failure of its n-th call for memory, of OpenCL or of files, or
- * of the n-th call for memory by the libraries under it. A status and a message come back, nothing
- * is held, no file is left incomplete, and the next call works.
+/* Tests that the library survives the failure of its n-th call for memory, of OpenCL or of files,
+ * or of the n-th call for memory by the libraries under it. A status and a message come back,
+ * nothing is held, no file is left incomplete, and the next call works.
  *
  * SONJECT_FAULT_POINTS: the number of n to try of each piece of work (0: all). KIND: the calls. */
 #include "claims.h"

@@ -21,7 +21,7 @@
 #define KINDS       3 /* different scenes, which a thread takes in turn */
 #define IMAGE_BYTES (SIDE * SIDE * sizeof(float))
 
-/* The work of a child of this process, or of a child's child. Nonzero for failure, then printed. */
+/* The work of a child of this process, or of a child's child. Returns nonzero for failure. */
 typedef int child_work(void);
 
 static int say(const char *what, const sonject_context *context)
@@ -128,7 +128,7 @@ static const sonject_context_params on_pocl = {.struct_size = sizeof on_pocl,
 static const sonject_context_params on_native = {.struct_size = sizeof on_native,
                                                  .device_name = "native"};
 
-/* Expects a child to be refused OpenCL, but not the processor. */
+/* Expects a child to be refused OpenCL, but not the native device. */
 static int expect_refusal(void)
 {
     size_t count = 0;
@@ -205,7 +205,7 @@ TEST(test_children_inject_on_native_as_their_parent_does)
     assert_int_equal(exit_of(fork_native), 0);
 }
 
-/* Forks after a context was made that opened no device. Such a context stands in nobody's way. */
+/* Forks after a context was made that opened no device, so that both processes may use one. */
 static int fork_before_injecting(void)
 {
     if (sonject_context_create(NULL, &parents) != SONJECT_OK)

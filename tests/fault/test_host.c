@@ -217,7 +217,7 @@ IN_FOLDER(test_a_host_stays_as_it_was)
     struct stat said;
     struct opencl opencl = use_opencl();
     read_state(&before);
-    work(&opencl, folder->path); /* from here on, libraries may keep files open */
+    work(&opencl, folder->path); /* libraries may keep files open from here on */
     expect_like(&before);
     const uint64_t truth = digest_of_truth(folder->path);
     remove_results(folder->path);

@@ -279,7 +279,7 @@ static uint64_t digest_of_file(const struct work *work, const char *name)
     snprintf(path, sizeof path, "%s/%s", work->results, name);
     unsigned char *bytes = bytes_of_file(path, &count);
     uint64_t digest = add_to_digest(1, bytes, count);
-    if (differs_each_time(name)) { /* only whether the file is whole */
+    if (differs_each_time(name)) { /* checks only that the file is whole */
         json_t *document = json_loadb((const char *)bytes, count, 0, NULL);
         if (!document)
             fail_msg("%s is not whole", name);

@@ -55,8 +55,8 @@ static char *text_of(const uint8_t *bytes, size_t count)
     return text;
 }
 
-/* Accepts OK, or a status that bad input may have with a message. The message has one line, or with
- * has_lines one for each mistake. */
+/* Aborts unless the status is OK, or one for bad input that has a message. The message has one
+ * line, or with has_lines one for each mistake. */
 static void expect(sonject_status status, const struct report *report, bool has_lines)
 {
     if (status == SONJECT_OK)

@@ -39,7 +39,7 @@ extern const struct solid_row {
     uint32_t shape;
     /* Adds the surfaces, `more` m further out. */
     void (*build)(struct body *body, const sonject_object_params *solid, double more);
-    /* Makes random sizes fit together, none thinner than `thinnest` of another. NULL: all fit. */
+    /* Makes random sizes fit together, none below `thinnest` times another. NULL: all fit. */
     void (*fit)(sonject_object_params *solid, double thinnest);
 } solid_rows[];
 extern const int solid_row_count;

@@ -41,7 +41,7 @@ enum object_set {
     FOUR_OBJECTS,
     MORE_SHAPES, /* one of every row of solid_rows */
     RINGS,       /* meshes, one with smooth normals */
-    CLUTTER,     /* so many that a tree is searched and rays aim at groups of targets */
+    CLUTTER,     /* enough to search a tree, and to aim rays at groups of targets */
     TWO_OBJECTS,
     CROWD /* a mesh and spheres, too many for one launch */
 };
@@ -421,7 +421,7 @@ static struct tallies trace_on_device(struct bench *bench, const struct subject 
     return tallies;
 }
 
-/* The same device with kernels of each number of lanes, and the reference for all of them. */
+/* One device with kernels of each number of lanes, and the reference for all of them. */
 static uint32_t widths[BENCH_WIDTHS];
 static struct device *devices[BENCH_WIDTHS], *reference;
 static size_t width_count;
@@ -552,7 +552,7 @@ static void compare_images(struct bench *bench, const struct scene_case *scene)
             const struct subject subject = {scene, GLINTS, NULL, object, &pair, alive > 0};
             alive += compare_bits(bench, &subject);
         }
-    /* of 8 or 20 subjects: the plate is not seen from two sides everywhere */
+    /* 8 or 20 subjects: some pairs of sources give no glint of the plate */
     assert_true(alive >= 3 * pairs);
 }
 

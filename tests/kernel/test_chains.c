@@ -24,7 +24,7 @@ static void lay_sphere(struct fan_record *fan, struct chain_record *chains,
     fan->bins_per_metre = BINS_A_METRE;
     fan->bins = BINS;
     fan->bin_at_reference = 1.0f; /* echoes come up to 0.04 bins before the middle one */
-    fan->quanta = 17179869184.0f; /* so fine that rounding is negligible */
+    fan->quanta = 17179869184.0f; /* fine enough that rounding is negligible */
     fan->seed_low = 11;
     fan->stream = STREAM_CHAIN_RAYS;
     fan->only_object = -2;

@@ -87,7 +87,7 @@ static void fill_gaps(struct planes *bins)
                 bins->part[part][i] = NEXT_TO_NOTHING;
 }
 
-/* Expects alike planes. Speckle of NEXT_TO_NOTHING has amplitudes of 1e-21, the image of 1e-6. */
+/* Compares planes. Speckle of NEXT_TO_NOTHING has amplitudes of 1e-21, the image of 1e-6. */
 static void expect_alike(const struct planes *a, const struct planes *b)
 {
     double most = 0.0;

@@ -156,8 +156,7 @@ TEST(test_facets_are_the_reliefs)
         for (int i = 0; i < 3; i++)
             worst = fmax(worst, fabs(found[i] - (n[i] - slope[i] + up_it * n[i])));
     }
-    /* waves' cosines err by 5e-5, and 12 waves' slopes by 12 times this times 2 pi h/L sqrt(2/12)
-     */
+    /* cosines err by 5e-5, 12 waves' slopes by 12 times this times 2 pi h/L sqrt(2/12) */
     expect_below("error of a facet", worst, 12.0 * 5e-5 * 0.16 * 2.5 + 1e-6);
     bench_close(&bench);
 }

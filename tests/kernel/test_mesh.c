@@ -187,7 +187,7 @@ static void compare_with_reference(const struct mesh *mesh, struct flight *rays)
         const bool is_hit = is_met(rays, ray);
         assert_int_equal(is_blocked(rays, ray), is_hit);
         if (expected.margin < 1e-6 * (double)mesh->radius_m) {
-            undecided++; /* so close to an edge that single precision may see either side */
+            undecided++; /* too close to an edge for single precision to tell the side */
             continue;
         }
         if (is_hit != (expected.distance < HUGE_VAL))
@@ -274,8 +274,8 @@ TEST(test_nothing_leaks_through_a_closed_mesh)
     }
 }
 
-/* Rays from 400 m, some of them grazing, must meet a fine sphere of facets between the sphere's
- * equation and the largest sphere inside the facets. */
+/* Rays from 400 m, some of them grazing, must meet a fine sphere of facets between the true sphere
+ * and the largest sphere inside the facets. */
 TEST(test_a_fine_sphere_is_a_sphere)
 {
     struct mesh_sample sample;
@@ -328,7 +328,7 @@ TEST(test_smooth_normals_show_the_side_that_was_met)
     struct mesh_sample sample;
     struct mesh mesh;
     uint32_t bent = 0;
-    sample_sphere(&sample, 1); /* so coarse that normals differ from facets by 25 degrees */
+    sample_sphere(&sample, 1); /* coarse enough that normals differ from facets by 25 degrees */
     prepare(&sample, 1.5, &mesh);
     lay_chords(&flight);
     ask(&mesh, &flight);

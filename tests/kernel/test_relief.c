@@ -216,7 +216,7 @@ static void fan_ray_from(double range, struct vector3 *point, struct vector3 *di
     const double aim[3] = {6.0 * uniform(0.0, 1.0) - 3.0, 6.0 * uniform(0.0, 1.0) - 3.0,
                            0.3 * uniform(0.0, 1.0) - 0.1};
     const double d[3] = {cos(grazing) * cos(azimuth), cos(grazing) * sin(azimuth), -sin(grazing)};
-    /* as in a fan, the ray goes from the sonar through a point of the sea to its closest point */
+    /* a fan's ray goes from the sonar through a point of the sea to its closest point */
     double from[3];
     double along = 0.0;
     for (int i = 0; i < 3; i++) {

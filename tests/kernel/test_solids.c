@@ -9,7 +9,7 @@
 
 #define RAYS 16000 /* 20 at each of 800 solids, so that a fault of 1 % of solids is met 8 times */
 
-/* Whoever passes an outline closer than this may err, m. Positions carry single precision's 6e-8 of
+/* Rays that pass an outline closer than this may err, m. Positions carry single precision's 6e-8 of
  * a few metres, some of which add up. */
 #define OUTLINE 3e-6
 /* The largest shift of a grazing hit, as a share of the size. Moving the outline shifts the hit by
@@ -239,7 +239,7 @@ TEST(test_surfaces_are_bent_no_more_than_is_said)
             }
             const struct point way = add(at[1], at[0], -1.0);
             const double distance = sqrt(dot(way, way));
-            const struct point own = turned(&solid.record, at[0]); /* from the solid's centre */
+            const struct point own = turned(&solid.record, at[0]); /* about the solid's centre */
             if (!(distance < near && to_edge > 2.0 * distance) ||
                 (is_bent_more && hypot(own.x, own.y) < radius + distance))
                 continue;

@@ -606,7 +606,7 @@ TEST(test_specular_part)
     }
 }
 
-/* At every angle a sediment's rough part is independent, and the specular part gives way to it. */
+/* A sediment's rough part keeps its energy at every angle. The specular part gives way to it. */
 TEST(test_rough_part_apart)
 {
     const struct surface_record rough_part = rough(0.05, 1.0, 0.0, 0.1);

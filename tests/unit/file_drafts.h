@@ -72,7 +72,7 @@ static inline void make_npy(struct draft *draft, int how)
         add_float(draft, sample_at(false, i / COLUMNS, i % COLUMNS));
 }
 
-/* Makes port, whose samples run from far to near, and starboard, of 16 bits. */
+/* Makes XTF: port, whose samples run from far to near, and starboard, of 16 bits. */
 static inline void make_xtf(struct draft *draft, int how)
 {
     const size_t ping_bytes = 256 + 2 * (64 + 2 * COLUMNS);
@@ -103,7 +103,7 @@ static inline void make_xtf(struct draft *draft, int how)
     }
 }
 
-/* Makes port and starboard of 16 bits, or pairs of them (how: PAIRS). Each ping is a message. */
+/* Makes JSF: port and starboard of 16 bits, or pairs of them (how: PAIRS). A ping is a message. */
 static inline void make_jsf(struct draft *draft, int how)
 {
     const size_t pair = how ? 2 : 1;
@@ -204,7 +204,7 @@ enum {
     COMPRESSED = 16
 };
 
-/* Makes a scalar, "img" of doubles, "packed" of doubles that are stored as bytes, and a text. */
+/* Makes MATLAB: a scalar, "img" of doubles, "packed" of doubles stored as bytes, and a text. */
 static inline void make_mat(struct draft *draft, int how)
 {
     static const double rate = 48000.0;

@@ -13,7 +13,7 @@
 
 #define ROWS       53
 #define COLUMNS    71
-#define BYTES_MOST 200000 /* bytes of an image or a file */
+#define BYTES_MOST 200000 /* largest size of an image or a file */
 
 static const struct raster_layout grey8 = {ROWS, COLUMNS, 1, PIXEL_UINT8};
 static const struct raster_layout grey16 = {ROWS, COLUMNS, 1, PIXEL_UINT16};

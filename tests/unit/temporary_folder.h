@@ -18,7 +18,7 @@ struct temporary_folder {
     char file[TEMPORARY_CAPACITY + 300]; /* path that temporary_file() made last */
 };
 
-/* Returns whether the folder was made. */
+/* Makes a folder, and returns whether it was made. */
 static inline bool open_temporary_folder(struct temporary_folder *folder)
 {
     const char *temporary = getenv("TMPDIR");

@@ -63,7 +63,7 @@ TEST(test_within_ten_percent_of_the_simplified_formula)
             expect_near(frequencies[j], waters[i], simplified(frequencies[j], waters[i]), 0.1);
 }
 
-/* Returns the papers' formula once more, from Hz and seconds. A relaxation absorbs most per
+/* Returns the papers' formula once more, in Hz and seconds. A relaxation absorbs most per
  * wavelength at f_r, half its strength A f_r per cycle, and alpha = A f_r / (1 + (f_r / f)^2). */
 static double in_hertz(double frequency, struct water water)
 {

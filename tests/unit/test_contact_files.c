@@ -526,7 +526,7 @@ WITH_LABELS(test_highlight_and_shadow_are_one_contact)
         {S "4,14,6,6\n" S "8,14,6,6\n" H "9,10,5,4\n" H "4,10,5,4\n",
          2,
          {{"", LABELLED_BOTH, {4, 10, 6, 10}}, {"", LABELLED_BOTH, {8, 10, 6, 10}}}},
-        /* the middles of rows decide; parts in other rows are in nobody's way */
+        /* the middles of rows decide; parts in other rows do not matter */
         {S "4,14,4,6\n" S "5,14,4,6\n" H "6,10,2,4\n",
          2,
          {{"", LABELLED_SHADOW, {4, 14, 4, 6}}, {"", LABELLED_BOTH, {5, 10, 4, 10}}}},

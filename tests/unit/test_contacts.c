@@ -105,7 +105,7 @@ TEST(test_steps_in_speckle)
     }
 }
 
-/* Twice the level in the first third is told by 6 samples a pixel. Where there is one level, a
+/* Six samples a pixel show twice the level in the first third. Where there is one level, a
  * likelihood ratio of e^10 comes up once in some 200 (see contact_ruler.c). */
 TEST(test_changes_in_shadows)
 {
@@ -213,7 +213,7 @@ TEST(test_contacts_are_found)
     assert_int_equal(find(1e4, 10), 0);
 }
 
-/* An echo 30 dB under a contact is its side lobe in its columns, and a contact elsewhere. */
+/* An echo 30 dB below a contact is a side lobe in that contact's columns, elsewhere a contact. */
 TEST(test_side_lobes_are_no_contacts)
 {
     fill_with_speckle(6);
@@ -224,7 +224,7 @@ TEST(test_side_lobes_are_no_contacts)
     assert_true(places[1].bright.first_column > 130);
 }
 
-/* Plain speckle has no contacts of 12 dB: a mean of 9 is over 16 once in 1e50. Nor has the dark. */
+/* Plain speckle, like the dark, has no contacts of 12 dB: a mean of 9 is over 16 once in 1e50. */
 TEST(test_nothing_is_found_in_speckle)
 {
     fill_with_speckle(4);

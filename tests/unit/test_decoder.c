@@ -116,7 +116,7 @@ TEST(what_was_open_in_a_dead_decoder_is_refused)
     for (int i = 0; i < 2; i++) {
         assert_int_equal(read_image(files[i]), SONJECT_ERROR_INPUT);
         expect_says("a.h5");
-        assert_int_equal(use_file(path), SONJECT_OK); /* by a new child */
+        assert_int_equal(use_file(path), SONJECT_OK); /* a new child reads */
     }
     for (int i = 0; i < 2; i++)
         swath_file_close(&files[i]);
@@ -209,7 +209,7 @@ TEST(a_caller_may_end_the_wait_for_the_child)
     end();
 }
 
-/* A call with a progress function lends it to code that waits for the child. */
+/* A call lends its progress function to code that waits for the child. */
 TEST(a_run_may_be_ended_while_its_image_is_read)
 {
     static const char text[] =

@@ -82,8 +82,8 @@ TEST(draws_reach_what_made_the_contacts)
         }
     }
     /* Tolerances are four standard errors, and what the belief in the campaign's own values leaves.
-     * Means of 400 contacts of such spreads have standard errors of 0.02 (twice as much for sizes
-     * that headings show by turns), 0.15 dB and 0.05 dB. */
+     * Means of 400 contacts of such spreads have standard errors of 0.02 (twice as much for sizes,
+     * as headings show one or another), 0.15 dB and 0.05 dB. */
     static const double tolerances[FITTED_KINDS] = {0.12, 0.12, 0.08, 0.8, 0.5};
     for (size_t k = 0; k < FITTED_KINDS; k++) {
         print_message("%zu: %.3f of %.3f, half %.3f of %.3f\n", k, now.centre[k], hidden.centre[k],
@@ -135,8 +135,8 @@ TEST(copies_of_an_extent_count_little)
     assert_true(four - one < 0.5 * (0.16 - 0.1));
 }
 
-/* In a round that has been stretched since, the largest contacts alone have hardly moved. They are
- * no sample. */
+/* In a round that has been stretched since, the largest contacts alone have hardly moved. They
+ * alone are no sample. */
 TEST(rounds_are_compared_whole)
 {
     static struct drawn_contact made[2 * CONTACTS];
@@ -166,7 +166,7 @@ TEST(rounds_are_compared_whole)
 
 TEST(a_median_has_the_error_of_statistics)
 {
-    /* of a normal distribution: sqrt(pi / 2) of the mean's error */
+    /* normal distribution: sqrt(pi / 2) of the mean's error */
     const double error = quantile_error(0.5, 2.0 * 0.67449 * 3.0, 100.0);
     assert_true(fabs(error - 0.3 * sqrt(PI / 2.0)) < 1e-3);
     /* at 5 %: sqrt(0.05 * 0.95) / phi(1.6449) */

@@ -326,7 +326,7 @@ TEST(test_bad_content)
         expect_refusal(cases[i].name, cases[i].text, strlen(cases[i].text), cases[i].message);
     static const char polygon[] = "v 0 0 0\nv 2 0 0\nv 3 1 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4 5\n";
     struct mesh mesh;
-    EXPECT_OK(&report, load("a.obj", polygon, sizeof polygon - 1, &mesh)); /* as a fan */
+    EXPECT_OK(&report, load("a.obj", polygon, sizeof polygon - 1, &mesh)); /* a fan of triangles */
     assert_int_equal(mesh.triangle_count, 3);
     assert_int_equal(mesh.topology.open_edges, 5);
     mesh_clear(&mesh);
@@ -482,7 +482,7 @@ static sonject_status expect_taken_or_explained(const char *name, const char *by
         assert_int_equal(mesh.triangle_count, 0);
     }
     expect_bounded(before, count);
-    assert_int_equal(unlink(path), 0); /* to overwrite it is slower */
+    assert_int_equal(unlink(path), 0); /* overwriting is slower */
     return status;
 }
 

@@ -17,7 +17,7 @@
 #define FORKS    60
 #define SECONDS  60 /* s, after which a child that hangs is ended */
 
-/* Counts its work-items in a buffer, and calls at another rounding than the default. */
+/* Counts each work-item in a buffer, and calls at another rounding than the default. */
 static void count(const struct kernel_argument *arguments, const size_t *global, size_t first,
                   size_t end)
 {

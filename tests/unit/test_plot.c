@@ -1,5 +1,5 @@
 /* Tests pictures: size, grey levels, colours, ticks and text. Panels are looked for at the places
- * that the plot tells, within their frames, so that margins may change. */
+ * that the plot reports, within their frames, so that margins may change. */
 #include "claims.h"
 #include "image/canvas.h"
 #include "image/plot.h"

@@ -88,7 +88,7 @@ TEST(test_every_key_counts)
     }
 }
 
-/* Members that only C can set count, and values in tables. */
+/* Members that only C can set, and values in tables, count. */
 TEST(test_what_no_key_names_counts)
 {
     const double numbers[] = {-2.0, -1.0, 1.0, 2.0};

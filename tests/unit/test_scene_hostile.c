@@ -220,7 +220,7 @@ static size_t throw(uint64_t * dice, size_t sides)
 
 #define TEXT_CAPACITY 8192
 
-/* Changes a byte or a special character, or loses, doubles or moves a piece. Returns the bytes. */
+/* Sets a byte or special character, or loses, doubles or moves a piece. Returns the new size. */
 static size_t mutate(uint64_t *dice, char *text, size_t bytes)
 {
     static const char special[] = "{}[]:,#&*!|>'\"%@`-?\n\t \\.0-9e~";
@@ -253,7 +253,7 @@ static size_t mutate(uint64_t *dice, char *text, size_t bytes)
     }
 }
 
-/* Makes one to four changes to a copy of the text. Returns the copy's bytes. */
+/* Makes one to four changes to a copy of the text. Returns the copy's size, bytes. */
 static size_t mutate_some(uint64_t *dice, char mutated[TEXT_CAPACITY], const char *text,
                           size_t bytes)
 {

@@ -197,7 +197,7 @@ TEST(test_meshes_that_cannot_be_read)
     expect_bad_mesh("a.stl", SONJECT_ERROR_INPUT, "the header says 2 triangles, the file holds 1");
 }
 
-/* A scene has as many meshes as it may have, and one more. */
+/* A scene takes as many meshes as it may have, but not one more. */
 TEST(test_too_many_meshes)
 {
     char text[16384] = SCENE;
@@ -251,7 +251,7 @@ static void hash_of(const struct scene *scene, char text[HASH_TEXT_CAPACITY])
     assert_int_equal(scene_hash(&report, scene, NULL, text), SONJECT_OK);
 }
 
-/* The mesh's content counts, not where its file lies. */
+/* The mesh's content counts, not the path of its file. */
 TEST(test_the_hash_covers_the_mesh)
 {
     static const char text[] = MESH("{file: corner.obj, smooth: 30 deg}");

@@ -1,4 +1,4 @@
-/* Tests that all mistakes of a scene file are told at once, each by one line, in its order. */
+/* Tests that all mistakes of a scene file are told at once, a line each, in the file's order. */
 #include "claims.h"
 #include "scene_folder.h"
 

@@ -1,5 +1,5 @@
 /* Tests that tools/scenes/KEYS.md and tools/campaigns/KEYS.md, the references of scene and campaign
- * files, are those of the tables of keys. Run with two files' names it writes them. */
+ * files, are those of the tables of keys. With two files' names the program writes them. */
 #include <jansson.h>
 
 #include "claims.h"

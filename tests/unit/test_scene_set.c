@@ -1,5 +1,5 @@
-/* Tests keys that calls set. The scene is that of a file that says so, and stays as it was where a
- * key is refused. */
+/* Tests keys that calls set. They give the same scene as a file does, and a refused key leaves the
+ * scene as it was. */
 #include <sonject/sonject.h>
 
 #include "inject/scene_hash.h"

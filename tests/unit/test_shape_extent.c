@@ -1,5 +1,5 @@
-/* Tests how far shapes reach, against clouds of points in them, how far meshes reach, against the
- * shapes that they stand for, and how objects rest on the seabed. */
+/* Tests how far shapes reach, against clouds of points in them, and meshes, against the shapes that
+ * they stand for. Tests how objects rest on the seabed. */
 #include "claims.h"
 #include "kernel/mesh_samples.h"
 #include "kernel/reference_solids.h"
@@ -43,7 +43,7 @@ static bool random_point(const struct shape_size *size, const struct body *body,
     return body_holds(body, (struct point){p[0], p[1], p[2]});
 }
 
-/* No point reaches further than the extent, and some nearly as far: corners are rarely drawn. */
+/* No point exceeds the extent, and some nearly reach it, as corners are rarely drawn. */
 TEST(test_clouds_of_points)
 {
     for (int i = 0; i < 3 * solid_row_count; i++) {

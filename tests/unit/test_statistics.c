@@ -298,8 +298,8 @@ TEST(test_looks)
 }
 
 /* Single looks correlate by sinc^2(1 / row width) and exp(-4 ln 2 / (2 column width^2)), with the
- * width at half power. The median of 256 blocks errs as the result itself tells. The trend and mean
- * that are taken off a block cost 1 % of a correlation. */
+ * width at half power. The median of 256 blocks has the error that is measured with it. The trend
+ * and mean that are taken off a block cost 1 % of a correlation. */
 TEST(test_speckle_correlation)
 {
     static const double row_widths[] = {1.0, 1.5, 2.5};

@@ -80,7 +80,7 @@ CLEAN(test_what_is_written_is_read)
 {
     struct sums_file file;
     struct sums_head head = head_of(2, 3, 4, 9, 1);
-    /* so many that they do not stay in memory */
+    /* too many to stay in memory */
     const size_t many = ((size_t)33 << 20) / sizeof(int64_t);
     int64_t *values = calloc(many, sizeof *values);
     assert_non_null(values);

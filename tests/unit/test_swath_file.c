@@ -167,7 +167,7 @@ static void read_and_patch(struct report *by, const char *path, const struct kin
     read_draft(copy, back);
 }
 
-/* Numbers such as 0.1 keep all their bits, and MATLAB's variables around them every byte. */
+/* Numbers such as 0.1 keep all their bits, and MATLAB's variables around them keep all bytes. */
 CLEAN(a_patch_is_all_that_changes_here_and_in_a_child)
 {
     static struct draft draft, backs[2];

@@ -233,8 +233,8 @@ TEST(test_amplitude_is_that_of_complex_pixels)
 }
 
 /* Mean intensities of 20 x 20 blocks, of 267 cells each, have a standard error of 6 %. Sediments 6
- * dB apart (a factor of 4) are then clearly apart. Blocks across a border lie between the two, but
- * hardly move medians. */
+ * dB apart (a factor of 4) are then clearly separate. Blocks across a border lie between the two,
+ * but hardly move medians. */
 TEST(test_patch_step)
 {
     sonject_synthetic_params synthetic = plain(800, 800);
@@ -304,7 +304,7 @@ TEST(test_texture_length)
 }
 
 /* Ripples 0.6 m = 24 pixels long repeat across the crests, not along them, on about half of the
- * ground. They leave the mean intensity, whose error is that of 30 wavelengths times 30
+ * ground. They do not change the mean intensity. Its error is that of 30 wavelengths times 30
  * uncorrelated places, each with an intensity deviation of about 1. */
 TEST(test_ripples)
 {

@@ -185,8 +185,8 @@ TEST(test_two_points)
     print_message("largest relative error of the time between two points: %.2g\n", largest_error);
 }
 
-/* Of all paths through a plane between two waters sound takes the quickest, as Fermat says. Nothing
- * of Snell's law is in here. */
+/* Fermat's principle: sound takes the quickest of all paths through a plane between two waters.
+ * Nothing of Snell's law is in here. */
 TEST(test_fermat)
 {
     static const double ranges[] = {1.0, 10.0, 35.0, 120.0, 1000.0};
@@ -294,8 +294,7 @@ TEST(test_straight_water)
 /* ---- the ray tube ---- */
 
 /* The wavefront's width comes from two rays, half a step in angle to either side, by their points
- * at one height seen across the ray. The power is sent into an angle, here and back from the point.
- */
+ * at one height seen across the ray. Power is sent into an angle, here and back from the point. */
 static void compare_tube(const struct water *water, const struct reference_way *folded,
                          double height)
 {
